@@ -1,0 +1,94 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/model/model_spec.hpp"
+#include "core/monitor/settings.hpp"
+#include "core/signal/frame.hpp"
+
+/// The unit file as plain structs: the schema. Loading and checking is in `load_unit.hpp`.
+namespace mpm::config {
+
+struct InputSignal {
+  std::string tag;
+  std::string unit;  ///< engineering unit, for display
+  std::string description;
+};
+
+struct CvSignal {
+  std::string tag;
+  std::string unit;
+  std::string description;
+  std::string prediction;  ///< tag; empty = simulate from the model
+  std::string setpoint;    ///< tag; may be empty
+};
+
+struct DdsSettings {
+  int domain = 0;                  ///< 0..100
+  std::string interface = "lo";    ///< network interface by name; empty = Cyclone's choice
+  std::vector<std::string> peers;  ///< host addresses beside 127.0.0.1
+  bool multicast = false;
+  std::string partition;      ///< discovery tag that keeps plants apart; may be empty
+  int max_participants = 60;  ///< processes of one domain on one host without multicast
+};
+
+/// Noise on one CV: w(k) white with `sigma`, v(k) = w(k) / prod(1 - pole z^-1).
+struct NoiseSettings {
+  double sigma = 0.0;  ///< CV units
+  double pole = 0.95;  ///< 0 <= pole < 1
+};
+
+struct MvLimits {
+  std::optional<double> low, high;  ///< hard, MV units
+  std::optional<double> max_move;   ///< hard, MV units per sample
+};
+
+struct CvLimits {
+  std::optional<double> low, high;  ///< soft, CV units
+};
+
+/// Reference signal: random binary, redrawn every `hold` samples, phases staggered over the CVs.
+struct SetpointSettings {
+  double amplitude = 0.5;  ///< CV units around the operating point
+  int hold_samples = 100;
+};
+
+/// The simulated controller and disturbances; used by mpmsim only.
+struct SimulationSettings {
+  int prediction_horizon = 100;                      ///< samples
+  std::vector<int> move_blocks = {5, 5, 5, 10, 25};  ///< samples; the last one holds on
+  std::vector<double> cv_weights;                    ///< one per CV; empty = 1
+  std::vector<double> move_weights;                  ///< one per MV; empty = 1
+  double soft_limit_weight = 1000.0;                 ///< linear cost per CV unit of violation
+  std::vector<MvLimits> mv_limits;                   ///< one per MV
+  std::vector<CvLimits> cv_limits;                   ///< one per CV
+  std::vector<NoiseSettings> noise;                  ///< one per CV
+  std::vector<NoiseSettings> dv_movement;   ///< one per DV: how measured disturbances wander
+  std::vector<SetpointSettings> setpoints;  ///< one per CV
+};
+
+struct UnitConfig {
+  std::string unit;  ///< name and DDS key
+  double sample_time_s = 1.0;
+  std::vector<InputSignal> mv, dv, aux;
+  std::vector<CvSignal> cv;
+  ModelSpec model;
+  MonitorSettings monitor;
+  AlarmSettings alarms;
+  DdsSettings dds;
+  SimulationSettings simulation;
+
+  [[nodiscard]] SignalCounts counts() const {
+    return {static_cast<int>(mv.size()), static_cast<int>(dv.size()), static_cast<int>(cv.size()),
+            static_cast<int>(aux.size())};
+  }
+  /// Tag of model input `index`: MVs first, then DVs.
+  [[nodiscard]] const std::string& input_tag(int index) const {
+    const auto i = static_cast<std::size_t>(index);
+    return i < mv.size() ? mv[i].tag : dv[i - mv.size()].tag;
+  }
+};
+
+}  // namespace mpm::config

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace mpm {
+
+enum class Verdict : std::uint8_t { kUndetermined, kMatch, kMismatch };
+
+/// Why a verdict is undetermined.
+enum class Reason : std::uint8_t {
+  kNone,
+  kWarmingUp,   ///< too few effective samples yet
+  kNotExcited,  ///< the input did not move enough to show an error of interest
+  kCollinear,   ///< the input moved only together with another one (`confounder`)
+  kBadData,     ///< the values needed are missing or bad
+};
+
+[[nodiscard]] constexpr std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kMatch:
+      return "match";
+    case Verdict::kMismatch:
+      return "mismatch";
+    default:
+      return "undetermined";
+  }
+}
+
+[[nodiscard]] constexpr std::string_view to_string(Reason reason) {
+  switch (reason) {
+    case Reason::kWarmingUp:
+      return "warming_up";
+    case Reason::kNotExcited:
+      return "not_excited";
+    case Reason::kCollinear:
+      return "collinear";
+    case Reason::kBadData:
+      return "bad_data";
+    default:
+      return "";
+  }
+}
+
+/// Judgement on one channel (one input to one CV) after one sample.
+struct ChannelStatus {
+  Verdict verdict = Verdict::kUndetermined;
+  Reason reason = Reason::kWarmingUp;
+  int confounder = -1;               ///< input index, for kCollinear; -1 otherwise
+  double p_value = 1.0;              ///< of the channel test, 0..1
+  double statistic = 0.0;            ///< F of the channel test
+  double threshold = 0.0;            ///< F at which the verdict turns to mismatch
+  double partial_correlation = 0.0;  ///< (3.15) where its magnitude is largest for lags >= 1
+  int lag = 0;                       ///< samples, where that is
+  bool excited = false;
+  double effect_size = 0.0;     ///< estimated gain error, plant minus model, CV per input unit
+  double smallest_error = 0.0;  ///< smallest relative gain error that would have been seen, >= 0
+  double effective_samples = 0.0;
+};
+
+}  // namespace mpm

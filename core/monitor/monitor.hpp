@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/mismatch/verdict.hpp"
+#include "core/model/model_spec.hpp"
+#include "core/monitor/settings.hpp"
+#include "core/signal/frame.hpp"
+
+namespace mpm {
+
+enum class AlarmState : std::uint8_t { kCleared, kActive };
+
+/// A change of one channel's alarm, caused by the frame just pushed.
+struct AlarmTransition {
+  int cv = 0;
+  int input = 0;
+  AlarmState to = AlarmState::kCleared;
+};
+
+/// What the monitor did with the frames so far.
+struct MonitorCounters {
+  std::uint64_t frames = 0;        ///< pushed
+  std::uint64_t used = 0;          ///< entered the statistics with a full lag window
+  std::uint64_t missing = 0;       ///< intervals skipped between frames
+  std::uint64_t out_of_order = 0;  ///< frames not newer than the last one; ignored
+  std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed
+};
+
+/// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
+/// Deterministic: same frames, same bytes. No allocation in `push` after construction.
+class Monitor {
+ public:
+  /// `has_prediction[j]`: CV j's model prediction comes with the frame; otherwise it is simulated
+  /// from `model`.
+  Monitor(const ModelSpec& model, const SignalCounts& counts,
+          const std::vector<bool>& has_prediction, const MonitorSettings& settings,
+          const AlarmSettings& alarms);
+  Monitor(Monitor&&) noexcept;
+  Monitor& operator=(Monitor&&) noexcept;
+  ~Monitor();
+
+  /// Takes the frame of the next interval; frames come in increasing interval order, a jump is a
+  /// gap: it closes the lag window, which then refills.
+  void push(const Frame& frame);
+
+  [[nodiscard]] const ChannelStatus& channel(int cv, int input) const;
+  [[nodiscard]] AlarmState alarm(int cv, int input) const;
+  /// Partial correlations (3.15) of a channel for lags first_lag()..last_lag(). Undefined ones
+  /// (silent or collinear input) are 0.
+  [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> partial_correlations(int cv, int input) const;
+  [[nodiscard]] int first_lag() const;
+  [[nodiscard]] int last_lag() const;
+  /// Changes caused by the last `push`; valid until the next one.
+  [[nodiscard]] const std::vector<AlarmTransition>& transitions() const;
+  [[nodiscard]] const MonitorCounters& counters() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mpm

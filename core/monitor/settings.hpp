@@ -1,0 +1,26 @@
+#pragma once
+
+namespace mpm {
+
+/// What the user may set; 0 or empty means "derive from the model and the sample time".
+struct MonitorSettings {
+  double memory_s = 0.0;           ///< sample_time / (1 - lambda); 0 = 4000 effective samples
+  double false_alarm_rate = 0.01;  ///< of the whole unit at any one time, 0..1
+  double gain_error_of_interest = 0.17;  ///< relative; larger errors must be visible to say match
+  int controlling_lags = 40;             ///< g of (3.15)
+  int first_lag = -10;                   ///< reported range of lags d of (3.15)
+  int last_lag = 20;
+  int fir_lags = 0;        ///< block length of the channel test
+  int residual_order = 0;  ///< lags of all residuals
+  double tail_s = 0.0;     ///< time constant of the tail regressor
+};
+
+/// When a channel's verdict becomes an alarm.
+struct AlarmSettings {
+  double raise_p_value = 1e-6;  ///< raise below
+  double clear_p_value = 1e-3;  ///< clear above (deadband between the two)
+  double on_delay_s = 0.0;      ///< 0 = derive: 10 samples
+  double off_delay_s = 0.0;     ///< 0 = derive: 60 samples
+};
+
+}  // namespace mpm

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+/// The one numerical kernel of this project: plane (Givens) rotations of long rows.
+///
+/// The kernel is compiled for several instruction sets and picked once at start. All of them give
+/// the same bits: the operation is element-wise and no multiply-add is contracted.
+namespace mpm {
+
+/// Alignment of rows, bytes; and the same in doubles.
+inline constexpr std::size_t kRowAlignment = 64;
+inline constexpr std::size_t kRowGranule = kRowAlignment / sizeof(double);
+
+/// Cosine, sine and radius of the rotation that takes (a, b) to (radius, 0), radius >= 0.
+struct Rotation {
+  double cosine = 1.0;
+  double sine = 0.0;
+  double radius = 0.0;
+};
+/// No overflow or underflow for any finite a, b; (0, 0) gives the identity.
+[[nodiscard]] Rotation make_rotation(double a, double b);
+
+/// [x; y] <- [c s; -s c] [diag(scale, 1)] [x; y], element by element over `count` values:
+/// x' = (c * scale) x + s y, y' = c y - (s * scale) x. `x` and `y` must not overlap.
+void rotate_rows(double* x, double* y, std::size_t count, const Rotation& rotation,
+                 double scale = 1.0);
+
+}  // namespace mpm
