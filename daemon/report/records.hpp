@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+/// What the monitor says, as records with tags instead of indices. The DDS output topics, the
+/// JSON lines of daemon and `mpm detect`, and `mpm watch` all carry these, so one serialiser makes
+/// them byte-identical.
+namespace mpm::daemon {
+
+/// One channel after one sample; topic mpm/channel_status.
+struct ChannelRecord {
+  std::string unit, mv, cv;  ///< tags; `mv` may be a DV's
+  std::int64_t interval = 0;
+  std::int64_t source_time_ns = 0;
+  std::string verdict;  ///< match | mismatch | undetermined
+  std::string reason;   ///< empty unless undetermined
+  double p_value = 1.0;
+  double statistic = 0.0;
+  double threshold = 0.0;
+  double partial_correlation = 0.0;
+  int lag = 0;  ///< samples
+  bool excited = false;
+  double effect_size = 0.0;     ///< CV units per input unit
+  double smallest_error = 0.0;  ///< relative gain error
+  double effective_samples = 0.0;
+  bool alarm_active = false;
+  int first_lag = 0;
+  std::vector<double> partial_correlations;  ///< lags first_lag, first_lag + 1, ...
+};
+
+/// A channel's alarm changed; topics mpm/alarm (latest) and mpm/alarm_event (each).
+struct AlarmRecord {
+  std::string unit, mv, cv;
+  std::int64_t interval = 0;
+  std::int64_t source_time_ns = 0;
+  std::string to;  ///< active | cleared
+  double p_value = 1.0;
+  double statistic = 0.0;
+  double threshold = 0.0;
+  double partial_correlation = 0.0;
+  int lag = 0;
+  double effect_size = 0.0;
+};
+
+[[nodiscard]] nlohmann::ordered_json to_json(const ChannelRecord& record);
+[[nodiscard]] nlohmann::ordered_json to_json(const AlarmRecord& record);
+
+}  // namespace mpm::daemon
