@@ -4,14 +4,13 @@
 #include <memory>
 #include <vector>
 
+#include "core/alarm/condition.hpp"
 #include "core/mismatch/verdict.hpp"
 #include "core/model/model_spec.hpp"
 #include "core/monitor/settings.hpp"
 #include "core/signal/frame.hpp"
 
 namespace mpm {
-
-enum class AlarmState : std::uint8_t { kCleared, kActive };
 
 /// A change of one channel's alarm, caused by the frame just pushed.
 struct AlarmTransition {

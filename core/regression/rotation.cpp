@@ -1,5 +1,6 @@
 #include "core/regression/rotation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/regression/rotation_kernel.hpp"
@@ -25,6 +26,12 @@ const Kernel kKernel = pick_kernel();
 
 Rotation make_rotation(double a, double b) {
   if (b == 0.0) return {a < 0.0 ? -1.0 : 1.0, 0.0, std::abs(a)};
+  const double square = a * a + b * b;
+  if (square > 1e-280 && square < 1e280) {
+    const double radius = std::sqrt(square);
+    const double inverse = 1.0 / radius;
+    return {a * inverse, b * inverse, radius};
+  }
   const double largest = std::max(std::abs(a), std::abs(b));
   const double scaled_a = a / largest;
   const double scaled_b = b / largest;

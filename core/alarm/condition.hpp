@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+
+namespace mpm {
+
+enum class AlarmState : unsigned char { kCleared, kActive };
+
+/// One alarm condition on a p-value: raised once it has stayed below `raise_below` for
+/// `on_delay` samples in a row, cleared once it has stayed above `clear_above` for `off_delay`
+/// samples in a row. Between the two limits (the deadband) and while there is no verdict nothing
+/// changes and the counts start anew: silence neither raises nor clears.
+class Condition {
+ public:
+  struct Limits {
+    double raise_below = 1e-6;
+    double clear_above = 1e-3;  ///< >= raise_below
+    int on_delay = 10;          ///< samples, >= 1
+    int off_delay = 60;         ///< samples, >= 1
+  };
+
+  /// Takes one sample's p-value; true where the state changed.
+  bool update(double p_value, const Limits& limits) {
+    const bool toward = state_ == AlarmState::kCleared ? p_value < limits.raise_below
+                                                       : p_value > limits.clear_above;
+    held_ = toward ? held_ + 1 : 0;
+    const int delay = state_ == AlarmState::kCleared ? limits.on_delay : limits.off_delay;
+    if (held_ < std::max(delay, 1)) return false;
+    state_ = state_ == AlarmState::kCleared ? AlarmState::kActive : AlarmState::kCleared;
+    held_ = 0;
+    return true;
+  }
+  /// A sample without a verdict.
+  void hold() { held_ = 0; }
+
+  [[nodiscard]] AlarmState state() const { return state_; }
+
+ private:
+  AlarmState state_ = AlarmState::kCleared;
+  int held_ = 0;
+};
+
+}  // namespace mpm

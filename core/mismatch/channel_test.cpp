@@ -1,0 +1,350 @@
+#include "core/mismatch/channel_test.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/statistics/f_distribution.hpp"
+
+namespace mpm {
+namespace {
+
+// A column of which less than this share (relative s.d.) is its own is held at that share: the
+// variances of everything that depends on it then come out huge instead of meaningless.
+constexpr double kOwnShare = 1e-7;
+
+// Rows over which the noise level is followed, and the error in s.d. beyond which a row is trusted
+// less (science: about 300 rows and 3 s.d. keep both calibration and power).
+constexpr double kScaleRows = 300.0;
+constexpr double kClip = 3.0;
+
+// The other inputs mask this one where they make its gain's s.d. this many times larger.
+constexpr double kMasked = 2.0;
+
+}  // namespace
+
+ChannelTest::Response::Response(int columns)
+    : factor(columns, 1), coefficients(Eigen::VectorXd::Zero(columns)) {}
+
+ChannelTest::ChannelTest(const Shape& shape, double lambda, const LinearModel& model)
+    : shape_(shape),
+      lambda_(lambda),
+      block_(shape.fir_lags + static_cast<int>(shape.tail_poles.size())),
+      lead_in_(1 + shape.cvs * shape.residual_order),
+      columns_(lead_in_ + shape.inputs * block_),
+      origin_(Eigen::VectorXd::Zero(shape.inputs)),
+      last_input_(Eigen::VectorXd::Zero(shape.inputs)),
+      row_(columns_),
+      evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs)),
+      covariance_(std::max(block_, 1), 1) {
+  if (shape.inputs < 1 || shape.cvs < 1 || shape.fir_lags < 1 || shape.residual_order < 1 ||
+      shape.tail_poles.empty() || !(lambda > 0.0 && lambda <= 1.0))
+    throw std::invalid_argument("impossible shape of the channel test");
+  const int tails = static_cast<int>(shape.tail_poles.size());
+  for (int i = 0; i < shape.inputs; ++i) {
+    input_windows_.emplace_back(shape.fir_lags);
+    for (int t = 0; t < tails; ++t) tail_windows_.emplace_back(shape.fir_lags + 1);
+  }
+  for (int j = 0; j < shape.cvs; ++j) {
+    residual_windows_.emplace_back(shape.residual_order);
+    responses_.emplace_back(columns_);
+  }
+
+  // Step responses beyond lag L are fitted by the tails' step responses, by least squares over
+  // eight slowest time constants.
+  const double slowest = *std::max_element(shape.tail_poles.begin(), shape.tail_poles.end());
+  const int beyond = std::clamp(static_cast<int>(-8.0 / std::log(slowest)), 50, 20000);
+  Eigen::MatrixXd tail_steps(beyond, tails);
+  for (int t = 0; t < tails; ++t) {
+    const double pole = shape.tail_poles[static_cast<std::size_t>(t)];
+    for (int l = 0; l < beyond; ++l) tail_steps(l, t) = 1.0 - std::pow(pole, l + 1);
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> tail_fit(tail_steps);
+  const int length = shape.fir_lags + beyond + 1;
+  const Eigen::MatrixXd gains = model.steady_gain();
+  const Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> integrating = model.integrating();
+  for (int i = 0; i < shape.inputs; ++i) {
+    for (int j = 0; j < shape.cvs; ++j) {
+      Signature signature;
+      Eigen::VectorXd response = model.impulse_response(j, i, length);
+      if (response.cwiseAbs().maxCoeff() > 0.0) {
+        signature.gain = gains(j, i) * (integrating(j, i) ? -1.0 / std::log(slowest) : 1.0);
+      } else {
+        for (int l = 1; l < length; ++l) response(l) = (1.0 - slowest) * std::pow(slowest, l - 1);
+      }
+      signature.pulse = response.segment(1, shape.fir_lags);
+      signature.tails.resize(tails, shape.residual_order + 1);
+      for (int shift = 0; shift <= shape.residual_order; ++shift) {
+        Eigen::VectorXd step(beyond);
+        double sum = 0.0;
+        for (int l = 0; l < beyond; ++l) {
+          const int at = shape.fir_lags + 1 + l - shift;
+          sum += at >= 0 ? response(at) : 0.0;
+          step(l) = sum;
+        }
+        signature.tails.col(shift) = tail_fit.solve(step);
+      }
+      signatures_.push_back(std::move(signature));
+    }
+  }
+
+  const int all = shape.inputs * block_;
+  triangle_.setZero(all, all);
+  inverse_.setZero(all, all);
+  norms_.setZero(all);
+  estimate_.setZero(all);
+  direction_.setZero(block_, shape.inputs);
+  beta_.setZero(block_);
+  whitened_.setZero(block_);
+  whitened_beta_.setZero(block_);
+  functional_.setZero(all);
+  other_functional_.setZero(all);
+}
+
+double ChannelTest::effective_rows() const {
+  return weight_square_ > 0.0 ? weight_sum_ * weight_sum_ / weight_square_ : 0.0;
+}
+
+bool ChannelTest::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
+                         const Eigen::Ref<const Eigen::VectorXd>& residuals) {
+  const int tails = static_cast<int>(shape_.tail_poles.size());
+  if (!has_origin_) {
+    origin_ = inputs;
+    has_origin_ = true;
+  }
+  const bool full = filled_ > std::max(shape_.fir_lags, shape_.residual_order);
+  if (full) {
+    build_row();
+    for (int j = 0; j < shape_.cvs; ++j) take_row(j, residuals(j));
+    weight_sum_ = lambda_ * weight_sum_ + 1.0;
+    weight_square_ = lambda_ * lambda_ * weight_square_ + 1.0;
+    ++rows_;
+  }
+  for (int i = 0; i < shape_.inputs; ++i) {
+    const double u = inputs(i) - origin_(i);
+    input_windows_[static_cast<std::size_t>(i)].push(u);
+    for (int t = 0; t < tails; ++t) {
+      LagWindow& window = tail_windows_[static_cast<std::size_t>(i * tails + t)];
+      const double pole = shape_.tail_poles[static_cast<std::size_t>(t)];
+      window.push(pole * window.window()[0] + (1.0 - pole) * u);
+    }
+  }
+  last_input_ = inputs - origin_;
+  for (int j = 0; j < shape_.cvs; ++j)
+    residual_windows_[static_cast<std::size_t>(j)].push(residuals(j));
+  ++filled_;
+  return full;
+}
+
+void ChannelTest::skip(std::int64_t missing) {
+  const int tails = static_cast<int>(shape_.tail_poles.size());
+  filled_ = 0;
+  for (int i = 0; i < shape_.inputs; ++i) {
+    for (int t = 0; t < tails; ++t) {
+      LagWindow& window = tail_windows_[static_cast<std::size_t>(i * tails + t)];
+      const double kept =
+          std::pow(shape_.tail_poles[static_cast<std::size_t>(t)], static_cast<double>(missing));
+      window.push(kept * window.window()[0] + (1.0 - kept) * last_input_(i));
+    }
+  }
+}
+
+void ChannelTest::build_row() {
+  const int tails = static_cast<int>(shape_.tail_poles.size());
+  double* out = row_.data();
+  *out++ = 1.0;
+  for (const LagWindow& residual : residual_windows_)
+    out = std::copy_n(residual.window(), shape_.residual_order, out);
+  for (int i = 0; i < shape_.inputs; ++i) {
+    out = std::copy_n(input_windows_[static_cast<std::size_t>(i)].window(), shape_.fir_lags, out);
+    for (int t = 0; t < tails; ++t)
+      *out++ = tail_windows_[static_cast<std::size_t>(i * tails + t)].window()[shape_.fir_lags];
+  }
+}
+
+void ChannelTest::take_row(int cv, double residual) {
+  Response& response = responses_[static_cast<std::size_t>(cv)];
+  double row_weight = 1.0;
+  if (response.scaled) {
+    const double error = std::abs(residual - row_.dot(response.coefficients));
+    const double clipped = std::min(error, kClip * response.scale);
+    row_weight = (error > clipped ? clipped / error : 1.0) / response.scale;
+    response.scale_rows = std::min(response.scale_rows + 1.0, kScaleRows);
+    const double share = 1.0 / response.scale_rows;
+    response.scale =
+        std::sqrt((1.0 - share) * response.scale * response.scale + share * clipped * clipped);
+  }
+  double* out = response.factor.row();
+  for (int c = 0; c < columns_; ++c) out[c] = row_weight * row_(c);
+  out[columns_] = row_weight * residual;
+  response.factor.update(lambda_);
+
+  // The first rows come as they are; once they are twice as many as the columns they give the
+  // first estimate of the noise level, by which they are then divided like all that follow.
+  if (!response.scaled && rows_ + 1 >= 2 * columns_) {
+    const double freedom = effective_rows() - columns_;
+    const double mean_square = response.factor.residual_square(0) / weight_sum_ *
+                               (freedom + columns_) / std::max(freedom, 1.0);
+    if (mean_square > 0.0) {
+      response.scale = std::sqrt(mean_square);
+      response.scale_rows = std::min(std::max(freedom, 1.0), kScaleRows);
+      response.factor.scale(1.0 / response.scale);
+      response.scaled = true;
+    }
+  }
+  if (rows_ + 1 >= 2 * columns_) response.factor.solve(0, response.coefficients);
+}
+
+void ChannelTest::evaluate() {
+  if (!ready()) return;
+  for (int j = 0; j < shape_.cvs; ++j) evaluate_cv(j);
+}
+
+void ChannelTest::signature_coefficients(int cv, int input,
+                                         Eigen::Ref<Eigen::VectorXd> beta) const {
+  // b(q) = A(q) h(q), A(q) = 1 - a_1 q^-1 - ... of the CV's own residual lags.
+  const Signature& signature = signatures_[static_cast<std::size_t>(input * shape_.cvs + cv)];
+  const Eigen::VectorXd& coefficients = responses_[static_cast<std::size_t>(cv)].coefficients;
+  const int lags = shape_.fir_lags;
+  const int tails = block_ - lags;
+  beta.head(lags) = signature.pulse;
+  beta.tail(tails) = signature.tails.col(0);
+  for (int shift = 1; shift <= shape_.residual_order; ++shift) {
+    const double a = coefficients(1 + cv * shape_.residual_order + shift - 1);
+    if (shift < lags) beta.segment(shift, lags - shift) -= a * signature.pulse.head(lags - shift);
+    beta.tail(tails) -= a * signature.tails.col(shift);
+  }
+}
+
+void ChannelTest::evaluate_cv(int cv) {
+  const Response& response = responses_[static_cast<std::size_t>(cv)];
+  const GivensQr& factor = response.factor;
+  const int all = shape_.inputs * block_;
+
+  for (int c = 0; c < all; ++c) norms_(c) = factor.centred_norm(lead_in_ + c);
+  for (int i = 0; i < all; ++i)
+    for (int c = i; c < all; ++c)
+      triangle_(i, c) = norms_(c) > 0.0 ? factor.r(lead_in_ + i, lead_in_ + c) / norms_(c) : 0.0;
+  for (int i = all - 1; i >= 0; --i) {
+    const int rest = all - 1 - i;
+    inverse_.row(i).tail(rest).setZero();
+    const double diagonal = norms_(i) > 0.0 ? std::max(triangle_(i, i), kOwnShare) : 1.0;
+    for (int c = i + 1; c < all; ++c)
+      inverse_.row(i).tail(all - c) -= triangle_(i, c) * inverse_.row(c).tail(all - c);
+    inverse_(i, i) = 1.0;
+    inverse_.row(i).tail(rest + 1) /= diagonal;
+    estimate_(i) = 0.0;
+    for (int c = i; c < all; ++c) estimate_(i) += inverse_(i, c) * factor.z(lead_in_ + c, 0);
+  }
+
+  const double freedom = denominator_freedom();
+  const double variance = factor.residual_square(0) / weight_sum_ * (freedom + columns_) / freedom;
+  const double inflation = weight_square_ / weight_sum_;
+  for (int i = 0; i < shape_.inputs; ++i) {
+    ChannelEvidence& evidence = evidence_[static_cast<std::size_t>(i * shape_.cvs + cv)];
+    const int at = i * block_;
+    const int live = static_cast<int>((norms_.segment(at, block_).array() > 0.0).count());
+    if (live < block_ || !(variance > 0.0)) {
+      evidence = ChannelEvidence{};
+      evidence.excitation_index = std::numeric_limits<double>::infinity();
+      evidence.excitation_index_alone = std::numeric_limits<double>::infinity();
+      direction_.col(i).setZero();
+      continue;
+    }
+    factor_covariance(i);
+    whitened_ = estimate_.segment(at, block_);
+    solve_transposed(whitened_);
+    evidence.numerator_freedom = block_;
+    evidence.statistic = whitened_.squaredNorm() / (block_ * variance * inflation);
+    evidence.p_value = f_upper_tail(evidence.statistic, evidence.numerator_freedom, freedom);
+
+    evidence.reference_gain = reference_gain(cv, i);
+    signature_coefficients(cv, i, beta_);
+    if (signatures_[static_cast<std::size_t>(i * shape_.cvs + cv)].gain == 0.0)
+      beta_ *= evidence.reference_gain;
+    beta_.array() *= norms_.segment(at, block_).array();
+    functional_.head(at + block_).noalias() = triangle_.block(0, at, at + block_, block_) * beta_;
+    const double alone = functional_.head(at + block_).squaredNorm();
+    whitened_beta_ = beta_;
+    solve_transposed(whitened_beta_);
+    const double information = whitened_beta_.squaredNorm();
+    const double spread = std::sqrt(variance * inflation);
+    evidence.excitation_index = spread / std::sqrt(information);
+    evidence.excitation_index_alone = spread / std::sqrt(alone);
+    evidence.gain_error_ratio =
+        information > 0.0 ? whitened_beta_.dot(whitened_) / information : 0.0;
+    for (int r = block_ - 1; r >= 0; --r) {
+      for (int c = r + 1; c < block_; ++c)
+        whitened_beta_(r) -= covariance_.r(r, c) * whitened_beta_(c);
+      whitened_beta_(r) /= covariance_.r(r, r);
+    }
+    direction_.col(i) = whitened_beta_;
+  }
+  for (int i = 0; i < shape_.inputs; ++i) {
+    ChannelEvidence& evidence = evidence_[static_cast<std::size_t>(i * shape_.cvs + cv)];
+    const bool masked = evidence.excitation_index > kMasked * evidence.excitation_index_alone;
+    evidence.confounder = masked ? find_confounder(i) : -1;
+  }
+}
+
+double ChannelTest::reference_gain(int cv, int input) const {
+  const double own = signatures_[static_cast<std::size_t>(input * shape_.cvs + cv)].gain;
+  if (own != 0.0) return own;
+  double largest = 0.0;
+  for (int i = 0; i < shape_.inputs; ++i) {
+    const double gain = signatures_[static_cast<std::size_t>(i * shape_.cvs + cv)].gain;
+    largest = std::max(largest, std::abs(gain) * norms_(i * block_));
+  }
+  if (largest == 0.0)
+    largest = responses_[static_cast<std::size_t>(cv)].factor.centred_norm(
+        1 + cv * shape_.residual_order);
+  return largest / norms_(input * block_);
+}
+
+void ChannelTest::factor_covariance(int input) {
+  const int all = shape_.inputs * block_;
+  const int at = input * block_;
+  covariance_.clear();
+  for (int c = at; c < all; ++c) {
+    double* out = covariance_.row();
+    for (int r = 0; r < block_; ++r) out[r] = inverse_(at + r, c);
+    out[block_] = 0.0;
+    covariance_.update(1.0);
+  }
+}
+
+void ChannelTest::solve_transposed(Eigen::Ref<Eigen::VectorXd> x) const {
+  for (int r = 0; r < block_; ++r) {
+    for (int c = 0; c < r; ++c) x(r) -= covariance_.r(c, r) * x(c);
+    x(r) /= covariance_.r(r, r);
+  }
+}
+
+void ChannelTest::gain_functional(int input, Eigen::Ref<Eigen::VectorXd> functional) const {
+  const int at = input * block_;
+  functional.head(at).setZero();
+  functional.tail(functional.size() - at).noalias() =
+      inverse_.block(at, at, block_, functional.size() - at).transpose() * direction_.col(input);
+}
+
+int ChannelTest::find_confounder(int input) {
+  gain_functional(input, functional_);
+  int confounder = -1;
+  double largest = 0.0;
+  for (int other = 0; other < shape_.inputs; ++other) {
+    if (other == input) continue;
+    gain_functional(other, other_functional_);
+    const double norm = other_functional_.norm();
+    if (!(norm > 0.0)) continue;
+    const double correlation = std::abs(functional_.dot(other_functional_)) / norm;
+    if (correlation > largest) {
+      largest = correlation;
+      confounder = other;
+    }
+  }
+  return confounder;
+}
+
+}  // namespace mpm

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/regression/givens_qr.hpp"
+#include "core/signal/lag_window.hpp"
+
+namespace mpm {
+
+/// Recursive lagged partial correlations (Carlsson 2010, eq. 3.15 and 3.17) of all inputs, CVs and
+/// lags at once:
+///
+///     c_ji(d) = ParCorr(u_i(t), e_j(t+d) | 1, u~_i(t), u~_i(t-1), ..., u~_i(t-g)),
+///
+/// u~_i all inputs but the i-th. The thesis writes lag d as u_i(k-d) against e_j(k) with controls
+/// u~_i(k-d), ...; with t = k - d the controls depend neither on j nor on d, so that one factor
+/// per input serves every CV and lag. All rows end at t = now - last_lag, for every lag alike.
+/// Rows are weighted lambda^age. No allocation after construction.
+class LaggedCorrelation {
+ public:
+  struct Shape {
+    int inputs = 1;             ///< m >= 1
+    int cvs = 1;                ///< n >= 1
+    int controlling_lags = 40;  ///< g >= 0
+    int first_lag = -10;        ///< >= -(controlling lags)
+    int last_lag = 20;          ///< >= max(first_lag, 0)
+  };
+
+  /// `lambda` in (0, 1]. Throws std::invalid_argument on an impossible shape.
+  LaggedCorrelation(const Shape& shape, double lambda);
+
+  /// Takes u(k) (m values) and e(k) (n values), all finite, of the next interval.
+  void update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
+              const Eigen::Ref<const Eigen::VectorXd>& residuals);
+  /// The intervals so far and the next one are not neighbours: no row may span both.
+  void close_window() { filled_ = 0; }
+
+  /// Refreshes all correlations from the factors.
+  void evaluate();
+  /// Correlations of one channel for lags first_lag..last_lag, after `evaluate`. Where the input
+  /// does not move by itself (silent, or an exact combination of the others), or too few rows
+  /// came, they are 0 and `defined` is false.
+  [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> correlations(int cv, int input) const {
+    return correlations_.col(input * shape_.cvs + cv);
+  }
+  [[nodiscard]] bool defined(int input) const { return defined_[static_cast<std::size_t>(input)]; }
+  [[nodiscard]] int lag_count() const { return shape_.last_lag - shape_.first_lag + 1; }
+
+ private:
+  void fill_row(int input);
+
+  Shape shape_;
+  double lambda_;
+  int window_rows_;  // intervals a row spans
+  int filled_ = 0;   // neighbouring intervals so far, at most window_rows_
+  bool has_origin_ = false;
+  Eigen::VectorXd origin_;  // of the inputs: their first values
+  std::vector<LagWindow> input_windows_;
+  std::vector<LagWindow> residual_windows_;
+  std::vector<GivensQr> factors_;  // one per input; responses: u_i, then e_j lags newest first
+  std::vector<double> totals_;     // per input, weighted sum of squares about its origin
+  Eigen::MatrixXd correlations_;   // lags x (inputs * cvs)
+  std::vector<bool> defined_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,74 @@
+#include "core/monitor/derived_settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+// Effective samples, (1 + lambda) / (1 - lambda), of the default memory.
+constexpr double kEffectiveSamples = 4000.0;
+
+// An error in the dead time must stay inside the pulse lags: this many samples beyond the longest.
+constexpr int kDeadTimeMargin = 13;
+constexpr int kFewestFirLags = 20;
+constexpr int kMostFirLags = 60;
+
+constexpr int kResidualOrder = 8;
+
+// Slowest time constants after which what a wrong start left behind is below 1 %.
+constexpr double kSettlingTimeConstants = 5.0;
+
+int samples(double seconds, double sample_time_s, int otherwise) {
+  return seconds > 0.0 ? std::max(1, static_cast<int>(std::lround(seconds / sample_time_s)))
+                       : otherwise;
+}
+
+}  // namespace
+
+DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
+                                const MonitorSettings& monitor, const AlarmSettings& alarms) {
+  const double sample_time_s = spec.sample_time_s;
+  const double slowest = std::max(model.slowest_time_constant_samples(), 1.0);
+  const double dead_time = model.longest_dead_time_samples();
+
+  DerivedSettings derived;
+  derived.lambda = monitor.memory_s > 0.0 ? std::max(0.0, 1.0 - sample_time_s / monitor.memory_s)
+                                          : (kEffectiveSamples - 1.0) / (kEffectiveSamples + 1.0);
+  derived.false_alarm_rate = monitor.false_alarm_rate;
+  derived.gain_error_of_interest = monitor.gain_error_of_interest;
+  derived.controlling_lags = monitor.controlling_lags;
+  derived.first_lag = monitor.first_lag;
+  derived.last_lag = monitor.last_lag;
+  derived.fir_lags = monitor.fir_lags > 0
+                         ? monitor.fir_lags
+                         : std::clamp(static_cast<int>(std::ceil(dead_time)) + kDeadTimeMargin,
+                                      kFewestFirLags, kMostFirLags);
+  derived.residual_order = monitor.residual_order > 0 ? monitor.residual_order : kResidualOrder;
+
+  // One tail with the slowest time constant, and further ones, each four times faster, as long as
+  // they are slower than the pulse lags can show.
+  double tail = monitor.tail_s > 0.0 ? monitor.tail_s / sample_time_s : slowest;
+  do {
+    derived.tail_poles.push_back(std::exp(-1.0 / tail));
+    tail /= 4.0;
+  } while (tail >= 2.0 * derived.fir_lags);
+
+  // A memory shorter than four rows per column could never reach a verdict.
+  const int inputs = spec.input_count;
+  const double columns =
+      1.0 + spec.cv_count * derived.residual_order +
+      inputs * (derived.fir_lags + static_cast<double>(derived.tail_poles.size()));
+  const double shortest = 5.0 * columns;
+  derived.lambda = std::max(derived.lambda, (shortest - 1.0) / (shortest + 1.0));
+
+  derived.settling_samples =
+      static_cast<int>(std::ceil(kSettlingTimeConstants * slowest + dead_time));
+  derived.alarm.raise_below = alarms.raise_p_value;
+  derived.alarm.clear_above = alarms.clear_p_value;
+  derived.alarm.on_delay = samples(alarms.on_delay_s, sample_time_s, 10);
+  derived.alarm.off_delay = samples(alarms.off_delay_s, sample_time_s, 60);
+  return derived;
+}
+
+}  // namespace mpm

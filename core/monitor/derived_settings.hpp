@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "core/alarm/condition.hpp"
+#include "core/model/linear_model.hpp"
+#include "core/monitor/settings.hpp"
+
+namespace mpm {
+
+/// Settings with every "derive" filled in, in samples.
+struct DerivedSettings {
+  double lambda = 1.0;  ///< forgetting factor
+  double false_alarm_rate = 0.01;
+  double gain_error_of_interest = 0.0;
+  int controlling_lags = 0;
+  int first_lag = 0;
+  int last_lag = 0;
+  int fir_lags = 0;
+  int residual_order = 0;
+  std::vector<double> tail_poles;
+  int settling_samples = 0;  ///< until a simulation has forgotten where it started
+  Condition::Limits alarm;
+};
+
+/// The rules by which the user need not set anything; each is stated where it is applied.
+[[nodiscard]] DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
+                                              const MonitorSettings& monitor,
+                                              const AlarmSettings& alarms);
+
+}  // namespace mpm

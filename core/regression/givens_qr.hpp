@@ -1,0 +1,102 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "core/regression/rotation.hpp"
+
+namespace mpm {
+
+/// Recursive least squares in orthogonal form: the triangular factor of [X | Y], updated by one
+/// row at a time with exponential forgetting.
+///
+/// Let row k be [x(k)' | y(k)'] with `columns` regressors and `responses` right-hand sides. After
+/// each update the factor satisfies
+///
+///     [R Z]' [R Z] + [0 0; 0 S] = sum_l lambda^(k-l) [x(l)' y(l)']' [x(l)' y(l)'] ,
+///
+/// R upper triangular (columns x columns), Z = columns x responses. The row is rotated into R from
+/// the first column to the last (Gentleman 1973; Golub and Van Loan 2013, 5.1.9 and 6.5.3); what
+/// is left of its responses, y - (its fit), is orthogonal to all regressors so far. The diagonal
+/// of S (the residual sums of squares) and its first row (residual products of response 0 with
+/// each other one) are accumulated from what is left, never by subtraction.
+///
+/// Rank: a column that the earlier ones explain to within rounding gets a diagonal entry of
+/// exactly 0 and takes no part; nothing is divided by it. Put the intercept first, so that all
+/// later columns are centred.
+///
+/// No allocation after construction. Cost per row: 6 flops for each of
+/// columns^2 / 2 + columns * responses entries.
+class GivensQr {
+ public:
+  /// Both > 0.
+  GivensQr(int columns, int responses);
+
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int responses() const { return responses_; }
+
+  /// Where the caller writes the next row, columns() regressors followed by responses() values,
+  /// all finite. `update` consumes it.
+  [[nodiscard]] double* row() { return row_.get(); }
+
+  /// Takes the row into the factor; everything before is weighted by lambda (0 < lambda <= 1).
+  void update(double lambda);
+
+  /// Multiplies all that was taken so far by `factor` (> 0), as if each row had come scaled.
+  void scale(double factor);
+  void clear();
+
+  [[nodiscard]] double r(int i, int j) const { return *entry(i, j); }
+  [[nodiscard]] double z(int i, int response) const { return *entry(i, columns_ + response); }
+  /// Residual sum of squares of a response.
+  [[nodiscard]] double residual_square(int response) const {
+    return squares_[static_cast<std::size_t>(response)];
+  }
+  /// Sum of products of the residuals of response 0 and of `response`.
+  [[nodiscard]] double residual_product(int response) const {
+    return products_[static_cast<std::size_t>(response)];
+  }
+  /// Residual sums of squares and of products of all responses, contiguous.
+  [[nodiscard]] const double* residual_squares() const { return squares_.data(); }
+  [[nodiscard]] const double* residual_products() const { return products_.data(); }
+
+  /// Root of the weighted sum of squares of column j after the intercept (column 0) is projected
+  /// off: the scale against which its diagonal entry is judged.
+  [[nodiscard]] double centred_norm(int j) const;
+
+  /// Least-squares coefficients of one response into `coefficients` (columns() long). Columns
+  /// whose diagonal is at most kNegligible times their largest entry are left out (coefficient 0).
+  void solve(int response, Eigen::Ref<Eigen::VectorXd> coefficients) const;
+  static constexpr double kNegligible = 1e-12;
+
+ private:
+  struct AlignedDelete {
+    void operator()(double* p) const;
+  };
+  using AlignedArray = std::unique_ptr<double[], AlignedDelete>;
+  static AlignedArray make_aligned(std::size_t count);
+
+  /// Row i is stored from the granule that holds column i on.
+  [[nodiscard]] static std::size_t row_begin(int i) {
+    return static_cast<std::size_t>(i) / kRowGranule * kRowGranule;
+  }
+  [[nodiscard]] const double* entry(int i, int j) const {
+    return factor_.get() + offsets_[static_cast<std::size_t>(i)] + static_cast<std::size_t>(j) -
+           row_begin(i);
+  }
+
+  int columns_;
+  int responses_;
+  std::size_t width_;                 // columns + responses, rounded up to whole granules
+  std::vector<std::size_t> offsets_;  // of each stored row in factor_
+  std::size_t factor_size_ = 0;
+  AlignedArray factor_;
+  AlignedArray row_;
+  std::vector<double> magnitudes_;  // per column, largest |x| seen, forgotten with sqrt(lambda)
+  std::vector<double> squares_;
+  std::vector<double> products_;
+};
+
+}  // namespace mpm

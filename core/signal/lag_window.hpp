@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace mpm {
+
+/// The last `length` values of one signal as one contiguous array, newest first. Each value is
+/// stored twice, `length` apart, so that no window ever wraps. No allocation after construction.
+class LagWindow {
+ public:
+  explicit LagWindow(int length)
+      : length_(static_cast<std::size_t>(length)), position_(0), values_(2 * length_, 0.0) {}
+
+  void push(double value) {
+    position_ = (position_ == 0 ? length_ : position_) - 1;
+    values_[position_] = value;
+    values_[position_ + length_] = value;
+  }
+  /// window()[l] is the value l samples ago, 0 <= l < length.
+  [[nodiscard]] const double* window() const { return values_.data() + position_; }
+
+ private:
+  std::size_t length_;
+  std::size_t position_;
+  std::vector<double> values_;
+};
+
+}  // namespace mpm

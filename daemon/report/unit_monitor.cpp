@@ -1,0 +1,76 @@
+#include "daemon/report/unit_monitor.hpp"
+
+#include <string>
+
+namespace mpm::daemon {
+namespace {
+
+std::vector<bool> predictions_of(const config::UnitConfig& config) {
+  std::vector<bool> given;
+  for (const config::CvSignal& cv : config.cv) given.push_back(!cv.prediction.empty());
+  return given;
+}
+
+}  // namespace
+
+UnitMonitor::UnitMonitor(const config::UnitConfig& config)
+    : UnitMonitor(config, predictions_of(config)) {}
+
+UnitMonitor::UnitMonitor(const config::UnitConfig& config, const std::vector<bool>& has_prediction)
+    : config_(config),
+      monitor_(config.model, config.counts(), has_prediction, config.monitor, config.alarms) {
+  const SignalCounts counts = config.counts();
+  for (int i = 0; i < counts.inputs(); ++i) {
+    for (int j = 0; j < counts.cv; ++j) {
+      ChannelRecord record;
+      record.unit = config.unit;
+      record.mv = config.input_tag(i);
+      record.cv = config.cv[static_cast<std::size_t>(j)].tag;
+      record.first_lag = monitor_.first_lag();
+      record.partial_correlations.resize(
+          static_cast<std::size_t>(monitor_.last_lag() - monitor_.first_lag() + 1));
+      channels_.push_back(std::move(record));
+    }
+  }
+}
+
+void UnitMonitor::push(const Frame& frame) {
+  monitor_.push(frame);
+  const SignalCounts counts = config_.counts();
+  for (int i = 0; i < counts.inputs(); ++i) {
+    for (int j = 0; j < counts.cv; ++j) {
+      ChannelRecord& record = channels_[static_cast<std::size_t>(i * counts.cv + j)];
+      const ChannelStatus& status = monitor_.channel(j, i);
+      record.interval = frame.interval;
+      record.source_time_ns = frame.source_time_ns;
+      record.verdict = to_string(status.verdict);
+      record.reason = status.verdict == Verdict::kUndetermined ? to_string(status.reason) : "";
+      if (status.confounder >= 0) record.reason += " with " + config_.input_tag(status.confounder);
+      record.p_value = status.p_value;
+      record.statistic = status.statistic;
+      record.threshold = status.threshold;
+      record.partial_correlation = status.partial_correlation;
+      record.lag = status.lag;
+      record.excited = status.excited;
+      record.effect_size = status.effect_size;
+      record.smallest_error = status.smallest_error;
+      record.effective_samples = status.effective_samples;
+      record.alarm_active = monitor_.alarm(j, i) == AlarmState::kActive;
+      const Eigen::Ref<const Eigen::VectorXd> values = monitor_.partial_correlations(j, i);
+      for (Eigen::Index l = 0; l < values.size(); ++l)
+        record.partial_correlations[static_cast<std::size_t>(l)] = values(l);
+    }
+  }
+  alarms_.clear();
+  for (const AlarmTransition& transition : monitor_.transitions()) {
+    const ChannelRecord& channel =
+        channels_[static_cast<std::size_t>(transition.input * counts.cv + transition.cv)];
+    alarms_.push_back({channel.unit, channel.mv, channel.cv, channel.interval,
+                       channel.source_time_ns,
+                       transition.to == AlarmState::kActive ? "active" : "cleared", channel.p_value,
+                       channel.statistic, channel.threshold, channel.partial_correlation,
+                       channel.lag, channel.effect_size});
+  }
+}
+
+}  // namespace mpm::daemon

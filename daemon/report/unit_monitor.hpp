@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "core/monitor/monitor.hpp"
+#include "daemon/report/records.hpp"
+
+namespace mpm::daemon {
+
+/// The monitor of one unit, speaking in tags: frames in, records out. The daemon and `mpm detect`
+/// both go through here, so that the same frames give the same records.
+class UnitMonitor {
+ public:
+  /// `has_prediction[j]`: CV j's prediction comes with the frames.
+  UnitMonitor(const config::UnitConfig& config, const std::vector<bool>& has_prediction);
+  /// As the unit file says: every CV that names a prediction tag has one.
+  explicit UnitMonitor(const config::UnitConfig& config);
+
+  void push(const Frame& frame);
+
+  /// All channels after the last frame; inputs outermost, CVs innermost.
+  [[nodiscard]] const std::vector<ChannelRecord>& channels() const { return channels_; }
+  /// Alarms that the last frame changed.
+  [[nodiscard]] const std::vector<AlarmRecord>& alarms() const { return alarms_; }
+  [[nodiscard]] const MonitorCounters& counters() const { return monitor_.counters(); }
+
+ private:
+  config::UnitConfig config_;
+  Monitor monitor_;
+  std::vector<ChannelRecord> channels_;
+  std::vector<AlarmRecord> alarms_;
+};
+
+}  // namespace mpm::daemon
