@@ -1,0 +1,74 @@
+#include "idl/qos.hpp"
+
+namespace mpm::idl {
+namespace {
+
+// Samples that a control system's writer keeps for a reader that does not answer. Also how many a
+// reader of a real-time writer may lag behind before it loses some.
+constexpr int kSampleDepth = 256;
+// Per topic, all units together: bounds the memory of a reader that is not drained; what does not
+// fit stays with the writer, which resends it.
+constexpr int kReaderLimit = 8192;
+// Status samples per channel that wait for a slow reader. Late joiners get the last one only.
+constexpr int kStatusDepth = 1024;
+constexpr int kStatusReaderLimit = 262144;
+// Alarm changes per channel that a late joiner gets to see.
+constexpr int kEventDepth = 64;
+
+Qos reliable(dds_duration_t max_blocking_time) {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, max_blocking_time);
+  return qos;
+}
+
+// Output writers wait for nobody (their watermark is out of reach, see DomainOptions), yet a
+// blocking time of 0 would fail instead of wait in the case that we got that wrong.
+constexpr dds_duration_t kOutputBlocking = DDS_MSECS(10);
+
+Qos transient_local(int writer_depth, int late_joiner_depth) {
+  Qos qos = reliable(kOutputBlocking);
+  dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, writer_depth);
+  // Without this service the whole history is kept for ever, whatever the resource limits say.
+  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, late_joiner_depth,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  // A monitor that stopped leaves its last word as "no writer" rather than wiping it out.
+  dds_qset_writer_data_lifecycle(qos.get(), false);
+  return qos;
+}
+
+Qos transient_local_reader(int max_samples) {
+  Qos qos = reliable(kOutputBlocking);
+  dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
+  dds_qset_resource_limits(qos.get(), max_samples, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  return qos;
+}
+
+}  // namespace
+
+Qos sample_writer_qos(WriterPace pace) {
+  Qos qos = reliable(DDS_SECS(10));
+  if (pace == WriterPace::kLossless)
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
+  else
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kSampleDepth);
+  return qos;
+}
+
+Qos sample_reader_qos() {
+  Qos qos = reliable(DDS_SECS(10));
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
+  dds_qset_resource_limits(qos.get(), kReaderLimit, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  return qos;
+}
+
+Qos layout_qos() { return transient_local(1, 1); }
+Qos alarm_qos() { return transient_local(1, 1); }
+Qos health_qos() { return transient_local(1, 1); }
+Qos channel_status_writer_qos() { return transient_local(kStatusDepth, 1); }
+Qos channel_status_reader_qos() { return transient_local_reader(kStatusReaderLimit); }
+Qos alarm_event_writer_qos() { return transient_local(kEventDepth, kEventDepth); }
+Qos alarm_event_reader_qos() { return transient_local_reader(kStatusReaderLimit); }
+
+}  // namespace mpm::idl

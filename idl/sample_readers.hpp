@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+
+#include "idl/reader.hpp"
+#include "idl/sample_view.hpp"
+#include "idl/wait_set.hpp"
+
+namespace mpm::idl {
+
+/// Reads the five input topics of all units of one participant.
+class SampleReaders {
+ public:
+  explicit SampleReaders(const Participant& participant)
+      : readers_{make(participant, kTopicKinds[0]), make(participant, kTopicKinds[1]),
+                 make(participant, kTopicKinds[2]), make(participant, kTopicKinds[3]),
+                 make(participant, kTopicKinds[4])} {}
+
+  void attach_to(WaitSet& wait_set) const {
+    for (const auto& reader : readers_) wait_set.attach(reader.readable());
+  }
+
+  /// Takes one batch per topic, so that none runs far ahead: `on_sample(const SampleView&)`.
+  /// Returns how many samples were taken.
+  template <class Callback>
+  int take(Callback&& on_sample) const {
+    int count = 0;
+    for (std::size_t i = 0; i < readers_.size(); ++i)
+      count += readers_[i].take(
+          [&](const mpm_Sample& sample) { on_sample(view_of(kTopicKinds[i], sample)); });
+    return count;
+  }
+
+ private:
+  static Reader<mpm_Sample> make(const Participant& participant, SignalKind kind) {
+    return {participant, sample_topic(kind), sample_reader_qos()};
+  }
+
+  std::array<Reader<mpm_Sample>, kTopicKinds.size()> readers_;
+};
+
+}  // namespace mpm::idl

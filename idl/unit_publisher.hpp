@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/signal/frame.hpp"
+#include "idl/participant.hpp"
+#include "idl/writer.hpp"
+
+namespace mpm::idl {
+
+/// Names of one group of signals, in the order of their values.
+struct SignalLayout {
+  std::vector<std::string> tags;               ///< empty string = this CV has no such signal
+  std::vector<std::string> engineering_units;  ///< as many; or empty
+};
+
+/// What a unit publishes. A kind without tags is not published at all.
+struct UnitLayout {
+  std::string unit;
+  double sample_time_s = 1.0;
+  std::array<SignalLayout, kSignalKindCount> signals;
+
+  [[nodiscard]] SignalLayout& operator[](SignalKind kind) {
+    return signals[static_cast<std::size_t>(kind)];
+  }
+  [[nodiscard]] const SignalLayout& operator[](SignalKind kind) const {
+    return signals[static_cast<std::size_t>(kind)];
+  }
+};
+
+/// Plays the control system of one unit: writes its layout once and then each frame as up to five
+/// samples. For simulation and replay; the monitor never makes one.
+class UnitPublisher {
+ public:
+  UnitPublisher(const Participant& participant, UnitLayout layout, WriterPace pace);
+
+  /// Waits until every topic has a reader that knows its writer, so that the first frame is not
+  /// lost to discovery. False after `timeout`.
+  [[nodiscard]] bool wait_for_readers(std::chrono::milliseconds timeout) const;
+
+  /// False if readers did not take it in time (kLossless: 10 s).
+  [[nodiscard]] bool publish(const Frame& frame) const;
+
+  /// Waits until the readers have all that was published; false after `timeout`.
+  [[nodiscard]] bool flush(std::chrono::milliseconds timeout) const;
+
+ private:
+  void write_layout() const;
+
+  UnitLayout layout_;
+  Writer<mpm_Layout> layout_writer_;
+  std::array<std::optional<Writer<mpm_Sample>>, kSignalKindCount> writers_;
+};
+
+}  // namespace mpm::idl
