@@ -94,6 +94,7 @@ ChannelTest::ChannelTest(const Shape& shape, double lambda, const LinearModel& m
   triangle_.setZero(all, all);
   inverse_.setZero(all, all);
   norms_.setZero(all);
+  rotated_.setZero(all);
   estimate_.setZero(all);
   direction_.setZero(block_, shape.inputs);
   beta_.setZero(block_);
@@ -224,19 +225,22 @@ void ChannelTest::evaluate_cv(int cv) {
   const int all = shape_.inputs * block_;
 
   for (int c = 0; c < all; ++c) norms_(c) = factor.centred_norm(lead_in_ + c);
-  for (int i = 0; i < all; ++i)
+  for (int i = 0; i < all; ++i) {
+    const double root = factor.root(lead_in_ + i);
     for (int c = i; c < all; ++c)
-      triangle_(i, c) = norms_(c) > 0.0 ? factor.r(lead_in_ + i, lead_in_ + c) / norms_(c) : 0.0;
+      triangle_(i, c) =
+          norms_(c) > 0.0 ? root * factor.unit_r(lead_in_ + i, lead_in_ + c) / norms_(c) : 0.0;
+    rotated_(i) = factor.z(lead_in_ + i, 0);
+  }
   for (int i = all - 1; i >= 0; --i) {
-    const int rest = all - 1 - i;
-    inverse_.row(i).tail(rest).setZero();
     const double diagonal = norms_(i) > 0.0 ? std::max(triangle_(i, i), kOwnShare) : 1.0;
+    auto behind = inverse_.row(i).tail(all - 1 - i);
+    behind.setZero();
     for (int c = i + 1; c < all; ++c)
       inverse_.row(i).tail(all - c) -= triangle_(i, c) * inverse_.row(c).tail(all - c);
-    inverse_(i, i) = 1.0;
-    inverse_.row(i).tail(rest + 1) /= diagonal;
-    estimate_(i) = 0.0;
-    for (int c = i; c < all; ++c) estimate_(i) += inverse_(i, c) * factor.z(lead_in_ + c, 0);
+    behind /= diagonal;
+    inverse_(i, i) = 1.0 / diagonal;
+    estimate_(i) = inverse_.row(i).tail(all - i).dot(rotated_.tail(all - i));
   }
 
   const double freedom = denominator_freedom();

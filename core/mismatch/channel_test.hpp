@@ -135,6 +135,7 @@ class ChannelTest {
   RowMajor triangle_;          // R_t, columns scaled to norm 1
   RowMajor inverse_;           // T
   Eigen::VectorXd norms_;      // the columns' scales
+  Eigen::VectorXd rotated_;    // the CV's rotated responses of those rows
   Eigen::VectorXd estimate_;   // scaled coefficients
   GivensQr covariance_;        // S: S'S = T_i T_i', covariance of block i's scaled coefficients
   Eigen::MatrixXd direction_;  // B x m: weights of the gain-error estimate on the block

@@ -1,6 +1,7 @@
 #include "core/regression/givens_qr.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
 #include <stdexcept>
@@ -36,9 +37,27 @@ GivensQr::GivensQr(int columns, int responses) : columns_(columns), responses_(r
   }
   factor_ = make_aligned(factor_size_);
   row_ = make_aligned(width_);
+  weights_.assign(static_cast<std::size_t>(columns), 0.0);
   magnitudes_.assign(static_cast<std::size_t>(columns), 0.0);
   squares_.assign(static_cast<std::size_t>(responses), 0.0);
   products_.assign(static_cast<std::size_t>(responses), 0.0);
+}
+
+double GivensQr::weigh(int i, double lambda, double& entry, double& row_weight) {
+  const auto s = static_cast<std::size_t>(i);
+  double& weight = weights_[s];
+  const double faded = lambda * weight;
+  if (std::abs(entry) <= kNoise * magnitudes_[s]) entry = 0.0;
+  const double taken = row_weight * entry * entry;
+  weight = faded + taken;
+  if (!(taken > 0.0)) {
+    entry = 0.0;
+    return 0.0;
+  }
+  const double inverse = 1.0 / weight;
+  const double gain = row_weight * entry * inverse;
+  row_weight *= faded * inverse;
+  return gain;
 }
 
 void GivensQr::update(double lambda) {
@@ -48,33 +67,61 @@ void GivensQr::update(double lambda) {
     double& magnitude = magnitudes_[static_cast<std::size_t>(i)];
     magnitude = std::max(magnitude * root, std::abs(x[i]));
   }
-  for (int i = 0; i < columns_; ++i) {
+
+  constexpr int kGroup = static_cast<int>(kRowGranule);
+  std::array<double*, kRowGranule> rows{};
+  std::array<double, kRowGranule> entries{};
+  std::array<double, kRowGranule> gains{};
+  double row_weight = 1.0;
+  int i = 0;
+  for (; i + kGroup <= columns_; i += kGroup) {
+    // The triangle of the group's own columns first, then all columns behind it in one pass.
+    double* head = x + i;
+    for (int a = 0; a < kGroup; ++a) {
+      const auto s = static_cast<std::size_t>(a);
+      double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i + a)];
+      double entry = head[a];
+      const double gain = weigh(i + a, lambda, entry, row_weight);
+      for (int b = a + 1; b < kGroup; ++b) {
+        head[b] -= entry * stored[b];
+        stored[b] += gain * head[b];
+      }
+      stored[a] = 1.0;
+      rows[s] = stored + kGroup;
+      entries[s] = entry;
+      gains[s] = gain;
+    }
+    eliminate_rows(rows.data(), head + kGroup, width_ - static_cast<std::size_t>(i + kGroup),
+                   entries.data(), gains.data());
+  }
+  for (; i < columns_; ++i) {
     const std::size_t begin = row_begin(i);
     double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i)];
-    double& diagonal = stored[static_cast<std::size_t>(i) - begin];
-    if (std::abs(x[i]) <= kNoise * magnitudes_[static_cast<std::size_t>(i)]) x[i] = 0.0;
-    const Rotation rotation = make_rotation(root * diagonal, x[i]);
-    rotate_rows(stored, x + begin, width_ - begin, rotation, root);
-    diagonal = rotation.radius;
+    const double gain = weigh(i, lambda, x[i], row_weight);
+    eliminate_row(stored, x + begin, width_ - begin, x[i], gain);
+    stored[static_cast<std::size_t>(i) - begin] = 1.0;
     x[i] = 0.0;
   }
+
   const double* left = x + columns_;
   for (int k = 0; k < responses_; ++k) {
     const auto s = static_cast<std::size_t>(k);
-    squares_[s] = lambda * squares_[s] + left[k] * left[k];
-    products_[s] = lambda * products_[s] + left[0] * left[k];
+    squares_[s] = lambda * squares_[s] + row_weight * left[k] * left[k];
+    products_[s] = lambda * products_[s] + row_weight * left[0] * left[k];
   }
 }
 
 void GivensQr::scale(double factor) {
-  for (std::size_t i = 0; i < factor_size_; ++i) factor_[i] *= factor;
+  const double square = factor * factor;
+  for (double& weight : weights_) weight *= square;
   for (double& magnitude : magnitudes_) magnitude *= factor;
-  for (double& square : squares_) square *= factor * factor;
-  for (double& product : products_) product *= factor * factor;
+  for (double& sum : squares_) sum *= square;
+  for (double& sum : products_) sum *= square;
 }
 
 void GivensQr::clear() {
   std::fill_n(factor_.get(), factor_size_, 0.0);
+  std::fill(weights_.begin(), weights_.end(), 0.0);
   std::fill(magnitudes_.begin(), magnitudes_.end(), 0.0);
   std::fill(squares_.begin(), squares_.end(), 0.0);
   std::fill(products_.begin(), products_.end(), 0.0);
@@ -82,20 +129,21 @@ void GivensQr::clear() {
 
 double GivensQr::centred_norm(int j) const {
   double sum = 0.0;
-  for (int i = j == 0 ? 0 : 1; i <= j; ++i) sum += r(i, j) * r(i, j);
+  for (int i = j == 0 ? 0 : 1; i <= j; ++i)
+    sum += weights_[static_cast<std::size_t>(i)] * *entry(i, j) * *entry(i, j);
   return std::sqrt(sum);
 }
 
 void GivensQr::solve(int response, Eigen::Ref<Eigen::VectorXd> coefficients) const {
   for (int i = columns_ - 1; i >= 0; --i) {
-    const double diagonal = r(i, i);
+    const double diagonal = root(i);
     if (diagonal <= kNegligible * magnitudes_[static_cast<std::size_t>(i)]) {
       coefficients(i) = 0.0;
       continue;
     }
     const int rest = columns_ - 1 - i;
     const Eigen::Map<const Eigen::VectorXd> row(entry(i, i) + 1, rest);
-    coefficients(i) = (z(i, response) - row.dot(coefficients.tail(rest))) / diagonal;
+    coefficients(i) = *entry(i, columns_ + response) - row.dot(coefficients.tail(rest));
   }
 }
 

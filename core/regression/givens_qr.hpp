@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -18,16 +19,22 @@ namespace mpm {
 ///     [R Z]' [R Z] + [0 0; 0 S] = sum_l lambda^(k-l) [x(l)' y(l)']' [x(l)' y(l)'] ,
 ///
 /// R upper triangular (columns x columns), Z = columns x responses. The row is rotated into R from
-/// the first column to the last (Gentleman 1973; Golub and Van Loan 2013, 5.1.9 and 6.5.3); what
-/// is left of its responses, y - (its fit), is orthogonal to all regressors so far. The diagonal
-/// of S (the residual sums of squares) and its first row (residual products of response 0 with
-/// each other one) are accumulated from what is left, never by subtraction.
+/// the first column to the last, in the square-root-free form (Gentleman 1973; Golub and Van Loan
+/// 2013, 5.1.9 and 6.5.3): R = D^1/2 Rbar with Rbar of unit diagonal, the row carries a weight w,
+///
+///     d' = lambda d + w x_i^2,  s = w x_i / d',  x' = x - x_i rbar,  rbar' = rbar + s x',
+///     w' = w lambda d / d' ,
+///
+/// so that forgetting costs nothing and a rotation four flops per entry. What is left of the row's
+/// responses, y - (its fit), is orthogonal to all regressors so far. The diagonal of S (the
+/// residual sums of squares) and its first row (residual products of response 0 with each other
+/// one) are accumulated from what is left, never by subtraction.
 ///
 /// Rank: a column that the earlier ones explain to within rounding gets a diagonal entry of
 /// exactly 0 and takes no part; nothing is divided by it. Put the intercept first, so that all
 /// later columns are centred.
 ///
-/// No allocation after construction. Cost per row: 6 flops for each of
+/// No allocation after construction. Cost per row: 4 flops for each of
 /// columns^2 / 2 + columns * responses entries.
 class GivensQr {
  public:
@@ -48,8 +55,15 @@ class GivensQr {
   void scale(double factor);
   void clear();
 
-  [[nodiscard]] double r(int i, int j) const { return *entry(i, j); }
-  [[nodiscard]] double z(int i, int response) const { return *entry(i, columns_ + response); }
+  [[nodiscard]] double r(int i, int j) const { return root(i) * *entry(i, j); }
+  [[nodiscard]] double z(int i, int response) const {
+    return root(i) * *entry(i, columns_ + response);
+  }
+  /// r and z without the row's factor root(i): r(i, j) = root(i) * unit_r(i, j).
+  [[nodiscard]] double root(int i) const {
+    return std::sqrt(weights_[static_cast<std::size_t>(i)]);
+  }
+  [[nodiscard]] double unit_r(int i, int j) const { return *entry(i, j); }
   /// Residual sum of squares of a response.
   [[nodiscard]] double residual_square(int response) const {
     return squares_[static_cast<std::size_t>(response)];
@@ -87,6 +101,9 @@ class GivensQr {
            row_begin(i);
   }
 
+  /// Weighs x_i against row i and returns the row's gain s; x_i is set to 0 where it is noise.
+  double weigh(int i, double lambda, double& entry, double& row_weight);
+
   int columns_;
   int responses_;
   std::size_t width_;                 // columns + responses, rounded up to whole granules
@@ -94,6 +111,7 @@ class GivensQr {
   std::size_t factor_size_ = 0;
   AlignedArray factor_;
   AlignedArray row_;
+  std::vector<double> weights_;     // D, the squared diagonal of R
   std::vector<double> magnitudes_;  // per column, largest |x| seen, forgotten with sqrt(lambda)
   std::vector<double> squares_;
   std::vector<double> products_;

@@ -8,19 +8,26 @@
 namespace mpm {
 namespace {
 
-using Kernel = void (*)(double*, double*, std::size_t, double, double, double, double);
+struct Kernels {
+  decltype(&kernels_base::rotate_rows) rotate_rows;
+  decltype(&kernels_base::eliminate_row) eliminate_row;
+  decltype(&kernels_base::eliminate_rows) eliminate_rows;
+};
 
-Kernel pick_kernel() {
+Kernels pick_kernels() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-    return rotate_rows_v4;
-  if (__builtin_cpu_supports("avx2")) return rotate_rows_v3;
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512cd"))
+    return {kernels_v4::rotate_rows, kernels_v4::eliminate_row, kernels_v4::eliminate_rows};
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+      __builtin_cpu_supports("bmi2"))
+    return {kernels_v3::rotate_rows, kernels_v3::eliminate_row, kernels_v3::eliminate_rows};
 #endif
-  return rotate_rows_base;
+  return {kernels_base::rotate_rows, kernels_base::eliminate_row, kernels_base::eliminate_rows};
 }
 
-const Kernel kKernel = pick_kernel();
+const Kernels kKernels = pick_kernels();
 
 }  // namespace
 
@@ -40,8 +47,17 @@ Rotation make_rotation(double a, double b) {
 }
 
 void rotate_rows(double* x, double* y, std::size_t count, const Rotation& rotation, double scale) {
-  kKernel(x, y, count, rotation.cosine * scale, rotation.sine, rotation.cosine,
-          rotation.sine * scale);
+  kKernels.rotate_rows(x, y, count, rotation.cosine * scale, rotation.sine, rotation.cosine,
+                       rotation.sine * scale);
+}
+
+void eliminate_row(double* r, double* x, std::size_t count, double entry, double gain) {
+  kKernels.eliminate_row(r, x, count, entry, gain);
+}
+
+void eliminate_rows(double* const* r, double* x, std::size_t count, const double* entries,
+                    const double* gains) {
+  kKernels.eliminate_rows(r, x, count, entries, gains);
 }
 
 }  // namespace mpm

@@ -2,10 +2,10 @@
 
 #include <cstddef>
 
-/// The one numerical kernel of this project: plane (Givens) rotations of long rows.
+/// The numerical kernel of this project: plane (Givens) rotations of long rows.
 ///
-/// The kernel is compiled for several instruction sets and picked once at start. All of them give
-/// the same bits: the operation is element-wise and no multiply-add is contracted.
+/// The loops are compiled for several instruction sets and picked once at start. All of them give
+/// the same bits: the operations are element-wise and no multiply-add is contracted.
 namespace mpm {
 
 /// Alignment of rows, bytes; and the same in doubles.
@@ -25,5 +25,12 @@ struct Rotation {
 /// x' = (c * scale) x + s y, y' = c y - (s * scale) x. `x` and `y` must not overlap.
 void rotate_rows(double* x, double* y, std::size_t count, const Rotation& rotation,
                  double scale = 1.0);
+
+/// Square-root-free rotation of a row r with unit diagonal and a row x (Gentleman 1973):
+/// x' = x - entry r, r' = r + gain x'. No overlap.
+void eliminate_row(double* r, double* x, std::size_t count, double entry, double gain);
+/// The same with kRowGranule rows one after the other, in one pass.
+void eliminate_rows(double* const* r, double* x, std::size_t count, const double* entries,
+                    const double* gains);
 
 }  // namespace mpm

@@ -2,14 +2,16 @@
 
 #include <cstddef>
 
-/// The builds of one loop, x' = xx x + xy y, y' = yy y - yx x; private to rotation.cpp.
-namespace mpm {
+/// The long loops, once per instruction set; picked in rotation.cpp, described in rotation.hpp.
+#define MPM_DECLARE_KERNELS(set)                                                             \
+  namespace mpm::set {                                                                       \
+  void rotate_rows(double* x, double* y, std::size_t count, double xx, double xy, double yy, \
+                   double yx);                                                               \
+  void eliminate_row(double* r, double* x, std::size_t count, double entry, double gain);    \
+  void eliminate_rows(double* const* r, double* x, std::size_t count, const double* entries, \
+                      const double* gains);                                                  \
+  }
 
-void rotate_rows_base(double* x, double* y, std::size_t count, double xx, double xy, double yy,
-                      double yx);
-void rotate_rows_v3(double* x, double* y, std::size_t count, double xx, double xy, double yy,
-                    double yx);
-void rotate_rows_v4(double* x, double* y, std::size_t count, double xx, double xy, double yy,
-                    double yx);
-
-}  // namespace mpm
+MPM_DECLARE_KERNELS(kernels_base)
+MPM_DECLARE_KERNELS(kernels_v3)
+MPM_DECLARE_KERNELS(kernels_v4)
