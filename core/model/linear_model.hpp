@@ -12,7 +12,9 @@ namespace mpm {
 /// Wittenmark 1997, section 2.6), driven by measured inputs, no feedback from measured outputs.
 ///
 /// One step of the loop: `output()` is y(k), a function of u(k-1), u(k-2), ...; then
-/// `advance(u(k))`. No allocation after construction.
+/// `advance(u(k))`. Whatever feeds through (D of a state space, a first step response value, a lead
+/// over one lag) acts on the input just before the sampling instant, that is on u(k-1). An input
+/// that is not finite counts as unchanged. No allocation after construction.
 class LinearModel {
  public:
   explicit LinearModel(const ModelSpec& spec);
@@ -35,8 +37,8 @@ class LinearModel {
   /// Takes u(k) (input_count, own units), which acts from k to k+1.
   void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
 
-  /// Response of one channel's linear part to a unit pulse at u(0): h(0)=0 unless the model feeds
-  /// through, h(1), ... h(length-1). Zero where the channel does not exist.
+  /// Response of one channel's linear part to a unit pulse at u(0): h(0) = 0, h(1), ...
+  /// h(length-1). Zero where the channel does not exist.
   [[nodiscard]] Eigen::VectorXd impulse_response(int cv, int input, int length) const;
   /// Steady-state gains of the linear part, cv_count x input_count; an integrating channel's entry
   /// is its slope per sample.
@@ -51,6 +53,8 @@ class LinearModel {
   [[nodiscard]] double longest_dead_time_samples() const;
 
  private:
+  [[nodiscard]] LinearModel single_channel(int cv, int input) const;
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -39,7 +39,7 @@ struct ChannelSpec {
   std::variant<TransferFunction, DiscreteFilter, StepResponse> dynamics;
 };
 
-/// x(k+1) = A x(k) + B u(k), y(k) = C x(k) + D u(k), discrete at the sample time.
+/// x(k+1) = A x(k) + B u(k), y(k) = C x(k) + D u(k-1), discrete at the sample time.
 struct StateSpaceSpec {
   Eigen::MatrixXd a, b, c, d;
   Eigen::VectorXd x0;  ///< empty = at rest
@@ -64,7 +64,7 @@ struct Offset {
   double bias = 0.0;
 };
 struct Scale {
-  double factor = 1.0;
+  double factor = 1.0;  ///< of the deviation from the origin
 };
 using InputBlock = std::variant<Polynomial, Saturation, Deadband, Stiction>;
 using OutputBlock = std::variant<Saturation, Offset, Scale>;

@@ -1,0 +1,81 @@
+#include "core/model/static_blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace mpm {
+namespace {
+
+void check_saturation(const Saturation& limits) {
+  if (!(limits.low <= limits.high)) throw std::invalid_argument("saturation needs low <= high");
+}
+
+double polynomial_value(const Polynomial& polynomial, double deviation) {
+  double value = 0.0;
+  for (auto it = polynomial.coefficients.rbegin(); it != polynomial.coefficients.rend(); ++it)
+    value = (value + *it) * deviation;
+  return value;
+}
+
+int sign_of(double value) { return (value > 0.0) - (value < 0.0); }
+
+}  // namespace
+
+InputElement::InputElement(std::optional<InputBlock> block, double origin)
+    : block_(std::move(block)), origin_(origin) {
+  if (!block_) return;
+  if (const auto* limits = std::get_if<Saturation>(&*block_)) check_saturation(*limits);
+  if (const auto* play = std::get_if<Deadband>(&*block_); play && !(play->width >= 0.0))
+    throw std::invalid_argument("deadband width must not be negative");
+  if (const auto* valve = std::get_if<Stiction>(&*block_);
+      valve && !(valve->band >= 0.0 && valve->jump >= 0.0))
+    throw std::invalid_argument("stiction band and jump must not be negative");
+  reset(origin);
+}
+
+void InputElement::reset(double input) {
+  position_ = input;
+  last_input_ = input;
+  direction_ = 0;
+}
+
+double InputElement::apply(double input) {
+  if (!block_) return input - origin_;
+  if (const auto* polynomial = std::get_if<Polynomial>(&*block_))
+    return polynomial_value(*polynomial, input - origin_);
+  if (const auto* limits = std::get_if<Saturation>(&*block_))
+    return std::clamp(input, limits->low, limits->high) - origin_;
+  if (const auto* play = std::get_if<Deadband>(&*block_)) {
+    position_ = std::clamp(position_, input - 0.5 * play->width, input + 0.5 * play->width);
+    return position_ - origin_;
+  }
+  return apply_stiction(std::get<Stiction>(*block_), input) - origin_;
+}
+
+double InputElement::apply_stiction(const Stiction& valve, double input) {
+  const double static_friction = 0.5 * (valve.band + valve.jump);
+  const double moving_friction = 0.5 * (valve.band - valve.jump);
+  if (direction_ != 0 && sign_of(input - last_input_) != direction_) direction_ = 0;
+  if (direction_ == 0 && std::abs(input - position_) > static_friction)
+    direction_ = sign_of(input - position_);
+  if (direction_ != 0) position_ = input - direction_ * moving_friction;
+  last_input_ = input;
+  return position_;
+}
+
+double apply_output_block(const std::optional<OutputBlock>& block, double origin,
+                          double deviation) {
+  if (!block) return origin + deviation;
+  if (const auto* limits = std::get_if<Saturation>(&*block))
+    return std::clamp(origin + deviation, limits->low, limits->high);
+  if (const auto* offset = std::get_if<Offset>(&*block)) return origin + deviation + offset->bias;
+  return origin + std::get<Scale>(*block).factor * deviation;
+}
+
+void check_output_block(const OutputBlock& block) {
+  if (const auto* limits = std::get_if<Saturation>(&block)) check_saturation(*limits);
+}
+
+}  // namespace mpm
