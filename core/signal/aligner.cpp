@@ -1,0 +1,199 @@
+#include "core/signal/aligner.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace mpm {
+namespace {
+
+// Keeps all arithmetic on intervals far from overflow, and the numbers exact in JSON.
+constexpr std::int64_t kLargestInterval = std::int64_t{1} << 53;
+// A number that is behind by more than this many times the lateness is a restart, not a late block.
+constexpr int kRestartFactor = 4;
+
+unsigned bit_of(SignalKind kind) { return 1u << static_cast<unsigned>(kind); }
+
+Quality quality_of(std::uint8_t code) {
+  return code <= static_cast<std::uint8_t>(Quality::kBad) ? static_cast<Quality>(code)
+                                                          : Quality::kBad;
+}
+
+void make_bad(SignalBlock& block) {
+  block.values.setZero();
+  std::fill(block.quality.begin(), block.quality.end(), Quality::kBad);
+}
+
+}  // namespace
+
+Aligner::Aligner(const SignalCounts& counts, const std::array<bool, kSignalKindCount>& needed,
+                 Sink sink, const AlignerSettings& settings)
+    : counts_(counts), settings_(settings), sink_(std::move(sink)) {
+  settings_.capacity = std::max(settings_.capacity, 2 * settings_.max_lateness + 2);
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+    if (needed[kind]) needed_ |= 1u << kind;
+  Slot empty;
+  empty.frame = Frame(counts);
+  current_.slots.assign(static_cast<std::size_t>(settings_.capacity), empty);
+  candidate_.slots = current_.slots;
+}
+
+void Aligner::push(const BlockView& block) {
+  if ((needed_ & bit_of(block.kind)) == 0) return;
+  const auto count = static_cast<std::size_t>(counts_.of(block.kind));
+  if (block.values.size() != count || (!block.quality.empty() && block.quality.size() != count) ||
+      block.interval > kLargestInterval || block.interval < -kLargestInterval) {
+    ++counters_.wrong_length;
+    return;
+  }
+  if (!current_.started) start(current_, block.interval);
+  if (near(current_, block.interval)) {
+    store(current_, block);
+    advance();
+    return;
+  }
+  if (!candidate_.started || !near(candidate_, block.interval)) start(candidate_, block.interval);
+  if (store(candidate_, block)) take_over();
+}
+
+void Aligner::expire() {
+  if (!current_.started) return;
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
+    const unsigned bit = 1u << kind;
+    const bool behind = (current_.seen & bit) == 0 ||
+                        current_.newest_of[kind] < current_.newest - settings_.max_lateness;
+    if ((needed_ & bit) != 0 && behind) silent_ |= bit;
+  }
+  advance();
+}
+
+void Aligner::start(Window& window, std::int64_t interval) {
+  for (Slot& slot : window.slots) {
+    if (slot.used && &window == &candidate_)  // never got into a frame
+      counters_.late += static_cast<std::uint64_t>(std::popcount(slot.present));
+    slot.used = false;
+  }
+  window.seen = 0;
+  // Blocks of earlier intervals may still be on their way.
+  window.next = interval - settings_.max_lateness;
+  window.newest = interval;
+  window.started = true;
+}
+
+bool Aligner::near(const Window& window, std::int64_t interval) const {
+  return interval >= window.next - kRestartFactor * settings_.max_lateness &&
+         interval <= window.newest + settings_.capacity;
+}
+
+Aligner::Slot& Aligner::slot_of(Window& window, std::int64_t interval) const {
+  const std::int64_t size = settings_.capacity;
+  return window.slots[static_cast<std::size_t>(((interval % size) + size) % size)];
+}
+
+bool Aligner::store(Window& window, const BlockView& block) {
+  const unsigned bit = bit_of(block.kind);
+  if (block.interval < window.next) {
+    const Slot& settled = slot_of(window, block.interval);
+    const bool was_there =
+        settled.used && settled.interval == block.interval && (settled.present & bit) != 0;
+    ++(was_there ? counters_.repeated : counters_.late);
+    return false;
+  }
+  while (block.interval >= window.next + settings_.capacity) settle_next(window);
+
+  Slot& slot = slot_of(window, block.interval);
+  if (!slot.used || slot.interval != block.interval) {
+    slot.used = true;
+    slot.interval = block.interval;
+    slot.present = 0;
+    slot.frame.source_time_ns = block.source_time_ns;
+    for (SignalBlock& absent : slot.frame.blocks) make_bad(absent);
+  }
+  if ((slot.present & bit) != 0) {
+    ++counters_.repeated;
+    return false;
+  }
+  fill(slot, block);
+
+  std::int64_t& newest_of_kind = window.newest_of[static_cast<std::size_t>(block.kind)];
+  const bool seen = (window.seen & bit) != 0;
+  if (seen && block.interval < newest_of_kind) ++counters_.out_of_order;
+  newest_of_kind = seen ? std::max(newest_of_kind, block.interval) : block.interval;
+  window.newest = std::max(window.newest, block.interval);
+  window.seen |= bit;
+  if (&window == &current_) silent_ &= ~bit;
+  return slot.present == needed_;
+}
+
+void Aligner::fill(Slot& slot, const BlockView& block) {
+  SignalBlock& target = slot.frame[block.kind];
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    const bool finite = std::isfinite(block.values[i]);
+    if (!finite) ++counters_.non_finite;
+    target.values(static_cast<Eigen::Index>(i)) = block.values[i];
+    target.quality[i] = !finite                 ? Quality::kBad
+                        : block.quality.empty() ? Quality::kGood
+                                                : quality_of(block.quality[i]);
+  }
+  // Kinds of one interval may be sampled at slightly different times; the last one is when all
+  // was known, whatever came first.
+  slot.frame.source_time_ns = std::max(slot.frame.source_time_ns, block.source_time_ns);
+  slot.present |= bit_of(block.kind);
+}
+
+void Aligner::settle_next(Window& window) {
+  Slot& slot = slot_of(window, window.next);
+  const bool something = slot.used && slot.interval == window.next;
+  if (something && &window == &current_) emit(slot);
+  if (something && &window == &candidate_) {
+    counters_.late += static_cast<std::uint64_t>(std::popcount(slot.present));
+    slot.used = false;
+  }
+  ++window.next;
+}
+
+void Aligner::emit(Slot& slot) {
+  const std::int64_t interval = slot.interval + offset_;
+  if (counters_.frames > 0)
+    counters_.missing += static_cast<std::uint64_t>(interval - last_emitted_ - 1);
+  ++counters_.frames;
+  if (slot.present != needed_) ++counters_.incomplete;
+  last_emitted_ = interval;
+  slot.frame.interval = interval;
+  sink_(slot.frame);
+}
+
+void Aligner::advance() {
+  while (pending()) {
+    const Slot& slot = slot_of(current_, current_.next);
+    const bool complete = slot.used && slot.interval == current_.next && slot.present == needed_;
+    if (!complete && !past_lateness(current_.next)) return;
+    settle_next(current_);
+  }
+}
+
+bool Aligner::past_lateness(std::int64_t interval) const {
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
+    const unsigned bit = 1u << kind;
+    if ((needed_ & ~silent_ & bit) == 0) continue;
+    if ((current_.seen & bit) == 0) return false;
+    if (current_.newest_of[kind] <= interval + settings_.max_lateness) return false;
+  }
+  return true;
+}
+
+void Aligner::take_over() {
+  while (pending()) settle_next(current_);
+  if (counters_.frames > 0 && candidate_.next + offset_ <= last_emitted_) {
+    ++counters_.restarts;
+    offset_ = last_emitted_ + 2 - candidate_.next;  // 2: never adjacent, so that windows close
+  }
+  std::swap(current_, candidate_);
+  candidate_.started = false;
+  for (Slot& slot : candidate_.slots) slot.used = false;
+  silent_ = 0;
+  advance();
+}
+
+}  // namespace mpm

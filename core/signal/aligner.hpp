@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/signal/frame.hpp"
+
+namespace mpm {
+
+/// Values of one kind at one interval, as they come in.
+struct BlockView {
+  SignalKind kind = SignalKind::kMv;
+  std::int64_t interval = 0;
+  std::int64_t source_time_ns = 0;
+  std::span<const double> values;
+  std::span<const std::uint8_t> quality;  ///< codes of `Quality`, others count as bad; empty = good
+};
+
+struct AlignerSettings {
+  int max_lateness = 8;  ///< intervals that a block may come after all kinds had newer ones
+  int capacity = 1024;   ///< intervals that one kind may be ahead of another one, > max_lateness
+};
+
+/// What became of the blocks and intervals so far.
+struct AlignerCounters {
+  std::uint64_t frames = 0;        ///< emitted
+  std::uint64_t incomplete = 0;    ///< of these: with a needed block absent
+  std::uint64_t missing = 0;       ///< intervals between emitted ones of which nothing came
+  std::uint64_t late = 0;          ///< blocks whose interval was settled, or that fit nowhere
+  std::uint64_t repeated = 0;      ///< blocks that were there already; the first one counts
+  std::uint64_t out_of_order = 0;  ///< blocks that came after a newer one of their kind, in time
+  std::uint64_t wrong_length = 0;  ///< blocks of another size, or with an absurd interval number
+  std::uint64_t non_finite = 0;    ///< values; they become bad
+  std::uint64_t restarts = 0;      ///< the interval number went back to a new beginning
+};
+
+/// Puts the blocks of one unit, which come in any order across kinds, together into one frame per
+/// control interval, in increasing order. Knows no clock: only interval numbers decide.
+///
+/// An interval is settled, i.e. its frame is emitted and nothing more is accepted for it, when all
+/// intervals before it are settled and
+///   - all needed blocks are there, or
+///   - every needed kind has gone on to an interval more than `max_lateness` newer, or
+///   - some kind is `capacity` intervals ahead, or
+///   - `expire()` says that a kind has fallen silent.
+/// Absent blocks of an emitted frame are bad; an interval of which nothing came is left out. So as
+/// long as blocks come no more than `max_lateness` intervals late, the frames depend on what came
+/// and not on its order. The first frame after a start waits for the lateness to pass.
+///
+/// Blocks far from the current window are gathered in a second one. When that one has a complete
+/// frame, it takes over: the controller restarted or was away. A single stray number changes
+/// nothing. After a restart the emitted interval numbers go on increasing, with a gap.
+class Aligner {
+ public:
+  using Sink = std::function<void(const Frame&)>;
+
+  /// `needed[kind]`: frames wait for that kind; blocks of other kinds are ignored.
+  /// `sink` gets each frame from inside `push` or `expire`; it is valid during the call.
+  Aligner(const SignalCounts& counts, const std::array<bool, kSignalKindCount>& needed, Sink sink,
+          const AlignerSettings& settings = {});
+
+  void push(const BlockView& block);
+
+  /// For the caller that has a clock, when nothing was emitted for too long: from now on does not
+  /// wait for kinds that are behind by more than the lateness, until they come again.
+  void expire();
+
+  /// True while something waits for its frame to be complete.
+  [[nodiscard]] bool pending() const {
+    return current_.started && current_.next <= current_.newest;
+  }
+  [[nodiscard]] const AlignerCounters& counters() const { return counters_; }
+
+ private:
+  struct Slot {
+    Frame frame;
+    std::int64_t interval = 0;
+    unsigned present = 0;  // bit per kind; kept after settling, to recognise repetitions
+    bool used = false;
+  };
+  struct Window {
+    std::vector<Slot> slots;                                 // ring, by interval
+    std::array<std::int64_t, kSignalKindCount> newest_of{};  // per kind
+    unsigned seen = 0;                                       // kinds that came at all
+    std::int64_t next = 0;                                   // first unsettled interval
+    std::int64_t newest = 0;
+    bool started = false;
+  };
+
+  void start(Window& window, std::int64_t interval);
+  [[nodiscard]] bool near(const Window& window, std::int64_t interval) const;
+  [[nodiscard]] Slot& slot_of(Window& window, std::int64_t interval) const;
+  /// Stores the block; true if it completed its frame.
+  bool store(Window& window, const BlockView& block);
+  void fill(Slot& slot, const BlockView& block);
+  void settle_next(Window& window);
+  void emit(Slot& slot);
+  void advance();
+  void take_over();
+  [[nodiscard]] bool past_lateness(std::int64_t interval) const;
+
+  SignalCounts counts_;
+  AlignerSettings settings_;
+  Sink sink_;
+  unsigned needed_ = 0;
+  unsigned silent_ = 0;  // needed kinds that nobody waits for
+  Window current_;
+  Window candidate_;
+  std::int64_t offset_ = 0;        // emitted minus received interval number
+  std::int64_t last_emitted_ = 0;  // valid if counters_.frames > 0
+  AlignerCounters counters_;
+};
+
+}  // namespace mpm

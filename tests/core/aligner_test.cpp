@@ -1,0 +1,339 @@
+#include "core/signal/aligner.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "tests/allocation_counter.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr SignalCounts kCounts{2, 0, 1, 0};
+
+constexpr std::array<bool, kSignalKindCount> needed_kinds() {
+  std::array<bool, kSignalKindCount> needed{};
+  needed[static_cast<std::size_t>(SignalKind::kMv)] = true;
+  needed[static_cast<std::size_t>(SignalKind::kCv)] = true;
+  needed[static_cast<std::size_t>(SignalKind::kPrediction)] = true;
+  return needed;
+}
+
+constexpr std::array kKinds = {SignalKind::kMv, SignalKind::kCv, SignalKind::kPrediction};
+
+struct Seen {
+  std::int64_t interval = 0;
+  std::int64_t source_time_ns = 0;
+  std::vector<double> values;  // of all blocks; NaN where not usable
+  bool operator==(const Seen& other) const {
+    return interval == other.interval && source_time_ns == other.source_time_ns &&
+           std::equal(values.begin(), values.end(), other.values.begin(), other.values.end(),
+                      [](double a, double b) { return a == b || (a != a && b != b); });
+  }
+};
+
+struct Bench {
+  std::vector<Seen> frames;
+  Aligner aligner;
+
+  explicit Bench(const AlignerSettings& settings = {})
+      : aligner(
+            kCounts, needed_kinds(), [this](const Frame& frame) { record(frame); }, settings) {}
+
+  void record(const Frame& frame) {
+    Seen seen{frame.interval, frame.source_time_ns, {}};
+    for (const SignalBlock& block : frame.blocks)
+      for (int i = 0; i < block.size(); ++i)
+        seen.values.push_back(block.usable(i) ? block.values(i)
+                                              : std::numeric_limits<double>::quiet_NaN());
+    frames.push_back(seen);
+  }
+
+  void push(SignalKind kind, std::int64_t interval, double shift = 0.0) {
+    const double base = 10.0 * static_cast<double>(interval) + static_cast<double>(kind) + shift;
+    const std::array<double, 2> values = {base, base + 0.5};
+    aligner.push({kind,
+                  interval,
+                  interval * 1000,
+                  std::span(values).first(static_cast<std::size_t>(kCounts.of(kind))),
+                  {}});
+  }
+  void push_all(std::int64_t first, std::int64_t last) {
+    for (std::int64_t k = first; k <= last; ++k)
+      for (const SignalKind kind : kKinds) push(kind, k);
+  }
+  [[nodiscard]] std::vector<std::int64_t> intervals() const {
+    std::vector<std::int64_t> result;
+    for (const Seen& seen : frames) result.push_back(seen.interval);
+    return result;
+  }
+};
+
+std::vector<std::int64_t> range(std::int64_t first, std::int64_t last) {
+  std::vector<std::int64_t> result;
+  for (std::int64_t k = first; k <= last; ++k) result.push_back(k);
+  return result;
+}
+
+struct Block {
+  SignalKind kind;
+  std::int64_t interval;
+};
+
+}  // namespace
+
+TEST_CASE("aligner: complete intervals come out once each, in order, at once after the start") {
+  Bench bench;
+  bench.push_all(100, 107);
+  CHECK(bench.frames.empty());  // something of 92..99 could still come
+  bench.push_all(108, 108);
+  CHECK(bench.intervals() == range(100, 108));
+  bench.push_all(109, 110);
+  CHECK(bench.intervals().back() == 110);
+  CHECK(bench.aligner.counters().frames == 11);
+  CHECK(bench.aligner.counters().missing == 0);
+  CHECK(bench.aligner.counters().incomplete == 0);
+}
+
+TEST_CASE("aligner: frames do not depend on the order of arrival within the lateness") {
+  const unsigned seed = std::random_device{}();
+  INFO("seed " << seed);
+  std::mt19937_64 random(seed);
+  AlignerSettings settings;
+  for (int round = 0; round < 300; ++round) {
+    settings.max_lateness = 1 + static_cast<int>(random() % 10);
+    settings.capacity = 24 + static_cast<int>(random() % 100);
+    // Content: some blocks and some whole intervals are lost, never at the ends.
+    std::vector<Block> blocks;
+    const std::int64_t first = static_cast<std::int64_t>(random() % 1000) - 500;
+    const std::int64_t last = first + 80;
+    for (std::int64_t k = first; k <= last; ++k) {
+      const bool at_end = k == first || k > last - 2 * settings.max_lateness - 2;
+      const bool interval_lost = !at_end && random() % 10 == 0;
+      for (const SignalKind kind : kKinds)
+        if (!interval_lost && (at_end || random() % 10 != 0)) blocks.push_back({kind, k});
+    }
+    Bench in_order(settings);
+    for (const Block& block : blocks) in_order.push(block.kind, block.interval);
+
+    // Sorting by interval + uniform delay moves no block past one that is a lateness newer.
+    std::vector<std::pair<double, Block>> delayed;
+    std::uniform_real_distribution<double> delay(0.0, settings.max_lateness);
+    for (const Block& block : blocks)
+      delayed.emplace_back(static_cast<double>(block.interval) + delay(random), block);
+    std::sort(delayed.begin(), delayed.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    Bench shuffled(settings);
+    for (const auto& [when, block] : delayed) shuffled.push(block.kind, block.interval);
+
+    REQUIRE(in_order.frames == shuffled.frames);
+    REQUIRE(in_order.frames.back().interval == last);
+    CHECK(in_order.aligner.counters().missing == shuffled.aligner.counters().missing);
+    CHECK(in_order.aligner.counters().incomplete == shuffled.aligner.counters().incomplete);
+    CHECK(shuffled.aligner.counters().late == 0);
+    CHECK(shuffled.aligner.counters().repeated == 0);
+  }
+}
+
+TEST_CASE("aligner: an interval that lacks a block comes out with bad values, after the lateness") {
+  Bench bench;
+  bench.push_all(0, 19);
+  bench.push(SignalKind::kMv, 20);
+  bench.push(SignalKind::kPrediction, 20);
+  bench.push_all(21, 28);
+  CHECK(bench.intervals().back() == 19);
+  bench.push_all(29, 29);
+  CHECK(bench.intervals() == range(0, 29));
+  CHECK(bench.aligner.counters().incomplete == 1);
+  const std::vector<double>& values = bench.frames[20].values;  // mv mv cv prediction setpoint
+  REQUIRE(values.size() == 5);
+  CHECK(values[0] == 200.0);
+  CHECK(std::isnan(values[2]));
+  CHECK(values[3] == 203.0);
+  CHECK(std::isnan(values[4]));
+
+  bench.push(SignalKind::kCv, 20);
+  CHECK(bench.aligner.counters().late == 1);
+  CHECK(bench.frames.size() == 30);
+}
+
+TEST_CASE("aligner: an interval of which nothing came is left out and counted") {
+  Bench bench;
+  bench.push_all(0, 19);
+  bench.push_all(23, 40);
+  std::vector<std::int64_t> expected = range(0, 19);
+  for (const std::int64_t k : range(23, 40)) expected.push_back(k);
+  CHECK(bench.intervals() == expected);
+  CHECK(bench.aligner.counters().missing == 3);
+}
+
+TEST_CASE("aligner: of two blocks of one interval the first counts, before and after settling") {
+  Bench bench;
+  bench.push_all(0, 19);
+  bench.push(SignalKind::kMv, 20);
+  bench.push(SignalKind::kMv, 20, 0.25);
+  bench.push(SignalKind::kCv, 20);
+  bench.push(SignalKind::kPrediction, 20);
+  bench.push(SignalKind::kMv, 20, 0.25);
+  CHECK(bench.aligner.counters().repeated == 2);
+  CHECK(bench.aligner.counters().late == 0);
+  CHECK(bench.frames.back().values[0] == 200.0);
+}
+
+TEST_CASE("aligner: blocks that come after newer ones of their kind are used and counted") {
+  Bench bench;
+  bench.push_all(0, 19);
+  for (const std::int64_t k : {22, 20, 21})
+    for (const SignalKind kind : kKinds) bench.push(kind, k);
+  CHECK(bench.intervals() == range(0, 22));
+  CHECK(bench.aligner.counters().out_of_order == 6);
+}
+
+TEST_CASE("aligner: wrong sizes and absurd numbers are refused, non-finite values become bad") {
+  Bench bench;
+  const std::vector<double> values(5, 1.0);
+  bench.aligner.push({SignalKind::kMv, 0, 0, std::span(values).first(3), {}});
+  bench.aligner.push({SignalKind::kMv, 0, 0, {}, {}});
+  const std::vector<std::uint8_t> one_quality(1, 0);
+  bench.aligner.push({SignalKind::kMv, 0, 0, std::span(values).first(2), one_quality});
+  bench.aligner.push({SignalKind::kMv,
+                      std::numeric_limits<std::int64_t>::max(),
+                      0,
+                      std::span(values).first(2),
+                      {}});
+  bench.aligner.push({SignalKind::kMv,
+                      std::numeric_limits<std::int64_t>::min(),
+                      0,
+                      std::span(values).first(2),
+                      {}});
+  CHECK(bench.aligner.counters().wrong_length == 5);
+  CHECK_FALSE(bench.aligner.pending());
+
+  bench.push_all(0, 19);
+  const std::array<double, 2> odd = {std::numeric_limits<double>::infinity(), 7.0};
+  const std::array<std::uint8_t, 2> quality = {0, 192};
+  bench.aligner.push({SignalKind::kMv, 20, 0, odd, quality});
+  bench.push(SignalKind::kCv, 20);
+  bench.push(SignalKind::kPrediction, 20);
+  CHECK(bench.aligner.counters().non_finite == 1);
+  CHECK(std::isnan(bench.frames.back().values[0]));
+  CHECK(std::isnan(bench.frames.back().values[1]));
+}
+
+TEST_CASE("aligner: kinds of unneeded topics are ignored") {
+  Bench bench;
+  bench.push(SignalKind::kSetpoint, 1'000'000);
+  bench.push_all(0, 9);
+  CHECK(bench.intervals() == range(0, 9));
+}
+
+TEST_CASE("aligner: a kind may run ahead of the others by the capacity") {
+  Bench bench(AlignerSettings{8, 256});
+  bench.push_all(0, 19);
+  for (std::int64_t k = 20; k < 220; ++k) bench.push(SignalKind::kMv, k);
+  CHECK(bench.intervals() == range(0, 19));
+  for (std::int64_t k = 20; k < 220; ++k) {
+    bench.push(SignalKind::kCv, k);
+    bench.push(SignalKind::kPrediction, k);
+  }
+  CHECK(bench.intervals() == range(0, 219));
+  CHECK(bench.aligner.counters().incomplete == 0);
+}
+
+TEST_CASE(
+    "aligner: a kind that falls silent holds nothing up once it is given up, until it is back") {
+  Bench bench;
+  bench.push_all(0, 19);
+  for (std::int64_t k = 20; k < 60; ++k) {
+    bench.push(SignalKind::kMv, k);
+    bench.push(SignalKind::kCv, k);
+  }
+  CHECK(bench.intervals() == range(0, 19));
+  CHECK(bench.aligner.pending());
+  bench.aligner.expire();
+  CHECK(bench.intervals() == range(0, 50));
+  bench.push(SignalKind::kMv, 60);
+  bench.push(SignalKind::kCv, 60);
+  CHECK(bench.intervals() == range(0, 51));
+  bench.push_all(61, 80);
+  CHECK(bench.intervals() == range(0, 80));
+  CHECK(bench.aligner.counters().incomplete == 41);
+}
+
+TEST_CASE("aligner: a controller that starts again is followed, with increasing numbers") {
+  Bench bench;
+  bench.push_all(5000, 5100);
+  bench.push_all(0, 50);
+  REQUIRE(bench.frames.size() == 152);
+  CHECK(bench.aligner.counters().restarts == 1);
+  CHECK(bench.aligner.counters().late == 0);
+  const std::vector<std::int64_t> seen = bench.intervals();
+  CHECK(std::is_sorted(seen.begin(), seen.end()));
+  CHECK(seen[101] > seen[100] + 1);  // a gap, so that lag windows close
+  CHECK(seen[151] == seen[101] + 50);
+  CHECK(bench.frames[101].values[0] == 0.0);
+  CHECK(bench.frames[101].source_time_ns == 0);
+}
+
+TEST_CASE("aligner: a controller that was away is followed without a loss") {
+  Bench bench;
+  bench.push_all(0, 100);
+  bench.push_all(1'000'000, 1'000'020);
+  CHECK(bench.frames.size() == 122);
+  CHECK(bench.intervals().back() == 1'000'020);
+  CHECK(bench.aligner.counters().missing == 1'000'000 - 101);
+  CHECK(bench.aligner.counters().restarts == 0);
+}
+
+TEST_CASE("aligner: a stray number changes nothing") {
+  Bench bench;
+  bench.push_all(0, 20);
+  bench.push(SignalKind::kMv, 9'000'000'000);
+  bench.push_all(21, 40);
+  bench.push(SignalKind::kCv, -9'000'000'000);
+  bench.push_all(41, 60);
+  CHECK(bench.intervals() == range(0, 60));
+  CHECK(bench.aligner.counters().restarts == 0);
+  CHECK(bench.aligner.counters().late == 1);  // the second stray one made the first one hopeless
+}
+
+TEST_CASE("aligner: nothing is allocated after construction, whatever comes") {
+  int frames = 0;
+  Aligner aligner(kCounts, needed_kinds(), [&](const Frame&) { ++frames; });
+  const std::array<double, 2> values = {1.0, 2.0};
+  const std::uint64_t before = test::allocation_count();
+  for (const std::int64_t first : {0, 50'000, 100}) {  // a start, a long absence, a restart
+    for (std::int64_t k = first; k < first + 3000; ++k)
+      for (const SignalKind kind : kKinds)
+        aligner.push(
+            {kind, k, 0, std::span(values).first(static_cast<std::size_t>(kCounts.of(kind))), {}});
+    aligner.expire();
+  }
+  CHECK(test::allocation_count() == before);
+  CHECK(frames == 9000);
+}
+
+TEST_CASE("aligner: any stream of numbers gives increasing frames") {
+  const unsigned seed = std::random_device{}();
+  INFO("seed " << seed);
+  std::mt19937_64 random(seed);
+  for (int round = 0; round < 200; ++round) {
+    Bench bench(AlignerSettings{1 + static_cast<int>(random() % 5), 16});
+    std::int64_t centre = 0;
+    for (int i = 0; i < 2000; ++i) {
+      if (random() % 200 == 0) centre = static_cast<std::int64_t>(random() % 20000) - 10000;
+      if (random() % 3 == 0) ++centre;
+      bench.push(kKinds[random() % 3], centre + static_cast<std::int64_t>(random() % 7));
+      if (random() % 100 == 0) bench.aligner.expire();
+    }
+    const std::vector<std::int64_t> seen = bench.intervals();
+    REQUIRE(!seen.empty());
+    REQUIRE(std::adjacent_find(seen.begin(), seen.end(), std::greater_equal<>()) == seen.end());
+    REQUIRE(bench.aligner.counters().frames == seen.size());
+  }
+}
+
+}  // namespace mpm
