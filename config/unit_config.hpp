@@ -89,6 +89,22 @@ struct UnitConfig {
     const auto i = static_cast<std::size_t>(index);
     return i < mv.size() ? mv[i].tag : dv[i - mv.size()].tag;
   }
+  /// Tags of the model's inputs, MVs first, and of the CVs.
+  [[nodiscard]] std::vector<std::string> input_tags() const {
+    std::vector<std::string> tags;
+    for (const InputSignal& signal : mv) tags.push_back(signal.tag);
+    for (const InputSignal& signal : dv) tags.push_back(signal.tag);
+    return tags;
+  }
+  [[nodiscard]] std::vector<std::string> cv_tags() const {
+    std::vector<std::string> tags;
+    for (const CvSignal& signal : cv) tags.push_back(signal.tag);
+    return tags;
+  }
+  /// True where predictions can be simulated.
+  [[nodiscard]] bool has_model() const {
+    return !model.channels.empty() || model.state_space.has_value();
+  }
 };
 
 }  // namespace mpm::config

@@ -1,0 +1,80 @@
+#include "config/fields.hpp"
+
+namespace mpm::config {
+namespace {
+
+constexpr double kLongest = 100000.0;  // samples: bounds memory and catches slipped units
+
+}  // namespace
+
+const std::vector<Field<MonitorSettings>>& monitor_fields() {
+  using S = MonitorSettings;
+  static const std::vector<Field<S>> fields = {
+      {"memory", &S::memory_s, kNotNegative, "s, sample_time / (1 - lambda); 0 = 4000 samples"},
+      {"false_alarm_rate", &S::false_alarm_rate, kRatio, "of the whole unit at any one time"},
+      {"gain_error_of_interest", &S::gain_error_of_interest, kPositive,
+       "relative; larger errors must be visible to say match"},
+      {"controlling_lags", &S::controlling_lags, {.low = 1, .high = 10000}, "samples"},
+      {"first_lag", &S::first_lag, {.low = -10000, .high = 10000}, "samples"},
+      {"last_lag", &S::last_lag, {.low = -10000, .high = 10000}, "samples"},
+      {"fir_lags", &S::fir_lags, {.low = 0, .high = 10000}, "samples; 0 = derived"},
+      {"residual_order", &S::residual_order, {.low = 0, .high = 1000}, "samples; 0 = derived"},
+      {"tail", &S::tail_s, kNotNegative, "s; 0 = derived"},
+  };
+  return fields;
+}
+
+const std::vector<Field<AlarmSettings>>& alarm_fields() {
+  using S = AlarmSettings;
+  static const std::vector<Field<S>> fields = {
+      {"raise_p_value", &S::raise_p_value, kRatio, "raise below"},
+      {"clear_p_value", &S::clear_p_value, kRatio, "clear above"},
+      {"on_delay", &S::on_delay_s, kNotNegative, "s; 0 = 10 samples"},
+      {"off_delay", &S::off_delay_s, kNotNegative, "s; 0 = 60 samples"},
+  };
+  return fields;
+}
+
+const std::vector<Field<DdsSettings>>& dds_fields() {
+  using S = DdsSettings;
+  static const std::vector<Field<S>> fields = {
+      {"domain", &S::domain, {.low = 0, .high = 100}, ""},
+      {"interface", &S::interface, kAny, "network interface; empty = Cyclone's choice"},
+      {"multicast", &S::multicast, kAny, ""},
+      {"partition", &S::partition, kAny, "keeps plants on one network apart"},
+      {"max_participants",
+       &S::max_participants,
+       {.low = 1, .high = 1000},
+       "processes of a domain on one host, without multicast"},
+  };
+  return fields;
+}
+
+const std::vector<Field<SimulationSettings>>& simulation_fields() {
+  using S = SimulationSettings;
+  static const std::vector<Field<S>> fields = {
+      {"prediction_horizon", &S::prediction_horizon, {.low = 1, .high = 10000}, "samples"},
+      {"soft_limit_weight", &S::soft_limit_weight, kNotNegative, "per CV unit of violation"},
+  };
+  return fields;
+}
+
+const std::vector<Field<NoiseSettings>>& noise_fields() {
+  using S = NoiseSettings;
+  static const std::vector<Field<S>> fields = {
+      {"sigma", &S::sigma, kNotNegative, ""},
+      {"pole", &S::pole, {.low = 0, .high = 1, .high_open = true}, ""},
+  };
+  return fields;
+}
+
+const std::vector<Field<SetpointSettings>>& setpoint_fields() {
+  using S = SetpointSettings;
+  static const std::vector<Field<S>> fields = {
+      {"amplitude", &S::amplitude, kNotNegative, "CV units"},
+      {"hold", &S::hold_samples, {.low = 1, .high = kLongest}, "samples"},
+  };
+  return fields;
+}
+
+}  // namespace mpm::config

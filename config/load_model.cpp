@@ -1,0 +1,87 @@
+#include <algorithm>
+
+#include "config/load_sections.hpp"
+
+namespace mpm::config {
+namespace {
+
+void load_origin(const Value& section, UnitConfig& config) {
+  std::vector<std::string> tags = config.input_tags();
+  const int input_count = static_cast<int>(tags.size());
+  for (const std::string& tag : config.cv_tags()) tags.push_back(tag);
+  const Map map = section.map(tags, "tag");
+  for (const Map::Entry& entry : map.entries()) {
+    const int index =
+        static_cast<int>(std::find(tags.begin(), tags.end(), entry.key) - tags.begin());
+    const double value = entry.value.number().value_or(0.0);
+    if (index < input_count) {
+      config.model.input_origin(index) = value;
+    } else {
+      config.model.output_origin(index - input_count) = value;
+    }
+  }
+}
+
+/// A CV that nothing drives is simulated as a constant: allowed, but hardly ever meant.
+void warn_of_idle_cvs(const Value& section, const UnitConfig& config) {
+  if (config.model.state_space) return;
+  for (std::size_t j = 0; j < config.cv.size(); ++j) {
+    const auto drives = [j](const ChannelSpec& channel) {
+      return channel.cv == static_cast<int>(j);
+    };
+    if (!config.cv[j].tag.empty() &&
+        std::none_of(config.model.channels.begin(), config.model.channels.end(), drives))
+      section.warning("no channel leads to cv '" + config.cv[j].tag + "'");
+  }
+}
+
+void check_missing_model(const Value* section, const Value& place, const UnitConfig& config) {
+  std::string without;
+  for (const CvSignal& cv : config.cv)
+    if (cv.prediction.empty() && !cv.tag.empty()) without += (without.empty() ? "" : ", ") + cv.tag;
+  const std::string what = section == nullptr ? "`model` is missing" : "holds no model";
+  if (without.empty()) {
+    place.warning(what + "; predictions must come with the data");
+  } else {
+    place.error(what + " and these have no prediction tag: " + without);
+  }
+}
+
+}  // namespace
+
+void load_model(const Value& root, const Value* section, const Value* top_level_origin,
+                UnitConfig& config) {
+  ModelSpec& model = config.model;
+  model.sample_time_s = config.sample_time_s;
+  model.input_count = config.counts().inputs();
+  model.cv_count = config.counts().cv;
+  const auto inputs = static_cast<std::size_t>(model.input_count);
+  const auto cvs = static_cast<std::size_t>(model.cv_count);
+  model.input_blocks.resize(inputs);
+  model.output_blocks.resize(cvs);
+  model.input_origin.setZero(model.input_count);
+  model.output_origin.setZero(model.cv_count);
+
+  const Value* origin = top_level_origin;
+  bool tried = false;
+  if (section != nullptr) {
+    const Map map = section->map({"channels", "state_space", "input", "output", "operating_point"});
+    const Value* channels = map.find("channels");
+    const Value* state_space = map.find("state_space");
+    if (channels != nullptr && state_space != nullptr)
+      state_space->error("give either `channels` or `state_space`, not both");
+    tried = (channels != nullptr && !channels->is_null()) || state_space != nullptr;
+    if (channels != nullptr && !channels->is_null()) load_channels(*channels, config);
+    if (state_space != nullptr) load_state_space(*state_space, config);
+    load_static_blocks(map, config);
+    if (const Value* inner = map.find("operating_point")) {
+      if (origin != nullptr) inner->error("given twice; also at the top level");
+      origin = inner;
+    }
+    if (tried) warn_of_idle_cvs(*section, config);
+  }
+  if (!tried) check_missing_model(section, section != nullptr ? *section : root, config);
+  if (origin != nullptr) load_origin(*origin, config);
+}
+
+}  // namespace mpm::config

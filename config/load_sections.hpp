@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/fields.hpp"
+#include "config/unit_config.hpp"
+#include "config/yaml_value.hpp"
+
+/// Readers of the unit file's sections. Private to this room. Each takes null where the section is
+/// missing, then fills in defaults of the right length.
+namespace mpm::config {
+
+inline constexpr std::size_t kLongestTag = 128;
+
+void load_signals(const Value* section, UnitConfig& config);
+void load_model(const Value& root, const Value* section, const Value* top_level_origin,
+                UnitConfig& config);
+void load_monitor(const Value* section, UnitConfig& config);
+void load_alarms(const Value* section, UnitConfig& config);
+void load_dds(const Value* section, UnitConfig& config);
+void load_simulation(const Value* section, UnitConfig& config);
+
+/// Parts of `load_model`.
+void load_channels(const Value& list, UnitConfig& config);
+void load_state_space(const Value& value, UnitConfig& config);
+void load_static_blocks(const Map& model, UnitConfig& config);
+
+/// Index of the tag that `value` names, or -1 (reported as an unknown `noun`).
+[[nodiscard]] int find_tag(const Value& value, const std::vector<std::string>& tags,
+                           std::string_view noun);
+
+/// Fills `settings` from the keys of `map` that `fields` describes.
+template <class Settings>
+void read_fields(const Map& map, const std::vector<Field<Settings>>& fields, Settings& settings) {
+  for (const Field<Settings>& field : fields) {
+    const Value* value = map.find(field.key);
+    if (value == nullptr) continue;
+    const auto read = [&](auto member) {
+      auto& target = settings.*member;
+      using Type = std::remove_reference_t<decltype(target)>;
+      if constexpr (std::is_same_v<Type, double>) {
+        target = value->number(field.range).value_or(target);
+      } else if constexpr (std::is_same_v<Type, int>) {
+        target = value->integer(field.range).value_or(target);
+      } else if constexpr (std::is_same_v<Type, bool>) {
+        target = value->boolean().value_or(target);
+      } else {
+        target = value->free_text().value_or(target);
+      }
+    };
+    std::visit(read, field.member);
+  }
+}
+
+}  // namespace mpm::config

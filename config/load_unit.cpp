@@ -1,0 +1,111 @@
+#include "config/load_unit.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <system_error>
+
+#include "config/load_sections.hpp"
+
+namespace mpm::config {
+namespace {
+
+constexpr std::size_t kLongestUnitName = 128;
+
+void load_name(const Map& root, UnitConfig& config) {
+  const Value* value = root.require("unit");
+  if (value == nullptr) return;
+  const std::optional<std::string> name = value->text(kLongestUnitName);
+  if (!name) return;
+  if (name->find('/') != std::string::npos) {
+    value->error("must not hold '/', since files are named after the unit");
+    return;
+  }
+  config.unit = *name;
+}
+
+void load_root(const Value& document, UnitConfig& config) {
+  if (!document.is_map()) {
+    document.error("a unit file is a map of keys such as `unit:` and `signals:`");
+    return;
+  }
+  const Map root = document.map({"unit", "sample_time", "signals", "model", "operating_point",
+                                 "monitor", "alarms", "dds", "simulation"});
+  load_name(root, config);
+  if (const Value* sample_time = root.require("sample_time"))
+    config.sample_time_s = sample_time->number(kPositive).value_or(1.0);
+  const Value* signals = root.require("signals");
+  load_signals(signals, config);
+  // Without signals everything below would only complain about unknown tags.
+  if (config.mv.empty() || config.cv.empty()) return;
+  load_model(document, root.find("model"), root.find("operating_point"), config);
+  load_monitor(root.find("monitor"), config);
+  load_alarms(root.find("alarms"), config);
+  load_dds(root.find("dds"), config);
+  load_simulation(root.find("simulation"), config);
+}
+
+void load_text(const std::string& text, Report& report, UnitConfig& config) {
+  if (const std::optional<Value> document = parse_yaml(text, report)) load_root(*document, config);
+}
+
+}  // namespace
+
+LoadResult load_unit(const std::string& path) {
+  LoadResult result;
+  Report report(path);
+  if (const std::optional<std::string> text = read_text_file(path, report))
+    load_text(*text, report, result.config);
+  result.findings = report.take();
+  return result;
+}
+
+LoadResult load_unit_text(const std::string& text, const std::string& name) {
+  LoadResult result;
+  Report report(name);
+  load_text(text, report, result.config);
+  result.findings = report.take();
+  return result;
+}
+
+std::vector<std::string> unit_files(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code failure;
+  if (!fs::is_directory(path, failure)) return {path};
+  std::vector<std::string> files;
+  for (fs::directory_iterator entry(path, failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    const fs::path& file = entry->path();
+    const bool hidden = file.filename().string().front() == '.';
+    if (!hidden && (file.extension() == ".yaml" || file.extension() == ".yml"))
+      files.push_back(file.string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+LoadUnitsResult load_units(const std::vector<std::string>& paths) {
+  LoadUnitsResult result;
+  std::map<std::string, std::string> file_of_unit;
+  for (const std::string& path : paths) {
+    const std::vector<std::string> files = unit_files(path);
+    if (files.empty())
+      result.findings.push_back(
+          {path, 0, 0, Severity::kError, "", "the folder holds no unit file (*.yaml)"});
+    for (const std::string& file : files) {
+      LoadResult one = load_unit(file);
+      result.findings.insert(result.findings.end(), one.findings.begin(), one.findings.end());
+      if (!one.config.unit.empty()) {
+        const auto [first, is_new] = file_of_unit.emplace(one.config.unit, file);
+        if (!is_new)
+          result.findings.push_back(
+              {file, 1, 1, Severity::kError, "unit",
+               "'" + one.config.unit + "' is already the unit of " + first->second});
+      }
+      result.units.push_back(std::move(one.config));
+    }
+  }
+  return result;
+}
+
+}  // namespace mpm::config

@@ -1,0 +1,212 @@
+#include <ostream>
+#include <string_view>
+#include <type_traits>
+
+#include "config/fields.hpp"
+#include "config/load_unit.hpp"
+#include "config/yaml_text.hpp"
+
+namespace mpm::config {
+namespace {
+
+template <class Settings>
+std::string field_text(const Field<Settings>& field, const Settings& settings) {
+  return std::visit([&](auto member) { return yaml_text(settings.*member); }, field.member);
+}
+
+/// One key per line, each with its note.
+template <class Settings>
+void print_fields(const std::vector<Field<Settings>>& fields, const Settings& settings,
+                  std::ostream& out) {
+  for (const Field<Settings>& field : fields) {
+    out << "  " << field.key << ": " << field_text(field, settings);
+    if (*field.notes != '\0') out << "  # " << field.notes;
+    out << '\n';
+  }
+}
+
+template <class Settings>
+std::string inline_fields(const std::vector<Field<Settings>>& fields, const Settings& settings) {
+  std::string text = "{";
+  for (const Field<Settings>& field : fields)
+    text +=
+        (text.size() > 1 ? ", " : "") + std::string(field.key) + ": " + field_text(field, settings);
+  return text + "}";
+}
+
+template <class Signal>
+void print_signals(std::string_view kind, const std::vector<Signal>& signals, std::ostream& out) {
+  out << "  " << kind << ':' << (signals.empty() ? " []\n" : "\n");
+  for (const Signal& signal : signals) {
+    out << "    - {tag: " << yaml_text(signal.tag);
+    const auto print = [&out](const char* key, const std::string& text) {
+      if (!text.empty()) out << ", " << key << ": " << yaml_text(text);
+    };
+    if constexpr (std::is_same_v<Signal, CvSignal>) {
+      print("prediction", signal.prediction);
+      print("setpoint", signal.setpoint);
+    }
+    print("unit", signal.unit);
+    print("description", signal.description);
+    out << "}\n";
+  }
+}
+
+std::string dynamics_text(const TransferFunction& tf) {
+  return "gain: " + yaml_text(tf.gain) + ", time_constants: " + yaml_text(tf.time_constants_s) +
+         ", lead: " + yaml_text(tf.lead_s) + ", dead_time: " + yaml_text(tf.dead_time_s) +
+         ", integrating: " + yaml_text(tf.integrating);
+}
+
+std::string dynamics_text(const DiscreteFilter& filter) {
+  return "numerator: " + yaml_text(filter.numerator) +
+         ", denominator: " + yaml_text(filter.denominator) +
+         ", delay_samples: " + yaml_text(filter.delay_samples);
+}
+
+std::string dynamics_text(const StepResponse& step) {
+  return "step_response: " + yaml_text(step.values);
+}
+
+std::string block_text(const Polynomial& block) {
+  return "{polynomial: " + yaml_text(block.coefficients) + "}";
+}
+std::string block_text(const Saturation& block) {
+  return "{saturation: " + yaml_text(std::vector<double>{block.low, block.high}) + "}";
+}
+std::string block_text(const Deadband& block) {
+  return "{deadband: " + yaml_text(block.width) + "}";
+}
+std::string block_text(const Stiction& block) {
+  return "{stiction: {band: " + yaml_text(block.band) + ", jump: " + yaml_text(block.jump) + "}}";
+}
+std::string block_text(const Offset& block) { return "{offset: " + yaml_text(block.bias) + "}"; }
+std::string block_text(const Scale& block) { return "{scale: " + yaml_text(block.factor) + "}"; }
+
+template <class Block>
+void print_blocks(std::string_view key, const std::vector<std::optional<Block>>& blocks,
+                  const std::vector<std::string>& tags, std::ostream& out) {
+  bool first = true;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!blocks[i]) continue;
+    if (first) out << "  " << key << ":\n";
+    first = false;
+    out << "    " << yaml_text(tags[i]) << ": "
+        << std::visit([](const auto& block) { return block_text(block); }, *blocks[i]) << '\n';
+  }
+}
+
+std::string origin_text(const UnitConfig& config) {
+  std::string text = "{";
+  const auto add = [&text](const std::vector<std::string>& tags, const Eigen::VectorXd& values) {
+    for (std::size_t i = 0; i < tags.size(); ++i)
+      text += (text.size() > 1 ? ", " : "") + yaml_text(tags[i]) + ": " +
+              yaml_text(values(static_cast<Eigen::Index>(i)));
+  };
+  add(config.input_tags(), config.model.input_origin);
+  add(config.cv_tags(), config.model.output_origin);
+  return text + "}";
+}
+
+void print_model(const UnitConfig& config, std::ostream& out) {
+  const ModelSpec& model = config.model;
+  out << "model:\n";
+  if (model.state_space) {
+    const StateSpaceSpec& system = *model.state_space;
+    out << "  state_space:\n    A: " << yaml_text(system.a) << "\n    B: " << yaml_text(system.b)
+        << "\n    C: " << yaml_text(system.c) << "\n    D: " << yaml_text(system.d) << '\n';
+    if (system.x0.size() > 0)
+      out << "    x0: "
+          << yaml_text(std::vector<double>(system.x0.data(), system.x0.data() + system.x0.size()))
+          << '\n';
+  } else {
+    out << "  channels:" << (model.channels.empty() ? "\n" : "  # times in s\n");
+    const std::vector<std::string> cvs = config.cv_tags();
+    for (const ChannelSpec& channel : model.channels)
+      out << "    - {cv: " << yaml_text(cvs[static_cast<std::size_t>(channel.cv)])
+          << ", mv: " << yaml_text(config.input_tag(channel.input)) << ", "
+          << std::visit([](const auto& dynamics) { return dynamics_text(dynamics); },
+                        channel.dynamics)
+          << "}\n";
+  }
+  print_blocks("input", model.input_blocks, config.input_tags(), out);
+  print_blocks("output", model.output_blocks, config.cv_tags(), out);
+  out << "  operating_point: " << origin_text(config) << '\n';
+}
+
+template <class Settings, class Text>
+void print_each(std::string_view key, const std::vector<std::string>& tags,
+                const std::vector<Settings>& settings, Text text, std::ostream& out) {
+  if (tags.empty()) return;
+  out << "  " << key << ":\n";
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    out << "    " << yaml_text(tags[i]) << ": " << text(settings[i]) << '\n';
+}
+
+void print_limits(const UnitConfig& config, std::ostream& out) {
+  const auto print = [&out](const std::string& tag, const auto& limits, const auto& max_move) {
+    std::string text;
+    const auto add = [&text](const char* key, const std::optional<double>& value) {
+      if (value) text += (text.empty() ? "" : ", ") + std::string(key) + ": " + yaml_text(*value);
+    };
+    add("low", limits.low);
+    add("high", limits.high);
+    add("max_move", max_move);
+    out << "    " << yaml_text(tag) << ": {" << text << "}\n";
+  };
+  out << "  limits:\n";
+  for (std::size_t i = 0; i < config.mv.size(); ++i) {
+    const MvLimits& limits = config.simulation.mv_limits[i];
+    print(config.mv[i].tag, limits, limits.max_move);
+  }
+  for (std::size_t i = 0; i < config.cv.size(); ++i)
+    print(config.cv[i].tag, config.simulation.cv_limits[i], std::optional<double>());
+}
+
+void print_simulation(const UnitConfig& config, std::ostream& out) {
+  const SimulationSettings& simulation = config.simulation;
+  const std::vector<std::string> cvs = config.cv_tags();
+  std::vector<std::string> mvs, dvs;
+  for (const InputSignal& mv : config.mv) mvs.push_back(mv.tag);
+  for (const InputSignal& dv : config.dv) dvs.push_back(dv.tag);
+  const auto number = [](double value) { return yaml_text(value); };
+  const auto noise = [](const NoiseSettings& each) { return inline_fields(noise_fields(), each); };
+  const auto setpoint = [](const SetpointSettings& each) {
+    return inline_fields(setpoint_fields(), each);
+  };
+  out << "simulation:  # mpmsim only\n";
+  print_fields(simulation_fields(), simulation, out);
+  out << "  move_blocks: "
+      << yaml_text(
+             std::vector<double>(simulation.move_blocks.begin(), simulation.move_blocks.end()))
+      << "  # samples\n";
+  print_each("cv_weights", cvs, simulation.cv_weights, number, out);
+  print_each("move_weights", mvs, simulation.move_weights, number, out);
+  print_limits(config, out);
+  print_each("noise", cvs, simulation.noise, noise, out);
+  print_each("dv_movement", dvs, simulation.dv_movement, noise, out);
+  print_each("setpoints", cvs, simulation.setpoints, setpoint, out);
+}
+
+}  // namespace
+
+void print_unit(const UnitConfig& config, std::ostream& out) {
+  out << "unit: " << yaml_text(config.unit) << '\n'
+      << "sample_time: " << yaml_text(config.sample_time_s) << "  # s\n"
+      << "signals:\n";
+  print_signals("mv", config.mv, out);
+  print_signals("dv", config.dv, out);
+  print_signals("cv", config.cv, out);
+  print_signals("aux", config.aux, out);
+  print_model(config, out);
+  out << "monitor:\n";
+  print_fields(monitor_fields(), config.monitor, out);
+  out << "alarms:\n";
+  print_fields(alarm_fields(), config.alarms, out);
+  out << "dds:\n";
+  print_fields(dds_fields(), config.dds, out);
+  out << "  peers: " << yaml_text(config.dds.peers) << '\n';
+  print_simulation(config, out);
+}
+
+}  // namespace mpm::config

@@ -1,0 +1,278 @@
+#include "config/yaml_value.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <system_error>
+#include <tuple>
+
+#include "config/suggest.hpp"
+#include "config/yaml_text.hpp"
+
+namespace mpm::config {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = 16U << 20U;
+constexpr std::size_t kLongestShown = 40;
+
+std::string shown(std::string_view text) {
+  std::string line;
+  for (const char c : text.substr(0, kLongestShown))
+    line += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  return "'" + line + (text.size() > kLongestShown ? "..." : "") + "'";
+}
+
+std::string range_text(const Range& range) {
+  const bool low = std::isfinite(range.low);
+  const bool high = std::isfinite(range.high);
+  std::string text = "must be ";
+  if (low) text += (range.low_open ? "> " : ">= ") + yaml_text(range.low);
+  if (low && high) text += " and ";
+  if (high) text += (range.high_open ? "< " : "<= ") + yaml_text(range.high);
+  return text;
+}
+
+bool printable(const std::string& text) {
+  return std::none_of(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
+  });
+}
+
+}  // namespace
+
+void Report::add(Severity severity, const YAML::Mark& mark, std::string key, std::string message) {
+  const bool placed = !mark.is_null();
+  findings_.push_back({file_, placed ? mark.line + 1 : 0, placed ? mark.column + 1 : 0, severity,
+                       std::move(key), std::move(message)});
+}
+
+std::vector<Finding> Report::take() {
+  std::stable_sort(findings_.begin(), findings_.end(), [](const Finding& a, const Finding& b) {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  const auto same = [](const Finding& a, const Finding& b) {
+    return std::tie(a.line, a.column, a.key, a.message) ==
+           std::tie(b.line, b.column, b.key, b.message);
+  };
+  findings_.erase(std::unique(findings_.begin(), findings_.end(), same), findings_.end());
+  return std::move(findings_);
+}
+
+std::string Value::kind() const {
+  if (node_.IsMap()) return "a map of keys";
+  if (node_.IsSequence()) return "a list";
+  if (node_.IsScalar()) return shown(node_.Scalar());
+  return "nothing";
+}
+
+void Value::error(std::string message) const {
+  report_->add(Severity::kError, mark_, path_, std::move(message));
+}
+
+void Value::warning(std::string message) const {
+  report_->add(Severity::kWarning, mark_, path_, std::move(message));
+}
+
+bool Value::has_any_key(const std::vector<std::string>& keys) const {
+  if (!node_.IsMap()) return false;
+  for (const auto& pair : node_)
+    if (pair.first.IsScalar() &&
+        std::find(keys.begin(), keys.end(), pair.first.Scalar()) != keys.end())
+      return true;
+  return false;
+}
+
+std::optional<double> Value::number(const Range& range) const {
+  if (!node_.IsScalar()) {
+    error("must be a number, not " + kind());
+    return std::nullopt;
+  }
+  std::string_view text = node_.Scalar();
+  if (text.size() > 1 && text.front() == '+') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  static constexpr std::array kNotFinite = {".nan",  ".inf", "-.inf", ".NaN", ".Inf",
+                                            "-.Inf", ".NAN", ".INF",  "-.INF"};
+  const bool yaml_not_finite =
+      std::find(kNotFinite.begin(), kNotFinite.end(), text) != kNotFinite.end();
+  const bool whole = !text.empty() && end == text.data() + text.size();
+  if (yaml_not_finite || (whole && (status == std::errc::result_out_of_range ||
+                                    (status == std::errc() && !std::isfinite(value))))) {
+    error("must be a finite number, not " + kind());
+    return std::nullopt;
+  }
+  if (!whole || status != std::errc()) {
+    error("must be a number, not " + kind());
+    return std::nullopt;
+  }
+  if (!range.contains(value)) {
+    error(range_text(range) + ", not " + yaml_text(value));
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<int> Value::integer(const Range& range) const {
+  const std::optional<double> value = number(range);
+  if (!value) return std::nullopt;
+  if (*value != std::floor(*value) || std::abs(*value) > std::numeric_limits<int>::max()) {
+    error("must be a whole number, not " + kind());
+    return std::nullopt;
+  }
+  return static_cast<int>(*value);
+}
+
+std::optional<bool> Value::boolean() const {
+  if (node_.IsScalar()) {
+    if (node_.Scalar() == "true") return true;
+    if (node_.Scalar() == "false") return false;
+  }
+  error("must be true or false, not " + kind());
+  return std::nullopt;
+}
+
+std::optional<std::string> Value::free_text() const {
+  if (!node_.IsScalar()) {
+    error("must be a text, not " + kind());
+    return std::nullopt;
+  }
+  return node_.Scalar();
+}
+
+std::optional<std::string> Value::text(std::size_t longest) const {
+  std::optional<std::string> value = free_text();
+  if (!value) return std::nullopt;
+  if (value->empty()) {
+    error("must not be empty");
+  } else if (value->size() > longest) {
+    error("is longer than " + std::to_string(longest) + " bytes");
+  } else if (!printable(*value)) {
+    error("must not hold control characters");
+  } else {
+    return value;
+  }
+  return std::nullopt;
+}
+
+std::vector<Value> Value::items() const {
+  if (!node_.IsSequence()) return {*this};
+  std::vector<Value> values;
+  for (const YAML::Node& item : node_)
+    values.emplace_back(item, item.Mark(), path_ + '[' + std::to_string(values.size()) + ']',
+                        *report_);
+  return values;
+}
+
+std::vector<double> Value::numbers(const Range& range) const {
+  std::vector<double> values;
+  for (const Value& item : items())
+    if (const std::optional<double> value = item.number(range)) values.push_back(*value);
+  return values;
+}
+
+Map Value::map(const std::vector<std::string>& known, std::string_view noun) const {
+  std::vector<Map::Entry> entries;
+  if (node_.IsNull()) return {*this, {}};  // `monitor:` with nothing below
+  if (!node_.IsMap()) {
+    error("must be a map of keys, not " + kind());
+    return {*this, {}};
+  }
+  for (const auto& pair : node_) {
+    const YAML::Mark at = pair.first.Mark();
+    if (!pair.first.IsScalar()) {
+      Value(pair.first, at, path_, *report_).error("a key must be a word");
+      continue;
+    }
+    const std::string& key = pair.first.Scalar();
+    const std::string path = path_.empty() ? key : path_ + '.' + key;
+    const Value key_at(pair.first, at, path, *report_);
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      key_at.error("unknown " + std::string(noun) + suggestion(key, known));
+      continue;
+    }
+    const auto same = [&key](const Map::Entry& entry) { return entry.key == key; };
+    const auto first = std::find_if(entries.begin(), entries.end(), same);
+    if (first != entries.end()) {
+      key_at.error("given twice; first in line " + std::to_string(first->key_at.line()));
+      continue;
+    }
+    // An empty value has no mark worth showing: point to its key.
+    const YAML::Mark value_at = pair.second.IsNull() ? at : pair.second.Mark();
+    entries.push_back({key, key_at, Value(pair.second, value_at, path, *report_)});
+  }
+  return {*this, std::move(entries)};
+}
+
+const Map::Entry* Map::entry(std::string_view key) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [key](const Entry& entry) { return entry.key == key; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+const Value* Map::find(std::string_view key) const {
+  const Entry* found = entry(key);
+  return found == nullptr ? nullptr : &found->value;
+}
+
+const Value* Map::require(std::string_view key) const {
+  const Value* value = find(key);
+  if (value == nullptr) place_.error("`" + std::string(key) + "` is missing");
+  return value;
+}
+
+std::optional<Value> parse_yaml(const std::string& text, Report& report) {
+  const YAML::Mark start;
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.empty() || documents.front().IsNull()) {
+      report.add(Severity::kError, start, "", "the file is empty");
+      return std::nullopt;
+    }
+    if (documents.size() > 1)
+      report.add(Severity::kError, documents[1].Mark(), "",
+                 "a second document; write one unit per file");
+    return Value(documents.front(), documents.front().Mark(), "", report);
+  } catch (const YAML::Exception& error) {
+    report.add(Severity::kError, error.mark.is_null() ? start : error.mark, "",
+               "not valid YAML: " + error.msg);
+  } catch (const std::exception& error) {
+    report.add(Severity::kError, start, "", std::string("not valid YAML: ") + error.what());
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> read_text_file(const std::string& path, Report& report) {
+  const YAML::Mark nowhere = YAML::Mark::null_mark();
+  std::error_code failure;
+  const auto status = std::filesystem::status(path, failure);
+  if (!std::filesystem::exists(status)) {
+    report.add(Severity::kError, nowhere, "", "no such file");
+    return std::nullopt;
+  }
+  if (std::filesystem::is_directory(status)) {
+    report.add(Severity::kError, nowhere, "", "is a folder, not a file");
+    return std::nullopt;
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    report.add(Severity::kError, nowhere, "", "cannot be read");
+    return std::nullopt;
+  }
+  std::string text;
+  std::array<char, 65536> block{};
+  while (file.read(block.data(), block.size()) || file.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    if (text.size() > kLargestFile) {
+      report.add(Severity::kError, nowhere, "", "is larger than 16 MB");
+      return std::nullopt;
+    }
+  }
+  return text;
+}
+
+}  // namespace mpm::config
