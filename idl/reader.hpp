@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <string>
+#include <vector>
 
 #include "idl/entity.hpp"
 #include "idl/participant.hpp"
@@ -13,36 +13,37 @@ namespace mpm::idl {
 template <class T>
 class Reader {
  public:
-  /// Taken at once; also bounds how far one topic can run ahead of the others in a reading loop.
-  static constexpr int kBatch = 64;
-
-  Reader(const Participant& participant, const char* topic, const Qos& qos)
+  /// `batch`: samples taken at once. Small, so that no topic runs far ahead of the others in a
+  /// loop over several; or large enough for all there is, where order across instances matters.
+  Reader(const Participant& participant, const char* topic, const Qos& qos, int batch = 64)
       : topic_(dds_create_topic(participant.get(), TopicType<T>::descriptor(), topic, nullptr,
                                 nullptr),
                std::string("topic ") + topic),
         reader_(dds_create_reader(participant.get(), topic_.get(), qos.get(), nullptr),
                 std::string("reader of ") + topic),
-        readable_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition") {}
+        readable_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition"),
+        samples_(static_cast<std::size_t>(batch)),
+        infos_(static_cast<std::size_t>(batch)) {}
 
-  /// Takes up to `kBatch` samples and calls `on_sample(const T&, const dds_sample_info_t&)` for
-  /// each. Where `info.valid_data` is false only the keys are set: the instance changed its state.
-  /// Within one instance the order is that of writing. Returns how many were taken.
+  /// Takes a batch and calls `on_sample(const T&, const dds_sample_info_t&)` for each sample. Where
+  /// `info.valid_data` is false only the keys are set: the instance changed its state. Samples come
+  /// instance by instance, within one in the order of writing. Returns how many were taken.
   template <class Callback>
-  int take_with_info(Callback&& on_sample) const {
-    std::array<void*, kBatch> samples{};  // null: lend them, do not copy
-    std::array<dds_sample_info_t, kBatch> infos;
+  int take_with_info(Callback&& on_sample) {
+    samples_[0] = nullptr;  // lend them, do not copy
     const dds_return_t count =
-        dds_take(reader_.get(), samples.data(), infos.data(), kBatch, kBatch);
+        dds_take(reader_.get(), samples_.data(), infos_.data(), samples_.size(),
+                 static_cast<std::uint32_t>(samples_.size()));
     if (count <= 0) return 0;
-    const Loan loan{reader_.get(), samples.data(), count};
+    const Loan loan{reader_.get(), samples_.data(), count};
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-      on_sample(*static_cast<const T*>(samples[i]), infos[i]);
+      on_sample(*static_cast<const T*>(samples_[i]), infos_[i]);
     return count;
   }
 
   /// Same for those who only want values: `on_sample(const T&)`.
   template <class Callback>
-  int take(Callback&& on_sample) const {
+  int take(Callback&& on_sample) {
     return take_with_info([&](const T& sample, const dds_sample_info_t& info) {
       if (info.valid_data) on_sample(sample);
     });
@@ -69,6 +70,8 @@ class Reader {
   Entity topic_;
   Entity reader_;
   Entity readable_;
+  std::vector<void*> samples_;
+  std::vector<dds_sample_info_t> infos_;
 };
 
 }  // namespace mpm::idl

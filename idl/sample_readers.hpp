@@ -23,7 +23,7 @@ class SampleReaders {
   /// Takes one batch per topic, so that none runs far ahead: `on_sample(const SampleView&)`.
   /// Returns how many samples were taken.
   template <class Callback>
-  int take(Callback&& on_sample) const {
+  int take(Callback&& on_sample) {
     int count = 0;
     for (std::size_t i = 0; i < readers_.size(); ++i)
       count += readers_[i].take(

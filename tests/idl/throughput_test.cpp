@@ -1,0 +1,105 @@
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "idl/sample_readers.hpp"
+#include "idl/unit_publisher.hpp"
+#include "tests/idl/test_domain.hpp"
+
+namespace mpm::idl {
+namespace {
+
+constexpr SignalCounts kCounts{2, 0, 2, 0};
+
+UnitLayout layout() {
+  UnitLayout unit;
+  unit.unit = "fast";
+  unit[SignalKind::kMv].tags = {"u1", "u2"};
+  unit[SignalKind::kCv].tags = {"y1", "y2"};
+  return unit;
+}
+
+long resident_kb() {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  while (status >> word)
+    if (word == "VmRSS:") {
+      long kb = 0;
+      status >> kb;
+      return kb;
+    }
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("a lossless writer at full speed loses nothing to a reader, in order, in flat memory") {
+  constexpr int kFrames = 100'000;
+  DomainOptions options = test_domain("lossless");
+  const Participant reading(options);
+  options.max_unacknowledged_kb = 32;
+  const Participant writing(options);
+  SampleReaders readers(reading);
+  WaitSet wait_set;
+  readers.attach_to(wait_set);
+  const UnitPublisher publisher(writing, layout(), WriterPace::kLossless);
+  REQUIRE(publisher.wait_for_readers(std::chrono::seconds(10)));
+
+  bool all_written = true;
+  std::thread writer([&] {
+    Frame frame(kCounts);
+    for (int k = 0; k < kFrames; ++k) {
+      frame.interval = k;
+      all_written = publisher.publish(frame) && all_written;
+    }
+  });
+
+  std::array<std::int64_t, kSignalKindCount> next{};
+  std::int64_t max_skew = 0;
+  long early_kb = 0;
+  int count = 0;
+  bool in_order = true;
+  const auto begin = std::chrono::steady_clock::now();
+  while (count < 2 * kFrames && wait_set.wait(std::chrono::seconds(5)))
+    readers.take([&](const SampleView& sample) {
+      ++count;
+      auto& expected = next[static_cast<std::size_t>(sample.kind)];
+      in_order = in_order && sample.interval == expected;
+      expected = sample.interval + 1;
+      max_skew = std::max(max_skew, std::abs(next[0] - next[2]));
+      if (sample.interval == kFrames / 5) early_kb = resident_kb();
+    });
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  writer.join();
+  WARN(kFrames / elapsed.count() << " frames/s, skew " << max_skew << " intervals, memory "
+                                 << early_kb << " -> " << resident_kb() << " kB");
+  CHECK(all_written);
+  CHECK(count == 2 * kFrames);
+  CHECK(in_order);
+  CHECK(max_skew < 1024);
+  CHECK(resident_kb() - early_kb < 5000);
+}
+
+TEST_CASE("a real-time writer is never held up by a reader that takes nothing") {
+  DomainOptions options = test_domain("realtime");
+  const Participant reading(options);
+  const Participant writing(options);
+  const SampleReaders frozen(reading);
+  const UnitPublisher publisher(writing, layout(), WriterPace::kRealTime);
+  REQUIRE(publisher.wait_for_readers(std::chrono::seconds(10)));
+
+  Frame frame(kCounts);
+  std::chrono::duration<double> longest{0};
+  for (int k = 0; k < 30'000; ++k) {
+    frame.interval = k;
+    const auto begin = std::chrono::steady_clock::now();
+    REQUIRE(publisher.publish(frame));
+    longest =
+        std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin));
+  }
+  WARN("longest write " << longest.count() * 1e3 << " ms");
+  CHECK(longest.count() < 0.5);
+}
+
+}  // namespace mpm::idl
