@@ -62,7 +62,7 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
   model.input_origin.setZero(model.input_count);
   model.output_origin.setZero(model.cv_count);
 
-  const Value* origin = top_level_origin;
+  if (top_level_origin != nullptr) load_origin(*top_level_origin, config);
   bool tried = false;
   if (section != nullptr) {
     const Map map = section->map({"channels", "state_space", "input", "output", "operating_point"});
@@ -75,13 +75,12 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
     if (state_space != nullptr) load_state_space(*state_space, config);
     load_static_blocks(map, config);
     if (const Value* inner = map.find("operating_point")) {
-      if (origin != nullptr) inner->error("given twice; also at the top level");
-      origin = inner;
+      if (top_level_origin != nullptr) inner->error("given twice; also at the top level");
+      load_origin(*inner, config);
     }
     if (tried) warn_of_idle_cvs(*section, config);
   }
   if (!tried) check_missing_model(section, section != nullptr ? *section : root, config);
-  if (origin != nullptr) load_origin(*origin, config);
 }
 
 }  // namespace mpm::config

@@ -35,10 +35,17 @@ void read_each(const Map& map, std::string_view key, const std::vector<std::stri
     for (Settings& each : settings) read_fields(value->map(names), fields, each);
     return;
   }
-  const Map by_tag = value->map(tags, "tag");
+  std::vector<std::string> known = tags;
+  known.insert(known.end(), names.begin(), names.end());
+  const Map by_tag = value->map(known, "tag or key");
   for (const Map::Entry& entry : by_tag.entries()) {
-    const auto index = std::find(tags.begin(), tags.end(), entry.key) - tags.begin();
-    read_fields(entry.value.map(names), fields, settings[static_cast<std::size_t>(index)]);
+    const auto index =
+        static_cast<std::size_t>(std::find(tags.begin(), tags.end(), entry.key) - tags.begin());
+    if (index == tags.size()) {
+      entry.key_at.error("give it for all at once or below each tag, not both");
+    } else {
+      read_fields(entry.value.map(names), fields, settings[index]);
+    }
   }
 }
 

@@ -33,18 +33,22 @@ int edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+const std::string* closest(std::string_view word, const std::vector<std::string>& known) {
   int best = 1 + std::max(1, static_cast<int>(word.size()) / 3);  // one too far
-  const std::string* closest = nullptr;
+  const std::string* found = nullptr;
   for (const std::string& candidate : known) {
     const int distance = edit_distance(word, candidate);
     // Half of the word must be right, or `u` would be a likely slip for every one-letter name.
     if (distance < best && 2 * distance <= static_cast<int>(candidate.size())) {
       best = distance;
-      closest = &candidate;
+      found = &candidate;
     }
   }
-  if (closest != nullptr) return " (did you mean '" + *closest + "'?)";
+  return found;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  if (const std::string* likely = closest(word, known)) return " (did you mean '" + *likely + "'?)";
   std::vector<std::string> named;  // a tag that could not be read is empty
   for (const std::string& candidate : known)
     if (!candidate.empty()) named.push_back(candidate);

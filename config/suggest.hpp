@@ -10,6 +10,10 @@ namespace mpm::config {
 /// regard to case (optimal string alignment distance).
 [[nodiscard]] int edit_distance(std::string_view a, std::string_view b);
 
+/// The one of `known` that `word` is most likely a slip of; null where none is close.
+[[nodiscard]] const std::string* closest(std::string_view word,
+                                         const std::vector<std::string>& known);
+
 /// ` (did you mean 'x'?)` for the closest of `known` if one is close enough to `word`, else the
 /// list of them if it is short (` (known: a, b)`), else empty.
 [[nodiscard]] std::string suggestion(std::string_view word, const std::vector<std::string>& known);
