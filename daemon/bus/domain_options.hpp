@@ -1,0 +1,20 @@
+#pragma once
+
+#include "config/unit_config.hpp"
+#include "idl/participant.hpp"
+
+namespace mpm::daemon {
+
+/// The DDS side of a unit file, which idl knows nothing of.
+[[nodiscard]] inline idl::DomainOptions domain_options(const config::DdsSettings& settings) {
+  idl::DomainOptions options;
+  options.domain = settings.domain;
+  options.interface = settings.interface;
+  options.peers = settings.peers;
+  options.multicast = settings.multicast;
+  options.partition = settings.partition;
+  options.max_participants = settings.max_participants;
+  return options;
+}
+
+}  // namespace mpm::daemon

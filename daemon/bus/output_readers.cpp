@@ -1,0 +1,74 @@
+#include "daemon/bus/output_readers.hpp"
+
+#include <algorithm>
+
+#include "daemon/bus/output_samples.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+// Samples come instance by instance. Only a batch that holds all there is can be put back into the
+// order of writing, so it is large.
+constexpr int kStatusBatch = 16384;
+constexpr int kEventBatch = 4096;
+
+LayoutRecord record_of(const mpm_Layout& layout) {
+  LayoutRecord record{
+      layout.unit == nullptr ? "" : layout.unit, layout.kind == nullptr ? "" : layout.kind, {}};
+  for (std::uint32_t i = 0; i < layout.tags._length; ++i)
+    record.tags.emplace_back(layout.tags._buffer[i] == nullptr ? "" : layout.tags._buffer[i]);
+  return record;
+}
+
+}  // namespace
+
+OutputReaders::OutputReaders(const idl::Participant& participant)
+    : layout_(participant, idl::kLayoutTopic, idl::layout_qos()),
+      channel_status_(participant, idl::kChannelStatusTopic, idl::channel_status_reader_qos(),
+                      kStatusBatch),
+      alarm_(participant, idl::kAlarmTopic, idl::alarm_qos()),
+      alarm_event_(participant, idl::kAlarmEventTopic, idl::alarm_event_reader_qos(), kEventBatch),
+      health_(participant, idl::kHealthTopic, idl::health_qos()) {}
+
+void OutputReaders::attach_to(idl::WaitSet& wait_set) const {
+  wait_set.attach(layout_.readable());
+  wait_set.attach(channel_status_.readable());
+  wait_set.attach(alarm_.readable());
+  wait_set.attach(alarm_event_.readable());
+  wait_set.attach(health_.readable());
+}
+
+void OutputReaders::add(std::int64_t written_ns, Output output) {
+  taken_.emplace_back(written_ns, std::move(output));
+}
+
+const std::vector<Output>& OutputReaders::take() {
+  taken_.clear();
+  // In this order, so that of what one frame caused the channels are never behind the alarms.
+  health_.take_with_info([this](const mpm_Health& sample, const dds_sample_info_t& info) {
+    if (info.valid_data)
+      add(info.source_timestamp, record_of(sample));
+    else if (sample.unit != nullptr)
+      add(info.source_timestamp, MonitorGone{sample.unit});
+  });
+  alarm_event_.take_with_info([this](const mpm_AlarmEvent& sample, const dds_sample_info_t& info) {
+    if (info.valid_data) add(info.source_timestamp, record_of(sample));
+  });
+  alarm_.take_with_info([this](const mpm_Alarm& sample, const dds_sample_info_t& info) {
+    if (info.valid_data) add(info.source_timestamp, AlarmStateRecord{record_of(sample)});
+  });
+  channel_status_.take_with_info(
+      [this](const mpm_ChannelStatus& sample, const dds_sample_info_t& info) {
+        if (info.valid_data) add(info.source_timestamp, record_of(sample));
+      });
+  layout_.take_with_info([this](const mpm_Layout& sample, const dds_sample_info_t& info) {
+    if (info.valid_data) add(0, record_of(sample));  // first: it orders the rest
+  });
+  std::stable_sort(taken_.begin(), taken_.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  sorted_.clear();
+  for (auto& [written_ns, output] : taken_) sorted_.push_back(std::move(output));
+  return sorted_;
+}
+
+}  // namespace mpm::daemon

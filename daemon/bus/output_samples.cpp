@@ -1,0 +1,82 @@
+#include "daemon/bus/output_samples.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+// A sender of another make may leave strings out.
+std::string text(const char* string) { return string == nullptr ? "" : string; }
+
+template <class T>
+AlarmRecord alarm_record(const T& sample, const char* to) {
+  return {text(sample.unit),
+          text(sample.mv),
+          text(sample.cv),
+          sample.interval,
+          sample.source_time_ns,
+          text(to),
+          sample.p_value,
+          sample.statistic,
+          sample.threshold,
+          sample.partial_correlation,
+          sample.lag,
+          sample.effect_size};
+}
+
+}  // namespace
+
+ChannelRecord record_of(const mpm_ChannelStatus& sample) {
+  ChannelRecord record;
+  record.unit = text(sample.unit);
+  record.mv = text(sample.mv);
+  record.cv = text(sample.cv);
+  record.interval = sample.interval;
+  record.source_time_ns = sample.source_time_ns;
+  record.verdict = text(sample.verdict);
+  record.reason = text(sample.reason);
+  record.p_value = sample.p_value;
+  record.statistic = sample.statistic;
+  record.threshold = sample.threshold;
+  record.partial_correlation = sample.partial_correlation;
+  record.lag = sample.lag;
+  record.excited = sample.excited;
+  record.effect_size = sample.effect_size;
+  record.smallest_error = sample.smallest_error;
+  record.effective_samples = sample.effective_samples;
+  record.alarm_active = sample.alarm_active;
+  record.first_lag = sample.first_lag;
+  record.partial_correlations.assign(
+      sample.partial_correlations._buffer,
+      sample.partial_correlations._buffer + sample.partial_correlations._length);
+  return record;
+}
+
+AlarmRecord record_of(const mpm_Alarm& sample) { return alarm_record(sample, sample.state); }
+
+AlarmRecord record_of(const mpm_AlarmEvent& sample) { return alarm_record(sample, sample.to); }
+
+HealthRecord record_of(const mpm_Health& sample) {
+  HealthRecord record;
+  record.unit = text(sample.unit);
+  record.state = text(sample.state);
+  record.detail = text(sample.detail);
+  record.interval = sample.interval;
+  record.source_time_ns = sample.source_time_ns;
+  record.frames = sample.frames;
+  record.used = sample.used;
+  record.missing = sample.missing;
+  record.incomplete = sample.incomplete;
+  record.late = sample.late;
+  record.repeated = sample.repeated;
+  record.out_of_order = sample.out_of_order;
+  record.bad_values = sample.bad_values;
+  record.wrong_length = sample.wrong_length;
+  record.unknown_unit = sample.unknown_unit;
+  record.restarts = sample.restarts;
+  record.undetermined = sample.undetermined;
+  record.matching = sample.matching;
+  record.mismatching = sample.mismatching;
+  record.active_alarms = sample.active_alarms;
+  return record;
+}
+
+}  // namespace mpm::daemon

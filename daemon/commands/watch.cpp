@@ -1,0 +1,99 @@
+#include "daemon/commands/watch.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "daemon/bus/output_readers.hpp"
+#include "daemon/log/logging.hpp"
+#include "daemon/service/signals.hpp"
+#include "daemon/watch/viewer.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{100};
+
+struct WatchOptions {
+  std::string unit;
+  idl::DomainOptions domain;
+  bool json = false;
+  bool no_color = false;
+  bool alarms_only = false;
+  bool until_alarm = false;
+  double for_s = 0.0;  // 0 = until interrupted
+};
+
+ViewMode mode_of(const WatchOptions& options) {
+  if (options.json) return ViewMode::kJson;
+  return isatty(STDOUT_FILENO) ? ViewMode::kTable : ViewMode::kLines;
+}
+
+bool wants_color(const WatchOptions& options) {
+  const char* no_color = std::getenv("NO_COLOR");
+  return !options.no_color && (no_color == nullptr || *no_color == '\0');
+}
+
+// 0, or 2 if the alarm that was waited for did not come.
+int watch(const WatchOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  std::signal(SIGPIPE, SIG_IGN);  // has_reader() notices
+  StopSignal stop;
+  set_up_logging("warning");
+  const idl::Participant participant(options.domain);
+  OutputReaders readers(participant);
+  idl::WaitSet wait_set;
+  readers.attach_to(wait_set);
+  Viewer viewer(mode_of(options), {wants_color(options), options.alarms_only}, options.unit);
+
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(options.for_s));
+  bool last_look = false;
+  while (viewer.has_reader() && !stop.received()) {
+    if (wait_set.wait(kLongestWait))
+      for (const Output& output : readers.take()) viewer.show(output);
+    const Clock::time_point now = Clock::now();
+    last_look = options.for_s > 0.0 && now >= end;
+    viewer.tick(now);
+    if (options.until_alarm && viewer.any_alarm()) return 0;
+    if (last_look) break;
+  }
+  return options.until_alarm ? 2 : 0;
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("watch", "show what the monitors say, live");
+  const auto options = std::make_shared<WatchOptions>();
+  command->add_option("--unit", options->unit, "only this unit");
+  command->add_option("--domain", options->domain.domain, "DDS domain")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 230));
+  command->add_option("--partition", options->domain.partition, "discovery tag");
+  command->add_option("--interface", options->domain.interface, "network interface")
+      ->capture_default_str();
+  command->add_option("--peer", options->domain.peers, "host to look for monitors on; repeatable");
+  command->add_flag("--multicast", options->domain.multicast, "look for monitors by multicast");
+  command->add_flag("--dds-from-environment", options->domain.use_environment,
+                    "take the DDS settings from CYCLONEDDS_URI");
+  command->add_flag("--json", options->json, "print each record as a JSON line");
+  command->add_flag("--no-color", options->no_color, "words only; also with NO_COLOR set");
+  command->add_flag("--alarms-only", options->alarms_only, "leave out what is not an alarm");
+  command->add_flag("--until-alarm", options->until_alarm,
+                    "end when an alarm is active; exit code 2 if none came");
+  command->add_option("--for", options->for_s, "end after this many seconds")
+      ->check(CLI::PositiveNumber);
+  command->footer(
+      "Examples:\n"
+      "  mpm watch --unit shell\n"
+      "  mpm watch --json --alarms-only --for 60\n"
+      "  mpm watch --until-alarm --for 3600 && mail -s 'model mismatch' apc@plant");
+  command->callback([options, &exit_code] { exit_code = watch(*options); });
+}
+
+}  // namespace mpm::daemon

@@ -1,0 +1,205 @@
+#include "daemon/monitoring/unit_pipeline.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace mpm::daemon {
+namespace {
+
+constexpr std::chrono::seconds kHealthPeriod{1};
+constexpr int kSilentSamples = 10;
+
+std::array<bool, kSignalKindCount> needed_kinds(const config::UnitConfig& config) {
+  std::array<bool, kSignalKindCount> needed{};
+  const auto need = [&](SignalKind kind, bool yes) {
+    needed[static_cast<std::size_t>(kind)] = yes;
+  };
+  need(SignalKind::kMv, true);
+  need(SignalKind::kCv, true);
+  need(SignalKind::kDv, !config.dv.empty());
+  // Set-points are not waited for: no statistic uses them.
+  need(SignalKind::kPrediction,
+       std::any_of(config.cv.begin(), config.cv.end(),
+                   [](const config::CvSignal& cv) { return !cv.prediction.empty(); }));
+  return needed;
+}
+
+RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
+                                        std::chrono::seconds at_least) {
+  return std::max<RateLimiter::Clock::duration>(
+      at_least, std::chrono::duration_cast<RateLimiter::Clock::duration>(
+                    std::chrono::duration<double>(sample_time_s * samples)));
+}
+
+std::vector<std::string> tags_of(const config::UnitConfig& config, const std::string& kind) {
+  std::vector<std::string> tags;
+  if (kind == "mv")
+    for (const auto& signal : config.mv) tags.push_back(signal.tag);
+  if (kind == "dv")
+    for (const auto& signal : config.dv) tags.push_back(signal.tag);
+  for (const auto& signal : config.cv) {
+    if (kind == "cv") tags.push_back(signal.tag);
+    if (kind == "prediction") tags.push_back(signal.prediction);
+    if (kind == "setpoint") tags.push_back(signal.setpoint);
+  }
+  return tags;
+}
+
+}  // namespace
+
+UnitPipeline::UnitPipeline(const config::UnitConfig& config, const OutputWriters& outputs,
+                           Journal* journal, Clock::time_point now)
+    : config_(config),
+      outputs_(outputs),
+      journal_(journal),
+      monitor_(config),
+      aligner_(config.counts(), needed_kinds(config),
+               [this](const Frame& frame) { on_frame(frame); }),
+      patience_(samples_or(config.sample_time_s, AlignerSettings{}.max_lateness,
+                           std::chrono::seconds(2))),
+      silence_(samples_or(config.sample_time_s, kSilentSamples, std::chrono::seconds(5))),
+      now_(now),
+      last_frame_(now),
+      last_sample_(now),
+      next_health_(now) {
+  health_.unit = config.unit;
+  publish_initial_alarms();
+}
+
+// Tells "no alarm" from "no monitor", and clears what a daemon before this one left behind.
+void UnitPipeline::publish_initial_alarms() {
+  for (const ChannelRecord& channel : monitor_.channels()) {
+    AlarmRecord record;
+    record.unit = channel.unit;
+    record.mv = channel.mv;
+    record.cv = channel.cv;
+    record.to = "cleared";
+    if (!outputs_.write_state(record))
+      spdlog::warn("{}: cannot publish the alarm of {} -> {}", record.unit, record.mv, record.cv);
+  }
+}
+
+void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
+  now_ = now;
+  if (!aligner_.pending()) last_frame_ = now;  // patience counts from here
+  last_sample_ = now;
+  const AlignerCounters before = aligner_.counters();
+  aligner_.push(
+      {sample.kind, sample.interval, sample.source_time_ns, sample.values, sample.quality});
+  const AlignerCounters& after = aligner_.counters();
+  if (after.wrong_length != before.wrong_length) report_refused(sample);
+  if (after.restarts != before.restarts)
+    spdlog::info("{}: the controller restarted: interval {} after {}", config_.unit,
+                 sample.interval, health_.interval);
+}
+
+void UnitPipeline::report_refused(const idl::SampleView& sample) {
+  if (!refused_limit_.admit(now_)) return;
+  spdlog::warn(
+      "{}: {} sample of interval {} has {} values and {} qualities, expected {}; ignored{}",
+      config_.unit, idl::sample_topic(sample.kind), sample.interval, sample.values.size(),
+      sample.quality.size(), config_.counts().of(sample.kind),
+      refused_limit_.held_back() == 0
+          ? ""
+          : fmt::format(" ({} more like this before)", refused_limit_.held_back()));
+}
+
+void UnitPipeline::on_frame(const Frame& frame) {
+  last_frame_ = now_;
+  health_.interval = frame.interval;
+  health_.source_time_ns = frame.source_time_ns;
+  monitor_.push(frame);
+
+  bool written = true;
+  for (const ChannelRecord& channel : monitor_.channels())
+    written = outputs_.write(channel) && written;
+  for (const AlarmRecord& alarm : monitor_.alarms()) {
+    written = outputs_.write(alarm) && written;
+    spdlog::log(alarm.to == "active" ? spdlog::level::warn : spdlog::level::info,
+                "{}: {} -> {}: alarm {} at interval {} (p {:.1e}, gain error {:.3g})", alarm.unit,
+                alarm.mv, alarm.cv, alarm.to, alarm.interval, alarm.p_value, alarm.effect_size);
+  }
+  if (!written && output_limit_.admit(now_))
+    spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
+  if (journal_ != nullptr && !journal_->write(monitor_.channels(), monitor_.alarms()) &&
+      journal_limit_.admit(now_))
+    spdlog::error("{}: cannot write the journal: {}", config_.unit, std::strerror(errno));
+}
+
+void UnitPipeline::check_layout(const mpm_Layout& layout) {
+  const std::string kind = layout.kind;
+  const std::vector<std::string> expected = tags_of(config_, kind);
+  const bool same =
+      std::equal(expected.begin(), expected.end(), layout.tags._buffer,
+                 layout.tags._buffer + layout.tags._length,
+                 [](const std::string& a, const char* b) { return b != nullptr && a == b; });
+  if (same && layout.sample_time_s == config_.sample_time_s) return;
+  if (wrong_layout_.find(kind) != std::string::npos) return;
+  wrong_layout_ += (wrong_layout_.empty() ? "" : ", ") + kind;
+  spdlog::warn("{}: the {} layout of the control system differs from the unit file ({})",
+               config_.unit, kind, same ? "sample time" : "tags or their order");
+}
+
+void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit) {
+  now_ = now;
+  if (aligner_.pending() && now - last_frame_ > patience_) aligner_.expire();
+  if (now < next_health_) return;
+  next_health_ = now + kHealthPeriod;
+  publish_health(unknown_unit);
+}
+
+void UnitPipeline::publish_health(std::uint64_t unknown_unit) {
+  const AlignerCounters& aligner = aligner_.counters();
+  health_.frames = aligner.frames;
+  health_.used = monitor_.counters().used;
+  health_.missing = aligner.missing;
+  health_.incomplete = aligner.incomplete;
+  health_.late = aligner.late;
+  health_.repeated = aligner.repeated;
+  health_.out_of_order = aligner.out_of_order;
+  health_.bad_values = monitor_.counters().bad_values;
+  health_.wrong_length = aligner.wrong_length;
+  health_.unknown_unit = unknown_unit;
+  health_.restarts = aligner.restarts;
+  health_.undetermined = health_.matching = health_.mismatching = health_.active_alarms = 0;
+  for (const ChannelRecord& channel : monitor_.channels()) {
+    if (channel.verdict == "match")
+      ++health_.matching;
+    else if (channel.verdict == "mismatch")
+      ++health_.mismatching;
+    else
+      ++health_.undetermined;
+    if (channel.alarm_active) ++health_.active_alarms;
+  }
+  judge_health();
+  incomplete_before_ = aligner.incomplete;
+  if (!outputs_.write(health_) && output_limit_.admit(now_))
+    spdlog::warn("{}: the health could not be published", config_.unit);
+}
+
+// The worst of what NE 107 has a word for.
+void UnitPipeline::judge_health() {
+  const auto set = [this](const char* state, std::string detail) {
+    health_.state = state;
+    health_.detail = std::move(detail);
+  };
+  const auto silent_s = std::chrono::duration_cast<std::chrono::seconds>(now_ - last_sample_);
+  if (health_.frames == 0)
+    set("function_check", "no complete data yet");
+  else if (now_ - last_sample_ > silence_)
+    set("failure", "no data for " + std::to_string(silent_s.count()) + " s");
+  else if (!wrong_layout_.empty())
+    set("out_of_specification", "layout differs from the unit file: " + wrong_layout_);
+  else if (health_.incomplete != incomplete_before_)
+    set("out_of_specification", "data incomplete");
+  else if (health_.active_alarms > 0)
+    set("maintenance_required", std::to_string(health_.active_alarms) + " alarms");
+  else if (health_.matching + health_.mismatching == 0)
+    set("function_check", "nothing determined yet");
+  else
+    set("normal", "");
+}
+
+}  // namespace mpm::daemon

@@ -1,0 +1,24 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "daemon/commands/watch.hpp"
+#include "daemon/service/version.hpp"
+
+int main(int argc, char** argv) {
+  // Exit codes of all programs of the project: 0 done, 1 found, 2 failed, 3 bad usage or input.
+  int exit_code = 0;
+  CLI::App app("The engineer's side of the model-plant-mismatch monitor.");
+  app.set_version_flag("--version", mpm::daemon::version_text("mpm"));
+  app.require_subcommand(1);
+  mpm::daemon::add_watch(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 3;
+  } catch (const std::exception& error) {
+    std::cerr << "mpm: error: " << error.what() << '\n';
+    return 2;
+  }
+  return exit_code;
+}
