@@ -1,0 +1,105 @@
+#include "daemon/io/csv_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "config/finding.hpp"
+#include "daemon/io/cell.hpp"
+
+namespace mpm::io {
+namespace {
+
+constexpr std::size_t kRowsAhead = 200;
+constexpr double kSampleTimeTolerance = 0.1;
+constexpr double kSecond_ns = 1e9;
+
+std::unique_ptr<std::istream> open_file(const std::string& path) {
+  const auto fail = [&path](const char* message) {
+    throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
+  };
+  std::error_code failure;
+  const auto status = std::filesystem::status(path, failure);
+  if (!std::filesystem::exists(status)) fail("no such file");
+  if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
+  auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
+  if (!*file) fail("cannot be read");
+  return file;
+}
+
+std::string seconds(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text + " s";
+}
+
+}  // namespace
+
+CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit)
+    : CsvReader(open_file(path), path, unit) {}
+
+CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
+                     const config::UnitConfig& unit)
+    : sample_time_s_(unit.sample_time_s), lines_(std::move(input), name), tags_(unit) {
+  open(unit.counts());
+}
+
+void CsvReader::open(const SignalCounts& counts) {
+  if (!lines_.next()) lines_.fail(1, 1, "the file is empty");
+  const int header_line = lines_.number();
+  const CsvFormat format{find_delimiter(lines_.text())};
+  std::vector<Cell> header;
+  lines_.split(format.delimiter, header);
+  rows_ = is_long_header(header) ? read_long(lines_, format, header, tags_, counts, row_notices_)
+                                 : read_wide(lines_, format, header, tags_, row_notices_);
+  has_prediction_ = tags_.has_prediction();
+  notices_ = tags_.notices();
+
+  for (std::size_t i = 0; i < kRowsAhead; ++i) {
+    Frame frame(counts);
+    if (!rows_->next(frame)) break;
+    if (i == 0) first_ns_ = frame.source_time_ns;
+    ahead_.push_back(std::move(frame));
+  }
+  if (ahead_.empty()) lines_.fail(header_line, 1, "no data below the header");
+  check_sample_time(header_line);
+}
+
+void CsvReader::check_sample_time(int first_line) const {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < ahead_.size(); ++i) {
+    const auto step_ns =
+        static_cast<double>(ahead_[i].source_time_ns - ahead_[i - 1].source_time_ns);
+    if (step_ns > 0.0) steps_s.push_back(step_ns / kSecond_ns);
+  }
+  if (steps_s.empty()) return;
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  if (std::abs(*middle - sample_time_s_) > kSampleTimeTolerance * sample_time_s_)
+    lines_.fail(first_line, 1,
+                "the rows are " + seconds(*middle) + " apart (median), the unit's sample_time is " +
+                    seconds(sample_time_s_));
+}
+
+bool CsvReader::read(Frame& frame) {
+  if (ahead_.empty()) return rows_->next(frame);
+  frame = std::move(ahead_.front());
+  ahead_.pop_front();
+  return true;
+}
+
+bool CsvReader::next(Frame& frame) {
+  if (!read(frame)) {
+    notices_.insert(notices_.end(), row_notices_.begin(), row_notices_.end());
+    row_notices_.clear();
+    return false;
+  }
+  const auto elapsed_ns = static_cast<double>(frame.source_time_ns - first_ns_);
+  frame.interval = std::llround(elapsed_ns / (sample_time_s_ * kSecond_ns));
+  return true;
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <deque>
+#include <istream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "daemon/io/frame_source.hpp"
+#include "daemon/io/row_source.hpp"
+
+namespace mpm::io {
+
+/// Data files (interfaces: "Data file"): wide rows `time,<tag>,...` or long ones
+/// `tag,time,value,quality`, with comma, semicolon or tab, decimal point or comma. Memory stays
+/// flat, except for a long file that is not sorted by time.
+///
+/// Frame k of a file is numbered round((t - t_first) / sample_time); rows whose time does not grow
+/// keep their number, for the monitor to judge.
+class CsvReader : public FrameSource {
+ public:
+  /// Reads the header and the first rows. Throws config::InputError (`file:line:col: message`) if
+  /// the file cannot be opened, a tag is missing or the rows are not sample_time apart.
+  CsvReader(const std::string& path, const config::UnitConfig& unit);
+  /// The same from a stream that can seek; `name` stands for the file in messages.
+  CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
+            const config::UnitConfig& unit);
+
+  [[nodiscard]] bool next(Frame& frame) override;
+  [[nodiscard]] const std::vector<bool>& has_prediction() const override { return has_prediction_; }
+  [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
+
+ private:
+  void open(const SignalCounts& counts);
+  void check_sample_time(int first_line) const;
+  [[nodiscard]] bool read(Frame& frame);
+
+  double sample_time_s_;
+  LineReader lines_;
+  TagTable tags_;
+  std::vector<std::string> row_notices_;
+  std::vector<std::string> notices_;
+  std::vector<bool> has_prediction_;
+  std::unique_ptr<RowSource> rows_;
+  std::deque<Frame> ahead_;  ///< the first rows, read to learn their spacing
+  std::int64_t first_ns_ = 0;
+};
+
+}  // namespace mpm::io

@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "daemon/io/cell.hpp"
+#include "daemon/io/row_source.hpp"
+
+namespace mpm::io {
+namespace {
+
+struct LongColumns {
+  std::optional<std::size_t> tag, time, value, quality;
+
+  [[nodiscard]] bool complete() const { return tag && time && value; }
+};
+
+template <std::size_t n>
+std::optional<std::size_t> find_column(const std::vector<Cell>& header,
+                                       const std::array<std::string_view, n>& names) {
+  for (const std::string_view name : names)
+    for (std::size_t i = 0; i < header.size(); ++i)
+      if (same_word(header[i].text, name)) return i;
+  return std::nullopt;
+}
+
+LongColumns find_columns(const std::vector<Cell>& header) {
+  LongColumns columns;
+  columns.tag = find_column(
+      header, std::array<std::string_view, 4>{"tag", "tagname", "tag_name", "tag name"});
+  columns.value = find_column(header, std::array<std::string_view, 2>{"value", "val"});
+  // AVEVA's Quality is a code of its own beside OPCQuality.
+  columns.quality =
+      find_column(header, std::array<std::string_view, 3>{"opcquality", "quality", "status"});
+  for (std::size_t i = 0; i < header.size() && !columns.time; ++i)
+    if (is_time_name(header[i].text)) columns.time = i;
+  return columns;
+}
+
+/// One line of the file.
+struct Sample {
+  std::int64_t time_ns = 0;
+  Slot slot;
+  double value = 0.0;
+  Quality quality = Quality::kBad;
+};
+
+class LongRows : public RowSource {
+ public:
+  LongRows(LineReader& lines, const CsvFormat& format, const std::vector<Cell>& header,
+           TagTable& tags, const SignalCounts& counts, std::vector<std::string>& notices)
+      : lines_(lines),
+        format_(format),
+        columns_(find_columns(header)),
+        width_(header.back().text.empty() ? header.size() - 1 : header.size()),
+        tags_(tags),
+        counts_(counts),
+        notices_(notices) {
+    const int header_line = lines_.number();
+    const bool sorted = survey();
+    const std::string problem = tags.problem();
+    if (!problem.empty()) lines_.fail(header_line, 1, problem);
+    lines_.rewind();
+    if (!lines_.next()) lines_.fail(1, "the file changed while it was read");
+    if (!sorted) gather();
+  }
+
+  [[nodiscard]] bool next(Frame& frame) override {
+    if (gathered_) {
+      if (gathered_->empty()) return false;
+      frame = std::move(gathered_->begin()->second);
+      gathered_->erase(gathered_->begin());
+      return true;
+    }
+    if (!pending_) pending_ = read_sample();
+    if (!pending_) return false;
+    clear(frame);
+    frame.source_time_ns = pending_->time_ns;
+    while (pending_ && pending_->time_ns == frame.source_time_ns) {
+      put(*pending_, frame);
+      pending_ = read_sample();
+    }
+    return true;
+  }
+
+ private:
+  /// Notes every tag; true if time never goes back.
+  bool survey() {
+    bool sorted = true;
+    std::int64_t last_ns = 0;
+    bool first = true;
+    while (next_line()) {
+      tags_.see(cells_[*columns_.tag].text);
+      const std::int64_t time_ns = read_time(lines_, cells_[*columns_.time]);
+      sorted = sorted && (first || time_ns >= last_ns);
+      last_ns = time_ns;
+      first = false;
+    }
+    notices_.clear();  // a cut-off line is told when it is read again
+    return sorted;
+  }
+
+  /// A file sorted by tag has its first frame complete only at its end.
+  void gather() {
+    gathered_.emplace();
+    while (const std::optional<Sample> sample = read_sample()) {
+      const auto [entry, is_new] = gathered_->try_emplace(sample->time_ns, counts_);
+      if (is_new) {
+        clear(entry->second);
+        entry->second.source_time_ns = sample->time_ns;
+      }
+      put(*sample, entry->second);
+    }
+  }
+
+  bool next_line() {
+    if (!lines_.next()) return false;
+    lines_.split(format_.delimiter, cells_);
+    return check_width(lines_, cells_, width_, notices_);
+  }
+
+  /// The next line of a tag that the unit names.
+  std::optional<Sample> read_sample() {
+    while (next_line()) {
+      const Slot* slot = tags_.find(cells_[*columns_.tag].text);
+      if (slot == nullptr) continue;
+      Sample sample;
+      sample.slot = *slot;
+      sample.time_ns = read_time(lines_, cells_[*columns_.time]);
+      sample.value = read_value(lines_, format_, cells_[*columns_.value]);
+      sample.quality = Quality::kGood;
+      if (columns_.quality) sample.quality = read_quality(lines_, cells_[*columns_.quality]);
+      if (!std::isfinite(sample.value)) sample.quality = Quality::kBad;
+      return sample;
+    }
+    return std::nullopt;
+  }
+
+  static void put(const Sample& sample, Frame& frame) {
+    SignalBlock& block = frame[sample.slot.kind];
+    block.values(sample.slot.index) = sample.value;
+    block.quality[static_cast<std::size_t>(sample.slot.index)] = sample.quality;
+  }
+
+  LineReader& lines_;
+  CsvFormat format_;
+  LongColumns columns_;
+  std::size_t width_;
+  TagTable& tags_;
+  SignalCounts counts_;
+  std::vector<std::string>& notices_;
+  std::vector<Cell> cells_;
+  std::optional<Sample> pending_;
+  std::optional<std::map<std::int64_t, Frame>> gathered_;
+};
+
+}  // namespace
+
+bool is_long_header(const std::vector<Cell>& header) { return find_columns(header).complete(); }
+
+std::unique_ptr<RowSource> read_long(LineReader& lines, const CsvFormat& format,
+                                     const std::vector<Cell>& header, TagTable& tags,
+                                     const SignalCounts& counts,
+                                     std::vector<std::string>& notices) {
+  return std::make_unique<LongRows>(lines, format, header, tags, counts, notices);
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,73 @@
+#include "daemon/io/tag_table.hpp"
+
+#include "config/suggest.hpp"
+
+namespace mpm::io {
+
+TagTable::TagTable(const config::UnitConfig& unit) : unit_(unit) {
+  const auto add = [this](const std::string& tag, SignalKind kind, std::size_t index) {
+    if (!tag.empty()) slots_[tag] = {kind, static_cast<int>(index)};
+  };
+  for (std::size_t i = 0; i < unit.mv.size(); ++i) add(unit.mv[i].tag, SignalKind::kMv, i);
+  for (std::size_t i = 0; i < unit.dv.size(); ++i) add(unit.dv[i].tag, SignalKind::kDv, i);
+  for (std::size_t i = 0; i < unit.aux.size(); ++i) add(unit.aux[i].tag, SignalKind::kAux, i);
+  for (std::size_t i = 0; i < unit.cv.size(); ++i) {
+    add(unit.cv[i].tag, SignalKind::kCv, i);
+    add(unit.cv[i].prediction, SignalKind::kPrediction, i);
+    add(unit.cv[i].setpoint, SignalKind::kSetpoint, i);
+  }
+}
+
+const Slot* TagTable::find(std::string_view tag) const {
+  const auto found = slots_.find(std::string(tag));
+  return found == slots_.end() ? nullptr : &found->second;
+}
+
+void TagTable::see(std::string_view tag) {
+  const auto [entry, is_new] = seen_.emplace(tag, true);
+  if (is_new && slots_.find(entry->first) == slots_.end()) ignored_.push_back(entry->first);
+}
+
+bool TagTable::seen(const std::string& tag) const { return seen_.count(tag) > 0; }
+
+std::string TagTable::problem() const {
+  std::string missing;
+  const auto need = [&](const std::string& tag, const char* what) {
+    if (tag.empty() || seen(tag)) return;
+    missing += (missing.empty() ? "" : ", ") + std::string(what) + " '" + tag + "'";
+    if (const std::string* likely = config::closest(tag, ignored_))
+      missing += " (did you mean '" + *likely + "'?)";
+  };
+  for (const auto& mv : unit_.mv) need(mv.tag, "mv");
+  for (const auto& dv : unit_.dv) need(dv.tag, "dv");
+  for (const auto& cv : unit_.cv) {
+    need(cv.tag, "cv");
+    if (!unit_.has_model()) need(cv.prediction, "prediction");
+  }
+  return missing.empty() ? "" : "the file does not hold " + missing;
+}
+
+std::vector<std::string> TagTable::notices() const {
+  std::vector<std::string> notices;
+  if (!ignored_.empty())
+    notices.push_back("ignored, since the unit file does not name them: " + config::join(ignored_));
+  std::vector<std::string> simulated, absent;
+  for (const auto& cv : unit_.cv)
+    if (!cv.prediction.empty() && !seen(cv.prediction)) simulated.push_back(cv.prediction);
+  if (!simulated.empty())
+    notices.push_back("not in the file, so the unit file's model simulates instead: " +
+                      config::join(simulated));
+  for (const auto& aux : unit_.aux)
+    if (!seen(aux.tag)) absent.push_back(aux.tag);
+  if (!absent.empty())
+    notices.push_back("aux tags that are not in the file: " + config::join(absent));
+  return notices;
+}
+
+std::vector<bool> TagTable::has_prediction() const {
+  std::vector<bool> flags;
+  for (const auto& cv : unit_.cv) flags.push_back(!cv.prediction.empty() && seen(cv.prediction));
+  return flags;
+}
+
+}  // namespace mpm::io

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "daemon/io/cell.hpp"
+#include "daemon/io/row_source.hpp"
+#include "daemon/io/time_text.hpp"
+
+namespace mpm::io {
+namespace {
+
+constexpr std::string_view kQualitySuffix = ".quality";
+
+/// What a column of the file fills.
+struct Column {
+  std::size_t cell = 0;
+  Slot slot;
+};
+
+bool is_units_word(std::string_view text) {
+  static constexpr std::array<std::string_view, 7> kWords = {"",    "unit", "units",  "s",
+                                                             "[s]", "sec",  "seconds"};
+  return std::any_of(kWords.begin(), kWords.end(),
+                     [text](std::string_view word) { return same_word(text, word); });
+}
+
+class WideRows : public RowSource {
+ public:
+  WideRows(LineReader& lines, const CsvFormat& format, const std::vector<Cell>& header,
+           TagTable& tags, std::vector<std::string>& notices)
+      : lines_(lines), format_(format), width_(header.size()), notices_(notices) {
+    find_time(header);
+    find_columns(header, tags);
+    const std::string problem = tags.problem();
+    if (!problem.empty()) lines_.fail(1, problem);
+  }
+
+  [[nodiscard]] bool next(Frame& frame) override {
+    do {
+      if (!lines_.next()) return false;
+      lines_.split(format_.delimiter, cells_);
+    } while (is_units_row());
+    if (!check_width(lines_, cells_, width_, notices_)) return false;
+    clear(frame);
+    frame.source_time_ns = read_time(lines_, cells_[time_]);
+    for (const Column& column : values_) {
+      const double value = read_value(lines_, format_, cells_[column.cell]);
+      SignalBlock& block = frame[column.slot.kind];
+      block.values(column.slot.index) = value;
+      if (std::isfinite(value))
+        block.quality[static_cast<std::size_t>(column.slot.index)] = Quality::kGood;
+    }
+    for (const Column& column : qualities_) {
+      const Quality quality = read_quality(lines_, cells_[column.cell]);
+      Quality& target =
+          frame[column.slot.kind].quality[static_cast<std::size_t>(column.slot.index)];
+      target = std::max(target, quality);  // a missing value stays bad
+    }
+    return true;
+  }
+
+ private:
+  void find_time(const std::vector<Cell>& header) {
+    const auto found = std::find_if(header.begin(), header.end(),
+                                    [](const Cell& cell) { return same_word(cell.text, "time"); });
+    if (found != header.end()) {
+      time_ = static_cast<std::size_t>(found - header.begin());
+    } else if (!is_time_name(header.front().text)) {
+      lines_.fail(header.front().column, "the first column must be `time`, not '" +
+                                             std::string(header.front().text) + "'");
+    }
+  }
+
+  void find_columns(const std::vector<Cell>& header, TagTable& tags) {
+    std::map<std::string_view, int> first_columns;
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      const std::string_view name = header[i].text;
+      if (name.empty() && i + 1 == header.size()) {  // a delimiter at the end
+        --width_;
+        break;
+      }
+      const auto [first, is_new] = first_columns.emplace(name, header[i].column);
+      if (!is_new && (tags.find(name) != nullptr || i == time_))
+        lines_.fail(header[i].column, "a second column '" + std::string(name) +
+                                          "'; the first is at column " +
+                                          std::to_string(first->second));
+      if (i == time_ || !is_new) continue;
+      const std::size_t suffix = name.size() - std::min(name.size(), kQualitySuffix.size());
+      if (suffix > 0 && same_word(name.substr(suffix), kQualitySuffix)) {
+        const Slot* slot = tags.find(name.substr(0, suffix));
+        if (slot != nullptr) qualities_.push_back({i, *slot});
+        continue;
+      }
+      tags.see(name);
+      if (const Slot* slot = tags.find(name)) values_.push_back({i, *slot});
+    }
+  }
+
+  /// Engineering units below the header, as historians export them.
+  bool is_units_row() {
+    if (seen_first_) return false;
+    seen_first_ = true;
+    if (time_ >= cells_.size() || !is_units_word(cells_[time_].text)) return false;
+    for (const Column& column : values_) {
+      if (column.cell >= cells_.size()) continue;
+      const std::optional<double> value =
+          parse_value(cells_[column.cell].text, format_.decimal_comma());
+      if (value && std::isfinite(*value)) return false;  // data without a time
+    }
+    return true;
+  }
+
+  LineReader& lines_;
+  CsvFormat format_;
+  std::size_t width_;
+  std::vector<std::string>& notices_;
+  std::size_t time_ = 0;
+  std::vector<Column> values_, qualities_;
+  std::vector<Cell> cells_;
+  bool seen_first_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<RowSource> read_wide(LineReader& lines, const CsvFormat& format,
+                                     const std::vector<Cell>& header, TagTable& tags,
+                                     std::vector<std::string>& notices) {
+  return std::make_unique<WideRows>(lines, format, header, tags, notices);
+}
+
+}  // namespace mpm::io
