@@ -167,35 +167,35 @@ void ChannelTest::build_row() {
 
 void ChannelTest::take_row(int cv, double residual) {
   Response& response = responses_[static_cast<std::size_t>(cv)];
-  double row_weight = 1.0;
+  GivensQr& factor = response.factor;
+  double* out = factor.row();
+  std::copy_n(row_.data(), columns_, out);
+  out[columns_] = residual;
   if (response.scaled) {
-    const double error = std::abs(residual - row_.dot(response.coefficients));
-    const double clipped = std::min(error, kClip * response.scale);
-    row_weight = (error > clipped ? clipped / error : 1.0) / response.scale;
+    for (int c = 0; c <= columns_; ++c) out[c] /= response.scale;
+    const GivensQr::Preview preview = factor.preview(lambda_);
+    const double error = std::abs(preview.error) * std::sqrt(preview.share);  // in s.d.
+    const double clipped = std::min(error, kClip);
+    if (error > clipped)
+      for (int c = 0; c <= columns_; ++c) out[c] *= clipped / error;
     response.scale_rows = std::min(response.scale_rows + 1.0, kScaleRows);
-    const double share = 1.0 / response.scale_rows;
-    response.scale =
-        std::sqrt((1.0 - share) * response.scale * response.scale + share * clipped * clipped);
+    response.scale *= std::sqrt(1.0 + (clipped * clipped - 1.0) / response.scale_rows);
   }
-  double* out = response.factor.row();
-  for (int c = 0; c < columns_; ++c) out[c] = row_weight * row_(c);
-  out[columns_] = row_weight * residual;
-  response.factor.update(lambda_);
+  factor.update(lambda_);
 
   // The first rows come as they are; once they are twice as many as the columns they give the
   // first estimate of the noise level, by which they are then divided like all that follow.
   if (!response.scaled && rows_ + 1 >= 2 * columns_) {
     const double freedom = effective_rows() - columns_;
-    const double mean_square = response.factor.residual_square(0) / weight_sum_ *
-                               (freedom + columns_) / std::max(freedom, 1.0);
+    const double mean_square =
+        factor.residual_square(0) / weight_sum_ * (freedom + columns_) / std::max(freedom, 1.0);
     if (mean_square > 0.0) {
       response.scale = std::sqrt(mean_square);
       response.scale_rows = std::min(std::max(freedom, 1.0), kScaleRows);
-      response.factor.scale(1.0 / response.scale);
+      factor.scale(1.0 / response.scale);
       response.scaled = true;
     }
   }
-  if (rows_ + 1 >= 2 * columns_) response.factor.solve(0, response.coefficients);
 }
 
 void ChannelTest::evaluate() {
@@ -220,8 +220,9 @@ void ChannelTest::signature_coefficients(int cv, int input,
 }
 
 void ChannelTest::evaluate_cv(int cv) {
-  const Response& response = responses_[static_cast<std::size_t>(cv)];
+  Response& response = responses_[static_cast<std::size_t>(cv)];
   const GivensQr& factor = response.factor;
+  factor.solve(0, response.coefficients);
   const int all = shape_.inputs * block_;
 
   for (int c = 0; c < all; ++c) norms_(c) = factor.centred_norm(lead_in_ + c);

@@ -13,6 +13,9 @@ namespace {
 // earlier columns are rotated off is rounding noise: |x| <= 64 eps * max |x| is taken for 0.
 constexpr double kNoise = 64 * 2.220446049250313e-16;
 
+// Of a stored row at least this much must be kept for r + s x' to lose no more than a digit.
+constexpr double kMostlyKept = 0.1;
+
 }  // namespace
 
 void GivensQr::AlignedDelete::operator()(double* p) const {
@@ -37,68 +40,75 @@ GivensQr::GivensQr(int columns, int responses) : columns_(columns), responses_(r
   }
   factor_ = make_aligned(factor_size_);
   row_ = make_aligned(width_);
+  preview_row_ = make_aligned(width_);
   weights_.assign(static_cast<std::size_t>(columns), 0.0);
   magnitudes_.assign(static_cast<std::size_t>(columns), 0.0);
   squares_.assign(static_cast<std::size_t>(responses), 0.0);
   products_.assign(static_cast<std::size_t>(responses), 0.0);
 }
 
-double GivensQr::weigh(int i, double lambda, double& entry, double& row_weight) {
+GivensQr::Share GivensQr::weigh(int i, double lambda, double entry, double& row_weight) {
   const auto s = static_cast<std::size_t>(i);
   double& weight = weights_[s];
   const double faded = lambda * weight;
-  if (std::abs(entry) <= kNoise * magnitudes_[s]) entry = 0.0;
-  const double taken = row_weight * entry * entry;
+  const double taken =
+      std::abs(entry) <= kNoise * magnitudes_[s] ? 0.0 : row_weight * entry * entry;
   weight = faded + taken;
-  if (!(taken > 0.0)) {
-    entry = 0.0;
-    return 0.0;
-  }
+  if (!(taken > 0.0)) return {0.0, 0.0, 1.0};
   const double inverse = 1.0 / weight;
-  const double gain = row_weight * entry * inverse;
-  row_weight *= faded * inverse;
-  return gain;
+  const Share share{entry, row_weight * entry * inverse, faded * inverse};
+  row_weight *= share.kept;
+  return share;
 }
 
 void GivensQr::update(double lambda) {
-  const double root = std::sqrt(lambda);
+  const double root_lambda = std::sqrt(lambda);
   double* x = row_.get();
   for (int i = 0; i < columns_; ++i) {
     double& magnitude = magnitudes_[static_cast<std::size_t>(i)];
-    magnitude = std::max(magnitude * root, std::abs(x[i]));
+    magnitude = std::max(magnitude * root_lambda, std::abs(x[i]));
   }
 
   constexpr int kGroup = static_cast<int>(kRowGranule);
   std::array<double*, kRowGranule> rows{};
   std::array<double, kRowGranule> entries{};
   std::array<double, kRowGranule> gains{};
+  std::array<double, kRowGranule> kept{};
   double row_weight = 1.0;
   int i = 0;
   for (; i + kGroup <= columns_; i += kGroup) {
     // The triangle of the group's own columns first, then all columns behind it in one pass.
     double* head = x + i;
+    double least_kept = 1.0;
     for (int a = 0; a < kGroup; ++a) {
       const auto s = static_cast<std::size_t>(a);
       double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i + a)];
-      double entry = head[a];
-      const double gain = weigh(i + a, lambda, entry, row_weight);
+      const Share share = weigh(i + a, lambda, head[a], row_weight);
       for (int b = a + 1; b < kGroup; ++b) {
-        head[b] -= entry * stored[b];
-        stored[b] += gain * head[b];
+        const double old = head[b];
+        head[b] = old - share.entry * stored[b];
+        stored[b] = share.kept * stored[b] + share.gain * old;
       }
       stored[a] = 1.0;
       rows[s] = stored + kGroup;
-      entries[s] = entry;
-      gains[s] = gain;
+      entries[s] = share.entry;
+      gains[s] = share.gain;
+      kept[s] = share.kept;
+      least_kept = std::min(least_kept, share.kept);
     }
-    eliminate_rows(rows.data(), head + kGroup, width_ - static_cast<std::size_t>(i + kGroup),
-                   entries.data(), gains.data());
+    const std::size_t rest = width_ - static_cast<std::size_t>(i + kGroup);
+    if (least_kept >= kMostlyKept) {
+      eliminate_rows(rows.data(), head + kGroup, rest, entries.data(), gains.data());
+    } else {
+      for (std::size_t a = 0; a < kRowGranule; ++a)
+        blend_row(rows[a], head + kGroup, rest, entries[a], gains[a], kept[a]);
+    }
   }
   for (; i < columns_; ++i) {
     const std::size_t begin = row_begin(i);
     double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i)];
-    const double gain = weigh(i, lambda, x[i], row_weight);
-    eliminate_row(stored, x + begin, width_ - begin, x[i], gain);
+    const Share share = weigh(i, lambda, x[i], row_weight);
+    blend_row(stored, x + begin, width_ - begin, share.entry, share.gain, share.kept);
     stored[static_cast<std::size_t>(i) - begin] = 1.0;
     x[i] = 0.0;
   }
@@ -109,6 +119,26 @@ void GivensQr::update(double lambda) {
     squares_[s] = lambda * squares_[s] + row_weight * left[k] * left[k];
     products_[s] = lambda * products_[s] + row_weight * left[0] * left[k];
   }
+}
+
+GivensQr::Preview GivensQr::preview(double lambda) {
+  double* x = preview_row_.get();
+  std::copy_n(row_.get(), width_, x);
+  Preview result;
+  for (int i = 0; i < columns_; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    const double entry = x[i];
+    if (std::abs(entry) <= kNoise * std::max(magnitudes_[s], std::abs(row_[s]))) continue;
+    const double taken = result.share * entry * entry;
+    const double faded = lambda * weights_[s];
+    if (!(taken > 0.0)) continue;
+    result.share *= faded / (faded + taken);
+    const std::size_t begin = row_begin(i);
+    project_row(factor_.get() + offsets_[s], x + begin, width_ - begin, entry);
+    x[i] = 0.0;
+  }
+  result.error = x[columns_];
+  return result;
 }
 
 void GivensQr::scale(double factor) {

@@ -25,6 +25,7 @@ namespace mpm {
 ///     d' = lambda d + w x_i^2,  s = w x_i / d',  x' = x - x_i rbar,  rbar' = rbar + s x',
 ///     w' = w lambda d / d' ,
 ///
+/// (rbar' = (lambda d / d') rbar + s x where little of rbar is kept: the first form would cancel),
 /// so that forgetting costs nothing and a rotation four flops per entry. What is left of the row's
 /// responses, y - (its fit), is orthogonal to all regressors so far. The diagonal of S (the
 /// residual sums of squares) and its first row (residual products of response 0 with each other
@@ -50,6 +51,16 @@ class GivensQr {
 
   /// Takes the row into the factor; everything before is weighted by lambda (0 < lambda <= 1).
   void update(double lambda);
+
+  /// What the rows so far (weighted by lambda) say of the row that waits in row(), which stays:
+  /// its response 0 minus their prediction, and the share 1 / (1 + leverage) in (0, 1] by which
+  /// the prediction's own uncertainty enlarges that error's variance. A row in a direction never
+  /// seen has share 0.
+  struct Preview {
+    double error = 0.0;
+    double share = 1.0;
+  };
+  [[nodiscard]] Preview preview(double lambda);
 
   /// Multiplies all that was taken so far by `factor` (> 0), as if each row had come scaled.
   void scale(double factor);
@@ -83,7 +94,7 @@ class GivensQr {
   /// Least-squares coefficients of one response into `coefficients` (columns() long). Columns
   /// whose diagonal is at most kNegligible times their largest entry are left out (coefficient 0).
   void solve(int response, Eigen::Ref<Eigen::VectorXd> coefficients) const;
-  static constexpr double kNegligible = 1e-12;
+  static constexpr double kNegligible = 1e-7;
 
  private:
   struct AlignedDelete {
@@ -101,8 +112,13 @@ class GivensQr {
            row_begin(i);
   }
 
-  /// Weighs x_i against row i and returns the row's gain s; x_i is set to 0 where it is noise.
-  double weigh(int i, double lambda, double& entry, double& row_weight);
+  /// Coefficients of the rotation of the row's entry x_i into stored row i.
+  struct Share {
+    double entry;  // x_i, 0 where it is noise
+    double gain;   // s
+    double kept;   // lambda d / d'
+  };
+  Share weigh(int i, double lambda, double entry, double& row_weight);
 
   int columns_;
   int responses_;
@@ -111,6 +127,7 @@ class GivensQr {
   std::size_t factor_size_ = 0;
   AlignedArray factor_;
   AlignedArray row_;
+  AlignedArray preview_row_;
   std::vector<double> weights_;     // D, the squared diagonal of R
   std::vector<double> magnitudes_;  // per column, largest |x| seen, forgotten with sqrt(lambda)
   std::vector<double> squares_;

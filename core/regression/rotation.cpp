@@ -12,6 +12,8 @@ struct Kernels {
   decltype(&kernels_base::rotate_rows) rotate_rows;
   decltype(&kernels_base::eliminate_row) eliminate_row;
   decltype(&kernels_base::eliminate_rows) eliminate_rows;
+  decltype(&kernels_base::blend_row) blend_row;
+  decltype(&kernels_base::project_row) project_row;
 };
 
 Kernels pick_kernels() {
@@ -19,12 +21,15 @@ Kernels pick_kernels() {
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
       __builtin_cpu_supports("avx512cd"))
-    return {kernels_v4::rotate_rows, kernels_v4::eliminate_row, kernels_v4::eliminate_rows};
+    return {kernels_v4::rotate_rows, kernels_v4::eliminate_row, kernels_v4::eliminate_rows,
+            kernels_v4::blend_row, kernels_v4::project_row};
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
       __builtin_cpu_supports("bmi2"))
-    return {kernels_v3::rotate_rows, kernels_v3::eliminate_row, kernels_v3::eliminate_rows};
+    return {kernels_v3::rotate_rows, kernels_v3::eliminate_row, kernels_v3::eliminate_rows,
+            kernels_v3::blend_row, kernels_v3::project_row};
 #endif
-  return {kernels_base::rotate_rows, kernels_base::eliminate_row, kernels_base::eliminate_rows};
+  return {kernels_base::rotate_rows, kernels_base::eliminate_row, kernels_base::eliminate_rows,
+          kernels_base::blend_row, kernels_base::project_row};
 }
 
 const Kernels kKernels = pick_kernels();
@@ -58,6 +63,14 @@ void eliminate_row(double* r, double* x, std::size_t count, double entry, double
 void eliminate_rows(double* const* r, double* x, std::size_t count, const double* entries,
                     const double* gains) {
   kKernels.eliminate_rows(r, x, count, entries, gains);
+}
+
+void blend_row(double* r, double* x, std::size_t count, double entry, double gain, double kept) {
+  kKernels.blend_row(r, x, count, entry, gain, kept);
+}
+
+void project_row(const double* r, double* x, std::size_t count, double entry) {
+  kKernels.project_row(r, x, count, entry);
 }
 
 }  // namespace mpm

@@ -32,5 +32,10 @@ void eliminate_row(double* r, double* x, std::size_t count, double entry, double
 /// The same with kRowGranule rows one after the other, in one pass.
 void eliminate_rows(double* const* r, double* x, std::size_t count, const double* entries,
                     const double* gains);
+/// The same as eliminate_row, with r' = kept r + gain x, kept = 1 - gain entry: one multiplication
+/// more, and no cancellation where little of the old row is kept.
+void blend_row(double* r, double* x, std::size_t count, double entry, double gain, double kept);
+/// Only x' = x - entry r.
+void project_row(const double* r, double* x, std::size_t count, double entry);
 
 }  // namespace mpm

@@ -60,4 +60,18 @@ void eliminate_rows(double* const* r, double* __restrict x, std::size_t count,
   }
 }
 
+void blend_row(double* __restrict r, double* __restrict x, std::size_t count, double entry,
+               double gain, double kept) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double old_x = x[i];
+    x[i] = old_x - entry * r[i];
+    r[i] = kept * r[i] + gain * old_x;
+  }
+}
+
+void project_row(const double* __restrict r, double* __restrict x, std::size_t count,
+                 double entry) {
+  for (std::size_t i = 0; i < count; ++i) x[i] = x[i] - entry * r[i];
+}
+
 }  // namespace mpm::MPM_KERNEL_SET
