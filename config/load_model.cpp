@@ -78,7 +78,9 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
       if (top_level_origin != nullptr) inner->error("given twice; also at the top level");
       load_origin(*inner, config);
     }
-    if (tried) warn_of_idle_cvs(*section, config);
+    // Not where a channel could not be read: that has been told, and may be the one.
+    if (channels != nullptr && tried && model.channels.size() == channels->items().size())
+      warn_of_idle_cvs(*section, config);
   }
   if (!tried) check_missing_model(section, section != nullptr ? *section : root, config);
 }
