@@ -1,0 +1,156 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "config/load_unit.hpp"
+#include "config/scenario_config.hpp"
+#include "sim/options.hpp"
+#include "sim/output/csv_writer.hpp"
+#include "sim/output/start_time.hpp"
+#include "sim/output/truth.hpp"
+#include "sim/publish.hpp"
+#include "sim/scenario/prepare.hpp"
+
+namespace mpm::sim {
+namespace {
+
+/// Bad input that has been told already, or whose text is the whole message.
+struct BadInput : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void report(const std::vector<config::Finding>& findings) {
+  for (const config::Finding& finding : findings) std::cerr << config::format(finding) << '\n';
+  if (config::has_errors(findings)) throw BadInput("");
+}
+
+config::UnitConfig load_unit(const std::string& file) {
+  config::LoadResult loaded = config::load_unit(file);
+  report(loaded.findings);
+  if (!loaded.config.has_model()) throw BadInput(file + ": error: the unit has no model");
+  return std::move(loaded.config);
+}
+
+config::ScenarioConfig load_scenario(const Options& options, const config::UnitConfig& unit) {
+  if (options.scenario == "none") {
+    config::ScenarioConfig nothing;
+    nothing.name = "none";
+    return nothing;
+  }
+  const std::string file = config::find_scenario(options.scenario, options.config);
+  config::ScenarioResult loaded = config::load_scenario(file, unit);
+  report(loaded.findings);
+  return std::move(loaded.scenario);
+}
+
+std::int64_t start_time_ns(const Options& options) {
+  if (options.start_time.empty())
+    return options.csv.empty() ? std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                     std::chrono::system_clock::now().time_since_epoch())
+                                     .count()
+                               : 0;
+  const std::optional<std::int64_t> start = parse_start_time(options.start_time);
+  if (!start)
+    throw BadInput("--start-time: neither seconds nor ISO 8601 with a zone: " + options.start_time);
+  return *start;
+}
+
+LoopSetup prepare(const Options& options) {
+  LoopSetup setup;
+  setup.unit = load_unit(options.config);
+  setup.scenario = load_scenario(options, setup.unit);
+  setup.seed = options.seed;
+  setup.start_time_ns = start_time_ns(options);
+  setup.controller_model = setup.unit.model;
+  try {
+    if (!options.controller_model.empty())
+      setup.controller_model = match_signals(load_unit(options.controller_model), setup.unit);
+    hide_changes(setup);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(options.config + ": error: scenario '" + setup.scenario.name +
+                   "': " + error.what());
+  }
+  return setup;
+}
+
+void write_truth(const LoopSetup& setup, const Options& options) {
+  std::ofstream out(options.truth, std::ios::binary);
+  out << truth_json(setup, options.controller_model);
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + options.truth);
+}
+
+int run_csv(const LoopSetup& setup, const Options& options) {
+  std::ofstream file;
+  if (options.csv != "-") {
+    file.open(options.csv, std::ios::binary);
+    if (!file) throw std::runtime_error("cannot write " + options.csv);
+  }
+  std::ostream& out = options.csv == "-" ? std::cout : file;
+  ClosedLoop loop(setup);
+  CsvWriter csv(out, setup.unit, static_cast<double>(setup.start_time_ns) * 1e-9);
+  constexpr std::int64_t kDefaultSamples = 3000;
+  const std::int64_t samples = options.samples.value_or(kDefaultSamples);
+  for (std::int64_t k = 0; k < samples; ++k) {
+    const Frame& frame = loop.step();
+    if (!loop.finite()) {
+      spdlog::error("sample {}: the loop has diverged, values are no longer finite", k);
+      return kFailed;
+    }
+    csv.write(frame);
+  }
+  out.flush();
+  if (!out) throw std::runtime_error("cannot write " + options.csv);
+  if (loop.controller().held_count() > 0)
+    spdlog::warn("the controller found no solution in {} of {} intervals and held its moves",
+                 loop.controller().held_count(), samples);
+  return kDone;
+}
+
+int run(const Options& options) {
+  const LoopSetup setup = prepare(options);
+  if (!options.truth.empty()) write_truth(setup, options);
+  if (!options.csv.empty()) return run_csv(setup, options);
+  block_stop_signals();
+  return run_dds(setup, options);
+}
+
+}  // namespace
+}  // namespace mpm::sim
+
+int main(int argc, char** argv) {
+  using namespace mpm::sim;
+  CLI::App app("Simulates an MPC-controlled plant whose process may differ from the model.");
+  Options options;
+  declare(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  }
+  spdlog::set_default_logger(spdlog::stderr_color_mt("mpmsim"));
+  spdlog::set_pattern("%n: %^%l%$: %v");
+  try {
+    return run(options);
+  } catch (const BadInput& error) {
+    if (*error.what() != '\0') std::cerr << "mpmsim: " << error.what() << '\n';
+    return kBadInput;
+  } catch (const mpm::config::InputError& error) {
+    std::cerr << "mpmsim: " << error.what() << '\n';
+    return kBadInput;
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "mpmsim: error: " << error.what() << '\n';
+    return kBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "mpmsim: error: " << error.what() << '\n';
+    return kFailed;
+  }
+}

@@ -1,0 +1,43 @@
+#include "sim/options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace mpm::sim {
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("-c,--config", options.config, "unit file of the plant and its controller")
+      ->required();
+  app.add_option("-s,--scenario", options.scenario,
+                 "what is hidden in the plant: a scenario's name or file")
+      ->capture_default_str();
+  app.add_option("--controller-model", options.controller_model,
+                 "unit file whose model the controller uses instead of the plant's own");
+  app.add_option("-n,--samples", options.samples,
+                 "control intervals to run (3000 with --csv, else until stopped)")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--seed", options.seed, "of all random numbers; same seed, same numbers")
+      ->capture_default_str();
+  app.add_option("--csv", options.csv, "write this data file (- is stdout); no DDS");
+  app.add_option("--truth", options.truth, "write what was hidden to this JSON file");
+  app.add_option("--start-time", options.start_time,
+                 "of the first sample: ISO 8601 with zone, or seconds since 1970 "
+                 "(0 with --csv, else now)");
+  app.add_option("--speed", options.speed,
+                 "samples times real time on DDS; 0 = as fast as readers keep up")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--wait-readers", options.wait_readers_s,
+                 "seconds to wait for a reader of every topic before the first sample")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--domain", options.domain, "DDS domain, instead of the unit file's")
+      ->check(CLI::Range(0, 230));
+  app.add_option("--partition", options.partition, "discovery tag, instead of the unit file's");
+  app.footer(
+      "Examples:\n"
+      "  mpmsim --config shell3x3.yaml --scenario hidden_gain --seed 7 --csv run.csv\n"
+      "  mpmsim --config shell3x3.yaml --scenario s3_delay --speed 10\n"
+      "Exit codes: 0 done, 2 the run failed, 3 bad usage or bad input");
+}
+
+}  // namespace mpm::sim

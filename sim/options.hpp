@@ -1,0 +1,31 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace mpm::sim {
+
+// Exit codes of all programs of the project.
+inline constexpr int kDone = 0, kFailed = 2, kBadInput = 3;
+
+/// The command line of mpmsim.
+struct Options {
+  std::string config;
+  std::string scenario = "none";
+  std::string controller_model;  ///< unit file; empty = the plant's own model
+  std::optional<std::int64_t> samples;
+  std::uint64_t seed = 1;
+  std::string csv;    ///< empty = publish on DDS
+  std::string truth;  ///< empty = not written
+  std::string start_time;
+  double speed = 1.0;
+  double wait_readers_s = 0.0;
+  std::optional<int> domain;
+  std::optional<std::string> partition;
+};
+
+void declare(CLI::App& app, Options& options);
+
+}  // namespace mpm::sim

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/model/linear_model.hpp"
+#include "sim/plant/channel_change.hpp"
+
+namespace mpm::sim {
+
+/// The true process: the model with a scenario's changes, each from its time on.
+///
+/// One model per stage between onsets; all run from the start on the same inputs, and the output
+/// is that of the stage in force. So a change acts at once on what earlier inputs still do, as a
+/// changed process gain or pipe would, and every state is right. A CV on which a changed channel
+/// integrates keeps its level at the onset: only its further movement changes.
+class Plant {
+ public:
+  Plant(const ModelSpec& model, std::vector<ChannelChange> changes);
+
+  /// y(k) without noise.
+  [[nodiscard]] const Eigen::VectorXd& output() const { return output_; }
+  /// Takes u(k), MVs then DVs.
+  void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
+
+ private:
+  struct Stage {
+    std::int64_t first_interval;
+    LinearModel model;
+    std::vector<int> carried_cvs;  ///< keep their level when this stage begins
+    Eigen::VectorXd offset;
+  };
+  void compute_output();
+
+  std::vector<Stage> stages_;
+  std::size_t current_ = 0;
+  std::int64_t interval_ = 0;
+  Eigen::VectorXd output_;
+};
+
+/// The model in force from each onset on, in order of time; the first entry is the one at the
+/// start.
+struct PlantStage {
+  double from_s = 0.0;
+  ModelSpec model;
+  std::vector<ChannelChange> begun;  ///< changes that begin here
+};
+[[nodiscard]] std::vector<PlantStage> plant_stages(const ModelSpec& model,
+                                                   std::vector<ChannelChange> changes);
+
+}  // namespace mpm::sim

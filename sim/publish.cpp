@@ -1,0 +1,137 @@
+#include "sim/publish.hpp"
+
+#include <signal.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+
+#include "idl/participant.hpp"
+#include "idl/unit_publisher.hpp"
+
+namespace mpm::sim {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::duration_cast;
+
+constexpr std::chrono::seconds kFlushTime{10};
+
+sigset_t stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+/// Sleeps until `deadline`; true if told to stop before.
+bool stopped_before(Clock::time_point deadline) {
+  const sigset_t signals = stop_signals();
+  while (true) {
+    const auto left = std::max(duration_cast<std::chrono::nanoseconds>(deadline - Clock::now()),
+                               std::chrono::nanoseconds::zero());
+    const auto seconds = duration_cast<std::chrono::seconds>(left);
+    timespec timeout{};
+    timeout.tv_sec = static_cast<time_t>(seconds.count());
+    timeout.tv_nsec = static_cast<long>((left - seconds).count());
+    if (sigtimedwait(&signals, nullptr, &timeout) > 0) return true;
+    if (Clock::now() >= deadline) return false;
+  }
+}
+
+idl::DomainOptions domain_options(const config::DdsSettings& settings, const Options& options) {
+  idl::DomainOptions domain;
+  domain.domain = options.domain.value_or(settings.domain);
+  domain.interface = settings.interface;
+  domain.peers = settings.peers;
+  domain.multicast = settings.multicast;
+  domain.partition = options.partition.value_or(settings.partition);
+  domain.max_participants = settings.max_participants;
+  return domain;
+}
+
+idl::UnitLayout layout_of(const config::UnitConfig& unit) {
+  idl::UnitLayout layout;
+  layout.unit = unit.unit;
+  layout.sample_time_s = unit.sample_time_s;
+  const auto add = [&](SignalKind kind, const std::string& tag, const std::string& measure) {
+    layout[kind].tags.push_back(tag);
+    layout[kind].engineering_units.push_back(measure);
+  };
+  for (const config::InputSignal& mv : unit.mv) add(SignalKind::kMv, mv.tag, mv.unit);
+  for (const config::InputSignal& dv : unit.dv) add(SignalKind::kDv, dv.tag, dv.unit);
+  for (const config::CvSignal& cv : unit.cv) {
+    add(SignalKind::kCv, cv.tag, cv.unit);
+    add(SignalKind::kPrediction, cv.prediction, cv.unit);
+    add(SignalKind::kSetpoint, cv.setpoint, cv.unit);
+  }
+  for (const SignalKind kind : {SignalKind::kPrediction, SignalKind::kSetpoint}) {
+    const std::vector<std::string>& tags = layout[kind].tags;
+    if (std::all_of(tags.begin(), tags.end(), [](const std::string& tag) { return tag.empty(); }))
+      layout[kind] = {};
+  }
+  return layout;
+}
+
+/// False if told to stop.
+bool wait_for_readers(const idl::UnitPublisher& publisher, double seconds) {
+  const auto end =
+      Clock::now() + duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  while (Clock::now() < end) {
+    if (publisher.wait_for_readers(std::chrono::milliseconds(200))) return true;
+    if (stopped_before(Clock::now())) return false;
+  }
+  if (seconds > 0.0) spdlog::warn("not every topic has a reader after {} s", seconds);
+  return true;
+}
+
+}  // namespace
+
+void block_stop_signals() {
+  const sigset_t signals = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+int run_dds(const LoopSetup& setup, const Options& options) {
+  ClosedLoop loop(setup);
+  const bool paced = options.speed > 0.0;
+  const idl::Participant participant(domain_options(setup.unit.dds, options));
+  const idl::UnitPublisher publisher(
+      participant, layout_of(setup.unit),
+      paced ? idl::WriterPace::kRealTime : idl::WriterPace::kLossless);
+  spdlog::info("unit {} publishes on domain {}", setup.unit.unit,
+               options.domain.value_or(setup.unit.dds.domain));
+  if (!wait_for_readers(publisher, options.wait_readers_s)) return kDone;
+
+  const std::int64_t samples = options.samples.value_or(std::numeric_limits<std::int64_t>::max());
+  const double interval_s = paced ? setup.unit.sample_time_s / options.speed : 0.0;
+  const Clock::time_point start = Clock::now();
+  bool complained = false;
+  for (std::int64_t k = 0; k < samples; ++k) {
+    const std::chrono::duration<double> due(static_cast<double>(k) * interval_s);
+    if (stopped_before(start + duration_cast<Clock::duration>(due))) {
+      spdlog::info("stopped after {} samples", k);
+      return kDone;
+    }
+    const Frame& frame = loop.step();
+    if (!loop.finite()) {
+      spdlog::error("sample {}: the loop has diverged, values are no longer finite", k);
+      return kFailed;
+    }
+    if (publisher.publish(frame)) continue;
+    if (!paced) {
+      spdlog::error("sample {}: a reader does not take samples", k);
+      return kFailed;
+    }
+    if (!complained) spdlog::warn("sample {}: not every topic could be written", k);
+    complained = true;
+  }
+  if (!publisher.flush(kFlushTime)) spdlog::warn("some readers do not have all samples");
+  spdlog::info("{} samples published", samples);
+  return kDone;
+}
+
+}  // namespace mpm::sim
