@@ -2,6 +2,7 @@
 #include <exception>
 #include <iostream>
 
+#include "daemon/commands/detect.hpp"
 #include "daemon/commands/watch.hpp"
 #include "daemon/service/version.hpp"
 
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   CLI::App app("The engineer's side of the model-plant-mismatch monitor.");
   app.set_version_flag("--version", mpm::daemon::version_text("mpm"));
   app.require_subcommand(1);
+  mpm::daemon::add_detect(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
   try {
     app.parse(argc, argv);

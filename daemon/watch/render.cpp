@@ -24,6 +24,7 @@ struct Painter {
 };
 
 std::string utc(std::int64_t time_ns) {
+  if (time_ns == 0) return "-";  // before the first sample
   const std::time_t seconds = time_ns / 1'000'000'000;
   std::tm parts{};
   gmtime_r(&seconds, &parts);

@@ -1,0 +1,84 @@
+#include "daemon/commands/detect.hpp"
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "config/load_unit.hpp"
+#include "daemon/io/csv_reader.hpp"
+#include "daemon/monitoring/journal.hpp"
+#include "daemon/report/detect_report.hpp"
+#include "daemon/report/unit_monitor.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+struct DetectOptions {
+  std::string config;
+  std::string data;
+  std::string journal;
+  bool json = false;
+  bool fail_on_mismatch = false;
+};
+
+DetectReport run(const config::UnitConfig& unit, io::FrameSource& source, Journal* journal) {
+  UnitMonitor monitor(unit, source.has_prediction());
+  DetectReport report;
+  report.unit = unit.unit;
+  Frame frame(unit.counts());
+  while (source.next(frame)) {
+    monitor.push(frame);
+    report.alarms.insert(report.alarms.end(), monitor.alarms().begin(), monitor.alarms().end());
+    if (journal != nullptr && !journal->write(monitor.channels(), monitor.alarms()))
+      throw std::runtime_error("the journal could not be written");
+  }
+  const MonitorCounters& counters = monitor.counters();
+  report.samples = counters.frames;
+  report.used_samples = counters.used;
+  report.missing = counters.missing;
+  report.out_of_order = counters.out_of_order;
+  report.bad_values = counters.bad_values;
+  report.channels = monitor.channels();
+  return report;
+}
+
+// 0, 1 if a mismatch was found and that was to fail, 3 on bad input.
+int detect(const DetectOptions& options) {
+  const config::LoadResult loaded = config::load_unit(options.config);
+  for (const config::Finding& finding : loaded.findings)
+    std::cerr << config::format(finding) << '\n';
+  if (!loaded.ok()) return 3;
+  try {
+    io::CsvReader reader(options.data, loaded.config);
+    std::optional<Journal> journal;
+    if (!options.journal.empty()) journal.emplace(options.journal);
+    const DetectReport report = run(loaded.config, reader, journal ? &*journal : nullptr);
+    for (const std::string& notice : reader.notices()) std::cerr << notice << '\n';
+    std::cout << (options.json ? to_json(report).dump() + "\n" : to_text(report)) << std::flush;
+    return options.fail_on_mismatch && report.mismatch() ? 1 : 0;
+  } catch (const config::InputError& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_detect(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DetectOptions>();
+  CLI::App* command = app.add_subcommand(
+      "detect", "Judge every channel on recorded data, exactly as the daemon would");
+  command->add_option("--config", options->config, "unit file")->required();
+  command->add_option("--data", options->data, "data file (CSV, any historian layout)")->required();
+  command->add_flag("--json", options->json, "print one JSON object");
+  command->add_option("--journal", options->journal,
+                      "append every sample's verdicts and alarms to this file as JSON lines");
+  command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
+                    "exit with 1 if any channel mismatches");
+  command->footer(
+      "Example:\n  mpm detect --config config/plants/shell3x3.yaml --data last_week.csv --json");
+  command->callback([options, &exit_code] { exit_code = detect(*options); });
+}
+
+}  // namespace mpm::daemon

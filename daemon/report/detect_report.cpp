@@ -1,0 +1,77 @@
+#include "daemon/report/detect_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace mpm::daemon {
+namespace {
+
+double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
+
+std::string format(const char* pattern, double a, double b) {
+  char text[96];
+  std::snprintf(text, sizeof text, pattern, a, b);
+  return text;
+}
+
+std::string describe(const ChannelRecord& channel) {
+  std::string text = channel.mv + " -> " + channel.cv;
+  text.resize(std::max<std::size_t>(text.size(), 24), ' ');
+  text += "  " + channel.verdict;
+  if (!channel.reason.empty()) text += " (" + channel.reason + ")";
+  text.resize(std::max<std::size_t>(text.size(), 52), ' ');
+  text += format("  p %-8.1e  F %-7.2f", channel.p_value, channel.statistic);
+  if (channel.verdict == "mismatch")
+    text += format("  gain off by about %.3g (CV per MV unit)", channel.effect_size, 0.0);
+  else if (channel.smallest_error > 0.0)
+    text += format("  would show a gain error of %.0f %%", 100.0 * channel.smallest_error, 0.0);
+  return text;
+}
+
+}  // namespace
+
+bool DetectReport::mismatch() const {
+  return std::any_of(channels.begin(), channels.end(),
+                     [](const ChannelRecord& channel) { return channel.verdict == "mismatch"; });
+}
+
+nlohmann::ordered_json to_json(const DetectReport& report) {
+  nlohmann::ordered_json json{{"unit", report.unit},
+                              {"samples", report.samples},
+                              {"used_samples", report.used_samples},
+                              {"missing_samples", report.missing},
+                              {"out_of_order_samples", report.out_of_order},
+                              {"bad_values", report.bad_values},
+                              {"channels", nlohmann::ordered_json::array()},
+                              {"alarms", nlohmann::ordered_json::array()}};
+  for (const ChannelRecord& channel : report.channels) {
+    nlohmann::ordered_json entry = to_json(channel);
+    for (const char* key : {"record", "unit", "interval", "time_ns"}) entry.erase(key);
+    json["channels"].push_back(std::move(entry));
+  }
+  for (const AlarmRecord& alarm : report.alarms) {
+    nlohmann::ordered_json entry{{"time", seconds(alarm.source_time_ns)}};
+    nlohmann::ordered_json record = to_json(alarm);
+    for (const char* key : {"record", "unit", "time_ns"}) record.erase(key);
+    entry.update(record);
+    json["alarms"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+std::string to_text(const DetectReport& report) {
+  std::string text = report.unit + ": " + std::to_string(report.samples) + " samples, " +
+                     std::to_string(report.used_samples) + " used";
+  if (report.missing > 0) text += ", " + std::to_string(report.missing) + " missing";
+  if (report.out_of_order > 0) text += ", " + std::to_string(report.out_of_order) + " out of order";
+  if (report.bad_values > 0) text += ", " + std::to_string(report.bad_values) + " bad values";
+  text += '\n';
+  for (const ChannelRecord& channel : report.channels) text += "  " + describe(channel) + '\n';
+  for (const AlarmRecord& alarm : report.alarms)
+    text += format("  %.3f s: ", seconds(alarm.source_time_ns), 0.0) + "alarm " + alarm.mv +
+            " -> " + alarm.cv + " " + alarm.to + '\n';
+  return text;
+}
+
+}  // namespace mpm::daemon

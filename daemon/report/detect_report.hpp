@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "daemon/report/records.hpp"
+
+namespace mpm::daemon {
+
+/// What `mpm detect` found in a file: the verdicts after its last row and every alarm on the way.
+struct DetectReport {
+  std::string unit;
+  std::uint64_t samples = 0;       ///< rows read
+  std::uint64_t used_samples = 0;  ///< rows that entered the statistics
+  std::uint64_t missing = 0;       ///< intervals without a row
+  std::uint64_t out_of_order = 0;  ///< rows whose time did not grow
+  std::uint64_t bad_values = 0;
+  std::vector<ChannelRecord> channels;
+  std::vector<AlarmRecord> alarms;
+
+  [[nodiscard]] bool mismatch() const;
+};
+
+/// The object of interfaces, "mpm detect".
+[[nodiscard]] nlohmann::ordered_json to_json(const DetectReport& report);
+/// The same for a person.
+[[nodiscard]] std::string to_text(const DetectReport& report);
+
+}  // namespace mpm::daemon
