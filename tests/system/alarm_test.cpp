@@ -1,0 +1,121 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "tests/system/bench.hpp"
+
+namespace mpm::test {
+namespace {
+
+constexpr int kEnough = 4000;  // frames until a doubled gain has long been noticed
+
+}  // namespace
+
+TEST_CASE("a mismatch becomes an alarm that who joins later sees; SIGTERM ends the daemon") {
+  Bench bench("alarm");
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(4.0);
+  bench.publish(publisher, plant, kEnough);
+  REQUIRE(bench.observe([&] { return bench.health().frames == kEnough; }));
+  CHECK(bench.health().active_alarms > 0);
+  CHECK(bench.health().state == "maintenance_required");
+
+  SECTION("as a reader of mpm/alarm") {
+    const idl::Participant late(bench.options);
+    daemon::OutputReaders readers(late);
+    std::vector<daemon::AlarmStateRecord> states;
+    std::vector<daemon::AlarmRecord> events;
+    CHECK(idl::eventually([&] {
+      for (const daemon::Output& output : readers.take()) {
+        if (const auto* state = std::get_if<daemon::AlarmStateRecord>(&output))
+          states.push_back(*state);
+        if (const auto* event = std::get_if<daemon::AlarmRecord>(&output)) events.push_back(*event);
+      }
+      return states.size() == 2 && !events.empty();
+    }));
+    REQUIRE(states.size() == 2);  // one per channel
+    const daemon::AlarmRecord& first =
+        states[0].alarm.mv == "u1" ? states[0].alarm : states[1].alarm;
+    CHECK(first.cv == "y1");
+    CHECK(first.to == "active");
+    CHECK(first.source_time_ns > 0);
+    CHECK(first.effect_size == Approx(2.0).margin(0.5));  // gain 4 instead of 2
+  }
+  SECTION("with mpm watch --until-alarm") {
+    CHECK(run(bench.watch({"--until-alarm", "--for", "20"}), bench.folder.file("watch.out"),
+              bench.folder.file("watch.err")) == 0);
+    const std::string shown = read_file(bench.folder.file("watch.out"));
+    INFO(shown);
+    CHECK(shown.find("u1 -> y1: alarm active") != std::string::npos);
+    CHECK(shown.find('\x1b') == std::string::npos);  // not a terminal
+  }
+
+  bench.daemon.send(SIGTERM);
+  CHECK(bench.daemon.wait(std::chrono::seconds(1)) == 0);
+  CHECK(bench.observe([&] { return !bench.seen<daemon::MonitorGone>().empty(); }));
+  INFO(read_file(bench.folder.file("mpmd.err")));
+  CHECK(read_file(bench.folder.file("mpmd.err")).find("<4>toy: u1 -> y1: alarm active") !=
+        std::string::npos);
+}
+
+TEST_CASE("a right model raises no alarm, and the channels become matches") {
+  Bench bench("quiet");
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  bench.publish(publisher, plant, kEnough);
+  REQUIRE(bench.observe([&] { return bench.health().frames == kEnough; }));
+  CHECK(bench.seen<daemon::AlarmRecord>().empty());
+  CHECK(bench.health().matching == 2);
+  CHECK(bench.health().state == "normal");
+  for (const auto& state : bench.seen<daemon::AlarmStateRecord>())
+    CHECK(state.alarm.to == "cleared");
+}
+
+TEST_CASE("mpm watch --json prints what the journal holds, byte for byte, at full speed") {
+  TemporaryFolder folder;
+  Bench bench("journal", {"--journal", folder.file("journal.jsonl")});
+  Process watch(bench.watch({"--json"}), folder.file("watch.out"), folder.file("watch.err"));
+  REQUIRE(idl::eventually(
+      [&] { return read_file(folder.file("watch.out")).find("health") != std::string::npos; }));
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(4.0);
+  bench.publish(publisher, plant, kEnough);
+  REQUIRE(bench.observe([&] { return bench.health().frames == kEnough; }));
+
+  const auto records = [](const std::string& path, const std::string& kind) {
+    std::vector<std::string> lines;
+    for (const std::string& line : lines_of(read_file(path)))
+      if (line.find("\"record\":\"" + kind + "\"") != std::string::npos) lines.push_back(line);
+    return lines;
+  };
+  const auto written = records(folder.file("journal.jsonl"), "channel");
+  REQUIRE(written.size() == 2 * kEnough);
+  CHECK(idl::eventually(
+      [&] { return records(folder.file("watch.out"), "channel").size() >= written.size(); }));
+  CHECK(records(folder.file("watch.out"), "channel") == written);
+  CHECK(records(folder.file("watch.out"), "alarm") ==
+        records(folder.file("journal.jsonl"), "alarm"));
+  watch.send(SIGINT);
+  CHECK(watch.wait(std::chrono::seconds(2)) == 0);
+}
+
+TEST_CASE("a frozen viewer holds nothing up") {
+  Bench bench("frozen");
+  Process watch(bench.watch({"--json"}), bench.folder.file("watch.out"),
+                bench.folder.file("watch.err"));
+  REQUIRE(idl::eventually([&] {
+    return read_file(bench.folder.file("watch.out")).find("health") != std::string::npos;
+  }));
+  watch.send(SIGSTOP);
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  const auto begin = std::chrono::steady_clock::now();
+  bench.publish(publisher, plant, 20'000);
+  REQUIRE(bench.observe([&] { return bench.health().frames == 20'000; }));
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  WARN("20000 frames in " << elapsed.count() << " s beside a frozen viewer, daemon has "
+                          << bench.daemon.resident_kb() << " kB");
+  CHECK(bench.daemon.resident_kb() < 60'000);
+  watch.send(SIGCONT);
+}
+
+}  // namespace mpm::test

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace mpm::test {
+
+/// A folder of its own that goes away with the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder();
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+[[nodiscard]] std::string read_file(const std::string& path);
+void write_file(const std::string& path, const std::string& text);
+[[nodiscard]] std::vector<std::string> lines_of(const std::string& text);
+
+/// One of our programs, running; killed if the test leaves it behind.
+class Process {
+ public:
+  /// `arguments[0]`: mpmd, mpm ... Output goes to `output` and `errors`. `environment`: additional
+  /// "NAME=value".
+  Process(const std::vector<std::string>& arguments, const std::string& output,
+          const std::string& errors, const std::vector<std::string>& environment = {});
+  Process(Process&& other) noexcept : pid_(other.pid_) { other.pid_ = 0; }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  ~Process();
+
+  void send(int signal) const;
+  /// Exit code, or 128 + signal; nothing if it still runs after `timeout`.
+  [[nodiscard]] std::optional<int> wait(std::chrono::milliseconds timeout);
+  [[nodiscard]] long resident_kb() const;
+  [[nodiscard]] pid_t pid() const { return pid_; }
+
+ private:
+  pid_t pid_ = 0;
+};
+
+/// Runs to the end (60 s at most); returns the exit code.
+[[nodiscard]] std::optional<int> run(const std::vector<std::string>& arguments,
+                                     const std::string& output, const std::string& errors);
+
+}  // namespace mpm::test

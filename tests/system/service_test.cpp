@@ -1,0 +1,150 @@
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstring>
+#include <random>
+
+#include "idl/log.hpp"
+#include "tests/system/bench.hpp"
+
+namespace mpm::test {
+namespace {
+
+/// Stands in for systemd's notification socket.
+class NotifySocket {
+ public:
+  explicit NotifySocket(const std::string& path) : fd_(socket(AF_UNIX, SOCK_DGRAM, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+    REQUIRE(bind(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0);
+  }
+  ~NotifySocket() { close(fd_); }
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+
+  /// Everything said so far, one message per line.
+  const std::string& heard() {
+    char buffer[4096];
+    for (ssize_t n; (n = recv(fd_, buffer, sizeof buffer, MSG_DONTWAIT)) > 0;)
+      heard_.append(buffer, static_cast<std::size_t>(n)).append("\n");
+    return heard_;
+  }
+  bool hears(const std::string& word) {
+    return idl::eventually([&] { return heard().find(word) != std::string::npos; });
+  }
+
+ private:
+  int fd_;
+  std::string heard_;
+};
+
+}  // namespace
+
+TEST_CASE("systemd is told when the daemon is ready, alive, well and stopping") {
+  TemporaryFolder folder;
+  NotifySocket socket(folder.file("notify"));
+  Bench bench("notify", {}, {"NOTIFY_SOCKET=" + folder.file("notify"), "WATCHDOG_USEC=300000"});
+  CHECK(socket.hears("READY=1"));
+  CHECK(socket.hears("STATUS=1 units; channels: 0 match, 0 mismatch, 2 undetermined; 0 alarms"));
+  CHECK(socket.hears("WATCHDOG=1"));
+  CHECK(socket.heard().find("STOPPING=1") == std::string::npos);
+  bench.daemon.send(SIGINT);
+  CHECK(bench.daemon.wait(std::chrono::seconds(1)) == 0);
+  CHECK(socket.hears("STOPPING=1"));
+}
+
+TEST_CASE("garbage from the network neither stops the daemon nor floods its log") {
+  idl::set_log_handler({});  // the garbage hits this process as well
+  Bench bench("garbage");
+  const int fd = socket(AF_INET, SOCK_DGRAM, 0);
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 20'000; ++i) {
+    // Unicast ports of the first participants of the domain (RTPS 9.6.1.1).
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * bench.options.domain + 10 +
+                                                        static_cast<int>(random() % 8)));
+    std::string packet = "RTPS\x02\x05\x01\x10";
+    for (std::size_t n = 12 + random() % 200; n > 0; --n)
+      packet += static_cast<char>(random() % 256);
+    sendto(fd, packet.data(), packet.size(), 0, reinterpret_cast<sockaddr*>(&address),
+           sizeof address);
+  }
+  close(fd);
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  bench.publish(publisher, plant, 100);
+  CHECK(bench.observe([&] { return bench.health().frames == 100; }));
+  const std::vector<std::string> log = lines_of(read_file(bench.folder.file("mpmd.err")));
+  INFO(log.size() << " lines, the last one: " << log.back());
+  CHECK(log.size() < 60);
+}
+
+TEST_CASE("one daemon watches a folder of units, on several domains at once") {
+  TemporaryFolder folder;
+  const idl::DomainOptions here = idl::test_domain("several-a");
+  const idl::DomainOptions there = idl::test_domain("several-b");
+  const auto with_dds = [](const std::string& unit, const idl::DomainOptions& options) {
+    return unit_yaml(unit) + "dds: {domain: " + std::to_string(options.domain) +
+           ", partition: " + options.partition + "}\n";
+  };
+  std::filesystem::create_directory(folder.file("units"));
+  write_file(folder.file("units/a1.yaml"), with_dds("a1", here));
+  write_file(folder.file("units/a2.yaml"), with_dds("a2", here));
+  write_file(folder.file("units/b.yaml"), with_dds("b", there));
+  Process daemon({"mpmd", "--config", folder.file("units")}, folder.file("out"),
+                 folder.file("err"));
+
+  const auto units_on = [](const idl::DomainOptions& options, std::size_t expected) {
+    const idl::Participant participant(options);
+    daemon::OutputReaders readers(participant);
+    std::vector<std::string> units;
+    (void)idl::eventually([&] {
+      for (const daemon::Output& output : readers.take())
+        if (const auto* health = std::get_if<daemon::HealthRecord>(&output))
+          if (std::find(units.begin(), units.end(), health->unit) == units.end())
+            units.push_back(health->unit);
+      return units.size() == expected;
+    });
+    std::sort(units.begin(), units.end());
+    return units;
+  };
+  CHECK(units_on(here, 2) == std::vector<std::string>{"a1", "a2"});
+  CHECK(units_on(there, 1) == std::vector<std::string>{"b"});
+}
+
+TEST_CASE("command lines end with the agreed exit codes") {
+  TemporaryFolder folder;
+  const std::string out = folder.file("out"), err = folder.file("err");
+  write_file(folder.file("good.yaml"), unit_yaml("good"));
+  write_file(folder.file("bad.yaml"), unit_yaml("bad") + "no_such_key: 1\n");
+
+  CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--check"}, out, err) == 0);
+  CHECK(run({"mpmd", "--config", folder.file("bad.yaml"), "--check"}, out, err) == 1);
+  CHECK(read_file(out).find(folder.file("bad.yaml") + ":13:1: error: ") == 0);
+  CHECK(run({"mpmd", "--config", folder.file("bad.yaml")}, out, err) == 3);
+  CHECK(read_file(err).find(folder.file("bad.yaml") + ":13:1: error: ") == 0);
+  CHECK(run({"mpmd", "--config", folder.file("none.yaml")}, out, err) == 3);
+  CHECK(run({"mpmd"}, out, err) == 3);
+  CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--print-config"}, out, err) == 0);
+  CHECK(read_file(out).find("unit: good") != std::string::npos);
+  CHECK(run({"mpmd", "--version"}, out, err) == 0);
+  CHECK(read_file(out).find("Cyclone DDS 0.10.2") != std::string::npos);
+  CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--journal", "/no/such/folder/x"}, out,
+            err) == 2);
+  write_file(folder.file("nic.yaml"), unit_yaml("nic") + "dds: {interface: nosuchnic0}\n");
+  CHECK(run({"mpmd", "--config", folder.file("nic.yaml")}, out, err) == 2);
+  CHECK(read_file(err).find("nosuchnic0") != std::string::npos);  // Cyclone's reason is passed on
+  CHECK(run({"mpm"}, out, err) == 3);
+  CHECK(run({"mpm", "watch", "--no-such-option"}, out, err) == 3);
+  CHECK(run({"mpm", "watch", "--partition", "nobody", "--until-alarm", "--for", "0.3"}, out, err) ==
+        2);
+}
+
+}  // namespace mpm::test
