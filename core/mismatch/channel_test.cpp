@@ -15,6 +15,9 @@ namespace {
 // variances of everything that depends on it then come out huge instead of meaningless.
 constexpr double kOwnShare = 1e-7;
 
+// Above this own share of every column the regression's coefficients are worth reading.
+constexpr double kSeparable = 1e-3;
+
 // Rows over which the noise level is followed, and the error in s.d. beyond which a row is trusted
 // less (science: about 300 rows and 3 s.d. keep both calibration and power).
 constexpr double kScaleRows = 300.0;
@@ -222,7 +225,6 @@ void ChannelTest::signature_coefficients(int cv, int input,
 void ChannelTest::evaluate_cv(int cv) {
   Response& response = responses_[static_cast<std::size_t>(cv)];
   const GivensQr& factor = response.factor;
-  factor.solve(0, response.coefficients);
   const int all = shape_.inputs * block_;
 
   for (int c = 0; c < all; ++c) norms_(c) = factor.centred_norm(lead_in_ + c);
@@ -243,6 +245,12 @@ void ChannelTest::evaluate_cv(int cv) {
     inverse_(i, i) = 1.0 / diagonal;
     estimate_(i) = inverse_.row(i).tail(all - i).dot(rotated_.tail(all - i));
   }
+
+  // A_j of the regression on everything, where everything can be told apart; otherwise of the one
+  // on the residual lags alone: a loop without excitation makes inputs a function of residuals.
+  double least_share = 1.0;
+  for (int c = 0; c < all; ++c) least_share = std::min(least_share, triangle_(c, c));
+  factor.solve(0, least_share > kSeparable ? columns_ : lead_in_, response.coefficients);
 
   const double freedom = denominator_freedom();
   const double variance = factor.residual_square(0) / weight_sum_ * (freedom + columns_) / freedom;

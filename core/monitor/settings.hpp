@@ -6,7 +6,7 @@ namespace mpm {
 struct MonitorSettings {
   double memory_s = 0.0;                 ///< sample_time / (1 - lambda); 0 = 4000 effective samples
   double false_alarm_rate = 0.01;        ///< of the whole unit at any one time, 0..1
-  double gain_error_of_interest = 0.17;  ///< relative; larger errors must be visible to say match
+  double gain_error_of_interest = 0.25;  ///< relative; larger errors must be visible to say match
   int controlling_lags = 40;             ///< g of (3.15)
   int first_lag = -10;                   ///< reported range of lags d of (3.15)
   int last_lag = 20;

@@ -164,16 +164,16 @@ double GivensQr::centred_norm(int j) const {
   return std::sqrt(sum);
 }
 
-void GivensQr::solve(int response, Eigen::Ref<Eigen::VectorXd> coefficients) const {
-  for (int i = columns_ - 1; i >= 0; --i) {
+void GivensQr::solve(int response, int leading, Eigen::Ref<Eigen::VectorXd> coefficients) const {
+  for (int i = leading - 1; i >= 0; --i) {
     const double diagonal = root(i);
     if (diagonal <= kNegligible * magnitudes_[static_cast<std::size_t>(i)]) {
       coefficients(i) = 0.0;
       continue;
     }
-    const int rest = columns_ - 1 - i;
+    const int rest = leading - 1 - i;
     const Eigen::Map<const Eigen::VectorXd> row(entry(i, i) + 1, rest);
-    coefficients(i) = *entry(i, columns_ + response) - row.dot(coefficients.tail(rest));
+    coefficients(i) = *entry(i, columns_ + response) - row.dot(coefficients.segment(i + 1, rest));
   }
 }
 

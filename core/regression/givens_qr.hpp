@@ -91,9 +91,10 @@ class GivensQr {
   /// off: the scale against which its diagonal entry is judged.
   [[nodiscard]] double centred_norm(int j) const;
 
-  /// Least-squares coefficients of one response into `coefficients` (columns() long). Columns
+  /// Least-squares coefficients of one response into `coefficients` (`leading` long). Columns
   /// whose diagonal is at most kNegligible times their largest entry are left out (coefficient 0).
-  void solve(int response, Eigen::Ref<Eigen::VectorXd> coefficients) const;
+  /// With `leading` < columns(), of the regression on the first `leading` columns only.
+  void solve(int response, int leading, Eigen::Ref<Eigen::VectorXd> coefficients) const;
   static constexpr double kNegligible = 1e-7;
 
  private:
