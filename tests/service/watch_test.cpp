@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "daemon/watch/render.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+ChannelRecord channel(const std::string& mv, const std::string& cv, const std::string& verdict,
+                      const std::string& reason = "") {
+  ChannelRecord record;
+  record.unit = "shell";
+  record.mv = mv;
+  record.cv = cv;
+  record.verdict = verdict;
+  record.reason = reason;
+  return record;
+}
+
+AlarmStateRecord alarm(const std::string& mv, const std::string& cv, const std::string& to) {
+  AlarmRecord record;
+  record.unit = "shell";
+  record.mv = mv;
+  record.cv = cv;
+  record.to = to;
+  return {record};
+}
+
+}  // namespace
+
+TEST_CASE("tags are ordered as people count") {
+  std::vector<std::string> tags = {"u10", "u2", "FIC-101.PV", "u1", "FIC-9.PV", "u", "u02b"};
+  std::sort(tags.begin(), tags.end(), natural_less);
+  CHECK(tags == std::vector<std::string>{"FIC-9.PV", "FIC-101.PV", "u", "u1", "u2", "u02b", "u10"});
+  CHECK_FALSE(natural_less("u2", "u2"));
+}
+
+TEST_CASE("rows and columns follow the layout, then the natural order") {
+  Board board("");
+  for (const std::string input : {"u10", "d1", "u2", "u1"})
+    board.update(channel(input, "y1", "match"));
+  const UnitBoard& unit = board.units().at("shell");
+  CHECK(unit.inputs == std::vector<std::string>{"d1", "u1", "u2", "u10"});
+  board.update(LayoutRecord{"shell", "mv", {"u10", "u1", "u2"}});
+  board.update(LayoutRecord{"shell", "dv", {"d1"}});
+  CHECK(unit.inputs == std::vector<std::string>{"u10", "u1", "u2", "d1"});
+}
+
+TEST_CASE("the picture says every verdict in words, why it is undetermined, and the alarms") {
+  Board board("");
+  CHECK(render(board, {}) == "waiting for a monitor ...\n");
+  board.update(channel("u1", "y1", "match"));
+  board.update(channel("u2", "y1", "undetermined", "not_excited"));
+  ChannelRecord bad = channel("u1", "y2", "mismatch");
+  bad.alarm_active = true;
+  board.update(bad);
+  board.update(alarm("u1", "y2", "active"));
+  CHECK(board.any_alarm());
+
+  const std::string plain = render(board, {false, false});
+  CHECK(plain.find('\x1b') == std::string::npos);
+  CHECK(plain.find("  y1  match       undetermined") != std::string::npos);
+  CHECK(plain.find("              not_excited") != std::string::npos);
+  CHECK(plain.find("  y2  mismatch !") != std::string::npos);
+  CHECK(plain.find("! u1 -> y2") != std::string::npos);
+  CHECK(render(board, {true, false}).find("\x1b[90mundetermined") != std::string::npos);
+  CHECK(render(board, {false, true}).find("undetermined") == std::string::npos);
+
+  board.update(alarm("u1", "y2", "cleared"));
+  CHECK_FALSE(board.any_alarm());
+  board.update(MonitorGone{"shell"});
+  CHECK(render(board, {false, false}).find("monitor gone") != std::string::npos);
+}
+
+TEST_CASE("only the unit asked for is shown, and samples are counted by interval") {
+  Board board("shell");
+  ChannelRecord other = channel("u1", "y1", "match");
+  other.unit = "column";
+  board.update(other);
+  CHECK(board.units().empty());
+  for (std::int64_t k = 1; k <= 5; ++k)
+    for (const std::string input : {"u1", "u2"}) {
+      ChannelRecord record = channel(input, "y1", "match");
+      record.interval = k;
+      board.update(record);
+    }
+  CHECK(board.units().at("shell").samples == 5);
+  board.take_rate(std::chrono::seconds(2));
+  CHECK(board.units().at("shell").samples_per_s == 2.5);
+}
+
+TEST_CASE("a line is due when a verdict or its reason changes, not before") {
+  const ChannelRecord warming = channel("u1", "y1", "undetermined", "warming_up");
+  CHECK(change_line(nullptr, warming) == "- shell u1 -> y1: undetermined (warming_up)");
+  CHECK(change_line(&warming, warming).empty());
+  const ChannelRecord match = channel("u1", "y1", "match");
+  CHECK(change_line(&warming, match).find("match") != std::string::npos);
+}
+
+}  // namespace mpm::daemon
