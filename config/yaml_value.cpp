@@ -1,5 +1,7 @@
 #include "config/yaml_value.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -8,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <sstream>
 #include <system_error>
 #include <tuple>
 
@@ -41,6 +44,46 @@ bool printable(const std::string& text) {
   return std::none_of(text.begin(), text.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
   });
+}
+
+/// Listens to a parser only to learn where documents begin.
+class DocumentCounter : public YAML::EventHandler {
+ public:
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] const YAML::Mark& last_start() const { return last_start_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    ++count_;
+    last_start_ = mark;
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+ private:
+  int count_ = 0;
+  YAML::Mark last_start_;
+};
+
+/// YAML::Load drops whatever follows the first document without a word, and YAML::LoadAll does not
+/// come back from some broken ones (0.7): look for a second document and stop there.
+void check_single_document(const std::string& text, Report& report) {
+  std::istringstream input(text);
+  YAML::Parser parser(input);
+  DocumentCounter counter;
+  while (counter.count() < 2 && parser.HandleNextDocument(counter)) {
+  }
+  if (counter.count() > 1)
+    report.add(Severity::kError, counter.last_start(), "",
+               "text after the end of the document; give one document per file");
 }
 
 }  // namespace
@@ -228,15 +271,13 @@ const Value* Map::require(std::string_view key) const {
 std::optional<Value> parse_yaml(const std::string& text, Report& report) {
   const YAML::Mark start;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.empty() || documents.front().IsNull()) {
+    const YAML::Node root = YAML::Load(text);
+    if (!root.IsDefined() || root.IsNull()) {
       report.add(Severity::kError, start, "", "the file is empty");
       return std::nullopt;
     }
-    if (documents.size() > 1)
-      report.add(Severity::kError, documents[1].Mark(), "",
-                 "a second document; write one unit per file");
-    return Value(documents.front(), documents.front().Mark(), "", report);
+    check_single_document(text, report);
+    return Value(root, root.Mark(), "", report);
   } catch (const YAML::Exception& error) {
     report.add(Severity::kError, error.mark.is_null() ? start : error.mark, "",
                "not valid YAML: " + error.msg);

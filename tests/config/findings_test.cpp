@@ -219,7 +219,7 @@ TEST_CASE("Mistakes in the head of a file are told at their place") {
       {"unit: [1, 2\nfoo: }\n",
        "u.yaml:2:4: error: not valid YAML: end of sequence flow not found"},
       {kHead + kModel + "---\nunit: b\n",
-       "u.yaml:9:1: error: a second document; write one unit per file"},
+       "u.yaml:8:1: error: text after the end of the document; give one document per file"},
   }));
   CAPTURE(text);
   const std::vector<std::string> found = findings_of(text);
