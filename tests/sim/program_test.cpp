@@ -1,0 +1,87 @@
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace {
+namespace fs = std::filesystem;
+
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / "mpm_sim_program_test") {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+  }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    std::ifstream in(path_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  /// Exit code; stderr goes to the file `err`.
+  [[nodiscard]] int run(const std::string& arguments) const {
+    const std::string command = std::string(MPM_BIN_DIR) + "/mpmsim " + arguments + " 2>" +
+                                file("err") + " >" + file("out");
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  fs::path path_;
+};
+
+const std::string kShell = std::string(MPM_SOURCE_DIR) + "/config/plants/shell3x3.yaml";
+
+}  // namespace
+
+TEST_CASE("mpmsim writes a run and its truth, the same for the same seed") {
+  const Folder folder;
+  const std::string run = "--config " + kShell + " --scenario hidden_gain --samples 200 --seed 5 ";
+  REQUIRE(folder.run(run + "--csv " + folder.file("a") + " --truth " + folder.file("t")) == 0);
+  REQUIRE(folder.run(run + "--csv " + folder.file("b")) == 0);
+  CHECK(folder.read("a") == folder.read("b"));
+  CHECK(folder.read("a").rfind("time,sp1,sp2,sp3,u1,u2,u3,y1,y2,y3,yhat1,yhat2,yhat3\n0,", 0) == 0);
+  CHECK(folder.read("t").find("gain_ratio") != std::string::npos);
+  CHECK(folder.read("err").empty());
+  REQUIRE(folder.run(run + "--csv -") == 0);
+  CHECK(folder.read("out") == folder.read("a"));
+}
+
+TEST_CASE("mpmsim gives the controller another model") {
+  const Folder folder;
+  std::ifstream in(kShell);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  text.replace(text.find("gain: 4.05"), 10, "gain: 5.40");
+  folder.write("other.yaml", text);
+  const std::string run = "--config " + kShell + " --samples 100 ";
+  REQUIRE(folder.run(run + "--csv " + folder.file("a")) == 0);
+  REQUIRE(folder.run(run + "--controller-model " + folder.file("other.yaml") + " --csv " +
+                     folder.file("b")) == 0);
+  CHECK(folder.read("a") != folder.read("b"));
+}
+
+TEST_CASE("mpmsim tells bad input from a failed run") {
+  const Folder folder;
+  CHECK(folder.run("") == 3);
+  CHECK(folder.run("--help") == 0);
+  CHECK(folder.run("--config /nowhere.yaml --csv x") == 3);
+  CHECK(folder.run("--config " + kShell + " --speed -1") == 3);
+  CHECK(folder.run("--config " + kShell + " --start-time soon --csv x") == 3);
+  CHECK(folder.run("--config " + kShell + " --csv /nowhere/x.csv") == 2);
+  CHECK(folder.run("--config " + kShell + " --scenario nonsense --csv x") == 3);
+  CHECK(folder.read("err").find("s3_delay") != std::string::npos);  // lists what there is
+  folder.write("s2.yaml", "scenario: s2\nchanges:\n  - {mv: u1, cv: [y1, y2], gain_ratio: 0.75}\n");
+  CHECK(folder.run("--config " + kShell + " --scenario " + folder.file("s2.yaml") + " --csv x") ==
+        3);
+  CHECK(folder.read("err").find("determinant") != std::string::npos);
+}
