@@ -1,0 +1,229 @@
+#include "core/mismatch/channel_test.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "core/statistics/f_distribution.hpp"
+#include "tests/allocation_counter.hpp"
+#include "tests/core/counter_noise.hpp"
+#include "tests/core/oracle.hpp"
+
+namespace mpm {
+namespace {
+
+ModelSpec first_order(int inputs, int cvs, double time_constant_s) {
+  ModelSpec spec;
+  spec.input_count = inputs;
+  spec.cv_count = cvs;
+  spec.input_blocks.resize(static_cast<std::size_t>(inputs));
+  spec.output_blocks.resize(static_cast<std::size_t>(cvs));
+  spec.input_origin = Eigen::VectorXd::Zero(inputs);
+  spec.output_origin = Eigen::VectorXd::Zero(cvs);
+  for (int j = 0; j < cvs; ++j)
+    for (int i = 0; i < inputs; ++i)
+      spec.channels.push_back(
+          {j, i, TransferFunction{1.0 + i + j, {time_constant_s}, 0, 1, false}});
+  return spec;
+}
+
+TEST_CASE("the channel test equals brute-force batch fits") {
+  // Expected: tests/oracles/channel_test.py; signals drawn alike.
+  const nlohmann::json oracle = test::read_oracle("channel_test.json");
+  const int m = oracle["inputs"];
+  const int n = oracle["cvs"];
+  const LinearModel model(first_order(m, n, 10.0));
+  ChannelTest channel_test({m, n, oracle["fir_lags"], oracle["residual_order"],
+                            oracle["tail_poles"].get<std::vector<double>>()},
+                           oracle["lambda"], model);
+  Eigen::VectorXd u(m), e(n), noise = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd before = Eigen::VectorXd::Zero(2);
+  for (int k = 0; k < oracle["samples"].get<int>(); ++k) {
+    for (int i = 0; i < m; ++i) u(i) = test::coloured(static_cast<std::uint64_t>(1 + i), k);
+    for (int j = 0; j < n; ++j) {
+      const double w = test::uniform(static_cast<std::uint64_t>(20 + j), k);
+      const double shock = w * w * w * w * w * 3 * (k > 350 ? 2.0 : 1.0);
+      noise(j) = k == 0 ? 0.0 : 0.6 * noise(j) + shock;
+    }
+    e = noise;
+    if (k >= 2) e(0) += 0.08 * before(1);
+    before(1) = before(0);
+    before(0) = u(1);
+    channel_test.update(u, e);
+  }
+  channel_test.evaluate();
+  CHECK(channel_test.effective_rows() ==
+        Approx(oracle["effective_rows"].get<double>()).epsilon(1e-10));
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < m; ++i) {
+      const double expected =
+          oracle["statistics"][static_cast<std::size_t>(j)][static_cast<std::size_t>(i)];
+      CAPTURE(j, i);
+      CHECK(channel_test.evidence(j, i).statistic == Approx(expected).epsilon(1e-8));
+      CHECK(channel_test.evidence(j, i).p_value ==
+            Approx(f_upper_tail(expected, channel_test.block_columns(),
+                                channel_test.denominator_freedom()))
+                .epsilon(1e-6));
+    }
+  }
+}
+
+// Independent inputs, white-ish noise, a gain error of `ratio` of the model in channel (0, 0).
+struct OpenLoop {
+  explicit OpenLoop(std::uint64_t seed_in) : seed(seed_in) {}
+  std::uint64_t seed;
+  double hidden_ratio = 0.0;
+  std::vector<double> input_scale = {1.0, 1.0};
+  bool same_inputs = false;
+
+  void run(ChannelTest& channel_test, const ModelSpec& spec, int samples) const {
+    LinearModel model(spec);
+    Eigen::VectorXd u(2), e(2), noise = Eigen::VectorXd::Zero(2);
+    for (int k = 0; k < samples; ++k) {
+      for (int i = 0; i < 2; ++i)
+        u(i) = input_scale[static_cast<std::size_t>(i)] *
+               (test::uniform(seed * 100 + static_cast<std::uint64_t>(i), k / 25) > 0 ? 1.0 : -1.0);
+      if (same_inputs) u(1) = u(0);
+      for (int j = 0; j < 2; ++j)
+        noise(j) = 0.8 * noise(j) +
+                   0.1 * test::uniform(seed * 100 + 50 + static_cast<std::uint64_t>(j), k);
+      e = noise;
+      e(0) += hidden_ratio * model.output()(0);
+      channel_test.update(u, e);
+      Eigen::VectorXd only_first = u;
+      only_first(1) = 0.0;
+      model.advance(only_first);
+    }
+    channel_test.evaluate();
+  }
+};
+
+ChannelTest make_test(const ModelSpec& spec, double lambda = 1.0) {
+  return ChannelTest({2, 2, 12, 4, {std::exp(-1.0 / 15.0)}}, lambda, LinearModel(spec));
+}
+
+TEST_CASE("the p-value of a matching channel is uniform") {
+  // 100 seeds x 4 channels, fixed noise. Binomial(400, p): 5 % -> 20 +- 4.4, 50 % -> 200 +- 10;
+  // the bounds are four s.d. wide (a fresh draw would fail once in 10 000 times).
+  const ModelSpec spec = first_order(2, 2, 15.0);
+  int below_5 = 0;
+  int below_50 = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    ChannelTest channel_test = make_test(spec, 0.998);
+    OpenLoop(seed).run(channel_test, spec, 1200);
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i) {
+        below_5 += channel_test.evidence(j, i).p_value < 0.05 ? 1 : 0;
+        below_50 += channel_test.evidence(j, i).p_value < 0.5 ? 1 : 0;
+      }
+  }
+  CHECK(std::abs(below_5 - 20) <= 18);
+  CHECK(std::abs(below_50 - 200) <= 40);
+}
+
+TEST_CASE("a hidden gain error is found in its channel, with its size and its s.d.") {
+  // The hidden ratio is known; its estimate must lie within 4 predicted s.d. in every one of 20
+  // seeds, and scatter by about as much as predicted (chi-square of 20: 7.4 .. 40 at 99.8 %).
+  const ModelSpec spec = first_order(2, 2, 15.0);
+  double chi_square = 0.0;
+  for (std::uint64_t seed = 201; seed <= 220; ++seed) {
+    ChannelTest channel_test = make_test(spec);
+    OpenLoop loop(seed);
+    loop.hidden_ratio = 0.25;
+    loop.run(channel_test, spec, 1500);
+    const ChannelEvidence& found = channel_test.evidence(0, 0);
+    CHECK(found.p_value < 1e-12);
+    CHECK(found.reference_gain == Approx(1.0));
+    CHECK(found.excitation_index < 0.05);
+    const double z = (found.gain_error_ratio - 0.25) / found.excitation_index;
+    CHECK(std::abs(z) < 4.0);
+    chi_square += z * z;
+    CHECK(channel_test.evidence(1, 0).p_value > 1e-5);
+    CHECK(channel_test.evidence(0, 1).p_value > 1e-5);
+    CHECK(channel_test.evidence(1, 1).p_value > 1e-5);
+  }
+  INFO("chi square " << chi_square);
+  CHECK(chi_square > 5.9);
+  CHECK(chi_square < 45.3);
+}
+
+TEST_CASE("excitation: silent, weak and inseparable inputs are told apart") {
+  const ModelSpec spec = first_order(2, 2, 15.0);
+  SECTION("an input that never moves says nothing") {
+    ChannelTest channel_test = make_test(spec);
+    OpenLoop loop(7);
+    loop.input_scale = {1.0, 0.0};
+    loop.run(channel_test, spec, 1000);
+    CHECK(std::isinf(channel_test.evidence(0, 1).excitation_index));
+    CHECK(channel_test.evidence(0, 1).p_value == 1.0);
+    CHECK(channel_test.evidence(0, 0).excitation_index < 0.1);
+  }
+  SECTION("a tenth of the movement: ten times the s.d.") {
+    // The noise is the same and enters linearly, so the s.d. scales with 1 / movement exactly.
+    ChannelTest strong = make_test(spec);
+    ChannelTest weak = make_test(spec);
+    OpenLoop loop(8);
+    loop.run(strong, spec, 1000);
+    loop.input_scale = {1.0, 0.1};
+    loop.run(weak, spec, 1000);
+    CHECK(weak.evidence(0, 1).excitation_index ==
+          Approx(10.0 * strong.evidence(0, 1).excitation_index).epsilon(1e-6));
+  }
+  SECTION("two inputs that move as one name each other") {
+    ChannelTest channel_test = make_test(spec);
+    OpenLoop loop(9);
+    loop.same_inputs = true;
+    loop.hidden_ratio = 0.5;
+    loop.run(channel_test, spec, 1000);
+    CHECK(channel_test.evidence(0, 0).excitation_index > 100.0);
+    CHECK(channel_test.evidence(0, 0).excitation_index_alone < 0.1);
+    CHECK(channel_test.evidence(0, 0).confounder == 1);
+    CHECK(channel_test.evidence(0, 1).confounder == 0);
+  }
+}
+
+TEST_CASE("units of any size give the same verdict") {
+  // CV in units 1e6 times smaller, input 1: 1e-6 times: F, p and the relative error are unchanged.
+  const ModelSpec spec = first_order(2, 2, 15.0);
+  ChannelTest plain = make_test(spec);
+  ChannelTest scaled = make_test(spec);
+  LinearModel model(spec);
+  Eigen::VectorXd u(2), e(2), scaled_u(2), scaled_e(2);
+  for (int k = 0; k < 800; ++k) {
+    for (std::uint64_t i = 0; i < 2; ++i) {
+      u(static_cast<int>(i)) = test::coloured(300 + i, k);
+      e(static_cast<int>(i)) = test::coloured(310 + i, k);
+    }
+    scaled_u << u(0) * 0x1p-20, u(1);
+    scaled_e << e(0) * 0x1p20, e(1);
+    plain.update(u, e);
+    scaled.update(scaled_u, scaled_e);
+  }
+  plain.evaluate();
+  scaled.evaluate();
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i)
+      CHECK(scaled.evidence(j, i).statistic ==
+            Approx(plain.evidence(j, i).statistic).epsilon(1e-9));
+}
+
+TEST_CASE("the channel test allocates nothing per sample") {
+  const ModelSpec spec = first_order(3, 3, 50.0);
+  ChannelTest channel_test({3, 3, 20, 8, {0.98}}, 0.9995, LinearModel(spec));
+  Eigen::VectorXd u(3), e(3);
+  const std::uint64_t before = test::allocation_count();
+  for (int k = 0; k < 600; ++k) {
+    for (std::uint64_t i = 0; i < 3; ++i) {
+      u(static_cast<int>(i)) = test::coloured(400 + i, k);
+      e(static_cast<int>(i)) = test::coloured(410 + i, k);
+    }
+    if (k == 450) channel_test.skip(3);
+    channel_test.update(u, e);
+    channel_test.evaluate();
+  }
+  CHECK(channel_test.ready());
+  CHECK(test::allocation_count() == before);
+}
+
+}  // namespace
+}  // namespace mpm

@@ -1,0 +1,210 @@
+#include "core/monitor/monitor.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/model/linear_model.hpp"
+#include "tests/allocation_counter.hpp"
+#include "tests/core/counter_noise.hpp"
+
+namespace mpm {
+namespace {
+
+// A 2 x 2 plant in open loop, of which the model is right but for what `hidden` says.
+struct Experiment {
+  Experiment() {
+    model.sample_time_s = 1.0;
+    model.input_count = 2;
+    model.cv_count = 2;
+    model.input_blocks.resize(2);
+    model.output_blocks.resize(2);
+    model.input_origin = Eigen::Vector2d(10.0, -3.0);
+    model.output_origin = Eigen::Vector2d(50.0, 2.0);
+    model.channels = {{0, 0, TransferFunction{2.0, {12}, 0, 2, false}},
+                      {0, 1, TransferFunction{-1.0, {8}, 0, 1, false}},
+                      {1, 0, TransferFunction{0.5, {6}, 0, 0, false}},
+                      {1, 1, TransferFunction{1.5, {15}, 0, 3, false}}};
+  }
+
+  ModelSpec model;
+  double gain_ratio = 1.0;  // of channel (CV 0, input 1) in the plant
+  bool predictions = true;
+  SignalCounts counts{2, 0, 2, 0};
+
+  [[nodiscard]] Monitor monitor() const {
+    return Monitor(model, counts, {predictions, predictions}, {}, {});
+  }
+
+  // Calls each(frame) for k = 0 .. samples - 1.
+  template <class Each>
+  void run(int samples, Each each) const {
+    ModelSpec plant_spec = model;
+    std::get<TransferFunction>(plant_spec.channels[1].dynamics).gain *= gain_ratio;
+    LinearModel plant(plant_spec);
+    LinearModel controller_model(model);
+    Eigen::Vector2d u, noise(0.0, 0.0);
+    for (int k = 0; k < samples; ++k) {
+      for (int i = 0; i < 2; ++i) {
+        const auto s = static_cast<std::uint64_t>(i);
+        u(i) = model.input_origin(i) + (test::uniform(700 + s, k / 20) > 0 ? 1.0 : -1.0);
+        noise(i) = 0.7 * noise(i) + 0.1 * test::uniform(800 + s, k);
+      }
+      Frame frame(counts);
+      for (SignalBlock& block : frame.blocks)
+        std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
+      frame.interval = k;
+      frame.source_time_ns = k * std::int64_t{1'000'000'000};
+      frame[SignalKind::kMv].values = u;
+      frame[SignalKind::kCv].values = plant.output() + noise;
+      frame[SignalKind::kPrediction].values = controller_model.output();
+      each(frame);
+      plant.advance(u);
+      controller_model.advance(u);
+    }
+  }
+};
+
+TEST_CASE("a healthy unit matches everywhere and raises nothing") {
+  const Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  int transitions = 0;
+  experiment.run(2000, [&](const Frame& frame) {
+    monitor.push(frame);
+    transitions += static_cast<int>(monitor.transitions().size());
+  });
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
+  CHECK(transitions == 0);
+  CHECK(monitor.counters().frames == 2000);
+  CHECK(monitor.counters().used == 2000 - 21);
+}
+
+TEST_CASE("a hidden gain error raises the alarm of its channel alone") {
+  Experiment experiment;
+  experiment.gain_ratio = 0.75;
+  for (const bool predictions : {true, false}) {
+    experiment.predictions = predictions;
+    Monitor monitor = experiment.monitor();
+    std::vector<AlarmTransition> all;
+    experiment.run(2000, [&](const Frame& frame) {
+      monitor.push(frame);
+      all.insert(all.end(), monitor.transitions().begin(), monitor.transitions().end());
+    });
+    CAPTURE(predictions);
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].cv == 0);
+    CHECK(all[0].input == 1);
+    CHECK(all[0].to == AlarmState::kActive);
+    CHECK(monitor.alarm(0, 1) == AlarmState::kActive);
+    CHECK(monitor.channel(0, 1).verdict == Verdict::kMismatch);
+    // Truth: (0.75 - 1) * -1.0 = +0.25 CV units per input unit.
+    CHECK(monitor.channel(0, 1).effect_size == Approx(0.25).margin(0.03));
+    CHECK(monitor.channel(0, 0).verdict == Verdict::kMatch);
+    CHECK(monitor.channel(1, 0).verdict == Verdict::kMatch);
+    CHECK(monitor.channel(1, 1).verdict == Verdict::kMatch);
+    // Between input 1 and CV 0 the plant moves too little: e falls when u rises by -(-0.25).
+    CHECK(monitor.channel(0, 1).partial_correlation > 0.1);
+    CHECK(monitor.channel(0, 1).lag >= 1);
+  }
+}
+
+TEST_CASE("before there is enough data nothing is said") {
+  const Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  experiment.run(100, [&](const Frame& frame) { monitor.push(frame); });
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      CHECK(monitor.channel(j, i).verdict == Verdict::kUndetermined);
+      CHECK(monitor.channel(j, i).reason == Reason::kWarmingUp);
+    }
+}
+
+TEST_CASE("an input that stands still is undetermined") {
+  const Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  experiment.run(2000, [&](const Frame& original) {
+    Frame frame = original;
+    frame[SignalKind::kMv].values(1) = -3.0;
+    monitor.push(frame);
+  });
+  for (int j = 0; j < 2; ++j) {
+    CHECK(monitor.channel(j, 1).verdict == Verdict::kUndetermined);
+    CHECK(monitor.channel(j, 1).reason == Reason::kNotExcited);
+    CHECK(monitor.partial_correlations(j, 1).isZero(0.0));
+  }
+}
+
+TEST_CASE("inputs that move as one name each other") {
+  Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  experiment.run(2000, [&](const Frame& original) {
+    Frame frame = original;
+    frame[SignalKind::kMv].values(1) = 3.0 * frame[SignalKind::kMv].values(0);
+    monitor.push(frame);
+  });
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      CHECK(monitor.channel(j, i).verdict == Verdict::kUndetermined);
+      CHECK(monitor.channel(j, i).reason == Reason::kCollinear);
+      CHECK(monitor.channel(j, i).confounder == 1 - i);
+      CHECK(std::isfinite(monitor.channel(j, i).p_value));
+      CHECK(std::isfinite(monitor.channel(j, i).effect_size));
+    }
+}
+
+TEST_CASE("gaps, bad values and repeats are counted and skew nothing") {
+  const Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  int transitions = 0;
+  experiment.run(4000, [&](const Frame& original) {
+    const std::int64_t k = original.interval;
+    Frame frame = original;
+    if (k % 500 == 100) return;                                  // missing
+    if (k % 500 == 200) frame[SignalKind::kCv].values(0) = 1e9;  // far off, but said to be bad
+    if (k % 500 == 200) frame[SignalKind::kCv].quality[0] = Quality::kBad;
+    if (k % 500 == 300) frame[SignalKind::kMv].values(1) = std::numeric_limits<double>::quiet_NaN();
+    monitor.push(frame);
+    if (k % 500 == 400) monitor.push(frame);  // repeated
+    transitions += static_cast<int>(monitor.transitions().size());
+  });
+  CHECK(monitor.counters().missing == 8);
+  CHECK(monitor.counters().bad_values == 16);
+  CHECK(monitor.counters().out_of_order == 8);
+  CHECK(transitions == 0);
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
+}
+
+TEST_CASE("a signal that stays bad turns every verdict to undetermined") {
+  const Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  experiment.run(2000, [&](const Frame& original) {
+    Frame frame = original;
+    if (frame.interval > 1900) frame[SignalKind::kMv].quality[0] = Quality::kBad;
+    monitor.push(frame);
+  });
+  CHECK(monitor.channel(0, 0).verdict == Verdict::kUndetermined);
+  CHECK(monitor.channel(0, 0).reason == Reason::kBadData);
+}
+
+TEST_CASE("the monitor allocates nothing per sample and repeats itself exactly") {
+  Experiment experiment;
+  experiment.gain_ratio = 0.8;
+  std::vector<Frame> frames;
+  experiment.run(1200, [&](const Frame& frame) { frames.push_back(frame); });
+  Monitor first = experiment.monitor();
+  Monitor second = experiment.monitor();
+  const std::uint64_t before = test::allocation_count();
+  for (const Frame& frame : frames) first.push(frame);
+  CHECK(test::allocation_count() == before);
+  for (const Frame& frame : frames) second.push(frame);
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      CHECK(first.channel(j, i).p_value == second.channel(j, i).p_value);
+      CHECK(first.channel(j, i).statistic == second.channel(j, i).statistic);
+    }
+}
+
+}  // namespace
+}  // namespace mpm
