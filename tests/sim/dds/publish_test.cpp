@@ -1,0 +1,131 @@
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "idl/sample_readers.hpp"
+#include "tests/idl/test_domain.hpp"
+#include "tests/sim/units.hpp"
+
+namespace {
+
+using mpm::Frame;
+using mpm::SignalKind;
+using Clock = std::chrono::steady_clock;
+
+/// mpmsim on Shell as a process of its own.
+class Simulator {
+ public:
+  Simulator(const mpm::idl::DomainOptions& domain, std::vector<std::string> arguments)
+      : arguments_(std::move(arguments)) {
+    arguments_.insert(arguments_.begin(),
+                      {std::string(MPM_BIN_DIR) + "/mpmsim", "--config",
+                       std::string(MPM_SOURCE_DIR) + "/config/plants/shell3x3.yaml", "--domain",
+                       std::to_string(domain.domain), "--partition", domain.partition});
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments_) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    child_ = fork();
+    if (child_ == 0) {
+      execv(pointers[0], pointers.data());
+      _exit(127);
+    }
+  }
+  ~Simulator() {
+    if (child_ <= 0) return;
+    kill(child_, SIGKILL);
+    waitpid(child_, nullptr, 0);
+  }
+  Simulator(const Simulator&) = delete;
+  Simulator& operator=(const Simulator&) = delete;
+
+  void stop() const { kill(child_, SIGTERM); }
+  /// Exit code, or -1 if it has not ended by itself within 10 s.
+  [[nodiscard]] int wait() {
+    const Clock::time_point end = Clock::now() + std::chrono::seconds(10);
+    int status = 0;
+    while (waitpid(child_, &status, WNOHANG) == 0) {
+      if (Clock::now() > end) return -1;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    child_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  std::vector<std::string> arguments_;
+  pid_t child_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("what mpmsim publishes at full speed is the run of its seed, nothing missing") {
+  constexpr int kSamples = 2000;
+  const mpm::idl::DomainOptions domain = mpm::idl::test_domain("sim-full-speed");
+  const mpm::idl::Participant participant(domain);
+  mpm::idl::SampleReaders readers(participant);
+  mpm::idl::WaitSet wait_set;
+  readers.attach_to(wait_set);
+  Simulator simulator(domain, {"--samples", std::to_string(kSamples), "--seed", "3", "--speed", "0",
+                               "--wait-readers", "10", "--start-time", "2024-03-01T12:00:00Z"});
+
+  std::vector<Frame> expected;
+  mpm::sim::LoopSetup setup = mpm::test::healthy_loop(mpm::test::load_plant("shell3x3"), 3);
+  setup.start_time_ns = 1'709'294'400'000'000'000;
+  mpm::sim::ClosedLoop loop(setup);
+  for (int k = 0; k < kSamples; ++k) expected.push_back(loop.step());
+
+  int count = 0, wrong = 0;
+  std::array<std::int64_t, mpm::kSignalKindCount> next{};
+  constexpr int kTopics = 4;  // mv, cv, prediction, set-point; this unit has no DV
+  while (count < kTopics * kSamples && wait_set.wait(std::chrono::seconds(10)))
+    readers.take([&](const mpm::idl::SampleView& sample) {
+      ++count;
+      std::int64_t& interval = next[static_cast<std::size_t>(sample.kind)];
+      if (sample.interval != interval++ || sample.interval >= kSamples) {
+        ++wrong;
+        return;
+      }
+      const Frame& frame = expected[static_cast<std::size_t>(sample.interval)];
+      const auto& values = frame[sample.kind].values;
+      const bool same =
+          sample.unit == "shell" && sample.source_time_ns == frame.source_time_ns &&
+          std::equal(sample.values.begin(), sample.values.end(), values.begin(), values.end());
+      if (!same) ++wrong;
+    });
+  CHECK(count == kTopics * kSamples);
+  CHECK(wrong == 0);
+  CHECK(simulator.wait() == 0);
+}
+
+TEST_CASE("mpmsim keeps its pace and ends on SIGTERM") {
+  const mpm::idl::DomainOptions domain = mpm::idl::test_domain("sim-pace");
+  const mpm::idl::Participant participant(domain);
+  mpm::idl::SampleReaders readers(participant);
+  mpm::idl::WaitSet wait_set;
+  readers.attach_to(wait_set);
+  // 1 s per sample, 50 times real time: 20 ms.
+  Simulator simulator(domain, {"--speed", "50", "--wait-readers", "10"});
+  std::int64_t last = -1;
+  Clock::time_point first_seen;
+  while (last < 50 && wait_set.wait(std::chrono::seconds(10)))
+    readers.take([&](const mpm::idl::SampleView& sample) {
+      if (last < 0) first_seen = Clock::now();
+      if (sample.interval > last) last = sample.interval;
+    });
+  const std::chrono::duration<double> taken = Clock::now() - first_seen;
+  REQUIRE(last >= 50);
+  // 50 samples are 1 s; a busy machine may be late, never early.
+  CHECK(taken.count() > 0.02 * static_cast<double>(last) - 0.1);
+  CHECK(taken.count() < 3.0);
+  const Clock::time_point told = Clock::now();
+  simulator.stop();
+  CHECK(simulator.wait() == 0);
+  CHECK(Clock::now() - told < std::chrono::seconds(3));
+}
