@@ -10,7 +10,7 @@ namespace mpm {
 class LagWindow {
  public:
   explicit LagWindow(int length)
-      : length_(static_cast<std::size_t>(length)), position_(0), values_(2 * length_, 0.0) {}
+      : length_(static_cast<std::size_t>(length)), values_(2 * length_, 0.0) {}
 
   void push(double value) {
     position_ = (position_ == 0 ? length_ : position_) - 1;
@@ -22,7 +22,7 @@ class LagWindow {
 
  private:
   std::size_t length_;
-  std::size_t position_;
+  std::size_t position_ = 0;
   std::vector<double> values_;
 };
 
