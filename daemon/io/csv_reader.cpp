@@ -54,12 +54,12 @@ void CsvReader::open(const SignalCounts& counts) {
   std::vector<Cell> header;
   lines_.split(format.delimiter, header);
   rows_ = is_long_header(header) ? read_long(lines_, format, header, tags_, counts, row_notices_)
-                                 : read_wide(lines_, format, header, tags_, row_notices_);
+                                 : read_wide(lines_, format, header, tags_, counts, row_notices_);
   has_prediction_ = tags_.has_prediction();
   notices_ = tags_.notices();
 
   for (std::size_t i = 0; i < kRowsAhead; ++i) {
-    Frame frame(counts);
+    Frame frame;
     if (!rows_->next(frame)) break;
     if (i == 0) first_ns_ = frame.source_time_ns;
     ahead_.push_back(std::move(frame));

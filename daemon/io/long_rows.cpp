@@ -75,7 +75,7 @@ class LongRows : public RowSource {
     }
     if (!pending_) pending_ = read_sample();
     if (!pending_) return false;
-    clear(frame);
+    clear(frame, counts_);
     frame.source_time_ns = pending_->time_ns;
     while (pending_ && pending_->time_ns == frame.source_time_ns) {
       put(*pending_, frame);
@@ -107,7 +107,7 @@ class LongRows : public RowSource {
     while (const std::optional<Sample> sample = read_sample()) {
       const auto [entry, is_new] = gathered_->try_emplace(sample->time_ns, counts_);
       if (is_new) {
-        clear(entry->second);
+        clear(entry->second, counts_);
         entry->second.source_time_ns = sample->time_ns;
       }
       put(*sample, entry->second);

@@ -39,8 +39,11 @@ bool is_time_name(std::string_view name) {
                      [name](std::string_view known) { return same_word(name, known); });
 }
 
-void clear(Frame& frame) {
-  for (SignalBlock& block : frame.blocks) {
+void clear(Frame& frame, const SignalCounts& counts) {
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
+    SignalBlock& block = frame.blocks[kind];
+    const int count = counts.of(static_cast<SignalKind>(kind));
+    if (block.size() != count) block.resize(count);
     block.values.setConstant(std::numeric_limits<double>::quiet_NaN());
     std::fill(block.quality.begin(), block.quality.end(), Quality::kBad);
   }

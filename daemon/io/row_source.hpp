@@ -30,6 +30,7 @@ class RowSource {
 /// Rows `time,<tag>,<tag>,...`; `lines` stands on the header.
 [[nodiscard]] std::unique_ptr<RowSource> read_wide(LineReader& lines, const CsvFormat& format,
                                                    const std::vector<Cell>& header, TagTable& tags,
+                                                   const SignalCounts& counts,
                                                    std::vector<std::string>& notices);
 
 /// True for the header of the long form: a tag, a time and a value column.
@@ -47,8 +48,8 @@ class RowSource {
 [[nodiscard]] Quality read_quality(const LineReader& lines, const Cell& cell);
 /// True for what a time column may be called.
 [[nodiscard]] bool is_time_name(std::string_view name);
-/// Every value missing.
-void clear(Frame& frame);
+/// Gives the frame its size and makes every value missing.
+void clear(Frame& frame, const SignalCounts& counts);
 /// False for a last line that was cut off while being written (noted); InputError where the number
 /// of cells is wrong otherwise.
 [[nodiscard]] bool check_width(const LineReader& lines, const std::vector<Cell>& cells,

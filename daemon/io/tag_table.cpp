@@ -32,11 +32,13 @@ bool TagTable::seen(const std::string& tag) const { return seen_.count(tag) > 0;
 
 std::string TagTable::problem() const {
   std::string missing;
+  bool unlike = false;  // a tag that no column of the file resembles
   const auto need = [&](const std::string& tag, const char* what) {
     if (tag.empty() || seen(tag)) return;
     missing += (missing.empty() ? "" : ", ") + std::string(what) + " '" + tag + "'";
-    if (const std::string* likely = config::closest(tag, ignored_))
-      missing += " (did you mean '" + *likely + "'?)";
+    const std::string* likely = config::closest(tag, ignored_);
+    unlike = unlike || likely == nullptr;
+    if (likely != nullptr) missing += " (did you mean '" + *likely + "'?)";
   };
   for (const auto& mv : unit_.mv) need(mv.tag, "mv");
   for (const auto& dv : unit_.dv) need(dv.tag, "dv");
@@ -44,7 +46,10 @@ std::string TagTable::problem() const {
     need(cv.tag, "cv");
     if (!unit_.has_model()) need(cv.prediction, "prediction");
   }
-  return missing.empty() ? "" : "the file does not hold " + missing;
+  if (missing.empty()) return {};
+  const std::string others =
+      unlike && !ignored_.empty() ? "; it holds " + config::join(ignored_) : "";
+  return "the file does not hold " + missing + others;
 }
 
 std::vector<std::string> TagTable::notices() const {

@@ -29,8 +29,8 @@ bool is_units_word(std::string_view text) {
 class WideRows : public RowSource {
  public:
   WideRows(LineReader& lines, const CsvFormat& format, const std::vector<Cell>& header,
-           TagTable& tags, std::vector<std::string>& notices)
-      : lines_(lines), format_(format), width_(header.size()), notices_(notices) {
+           TagTable& tags, const SignalCounts& counts, std::vector<std::string>& notices)
+      : lines_(lines), format_(format), width_(header.size()), counts_(counts), notices_(notices) {
     find_time(header);
     find_columns(header, tags);
     const std::string problem = tags.problem();
@@ -43,7 +43,7 @@ class WideRows : public RowSource {
       lines_.split(format_.delimiter, cells_);
     } while (is_units_row());
     if (!check_width(lines_, cells_, width_, notices_)) return false;
-    clear(frame);
+    clear(frame, counts_);
     frame.source_time_ns = read_time(lines_, cells_[time_]);
     for (const Column& column : values_) {
       const double value = read_value(lines_, format_, cells_[column.cell]);
@@ -115,6 +115,7 @@ class WideRows : public RowSource {
   LineReader& lines_;
   CsvFormat format_;
   std::size_t width_;
+  SignalCounts counts_;
   std::vector<std::string>& notices_;
   std::size_t time_ = 0;
   std::vector<Column> values_, qualities_;
@@ -126,8 +127,9 @@ class WideRows : public RowSource {
 
 std::unique_ptr<RowSource> read_wide(LineReader& lines, const CsvFormat& format,
                                      const std::vector<Cell>& header, TagTable& tags,
+                                     const SignalCounts& counts,
                                      std::vector<std::string>& notices) {
-  return std::make_unique<WideRows>(lines, format, header, tags, notices);
+  return std::make_unique<WideRows>(lines, format, header, tags, counts, notices);
 }
 
 }  // namespace mpm::io

@@ -172,6 +172,12 @@ TEST_CASE("Long input streams past the rows read ahead") {
     REQUIRE(frames[i].interval == static_cast<std::int64_t>(i));
     REQUIRE(mv(frames[i], 0) == 2.0 * static_cast<double>(i));
   }
+  CsvReader csv = reader(text);
+  for (int i = 0; i < 5000; ++i) {
+    Frame fresh;  // of no size yet
+    REQUIRE(csv.next(fresh));
+    REQUIRE(mv(fresh, 0) == 2.0 * i);
+  }
 }
 
 TEST_CASE("Bad input is an error at its place") {
@@ -185,6 +191,8 @@ TEST_CASE("Bad input is an error at its place") {
       {"u1,u2,y1\n1,2,3\n", "d.csv:1:1: error: the first column must be `time`, not 'u1'"},
       {"time,u1,u3,y1\n0,1,2,3\n",
        "d.csv:1:1: error: the file does not hold mv 'u2' (did you mean 'u3'?)"},
+      {"time,u1,u2,temperature\n0,1,2,3\n",
+       "d.csv:1:1: error: the file does not hold cv 'y1'; it holds temperature"},
       {"time,u1\n0,1\n", "d.csv:1:1: error: the file does not hold mv 'u2', cv 'y1'"},
       {"time,u1,u2,y1,u1\n0,1,2,3,4\n",
        "d.csv:1:15: error: a second column 'u1'; the first is at column 6"},
