@@ -76,8 +76,12 @@ std::string domain_xml(const DomainOptions& options) {
   if (!options.partition.empty()) xml += "<Tag>" + escaped(options.partition) + "</Tag>";
   xml += "<LeaseDuration>5s</LeaseDuration>";
   xml += "<ExternalDomainId>" + std::to_string(options.domain) + "</ExternalDomainId>";
-  xml += "</Discovery><Internal><Watermarks><WhcHigh>" +
-         std::to_string(options.max_unacknowledged_kb) + " kB</WhcHigh></Watermarks></Internal>";
+  // Heartbeats ask for acknowledgements only in a pause of writing this long. By default that is
+  // 100 ms: a writer that writes more often keeps its whole history and repairs nothing.
+  xml += "</Discovery><Internal>";
+  xml += "<HeartbeatInterval min=\"1 ms\" minsched=\"1 ms\">1 ms</HeartbeatInterval>";
+  xml += "<Watermarks><WhcHigh>" + std::to_string(options.max_unacknowledged_kb) +
+         " kB</WhcHigh></Watermarks></Internal>";
   return xml;
 }
 

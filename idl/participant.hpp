@@ -9,14 +9,16 @@ namespace mpm::idl {
 
 /// Where on the network to meet the others.
 struct DomainOptions {
-  int domain = 0;                   ///< 0..230; above 100 ports collide with ephemeral ones
-  std::string interface = "lo";     ///< by name; empty = Cyclone's choice
-  std::vector<std::string> peers;   ///< host addresses beside this host
-  bool multicast = false;           ///< find others by multicast as well
-  std::string partition;            ///< discovery tag: only equal tags see each other
-  int max_participants = 60;        ///< processes of this domain on one host
-  int max_unacknowledged_kb = 500;  ///< a reliable writer waits for its readers above this
-  bool use_environment = false;     ///< CYCLONEDDS_URI, where set, overrides all but the domain
+  int domain = 0;                  ///< 0..230; above 100 ports collide with ephemeral ones
+  std::string interface = "lo";    ///< by name; empty = Cyclone's choice
+  std::vector<std::string> peers;  ///< host addresses beside this host
+  bool multicast = false;          ///< find others by multicast as well
+  std::string partition;           ///< discovery tag: only equal tags see each other
+  int max_participants = 60;       ///< processes of this domain on one host
+  /// A lossless writer waits for its readers above this. Small, so that no topic of a unit gets far
+  /// ahead of the others. Writers that keep only the last samples never wait.
+  int max_unacknowledged_kb = 32;
+  bool use_environment = false;  ///< CYCLONEDDS_URI, where set, overrides all but the domain
 };
 
 /// The configuration that `options` stand for, as Cyclone reads it.

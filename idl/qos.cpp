@@ -21,8 +21,8 @@ Qos reliable(dds_duration_t max_blocking_time) {
   return qos;
 }
 
-// Output writers wait for nobody (their watermark is out of reach, see DomainOptions), yet a
-// blocking time of 0 would fail instead of wait in the case that we got that wrong.
+// Output writers keep only the last samples, and such a writer never waits in Cyclone; this would
+// bound the wait if one did.
 constexpr dds_duration_t kOutputBlocking = DDS_MSECS(10);
 
 Qos transient_local(int writer_depth, int late_joiner_depth) {

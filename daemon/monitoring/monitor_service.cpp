@@ -11,8 +11,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{200};
 constexpr std::chrono::seconds kStatusPeriod{1};
-// The outputs keep the last samples of each channel; a writer must never wait on top of that.
-constexpr int kOutputWatermarkKb = 1024 * 1024;
 
 }  // namespace
 
@@ -23,7 +21,6 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
   std::map<std::string, Bus*> bus_of;  // by its settings
   for (const config::UnitConfig& unit : units) {
     idl::DomainOptions domain = domain_options(unit.dds);
-    domain.max_unacknowledged_kb = kOutputWatermarkKb;
     domain.use_environment = options.use_environment;
     Bus*& bus = bus_of[idl::domain_xml(domain)];
     if (bus == nullptr) {

@@ -36,9 +36,8 @@ long resident_kb() {
 
 TEST_CASE("a lossless writer at full speed loses nothing to a reader, in order, in flat memory") {
   constexpr int kFrames = 100'000;
-  DomainOptions options = test_domain("lossless");
+  const DomainOptions options = test_domain("lossless");
   const Participant reading(options);
-  options.max_unacknowledged_kb = 32;
   const Participant writing(options);
   SampleReaders readers(reading);
   WaitSet wait_set;
@@ -81,8 +80,36 @@ TEST_CASE("a lossless writer at full speed loses nothing to a reader, in order, 
   CHECK(resident_kb() - early_kb < 5000);
 }
 
+TEST_CASE("a writer that never pauses keeps no history for readers that follow") {
+  const DomainOptions options = test_domain("history");
+  const Participant reading(options), writing(options);
+  Reader<mpm_ChannelStatus> reader(reading, kChannelStatusTopic, channel_status_reader_qos(), 1024);
+  const Writer<mpm_ChannelStatus> writer(writing, kChannelStatusTopic, channel_status_writer_qos());
+  REQUIRE(eventually([&] { return writer.matched_readers() > 0; }));
+  const long before_kb = resident_kb();
+  int count = 0;
+  for (int k = 0; k < 300; ++k) {
+    for (int channel = 0; channel < 35; ++channel) {
+      std::string mv = std::to_string(channel), none;
+      mpm_ChannelStatus status{};
+      status.unit = status.cv = status.verdict = status.reason = none.data();
+      status.mv = mv.data();
+      REQUIRE(writer.write(status));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+    reader.take([&](const mpm_ChannelStatus&) { ++count; });
+  }
+  CHECK(eventually([&] {
+    reader.take([&](const mpm_ChannelStatus&) { ++count; });
+    return count >= 300 * 35;
+  }));
+  CHECK(count == 300 * 35);
+  WARN("history took " << resident_kb() - before_kb << " kB");
+  CHECK(resident_kb() - before_kb < 15'000);  // 45 MB if all is kept
+}
+
 TEST_CASE("a real-time writer is never held up by a reader that takes nothing") {
-  DomainOptions options = test_domain("realtime");
+  const DomainOptions options = test_domain("realtime");
   const Participant reading(options);
   const Participant writing(options);
   const SampleReaders frozen(reading);

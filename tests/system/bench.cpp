@@ -44,7 +44,7 @@ Bench::Bench(const std::string& test, const std::vector<std::string>& more,
              const std::vector<std::string>& environment)
     : options(idl::test_domain(test)),
       daemon(daemon_arguments(more), folder.file("mpmd.out"), folder.file("mpmd.err"), environment),
-      participant(throttled(options)),
+      participant(options),
       readers(participant) {
   INFO(read_file(folder.file("mpmd.err")));
   REQUIRE(observe([&] { return !health().unit.empty(); }));  // it is there

@@ -71,10 +71,6 @@ class Bench {
 
  private:
   [[nodiscard]] std::vector<std::string> daemon_arguments(const std::vector<std::string>& more);
-  static idl::DomainOptions throttled(idl::DomainOptions options) {
-    options.max_unacknowledged_kb = 32;
-    return options;
-  }
 };
 
 }  // namespace mpm::test
