@@ -2,10 +2,12 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "core/regression/rotation.hpp"
 #include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
@@ -40,8 +42,7 @@ ChannelTest::ChannelTest(const Shape& shape, double lambda, const LinearModel& m
       origin_(Eigen::VectorXd::Zero(shape.inputs)),
       last_input_(Eigen::VectorXd::Zero(shape.inputs)),
       row_(columns_),
-      evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs)),
-      covariance_(std::max(block_, 1), 1) {
+      evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs)) {
   if (shape.inputs < 1 || shape.cvs < 1 || shape.fir_lags < 1 || shape.residual_order < 1 ||
       shape.tail_poles.empty() || !(lambda > 0.0 && lambda <= 1.0))
     throw std::invalid_argument("impossible shape of the channel test");
@@ -94,9 +95,14 @@ ChannelTest::ChannelTest(const Shape& shape, double lambda, const LinearModel& m
   }
 
   const int all = shape.inputs * block_;
-  triangle_.setZero(all, all);
-  inverse_.setZero(all, all);
+  constexpr int kGranule = static_cast<int>(kRowGranule);
+  padded_ = (all + kGranule - 1) / kGranule * kGranule;
+  triangle_.setZero(padded_, padded_);
+  inverse_.setZero(padded_, padded_);
+  covariance_.setZero(block_, block_);
+  behind_.setZero(block_, all);
   norms_.setZero(all);
+  scales_.setZero(all);
   rotated_.setZero(all);
   estimate_.setZero(all);
   direction_.setZero(block_, shape.inputs);
@@ -227,24 +233,17 @@ void ChannelTest::evaluate_cv(int cv) {
   const GivensQr& factor = response.factor;
   const int all = shape_.inputs * block_;
 
-  for (int c = 0; c < all; ++c) norms_(c) = factor.centred_norm(lead_in_ + c);
+  factor.centred_norms(lead_in_, norms_);
+  for (int c = 0; c < all; ++c) scales_(c) = norms_(c) > 0.0 ? 1.0 / norms_(c) : 0.0;
   for (int i = 0; i < all; ++i) {
-    const double root = factor.root(lead_in_ + i);
-    for (int c = i; c < all; ++c)
-      triangle_(i, c) =
-          norms_(c) > 0.0 ? root * factor.unit_r(lead_in_ + i, lead_in_ + c) / norms_(c) : 0.0;
+    const Eigen::Map<const Eigen::RowVectorXd> row(factor.unit_row(lead_in_ + i), all - i);
+    triangle_.row(i).segment(i, all - i) =
+        (factor.root(lead_in_ + i) * row).cwiseProduct(scales_.tail(all - i).transpose());
     rotated_(i) = factor.z(lead_in_ + i, 0);
   }
-  for (int i = all - 1; i >= 0; --i) {
-    const double diagonal = norms_(i) > 0.0 ? std::max(triangle_(i, i), kOwnShare) : 1.0;
-    auto behind = inverse_.row(i).tail(all - 1 - i);
-    behind.setZero();
-    for (int c = i + 1; c < all; ++c)
-      inverse_.row(i).tail(all - c) -= triangle_(i, c) * inverse_.row(c).tail(all - c);
-    behind /= diagonal;
-    inverse_(i, i) = 1.0 / diagonal;
-    estimate_(i) = inverse_.row(i).tail(all - i).dot(rotated_.tail(all - i));
-  }
+  invert_triangle();
+  for (int i = 0; i < all; ++i)
+    estimate_(i) = inverse_.row(i).segment(i, all - i).dot(rotated_.tail(all - i));
 
   // A_j of the regression on everything, where everything can be told apart; otherwise of the one
   // on the residual lags alone: a loop without excitation makes inputs a function of residuals.
@@ -268,7 +267,7 @@ void ChannelTest::evaluate_cv(int cv) {
     }
     factor_covariance(i);
     whitened_ = estimate_.segment(at, block_);
-    solve_transposed(whitened_);
+    whiten(whitened_);
     evidence.numerator_freedom = block_;
     evidence.statistic = whitened_.squaredNorm() / (block_ * variance * inflation);
     evidence.p_value = f_upper_tail(evidence.statistic, evidence.numerator_freedom, freedom);
@@ -281,18 +280,14 @@ void ChannelTest::evaluate_cv(int cv) {
     functional_.head(at + block_).noalias() = triangle_.block(0, at, at + block_, block_) * beta_;
     const double alone = functional_.head(at + block_).squaredNorm();
     whitened_beta_ = beta_;
-    solve_transposed(whitened_beta_);
+    whiten(whitened_beta_);
     const double information = whitened_beta_.squaredNorm();
     const double spread = std::sqrt(variance * inflation);
     evidence.excitation_index = spread / std::sqrt(information);
     evidence.excitation_index_alone = spread / std::sqrt(alone);
     evidence.gain_error_ratio =
         information > 0.0 ? whitened_beta_.dot(whitened_) / information : 0.0;
-    for (int r = block_ - 1; r >= 0; --r) {
-      for (int c = r + 1; c < block_; ++c)
-        whitened_beta_(r) -= covariance_.r(r, c) * whitened_beta_(c);
-      whitened_beta_(r) /= covariance_.r(r, r);
-    }
+    whiten_transposed(whitened_beta_);
     direction_.col(i) = whitened_beta_;
   }
   for (int i = 0; i < shape_.inputs; ++i) {
@@ -316,22 +311,64 @@ double ChannelTest::reference_gain(int cv, int input) const {
   return largest / norms_(input * block_);
 }
 
-void ChannelTest::factor_covariance(int input) {
-  const int all = shape_.inputs * block_;
-  const int at = input * block_;
-  covariance_.clear();
-  for (int c = at; c < all; ++c) {
-    double* out = covariance_.row();
-    for (int r = 0; r < block_; ++r) out[r] = inverse_(at + r, c);
-    out[block_] = 0.0;
-    covariance_.update(1.0);
+void ChannelTest::invert_triangle() {
+  constexpr int kGranule = static_cast<int>(kRowGranule);
+  std::array<const double*, kRowGranule> rows{};
+  for (int i = shape_.inputs * block_ - 1; i >= 0; --i) {
+    double* out = inverse_.row(i).data();
+    std::fill(out + i + 1, out + padded_, 0.0);
+    int c = i + 1;
+    for (; c % kGranule != 0; ++c) {
+      const double* row = inverse_.row(c).data();
+      project_row(row + c, out + c, static_cast<std::size_t>(padded_ - c), triangle_(i, c));
+    }
+    for (; c < padded_; c += kGranule) {  // row c has zeros before column c
+      for (int a = 0; a < kGranule; ++a)
+        rows[static_cast<std::size_t>(a)] = inverse_.row(c + a).data() + c;
+      project_rows(rows.data(), out + c, static_cast<std::size_t>(padded_ - c),
+                   triangle_.row(i).data() + c);
+    }
+    const double inverse = 1.0 / (norms_(i) > 0.0 ? std::max(triangle_(i, i), kOwnShare) : 1.0);
+    for (int k = i + 1; k < padded_; ++k) out[k] *= inverse;
+    out[i] = inverse;
   }
 }
 
-void ChannelTest::solve_transposed(Eigen::Ref<Eigen::VectorXd> x) const {
+void ChannelTest::factor_covariance(int input) {
+  const int at = input * block_;
+  const int behind = (shape_.inputs - 1 - input) * block_;
+  covariance_ = inverse_.block(at, at, block_, block_);
+  if (behind == 0) return;
+  behind_.leftCols(behind) = inverse_.block(at, at + block_, block_, behind);
+  // Last row first: the rows above have nothing in the triangle's columns that are done.
+  for (int r = block_ - 1; r >= 0; --r) {
+    auto row = behind_.row(r).head(behind);
+    const double own = covariance_(r, r);
+    const double norm = std::sqrt(own * own + row.squaredNorm());
+    const double first = own + norm;  // own > 0; the reflector is [first, row]
+    const double scale = 1.0 / (norm * first);
+    for (int c = 0; c < r; ++c) {
+      auto other = behind_.row(c).head(behind);
+      const double share = (covariance_(c, r) * first + other.dot(row)) * scale;
+      covariance_(c, r) -= share * first;
+      other -= share * row;
+    }
+    covariance_(r, r) = -norm;
+  }
+}
+
+void ChannelTest::whiten(Eigen::Ref<Eigen::VectorXd> x) const {
+  for (int r = block_ - 1; r >= 0; --r) {
+    const int rest = block_ - 1 - r;
+    x(r) = (x(r) - covariance_.row(r).tail(rest).dot(x.tail(rest))) / covariance_(r, r);
+  }
+}
+
+void ChannelTest::whiten_transposed(Eigen::Ref<Eigen::VectorXd> x) const {
   for (int r = 0; r < block_; ++r) {
-    for (int c = 0; c < r; ++c) x(r) -= covariance_.r(c, r) * x(c);
-    x(r) /= covariance_.r(r, r);
+    const int rest = block_ - 1 - r;
+    x(r) /= covariance_(r, r);
+    x.tail(rest) -= x(r) * covariance_.row(r).tail(rest).transpose();
   }
 }
 

@@ -39,8 +39,8 @@ struct ChannelEvidence {
 /// W1 / W2 and has W1^2 / W2 - columns degrees of freedom.
 ///
 /// The factor is never squared: with R_t the trailing triangle of all inputs' columns and
-/// T = R_t^-1, the factor S of block i's covariance (S'S = T_i T_i', T_i the block's rows of T)
-/// comes from rotating T_i's columns into a triangle.
+/// T = R_t^-1, the factor S of block i's covariance (S S' = T_i T_i', T_i the block's rows of T)
+/// comes from reflecting what T_i has behind the block into the block's own triangle.
 class ChannelTest {
  public:
   struct Shape {
@@ -100,9 +100,11 @@ class ChannelTest {
   void build_row();
   void take_row(int cv, double residual);
   void evaluate_cv(int cv);
+  void invert_triangle();
   void factor_covariance(int input);
-  /// x <- S'^-1 x
-  void solve_transposed(Eigen::Ref<Eigen::VectorXd> x) const;
+  /// x <- S^-1 x and x <- S'^-1 x
+  void whiten(Eigen::Ref<Eigen::VectorXd> x) const;
+  void whiten_transposed(Eigen::Ref<Eigen::VectorXd> x) const;
   void signature_coefficients(int cv, int input, Eigen::Ref<Eigen::VectorXd> beta) const;
   /// The gain-error estimate of an input (of the CV last evaluated) as weights on the factor's
   /// rotated responses; two such estimates are correlated as these vectors are.
@@ -132,12 +134,15 @@ class ChannelTest {
 
   // Work space of evaluate_cv.
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  RowMajor triangle_;          // R_t, columns scaled to norm 1
-  RowMajor inverse_;           // T
-  Eigen::VectorXd norms_;      // the columns' scales
+  int padded_;                 // columns of all inputs, rounded up to whole granules
+  RowMajor triangle_;          // R_t, columns scaled to norm 1; padded with zeros
+  RowMajor inverse_;           // T, likewise
+  Eigen::VectorXd norms_;      // of the columns
+  Eigen::VectorXd scales_;     // 1 / norms_
   Eigen::VectorXd rotated_;    // the CV's rotated responses of those rows
   Eigen::VectorXd estimate_;   // scaled coefficients
-  GivensQr covariance_;        // S: S'S = T_i T_i', covariance of block i's scaled coefficients
+  RowMajor covariance_;        // S: S S' = T_i T_i', covariance of block i's scaled coefficients
+  RowMajor behind_;            // of T_i, columns behind the block; then their reflectors
   Eigen::MatrixXd direction_;  // B x m: weights of the gain-error estimate on the block
   Eigen::VectorXd beta_, whitened_, whitened_beta_;
   Eigen::VectorXd functional_, other_functional_;

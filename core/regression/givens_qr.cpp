@@ -164,6 +164,18 @@ double GivensQr::centred_norm(int j) const {
   return std::sqrt(sum);
 }
 
+void GivensQr::centred_norms(int first, Eigen::Ref<Eigen::VectorXd> norms) const {
+  const int end = first + static_cast<int>(norms.size());
+  norms.setZero();
+  for (int i = 1; i < end; ++i) {
+    const double weight = weights_[static_cast<std::size_t>(i)];
+    const int begin = std::max(first, i);
+    const double* row = entry(i, begin);
+    for (int j = begin; j < end; ++j, ++row) norms(j - first) += weight * *row * *row;
+  }
+  norms = norms.cwiseSqrt();
+}
+
 void GivensQr::solve(int response, int leading, Eigen::Ref<Eigen::VectorXd> coefficients) const {
   for (int i = leading - 1; i >= 0; --i) {
     const double diagonal = root(i);

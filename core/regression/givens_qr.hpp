@@ -75,6 +75,8 @@ class GivensQr {
     return std::sqrt(weights_[static_cast<std::size_t>(i)]);
   }
   [[nodiscard]] double unit_r(int i, int j) const { return *entry(i, j); }
+  /// unit_r(i, i), unit_r(i, i + 1), ...
+  [[nodiscard]] const double* unit_row(int i) const { return entry(i, i); }
   /// Residual sum of squares of a response.
   [[nodiscard]] double residual_square(int response) const {
     return squares_[static_cast<std::size_t>(response)];
@@ -90,6 +92,8 @@ class GivensQr {
   /// Root of the weighted sum of squares of column j after the intercept (column 0) is projected
   /// off: the scale against which its diagonal entry is judged.
   [[nodiscard]] double centred_norm(int j) const;
+  /// The same of the columns from `first` (>= 1) on, as many as `norms` has.
+  void centred_norms(int first, Eigen::Ref<Eigen::VectorXd> norms) const;
 
   /// Least-squares coefficients of one response into `coefficients` (`leading` long). Columns
   /// whose diagonal is at most kNegligible times their largest entry are left out (coefficient 0).

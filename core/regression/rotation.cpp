@@ -14,6 +14,7 @@ struct Kernels {
   decltype(&kernels_base::eliminate_rows) eliminate_rows;
   decltype(&kernels_base::blend_row) blend_row;
   decltype(&kernels_base::project_row) project_row;
+  decltype(&kernels_base::project_rows) project_rows;
 };
 
 Kernels pick_kernels() {
@@ -22,14 +23,14 @@ Kernels pick_kernels() {
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
       __builtin_cpu_supports("avx512cd"))
     return {kernels_v4::rotate_rows, kernels_v4::eliminate_row, kernels_v4::eliminate_rows,
-            kernels_v4::blend_row, kernels_v4::project_row};
+            kernels_v4::blend_row,   kernels_v4::project_row,   kernels_v4::project_rows};
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
       __builtin_cpu_supports("bmi2"))
     return {kernels_v3::rotate_rows, kernels_v3::eliminate_row, kernels_v3::eliminate_rows,
-            kernels_v3::blend_row, kernels_v3::project_row};
+            kernels_v3::blend_row,   kernels_v3::project_row,   kernels_v3::project_rows};
 #endif
   return {kernels_base::rotate_rows, kernels_base::eliminate_row, kernels_base::eliminate_rows,
-          kernels_base::blend_row, kernels_base::project_row};
+          kernels_base::blend_row,   kernels_base::project_row,   kernels_base::project_rows};
 }
 
 const Kernels kKernels = pick_kernels();
@@ -71,6 +72,10 @@ void blend_row(double* r, double* x, std::size_t count, double entry, double gai
 
 void project_row(const double* r, double* x, std::size_t count, double entry) {
   kKernels.project_row(r, x, count, entry);
+}
+
+void project_rows(const double* const* r, double* x, std::size_t count, const double* entries) {
+  kKernels.project_rows(r, x, count, entries);
 }
 
 }  // namespace mpm

@@ -37,5 +37,7 @@ void eliminate_rows(double* const* r, double* x, std::size_t count, const double
 void blend_row(double* r, double* x, std::size_t count, double entry, double gain, double kept);
 /// Only x' = x - entry r.
 void project_row(const double* r, double* x, std::size_t count, double entry);
+/// The same with kRowGranule rows one after the other, in one pass.
+void project_rows(const double* const* r, double* x, std::size_t count, const double* entries);
 
 }  // namespace mpm

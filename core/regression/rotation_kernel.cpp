@@ -74,4 +74,23 @@ void project_row(const double* __restrict r, double* __restrict x, std::size_t c
   for (std::size_t i = 0; i < count; ++i) x[i] = x[i] - entry * r[i];
 }
 
+void project_rows(const double* const* r, double* __restrict x, std::size_t count,
+                  const double* entries) {
+  const double *r0 = r[0], *r1 = r[1], *r2 = r[2], *r3 = r[3];
+  const double *r4 = r[4], *r5 = r[5], *r6 = r[6], *r7 = r[7];
+  const double e0 = entries[0], e1 = entries[1], e2 = entries[2], e3 = entries[3];
+  const double e4 = entries[4], e5 = entries[5], e6 = entries[6], e7 = entries[7];
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    double left = x[i] - e0 * r0[i];
+    left = left - e1 * r1[i];
+    left = left - e2 * r2[i];
+    left = left - e3 * r3[i];
+    left = left - e4 * r4[i];
+    left = left - e5 * r5[i];
+    left = left - e6 * r6[i];
+    x[i] = left - e7 * r7[i];
+  }
+}
+
 }  // namespace mpm::MPM_KERNEL_SET

@@ -12,6 +12,7 @@
                       const double* gains);                                                        \
   void blend_row(double* r, double* x, std::size_t count, double entry, double gain, double kept); \
   void project_row(const double* r, double* x, std::size_t count, double entry);                   \
+  void project_rows(const double* const* r, double* x, std::size_t count, const double* entries);  \
   }
 
 MPM_DECLARE_KERNELS(kernels_base)

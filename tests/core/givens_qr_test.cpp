@@ -139,7 +139,8 @@ TEST_CASE("information that appears late replaces what rounding left") {
 
 TEST_CASE("every instruction set gives the same bits") {
   constexpr std::size_t kCount = 173;
-  const auto run = [](auto rotate, auto eliminate, auto eliminate_eight, auto blend, auto project) {
+  const auto run = [](auto rotate, auto eliminate, auto eliminate_eight, auto blend, auto project,
+                      auto project_eight) {
     std::vector<double> x(kCount), rows(8 * kCount);
     for (std::size_t i = 0; i < kCount; ++i) x[i] = test::uniform(1, static_cast<std::int64_t>(i));
     for (std::size_t i = 0; i < 8 * kCount; ++i)
@@ -156,19 +157,22 @@ TEST_CASE("every instruction set gives the same bits") {
     eliminate_eight(r, x.data(), kCount, entries, gains);
     blend(r[2], x.data(), kCount, 0.1, 0.2, 0.9);
     project(r[3], x.data(), kCount, 0.4);
+    project_eight(r, x.data(), kCount, entries);
     rows.insert(rows.end(), x.begin(), x.end());
     return rows;
   };
   const std::vector<double> base =
       run(kernels_base::rotate_rows, kernels_base::eliminate_row, kernels_base::eliminate_rows,
-          kernels_base::blend_row, kernels_base::project_row);
+          kernels_base::blend_row, kernels_base::project_row, kernels_base::project_rows);
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2"))
     CHECK(base == run(kernels_v3::rotate_rows, kernels_v3::eliminate_row,
-                      kernels_v3::eliminate_rows, kernels_v3::blend_row, kernels_v3::project_row));
+                      kernels_v3::eliminate_rows, kernels_v3::blend_row, kernels_v3::project_row,
+                      kernels_v3::project_rows));
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
     CHECK(base == run(kernels_v4::rotate_rows, kernels_v4::eliminate_row,
-                      kernels_v4::eliminate_rows, kernels_v4::blend_row, kernels_v4::project_row));
+                      kernels_v4::eliminate_rows, kernels_v4::blend_row, kernels_v4::project_row,
+                      kernels_v4::project_rows));
 #endif
   CHECK(base.size() == 9 * kCount);
 }
