@@ -1,0 +1,59 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "tests/idl/test_domain.hpp"
+#include "tests/system/process.hpp"
+
+namespace mpm::test {
+namespace {
+
+const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
+
+// The daemon judges what mpmsim publishes; detect judges what mpmsim writes with the same seed.
+void check_same_answer(const std::string& scenario, const std::string& seed) {
+  constexpr int kSamples = 900;
+  constexpr int kChannels = 9;
+  TemporaryFolder folder;
+  const idl::DomainOptions domain = idl::test_domain("same_answer");
+  const std::vector<std::string> simulate = {"mpmsim",       "--config",  kUnit,
+                                             "--scenario",   scenario,    "--seed",
+                                             seed,           "--samples", std::to_string(kSamples),
+                                             "--start-time", "0"};
+
+  std::vector<std::string> to_file = simulate;
+  to_file.insert(to_file.end(), {"--csv", folder.file("run.csv")});
+  REQUIRE(run(to_file, folder.file("sim.out"), folder.file("sim.err")) == 0);
+  REQUIRE(run({"mpm", "detect", "--config", kUnit, "--data", folder.file("run.csv"), "--journal",
+               folder.file("detect.jsonl")},
+              folder.file("detect.out"), folder.file("detect.err")) == 0);
+
+  Process daemon({"mpmd", "--config", kUnit, "--partition", domain.partition, "--journal",
+                  folder.file("live.jsonl")},
+                 folder.file("mpmd.out"), folder.file("mpmd.err"));
+  std::vector<std::string> to_bus = simulate;
+  to_bus.insert(to_bus.end(),
+                {"--speed", "0", "--wait-readers", "20", "--partition", domain.partition});
+  REQUIRE(run(to_bus, folder.file("bus.out"), folder.file("bus.err")) == 0);
+
+  const std::string expected = read_file(folder.file("detect.jsonl"));
+  REQUIRE(lines_of(expected).size() >= kSamples * kChannels);
+  CHECK(idl::eventually(
+      [&] { return read_file(folder.file("live.jsonl")).size() >= expected.size(); },
+      std::chrono::seconds(20)));
+  const bool identical = read_file(folder.file("live.jsonl")) == expected;
+  CHECK(identical);  // byte for byte; not printed: megabytes
+  daemon.send(SIGTERM);
+  CHECK(daemon.wait(std::chrono::seconds(5)) == 0);
+
+  const bool alarmed = expected.find("\"record\":\"alarm\"") != std::string::npos;
+  CHECK(alarmed == (scenario != "none"));
+}
+
+TEST_CASE("mpm detect on a file and the daemon on DDS give the same bytes") {
+  // Seed 5 of hidden_gain has its alarm within 900 samples; with nothing hidden there is none.
+  check_same_answer("hidden_gain", "5");
+  check_same_answer("none", "5");
+}
+
+}  // namespace
+}  // namespace mpm::test
