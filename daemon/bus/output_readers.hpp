@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -34,7 +35,11 @@ using Output = std::variant<LayoutRecord, ChannelRecord, AlarmStateRecord, Alarm
 /// Reads what daemons say, in the order in which they said it.
 class OutputReaders {
  public:
-  explicit OutputReaders(const idl::Participant& participant);
+  enum class Scope {
+    kEverything,
+    kAlarms,  ///< the alarm topics only: no other reader exists
+  };
+  explicit OutputReaders(const idl::Participant& participant, Scope scope = Scope::kEverything);
 
   void attach_to(idl::WaitSet& wait_set) const;
   /// Takes what is there; valid until the next call.
@@ -43,11 +48,11 @@ class OutputReaders {
  private:
   void add(std::int64_t written_ns, Output output);
 
-  idl::Reader<mpm_Layout> layout_;
-  idl::Reader<mpm_ChannelStatus> channel_status_;
   idl::Reader<mpm_Alarm> alarm_;
   idl::Reader<mpm_AlarmEvent> alarm_event_;
-  idl::Reader<mpm_Health> health_;
+  std::optional<idl::Reader<mpm_Layout>> layout_;
+  std::optional<idl::Reader<mpm_ChannelStatus>> channel_status_;
+  std::optional<idl::Reader<mpm_Health>> health_;
   std::vector<std::pair<std::int64_t, Output>> taken_;
   std::vector<Output> sorted_;
 };

@@ -45,10 +45,14 @@ int watch(const WatchOptions& options) {
   StopSignal stop;
   set_up_logging("warning");
   const idl::Participant participant(options.domain);
-  OutputReaders readers(participant);
+  // The table also shows the health; lines and JSON of alarms need nothing but alarms.
+  const ViewMode mode = mode_of(options);
+  OutputReaders readers(participant, options.alarms_only && mode != ViewMode::kTable
+                                         ? OutputReaders::Scope::kAlarms
+                                         : OutputReaders::Scope::kEverything);
   idl::WaitSet wait_set;
   readers.attach_to(wait_set);
-  Viewer viewer(mode_of(options), {wants_color(options), options.alarms_only}, options.unit);
+  Viewer viewer(mode, {wants_color(options), options.alarms_only}, options.unit);
 
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(options.for_s));
