@@ -13,6 +13,8 @@ namespace {
 // earlier columns are rotated off is rounding noise: |x| <= 64 eps * max |x| is taken for 0.
 constexpr double kNoise = 64 * 2.220446049250313e-16;
 
+using Granule = Eigen::Array<double, static_cast<int>(kRowGranule), 1>;
+
 // Of a stored row at least this much must be kept for r + s x' to lose no more than a digit.
 constexpr double kMostlyKept = 0.1;
 
@@ -47,18 +49,23 @@ GivensQr::GivensQr(int columns, int responses) : columns_(columns), responses_(r
   products_.assign(static_cast<std::size_t>(responses), 0.0);
 }
 
-GivensQr::Share GivensQr::weigh(int i, double lambda, double entry, double& row_weight) {
-  const auto s = static_cast<std::size_t>(i);
-  double& weight = weights_[s];
+double GivensQr::denoised(int column, double entry) const {
+  return std::abs(entry) <= kNoise * magnitudes_[static_cast<std::size_t>(column)] ? 0.0 : entry;
+}
+
+// With q = 1 / w, w' = w lambda d / d' reads q' = q + x_i^2 / (lambda d): entry after entry only an
+// addition has to wait for the one before, no division.
+GivensQr::Share GivensQr::weigh(int i, double lambda, double entry, double& inverse_row_weight) {
+  double& weight = weights_[static_cast<std::size_t>(i)];
   const double faded = lambda * weight;
-  const double taken =
-      std::abs(entry) <= kNoise * magnitudes_[s] ? 0.0 : row_weight * entry * entry;
+  const double square = entry * entry;
+  const double row_weight = 1.0 / inverse_row_weight;
+  const double taken = row_weight * square;
   weight = faded + taken;
-  if (!(taken > 0.0)) return {0.0, 0.0, 1.0};
+  if (!(taken > 0.0)) return {0.0, 1.0};
+  inverse_row_weight += square / faded;
   const double inverse = 1.0 / weight;
-  const Share share{entry, row_weight * entry * inverse, faded * inverse};
-  row_weight *= share.kept;
-  return share;
+  return {row_weight * entry * inverse, faded * inverse};
 }
 
 void GivensQr::update(double lambda) {
@@ -74,45 +81,53 @@ void GivensQr::update(double lambda) {
   std::array<double, kRowGranule> entries{};
   std::array<double, kRowGranule> gains{};
   std::array<double, kRowGranule> kept{};
-  double row_weight = 1.0;
+  std::array<Granule, kRowGranule> heads;
+  double inverse_row_weight = 1.0;
   int i = 0;
   for (; i + kGroup <= columns_; i += kGroup) {
     // The triangle of the group's own columns first, then all columns behind it in one pass.
-    double* head = x + i;
+    // Stored entries left of the diagonal are 0, which all eight lanes of an operation preserve.
+    Granule head = Eigen::Map<const Granule>(x + i);
+#pragma GCC unroll 8
+    for (std::size_t a = 0; a < kRowGranule; ++a) {
+      rows[a] = factor_.get() + offsets_[static_cast<std::size_t>(i) + a];
+      const auto lane = static_cast<Eigen::Index>(a);
+      entries[a] = denoised(i + static_cast<int>(a), head(lane));
+      heads[a] = head;
+      head -= entries[a] * Eigen::Map<const Granule>(rows[a]);
+      head(lane) = 0.0;
+    }
     double least_kept = 1.0;
-    for (int a = 0; a < kGroup; ++a) {
-      const auto s = static_cast<std::size_t>(a);
-      double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i + a)];
-      const Share share = weigh(i + a, lambda, head[a], row_weight);
-      for (int b = a + 1; b < kGroup; ++b) {
-        const double old = head[b];
-        head[b] = old - share.entry * stored[b];
-        stored[b] = share.kept * stored[b] + share.gain * old;
-      }
-      stored[a] = 1.0;
-      rows[s] = stored + kGroup;
-      entries[s] = share.entry;
-      gains[s] = share.gain;
-      kept[s] = share.kept;
+    for (std::size_t a = 0; a < kRowGranule; ++a) {
+      const Share share = weigh(i + static_cast<int>(a), lambda, entries[a], inverse_row_weight);
+      Eigen::Map<Granule> stored(rows[a]);
+      stored = share.kept * stored + share.gain * heads[a];
+      rows[a][a] = 1.0;
+      rows[a] += kRowGranule;
+      gains[a] = share.gain;
+      kept[a] = share.kept;
       least_kept = std::min(least_kept, share.kept);
     }
-    const std::size_t rest = width_ - static_cast<std::size_t>(i + kGroup);
+    double* behind = x + i + kGroup;
+    const std::size_t count = width_ - static_cast<std::size_t>(i + kGroup);
     if (least_kept >= kMostlyKept) {
-      eliminate_rows(rows.data(), head + kGroup, rest, entries.data(), gains.data());
+      eliminate_rows(rows.data(), behind, count, entries.data(), gains.data());
     } else {
       for (std::size_t a = 0; a < kRowGranule; ++a)
-        blend_row(rows[a], head + kGroup, rest, entries[a], gains[a], kept[a]);
+        blend_row(rows[a], behind, count, entries[a], gains[a], kept[a]);
     }
   }
   for (; i < columns_; ++i) {
     const std::size_t begin = row_begin(i);
     double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i)];
-    const Share share = weigh(i, lambda, x[i], row_weight);
-    blend_row(stored, x + begin, width_ - begin, share.entry, share.gain, share.kept);
+    const double entry = denoised(i, x[i]);
+    const Share share = weigh(i, lambda, entry, inverse_row_weight);
+    blend_row(stored, x + begin, width_ - begin, entry, share.gain, share.kept);
     stored[static_cast<std::size_t>(i) - begin] = 1.0;
     x[i] = 0.0;
   }
 
+  const double row_weight = 1.0 / inverse_row_weight;
   const double* left = x + columns_;
   for (int k = 0; k < responses_; ++k) {
     const auto s = static_cast<std::size_t>(k);
@@ -124,21 +139,37 @@ void GivensQr::update(double lambda) {
 GivensQr::Preview GivensQr::preview(double lambda) {
   double* x = preview_row_.get();
   std::copy_n(row_.get(), width_, x);
-  Preview result;
-  for (int i = 0; i < columns_; ++i) {
+  constexpr int kGroup = static_cast<int>(kRowGranule);
+  std::array<const double*, kRowGranule> rows{};
+  std::array<double, kRowGranule> entries{};
+  double inverse_share = 1.0;
+  const auto take = [&](int i, double entry) {
     const auto s = static_cast<std::size_t>(i);
-    const double entry = x[i];
-    if (std::abs(entry) <= kNoise * std::max(magnitudes_[s], std::abs(row_[s]))) continue;
-    const double taken = result.share * entry * entry;
-    const double faded = lambda * weights_[s];
-    if (!(taken > 0.0)) continue;
-    result.share *= faded / (faded + taken);
+    if (std::abs(entry) <= kNoise * std::max(magnitudes_[s], std::abs(row_[s]))) return 0.0;
+    const double square = entry * entry;
+    if (square > 0.0) inverse_share += square / (lambda * weights_[s]);
+    return entry;
+  };
+  int i = 0;
+  for (; i + kGroup <= columns_; i += kGroup) {
+    Granule head = Eigen::Map<const Granule>(x + i);
+#pragma GCC unroll 8
+    for (std::size_t a = 0; a < kRowGranule; ++a) {
+      const double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i) + a];
+      entries[a] = take(i + static_cast<int>(a), head(static_cast<Eigen::Index>(a)));
+      head -= entries[a] * Eigen::Map<const Granule>(stored);
+      rows[a] = stored + kRowGranule;
+    }
+    project_rows(rows.data(), x + i + kGroup, width_ - static_cast<std::size_t>(i + kGroup),
+                 entries.data());
+  }
+  for (; i < columns_; ++i) {
     const std::size_t begin = row_begin(i);
-    project_row(factor_.get() + offsets_[s], x + begin, width_ - begin, entry);
+    project_row(factor_.get() + offsets_[static_cast<std::size_t>(i)], x + begin, width_ - begin,
+                take(i, x[i]));
     x[i] = 0.0;
   }
-  result.error = x[columns_];
-  return result;
+  return {x[columns_], 1.0 / inverse_share};
 }
 
 void GivensQr::scale(double factor) {

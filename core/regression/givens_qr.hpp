@@ -117,13 +117,14 @@ class GivensQr {
            row_begin(i);
   }
 
+  /// The row's entry in a column, 0 where it is noise.
+  [[nodiscard]] double denoised(int column, double entry) const;
   /// Coefficients of the rotation of the row's entry x_i into stored row i.
   struct Share {
-    double entry;  // x_i, 0 where it is noise
-    double gain;   // s
-    double kept;   // lambda d / d'
+    double gain;  // s
+    double kept;  // lambda d / d'
   };
-  Share weigh(int i, double lambda, double entry, double& row_weight);
+  Share weigh(int i, double lambda, double entry, double& inverse_row_weight);
 
   int columns_;
   int responses_;
