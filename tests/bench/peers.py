@@ -31,19 +31,55 @@ def random_rows(mvs, cvs, g, count, chosen, seed=1):
     return np.stack(x, axis=1), np.stack(y, axis=1)
 
 
-class Rls:
-    """Recursive least squares in P form: one P per MV for all its right-hand sides.
+def residual_sums(squares, products, lam, error, leverage):
+    """Forgets and adds what one row leaves, a priori times a posteriori error."""
+    after = error * (lam / (lam + leverage))[:, None]
+    squares *= lam
+    squares += after * error
+    products *= lam
+    products += after[:, :1] * error
 
-    As fast as numpy allows: P and the coefficients lie side by side, as both are multiplied by x'
-    and get a rank-one update with the same left factor; P is kept as P lambda^k, so that forgetting
-    costs no pass; everything is in place; einsum, because it beats BLAS at these shapes. All MVs in
-    one call where that fits the cache, else MV by MV.
+
+class PlainRls:
+    """Recursive least squares as numpy users write it, in place and for all right-hand sides of an
+    MV at once: matrix products by BLAS, P and the coefficients apart."""
+
+    def __init__(self, mvs, columns, responses, lam):
+        self.lam = lam
+        self.p = np.tile(np.eye(columns), (mvs, 1, 1))
+        self.coefficients = np.zeros((mvs, columns, responses))
+        self.squares = np.zeros((mvs, responses))
+        self.products = np.zeros((mvs, responses))
+        self.correlations = np.zeros((mvs, responses))
+        self.error = np.empty((mvs, responses))
+        self.leverage = np.empty(mvs)
+
+    def step(self, x, y):
+        for i, (p, coefficients) in enumerate(zip(self.p, self.coefficients)):
+            px = p @ x[i]
+            self.leverage[i] = x[i] @ px
+            gain = px / (self.lam + self.leverage[i])
+            self.error[i] = y[i] - x[i] @ coefficients
+            coefficients += np.outer(gain, self.error[i])
+            p -= np.outer(gain, px)
+            p *= 1.0 / self.lam
+        residual_sums(self.squares, self.products, self.lam, self.error, self.leverage)
+        np.divide(self.products, np.sqrt(self.squares * self.squares[:, :1]), out=self.correlations)
+
+
+class Rls:
+    """The same, as fast as numpy allows.
+
+    P and the coefficients lie side by side, as both are multiplied by x' and get a rank-one update
+    with the same left factor; P is kept as P lambda^k, so that forgetting costs no pass; einsum,
+    because it beats BLAS at these shapes. All MVs in one call where that fits the cache, else MV by
+    MV.
     """
 
     def __init__(self, mvs, columns, responses, lam, batched):
         self.lam, self.columns, self.batched = lam, columns, batched
         self.both = np.zeros((mvs, columns, columns + responses))
-        self.both[:, np.arange(columns), np.arange(columns)] = 1e3
+        self.both[:, np.arange(columns), np.arange(columns)] = 1.0
         self.scale = 1.0  # P = both[..., :columns] * scale
         self.row = np.empty((mvs, columns + responses))
         self.gain = np.empty((mvs, columns))
@@ -77,13 +113,7 @@ class Rls:
 
     def step(self, x, y):
         error, leverage = self.train(x, y)
-        share = self.lam / (self.lam + leverage)[:, None]  # a posteriori / a priori error
-        np.multiply(error, share, out=self.term)
-        self.products *= self.lam
-        self.products += self.term[:, :1] * error
-        self.term *= error
-        self.squares *= self.lam
-        self.squares += self.term
+        residual_sums(self.squares, self.products, self.lam, error, leverage)
         np.multiply(self.squares, self.squares[:, :1], out=self.term)
         np.sqrt(self.term, out=self.term)
         np.divide(self.products, self.term, out=self.correlations)
