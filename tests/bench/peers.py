@@ -58,10 +58,11 @@ class PlainRls:
         for i, (p, coefficients) in enumerate(zip(self.p, self.coefficients)):
             px = p @ x[i]
             self.leverage[i] = x[i] @ px
-            gain = px / (self.lam + self.leverage[i])
+            root = np.sqrt(self.lam + self.leverage[i])
+            px /= root
             self.error[i] = y[i] - x[i] @ coefficients
-            coefficients += np.outer(gain, self.error[i])
-            p -= np.outer(gain, px)
+            coefficients += np.outer(px, self.error[i] / root)
+            p -= np.outer(px, px)  # symmetric to the bit, or it diverges after 30 000 rows
             p *= 1.0 / self.lam
         residual_sums(self.squares, self.products, self.lam, self.error, self.leverage)
         np.divide(self.products, np.sqrt(self.squares * self.squares[:, :1]), out=self.correlations)
@@ -82,7 +83,7 @@ class Rls:
         self.both[:, np.arange(columns), np.arange(columns)] = 1.0
         self.scale = 1.0  # P = both[..., :columns] * scale
         self.row = np.empty((mvs, columns + responses))
-        self.gain = np.empty((mvs, columns))
+        self.right = np.empty((mvs, columns + responses))
         self.work = np.empty((mvs if batched else 1, columns, columns + responses))
         self.squares = np.zeros((mvs, responses))
         self.products = np.zeros((mvs, responses))
@@ -90,21 +91,19 @@ class Rls:
         self.correlations = np.zeros((mvs, responses))
 
     def train(self, x, y):
-        p, both, row, gain = self.columns, self.both, self.row, self.gain
+        p, both, row = self.columns, self.both, self.row
         np.einsum("mi,mij->mj", x, both, out=row)  # [(P x)', prediction]
-        np.multiply(row[:, :p], self.scale, out=gain)
-        leverage = np.einsum("mi,mi->m", x, gain)
-        gain /= (self.lam + leverage)[:, None]
+        leverage = self.scale * np.einsum("mi,mi->m", x, row[:, :p])
         error = row[:, p:]
-        np.subtract(y, error, out=error)
-        np.negative(row[:, :p], out=row[:, :p])
+        np.subtract(error, y, out=error)
+        np.multiply(row, np.sqrt(self.scale / (self.lam + leverage))[:, None], out=self.right)
         if self.batched:
-            np.einsum("mi,mj->mij", gain, row, out=self.work)
-            both += self.work
+            np.einsum("mi,mj->mij", self.right[:, :p], self.right, out=self.work)
+            both -= self.work
         else:
-            for own, left, right in zip(both, gain, row):
-                np.einsum("i,j->ij", left, right, out=self.work[0])
-                own += self.work[0]
+            for own, right in zip(both, self.right):
+                np.einsum("i,j->ij", right[:p], right, out=self.work[0])
+                own -= self.work[0]
         self.scale /= self.lam
         if self.scale > 1e100:
             both[:, :, :p] *= self.scale
@@ -128,14 +127,13 @@ def batch_correlations(x, y):
 
 
 def median_us(step, seconds, inputs):
-    """Median microseconds of step(*input), cycling through the inputs, in batches of >= 0.2 ms."""
+    """Median microseconds of step(*next(inputs)), in batches of >= 0.2 ms."""
     begin = time.perf_counter()
-    batch, times, at = 1, [], 0
+    batch, times = 1, []
     while not times or time.perf_counter() - begin < seconds:
         start = time.perf_counter()
         for _ in range(batch):
-            step(*inputs[at])
-            at = at + 1 if at + 1 < len(inputs) else 0
+            step(*next(inputs))
         elapsed = time.perf_counter() - start
         if elapsed < 0.2e-3:
             batch *= 2
