@@ -1,6 +1,5 @@
 #include "core/mismatch/channel_test.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,6 +23,10 @@ constexpr double kSeparable = 1e-3;
 // less (science: about 300 rows and 3 s.d. keep both calibration and power).
 constexpr double kScaleRows = 300.0;
 constexpr double kClip = 3.0;
+
+// Room for the usual errors of a channel, and the share of one that must be its own to count.
+constexpr int kMostUsualErrors = 8;
+constexpr double kIndependent = 1e-6;
 
 // The other inputs mask this one where they make its gain's s.d. this many times larger.
 constexpr double kMasked = 2.0;
@@ -56,41 +59,24 @@ ChannelTest::ChannelTest(const Shape& shape, double lambda, const LinearModel& m
     responses_.emplace_back(columns_);
   }
 
-  // Step responses beyond lag L are fitted by the tails' step responses, by least squares over
-  // eight slowest time constants.
-  const double slowest = *std::max_element(shape.tail_poles.begin(), shape.tail_poles.end());
-  const int beyond = std::clamp(static_cast<int>(-8.0 / std::log(slowest)), 50, 20000);
-  Eigen::MatrixXd tail_steps(beyond, tails);
-  for (int t = 0; t < tails; ++t) {
-    const double pole = shape.tail_poles[static_cast<std::size_t>(t)];
-    for (int l = 0; l < beyond; ++l) tail_steps(l, t) = 1.0 - std::pow(pole, l + 1);
-  }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> tail_fit(tail_steps);
-  const int length = shape.fir_lags + beyond + 1;
+  const BlockBasis basis(shape.fir_lags, shape.tail_poles);
   const Eigen::MatrixXd gains = model.steady_gain();
   const Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> integrating = model.integrating();
   for (int i = 0; i < shape.inputs; ++i) {
     for (int j = 0; j < shape.cvs; ++j) {
-      Signature signature;
-      Eigen::VectorXd response = model.impulse_response(j, i, length);
-      if (response.cwiseAbs().maxCoeff() > 0.0) {
-        signature.gain = gains(j, i) * (integrating(j, i) ? -1.0 / std::log(slowest) : 1.0);
+      Channel channel;
+      const Eigen::VectorXd pulse = model.impulse_response(j, i, basis.length());
+      if (pulse.cwiseAbs().maxCoeff() > 0.0) {
+        channel.gain = gains(j, i) * (integrating(j, i) ? basis.slowest() : 1.0);
+        for (const Eigen::VectorXd& error : usual_errors(pulse))
+          channel.errors.emplace_back(basis, error, shape.residual_order);
       } else {
-        for (int l = 1; l < length; ++l) response(l) = (1.0 - slowest) * std::pow(slowest, l - 1);
+        Eigen::VectorXd lag = Eigen::VectorXd::Zero(basis.length());
+        const double pole = std::exp(-1.0 / basis.slowest());
+        for (int l = 1; l < basis.length(); ++l) lag(l) = (1.0 - pole) * std::pow(pole, l - 1);
+        channel.errors.emplace_back(basis, lag, shape.residual_order);
       }
-      signature.pulse = response.segment(1, shape.fir_lags);
-      signature.tails.resize(tails, shape.residual_order + 1);
-      for (int shift = 0; shift <= shape.residual_order; ++shift) {
-        Eigen::VectorXd step(beyond);
-        double sum = 0.0;
-        for (int l = 0; l < beyond; ++l) {
-          const int at = shape.fir_lags + 1 + l - shift;
-          sum += at >= 0 ? response(at) : 0.0;
-          step(l) = sum;
-        }
-        signature.tails.col(shift) = tail_fit.solve(step);
-      }
-      signatures_.push_back(std::move(signature));
+      channels_.push_back(std::move(channel));
     }
   }
 
@@ -106,6 +92,7 @@ ChannelTest::ChannelTest(const Shape& shape, double lambda, const LinearModel& m
   rotated_.setZero(all);
   estimate_.setZero(all);
   direction_.setZero(block_, shape.inputs);
+  usual_.setZero(block_, kMostUsualErrors);
   beta_.setZero(block_);
   whitened_.setZero(block_);
   whitened_beta_.setZero(block_);
@@ -212,22 +199,6 @@ void ChannelTest::evaluate() {
   for (int j = 0; j < shape_.cvs; ++j) evaluate_cv(j);
 }
 
-void ChannelTest::signature_coefficients(int cv, int input,
-                                         Eigen::Ref<Eigen::VectorXd> beta) const {
-  // b(q) = A(q) h(q), A(q) = 1 - a_1 q^-1 - ... of the CV's own residual lags.
-  const Signature& signature = signatures_[static_cast<std::size_t>(input * shape_.cvs + cv)];
-  const Eigen::VectorXd& coefficients = responses_[static_cast<std::size_t>(cv)].coefficients;
-  const int lags = shape_.fir_lags;
-  const int tails = block_ - lags;
-  beta.head(lags) = signature.pulse;
-  beta.tail(tails) = signature.tails.col(0);
-  for (int shift = 1; shift <= shape_.residual_order; ++shift) {
-    const double a = coefficients(1 + cv * shape_.residual_order + shift - 1);
-    if (shift < lags) beta.segment(shift, lags - shift) -= a * signature.pulse.head(lags - shift);
-    beta.tail(tails) -= a * signature.tails.col(shift);
-  }
-}
-
 void ChannelTest::evaluate_cv(int cv) {
   Response& response = responses_[static_cast<std::size_t>(cv)];
   const GivensQr& factor = response.factor;
@@ -268,14 +239,17 @@ void ChannelTest::evaluate_cv(int cv) {
     factor_covariance(i);
     whitened_ = estimate_.segment(at, block_);
     whiten(whitened_);
+    evidence.tests = 1;
     evidence.numerator_freedom = block_;
-    evidence.statistic = whitened_.squaredNorm() / (block_ * variance * inflation);
+    evidence.block_statistic = whitened_.squaredNorm() / (block_ * variance * inflation);
+    evidence.statistic = evidence.block_statistic;
     evidence.p_value = f_upper_tail(evidence.statistic, evidence.numerator_freedom, freedom);
+    judge_usual_errors(cv, i, variance * inflation, freedom, evidence);
 
+    const Channel& channel = channels_[static_cast<std::size_t>(i * shape_.cvs + cv)];
     evidence.reference_gain = reference_gain(cv, i);
-    signature_coefficients(cv, i, beta_);
-    if (signatures_[static_cast<std::size_t>(i * shape_.cvs + cv)].gain == 0.0)
-      beta_ *= evidence.reference_gain;
+    channel.errors.front().filter(own_lags(cv), beta_);
+    if (channel.gain == 0.0) beta_ *= evidence.reference_gain;
     beta_.array() *= norms_.segment(at, block_).array();
     functional_.head(at + block_).noalias() = triangle_.block(0, at, at + block_, block_) * beta_;
     const double alone = functional_.head(at + block_).squaredNorm();
@@ -297,12 +271,49 @@ void ChannelTest::evaluate_cv(int cv) {
   }
 }
 
+const double* ChannelTest::own_lags(int cv) const {
+  return responses_[static_cast<std::size_t>(cv)].coefficients.data() + 1 +
+         cv * shape_.residual_order;
+}
+
+void ChannelTest::judge_usual_errors(int cv, int input, double variance, double freedom,
+                                     ChannelEvidence& evidence) {
+  const Channel& channel = channels_[static_cast<std::size_t>(input * shape_.cvs + cv)];
+  if (channel.gain == 0.0) return;  // of a channel that the model lacks no error is usual
+  int rank = 0;
+  double explained = 0.0;
+  for (const Signature& error : channel.errors) {
+    error.filter(own_lags(cv), beta_);
+    beta_.array() *= norms_.segment(input * block_, block_).array();
+    whiten(beta_);
+    const double before = beta_.norm();
+    for (int pass = 0; pass < 2; ++pass)  // twice is enough (Kahan; Parlett 1980)
+      for (int c = 0; c < rank; ++c) beta_ -= usual_.col(c).dot(beta_) * usual_.col(c);
+    const double after = beta_.norm();
+    if (!(after > kIndependent * before)) continue;
+    usual_.col(rank) = beta_ / after;
+    const double part = usual_.col(rank).dot(whitened_);
+    explained += part * part;
+    ++rank;
+  }
+  if (rank == 0) return;
+  const double statistic = explained / (rank * variance);
+  const double p_value = f_upper_tail(statistic, rank, freedom);
+  if (p_value < evidence.p_value) {
+    evidence.p_value = p_value;
+    evidence.statistic = statistic;
+    evidence.numerator_freedom = rank;
+  }
+  evidence.p_value = std::min(1.0, 2.0 * evidence.p_value);
+  evidence.tests = 2;
+}
+
 double ChannelTest::reference_gain(int cv, int input) const {
-  const double own = signatures_[static_cast<std::size_t>(input * shape_.cvs + cv)].gain;
+  const double own = channels_[static_cast<std::size_t>(input * shape_.cvs + cv)].gain;
   if (own != 0.0) return own;
   double largest = 0.0;
   for (int i = 0; i < shape_.inputs; ++i) {
-    const double gain = signatures_[static_cast<std::size_t>(i * shape_.cvs + cv)].gain;
+    const double gain = channels_[static_cast<std::size_t>(i * shape_.cvs + cv)].gain;
     largest = std::max(largest, std::abs(gain) * norms_(i * block_));
   }
   if (largest == 0.0)

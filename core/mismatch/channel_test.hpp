@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "core/mismatch/signature.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/regression/givens_qr.hpp"
 #include "core/signal/lag_window.hpp"
@@ -11,9 +12,11 @@ namespace mpm {
 
 /// What the data say about one channel (input i to CV j).
 struct ChannelEvidence {
-  double statistic = 0.0;             ///< F
-  double p_value = 1.0;               ///< P(F > statistic) where the channel matches
+  double statistic = 0.0;             ///< F of the test that says more
+  double p_value = 1.0;               ///< tests * P(F > statistic) where the channel matches, <= 1
   double numerator_freedom = 0.0;     ///< of F; 0 = nothing to test with
+  int tests = 1;                      ///< that were made
+  double block_statistic = 0.0;       ///< F of the whole block
   double reference_gain = 0.0;        ///< what 100 % means, CV units per input unit
   double gain_error_ratio = 0.0;      ///< (plant gain - model gain) / reference, were it only gain
   double excitation_index = 0.0;      ///< s.d. of gain_error_ratio; infinite = no information
@@ -37,6 +40,11 @@ struct ChannelEvidence {
 /// level or heavy tails do not raise the false-alarm rate. Forgetting makes the estimate noisier
 /// than equal weights would: with W1 = sum lambda^age, W2 = sum lambda^(2 age), F is multiplied by
 /// W1 / W2 and has W1^2 / W2 - columns degrees of freedom.
+///
+/// Two tests are made and the smaller p counts, doubled: F over the whole block, which sees any
+/// error, and F over the few directions in it that errors of gain, time constant and dead time of
+/// the model's own channel would take (`usual_errors`), which sees those sooner. Either way the
+/// other inputs' blocks are free, so that no error of theirs leaks in.
 ///
 /// The factor is never squared: with R_t the trailing triangle of all inputs' columns and
 /// T = R_t^-1, the factor S of block i's covariance (S S' = T_i T_i', T_i the block's rows of T)
@@ -89,12 +97,9 @@ class ChannelTest {
     double scale_rows = 0.0;  // rows it rests on
     bool scaled = false;
   };
-  /// What a 100 % gain error would add to e_j, on the block's basis: pulse response up to lag L,
-  /// and for shifts 0..p of it the coefficients of what lies beyond on the tails.
-  struct Signature {
-    Eigen::VectorXd pulse;  // h(1)..h(L)
-    Eigen::MatrixXd tails;  // tails x (p + 1)
-    double gain = 0.0;      // steady gain (integrating: rise in the slowest tail's time constant)
+  struct Channel {
+    std::vector<Signature> errors;  // of a 100 % gain error first
+    double gain = 0.0;  // steady gain (integrating: rise in the slowest tail's time constant)
   };
 
   void build_row();
@@ -105,7 +110,11 @@ class ChannelTest {
   /// x <- S^-1 x and x <- S'^-1 x
   void whiten(Eigen::Ref<Eigen::VectorXd> x) const;
   void whiten_transposed(Eigen::Ref<Eigen::VectorXd> x) const;
-  void signature_coefficients(int cv, int input, Eigen::Ref<Eigen::VectorXd> beta) const;
+  /// a_1..a_p of the CV's own residual
+  [[nodiscard]] const double* own_lags(int cv) const;
+  /// The directed test: replaces the evidence where it says more.
+  void judge_usual_errors(int cv, int input, double variance, double freedom,
+                          ChannelEvidence& evidence);
   /// The gain-error estimate of an input (of the CV last evaluated) as weights on the factor's
   /// rotated responses; two such estimates are correlated as these vectors are.
   void gain_functional(int input, Eigen::Ref<Eigen::VectorXd> functional) const;
@@ -129,7 +138,7 @@ class ChannelTest {
   Eigen::VectorXd last_input_;
   Eigen::VectorXd row_;
   std::vector<Response> responses_;
-  std::vector<Signature> signatures_;
+  std::vector<Channel> channels_;
   std::vector<ChannelEvidence> evidence_;
 
   // Work space of evaluate_cv.
@@ -144,6 +153,7 @@ class ChannelTest {
   RowMajor covariance_;        // S: S S' = T_i T_i', covariance of block i's scaled coefficients
   RowMajor behind_;            // of T_i, columns behind the block; then their reflectors
   Eigen::MatrixXd direction_;  // B x m: weights of the gain-error estimate on the block
+  Eigen::MatrixXd usual_;      // orthonormal basis of the usual errors, whitened
   Eigen::VectorXd beta_, whitened_, whitened_beta_;
   Eigen::VectorXd functional_, other_functional_;
 };

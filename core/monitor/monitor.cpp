@@ -22,6 +22,9 @@ constexpr double kVisible = 5.8;
 constexpr double kOverwhelming = 1e-6;
 constexpr double kBlind = 100.0;
 
+// Different degrees of freedom that channels' tests can have; room for them is made up front.
+constexpr std::size_t kMostTests = 32;
+
 }  // namespace
 
 struct Monitor::State {
@@ -44,6 +47,7 @@ struct Monitor::State {
     status.resize(channels);
     conditions.resize(channels);
     transitions.reserve(channels);
+    thresholds.reserve(kMostTests);
     simulates =
         std::find(has_prediction.begin(), has_prediction.end(), false) != has_prediction.end();
   }
@@ -56,7 +60,8 @@ struct Monitor::State {
   [[nodiscard]] bool read_residuals(const Frame& frame);
   void simulate(bool inputs_usable);
   void judge();
-  void judge_channel(int cv, int input, double channel_rate, double threshold);
+  void judge_channel(int cv, int input, double channel_rate);
+  double threshold_for(const ChannelEvidence& evidence, double channel_rate);
   void find_peak(int cv, int input, ChannelStatus& channel) const;
   void update_alarms();
 
@@ -78,6 +83,13 @@ struct Monitor::State {
   std::vector<ChannelStatus> status;
   std::vector<Condition> conditions;
   std::vector<AlarmTransition> transitions;
+  struct Threshold {
+    double numerator;
+    int tests;
+    double denominator;
+    double value;
+  };
+  std::vector<Threshold> thresholds;  // one per kind of test, refreshed with the denominator
   MonitorCounters counters;
 };
 
@@ -182,17 +194,13 @@ void Monitor::push(const Frame& frame) {
 
 void Monitor::State::judge() {
   const double channel_rate = settings.false_alarm_rate / (counts.inputs() * counts.cv);
-  const double threshold =
-      test.ready() ? f_quantile(channel_rate, test.block_columns(), test.denominator_freedom())
-                   : 0.0;
   for (int i = 0; i < counts.inputs(); ++i)
-    for (int j = 0; j < counts.cv; ++j) judge_channel(j, i, channel_rate, threshold);
+    for (int j = 0; j < counts.cv; ++j) judge_channel(j, i, channel_rate);
 }
 
-void Monitor::State::judge_channel(int cv, int input, double channel_rate, double threshold) {
+void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   ChannelStatus& channel = status[index(cv, input)];
   channel.effective_samples = test.effective_rows();
-  channel.threshold = threshold;
   channel.confounder = -1;
   find_peak(cv, input, channel);
 
@@ -208,6 +216,7 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate, doubl
   const ChannelEvidence& evidence = test.evidence(cv, input);
   channel.p_value = evidence.p_value;
   channel.statistic = evidence.statistic;
+  channel.threshold = threshold_for(evidence, channel_rate);
   channel.effect_size = evidence.gain_error_ratio * evidence.reference_gain;
   channel.smallest_error = std::min(kVisible * evidence.excitation_index, kBlind);
   channel.excited = channel.smallest_error <= settings.gain_error_of_interest;
@@ -223,6 +232,26 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate, doubl
   } else {
     channel.reason = Reason::kNotExcited;
   }
+}
+
+// F at which that evidence would be a mismatch. The quantile takes a search, so it is kept until
+// the degrees of freedom have changed by one per cent, which moves it by some 1e-5.
+double Monitor::State::threshold_for(const ChannelEvidence& evidence, double channel_rate) {
+  if (evidence.numerator_freedom <= 0.0) return 0.0;
+  const double freedom = test.denominator_freedom();
+  for (Threshold& known : thresholds) {
+    if (known.numerator != evidence.numerator_freedom || known.tests != evidence.tests) continue;
+    if (std::abs(known.denominator - freedom) > 0.01 * freedom) {
+      known.denominator = freedom;
+      known.value = f_quantile(channel_rate / known.tests, known.numerator, freedom);
+    }
+    return known.value;
+  }
+  const Threshold added{
+      evidence.numerator_freedom, evidence.tests, freedom,
+      f_quantile(channel_rate / evidence.tests, evidence.numerator_freedom, freedom)};
+  thresholds.push_back(added);
+  return added.value;
 }
 
 // The largest partial correlation at the lags that feedback does not reach.

@@ -1,0 +1,76 @@
+#include "core/mismatch/signature.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mpm {
+
+BlockBasis::BlockBasis(int fir_lags, std::vector<double> tail_poles)
+    : fir_lags_(fir_lags), tail_poles_(std::move(tail_poles)) {
+  const double slowest_pole = *std::max_element(tail_poles_.begin(), tail_poles_.end());
+  slowest_ = -1.0 / std::log(slowest_pole);
+  beyond_ = std::clamp(static_cast<int>(8.0 * slowest_), 50, 20000);
+  Eigen::MatrixXd steps(beyond_, static_cast<Eigen::Index>(tail_poles_.size()));
+  for (Eigen::Index t = 0; t < steps.cols(); ++t)
+    for (int l = 0; l < beyond_; ++l)
+      steps(l, t) = 1.0 - std::pow(tail_poles_[static_cast<std::size_t>(t)], l + 1);
+  tail_fit_.compute(steps);
+}
+
+Eigen::VectorXd BlockBasis::tail_coefficients(const Eigen::VectorXd& pulse, int shift) const {
+  Eigen::VectorXd step(beyond_);
+  double sum = 0.0;
+  for (int l = 0; l < beyond_; ++l) {
+    const int at = fir_lags_ + 1 + l - shift;
+    sum += at >= 0 ? pulse(at) : 0.0;
+    step(l) = sum;
+  }
+  return tail_fit_.solve(step);
+}
+
+Signature::Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int order)
+    : pulse_(pulse.segment(1, basis.fir_lags())),
+      tails_(basis.columns() - basis.fir_lags(), order + 1) {
+  for (int shift = 0; shift <= order; ++shift)
+    tails_.col(shift) = basis.tail_coefficients(pulse, shift);
+}
+
+void Signature::filter(const double* a, Eigen::Ref<Eigen::VectorXd> coefficients) const {
+  const Eigen::Index lags = pulse_.size();
+  coefficients.head(lags) = pulse_;
+  coefficients.tail(tails_.rows()) = tails_.col(0);
+  for (Eigen::Index shift = 1; shift < tails_.cols(); ++shift) {
+    const double share = a[shift - 1];
+    if (shift < lags)
+      coefficients.segment(shift, lags - shift) -= share * pulse_.head(lags - shift);
+    coefficients.tail(tails_.rows()) -= share * tails_.col(shift);
+  }
+}
+
+std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse) {
+  const int length = static_cast<int>(pulse.size());
+  const auto shifted = [&](int by) {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(length);
+    for (int l = 1; l < length; ++l)
+      if (l - by >= 0 && l - by < length) result(l) = pulse(l - by);
+    return result;
+  };
+  // Step response stretched about the end of the dead time, by linear interpolation.
+  constexpr double kStretch = 0.1;
+  int start = 0;
+  while (start + 1 < length && pulse(start + 1) == 0.0) ++start;
+  Eigen::VectorXd step(length);
+  double sum = 0.0;
+  for (int l = 0; l < length; ++l) step(l) = sum += pulse(l);
+  const auto stretched = [&](int l) {
+    const double at = l <= start ? l : start + (l - start) / (1.0 + kStretch);
+    const int below = std::min(static_cast<int>(at), length - 2);
+    return step(below) + (at - below) * (step(below + 1) - step(below));
+  };
+  Eigen::VectorXd slower = Eigen::VectorXd::Zero(length);
+  for (int l = 1; l < length; ++l)
+    slower(l) = (stretched(l) - stretched(l - 1) - pulse(l)) / std::log(1.0 + kStretch);
+  return {pulse, slower, shifted(-2), shifted(2), shifted(6)};
+}
+
+}  // namespace mpm

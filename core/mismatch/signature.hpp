@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+#include <vector>
+
+namespace mpm {
+
+/// The regressors of one input in the channel test: u(k-1..k-L) and tails s_t(k-L-1) with poles
+/// r_t. Turns a pulse response into coefficients on them: exact up to lag L, beyond it the step
+/// response is fitted by the tails' step responses (least squares over eight slowest time
+/// constants).
+class BlockBasis {
+ public:
+  BlockBasis(int fir_lags, std::vector<double> tail_poles);
+
+  [[nodiscard]] int columns() const { return fir_lags_ + static_cast<int>(tail_poles_.size()); }
+  [[nodiscard]] int fir_lags() const { return fir_lags_; }
+  /// Values of a pulse response, from lag 0 on, that `tail_coefficients` looks at.
+  [[nodiscard]] int length() const { return fir_lags_ + beyond_ + 1; }
+  /// Slowest tail's time constant, samples.
+  [[nodiscard]] double slowest() const { return slowest_; }
+  /// Of `pulse` delayed by `shift` samples.
+  [[nodiscard]] Eigen::VectorXd tail_coefficients(const Eigen::VectorXd& pulse, int shift) const;
+
+ private:
+  int fir_lags_;
+  std::vector<double> tail_poles_;
+  double slowest_ = 1.0;
+  int beyond_ = 0;
+  Eigen::HouseholderQR<Eigen::MatrixXd> tail_fit_;
+};
+
+/// What one kind of model error adds to a CV's innovation: b(q) = A(q) h(q) on a block's basis,
+/// with A(q) = 1 - a_1 q^-1 - ... - a_p q^-p the CV's own residual dynamics, known only later.
+class Signature {
+ public:
+  /// `pulse`: h(0), h(1), ... (basis.length() values).
+  Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int order);
+  /// `a` points at a_1..a_p; writes basis.columns() coefficients.
+  void filter(const double* a, Eigen::Ref<Eigen::VectorXd> coefficients) const;
+
+ private:
+  Eigen::VectorXd pulse_;  // h(1)..h(L)
+  Eigen::MatrixXd tails_;  // tails x (p + 1), for shifts 0..p
+};
+
+/// Pulse responses of the errors a channel usually has, for its own pulse response: its gain (the
+/// response itself), its time constants (derivative by their logarithm), its dead time (2 samples
+/// earlier, 2 and 6 later). As many values as `pulse`.
+[[nodiscard]] std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse);
+
+}  // namespace mpm
