@@ -13,7 +13,7 @@ enum class AlarmState : unsigned char { kCleared, kActive };
 class Condition {
  public:
   struct Limits {
-    double raise_below = 1e-6;
+    double raise_below = 1e-7;
     double clear_above = 1e-3;  ///< >= raise_below
     int on_delay = 10;          ///< samples, >= 1
     int off_delay = 60;         ///< samples, >= 1

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/regression/givens_qr.hpp"
+#include "core/regression/leave_one_out_qr.hpp"
 #include "core/signal/lag_window.hpp"
 
 namespace mpm {
@@ -15,7 +15,8 @@ namespace mpm {
 ///
 /// u~_i all inputs but the i-th. The thesis writes lag d as u_i(k-d) against e_j(k) with controls
 /// u~_i(k-d), ...; with t = k - d the controls depend neither on j nor on d, so that one factor
-/// per input serves every CV and lag. All rows end at t = now - last_lag, for every lag alike.
+/// per input serves every CV and lag, and the inputs' factors share most of the work
+/// (LeaveOneOutQr). All rows end at t = now - last_lag, for every lag alike.
 /// Rows are weighted lambda^age. No allocation after construction.
 class LaggedCorrelation {
  public:
@@ -48,7 +49,7 @@ class LaggedCorrelation {
   [[nodiscard]] int lag_count() const { return shape_.last_lag - shape_.first_lag + 1; }
 
  private:
-  void fill_row(int input);
+  void fill_row();
 
   Shape shape_;
   double lambda_;
@@ -58,9 +59,9 @@ class LaggedCorrelation {
   Eigen::VectorXd origin_;  // of the inputs: their first values
   std::vector<LagWindow> input_windows_;
   std::vector<LagWindow> residual_windows_;
-  std::vector<GivensQr> factors_;  // one per input; responses: u_i, then e_j lags newest first
-  std::vector<double> totals_;     // per input, weighted sum of squares about its origin
-  Eigen::MatrixXd correlations_;   // lags x (inputs * cvs)
+  LeaveOneOutQr factors_;         // blocks: u_i(t), u_i(t-1), ...; responses: e_j lags newest first
+  std::vector<double> totals_;    // per input, weighted sum of squares about its origin
+  Eigen::MatrixXd correlations_;  // lags x (inputs * cvs)
   std::vector<bool> defined_;
 };
 

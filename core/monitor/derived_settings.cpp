@@ -54,7 +54,7 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
     tail /= 4.0;
   } while (tail >= 2.0 * derived.fir_lags);
 
-  // A memory shorter than four rows per column could never reach a verdict.
+  // A memory of fewer rows could hardly tell the columns apart.
   const int inputs = spec.input_count;
   const double columns =
       1.0 + spec.cv_count * derived.residual_order +

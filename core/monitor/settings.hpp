@@ -17,7 +17,7 @@ struct MonitorSettings {
 
 /// When a channel's verdict becomes an alarm.
 struct AlarmSettings {
-  double raise_p_value = 1e-6;  ///< raise below
+  double raise_p_value = 1e-7;  ///< raise below
   double clear_p_value = 1e-3;  ///< clear above (deadband between the two)
   double on_delay_s = 0.0;      ///< 0 = derive: 10 samples
   double off_delay_s = 0.0;     ///< 0 = derive: 60 samples

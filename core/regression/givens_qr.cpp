@@ -70,19 +70,27 @@ GivensQr::Share GivensQr::weigh(int i, double lambda, double entry, double& inve
 
 void GivensQr::update(double lambda) {
   const double root_lambda = std::sqrt(lambda);
-  double* x = row_.get();
   for (int i = 0; i < columns_; ++i) {
     double& magnitude = magnitudes_[static_cast<std::size_t>(i)];
-    magnitude = std::max(magnitude * root_lambda, std::abs(x[i]));
+    magnitude = std::max(magnitude * root_lambda, std::abs(row_[static_cast<std::size_t>(i)]));
   }
+  accumulate(lambda, eliminate(lambda, 1.0));
+}
 
+double GivensQr::rotate(double lambda, double weight, const double* magnitudes) {
+  std::copy_n(magnitudes, columns_, magnitudes_.begin());
+  return eliminate(lambda, weight);
+}
+
+double GivensQr::eliminate(double lambda, double weight) {
+  double* x = row_.get();
   constexpr int kGroup = static_cast<int>(kRowGranule);
   std::array<double*, kRowGranule> rows{};
   std::array<double, kRowGranule> entries{};
   std::array<double, kRowGranule> gains{};
   std::array<double, kRowGranule> kept{};
   std::array<Granule, kRowGranule> heads;
-  double inverse_row_weight = 1.0;
+  double inverse_row_weight = 1.0 / weight;
   int i = 0;
   for (; i + kGroup <= columns_; i += kGroup) {
     // The triangle of the group's own columns first, then all columns behind it in one pass.
@@ -127,12 +135,15 @@ void GivensQr::update(double lambda) {
     x[i] = 0.0;
   }
 
-  const double row_weight = 1.0 / inverse_row_weight;
-  const double* left = x + columns_;
+  return 1.0 / inverse_row_weight;
+}
+
+void GivensQr::accumulate(double lambda, double left_weight) {
+  const double* left = row_.get() + columns_;
   for (int k = 0; k < responses_; ++k) {
     const auto s = static_cast<std::size_t>(k);
-    squares_[s] = lambda * squares_[s] + row_weight * left[k] * left[k];
-    products_[s] = lambda * products_[s] + row_weight * left[0] * left[k];
+    squares_[s] = lambda * squares_[s] + left_weight * left[k] * left[k];
+    products_[s] = lambda * products_[s] + left_weight * left[0] * left[k];
   }
 }
 

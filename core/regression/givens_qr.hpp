@@ -52,6 +52,13 @@ class GivensQr {
   /// Takes the row into the factor; everything before is weighted by lambda (0 < lambda <= 1).
   void update(double lambda);
 
+  /// The two parts of `update`, for a row of which another factor has eliminated columns before.
+  /// `rotate` eliminates these ones: `weight` is what the row has left, `magnitudes` the largest
+  /// values its columns had at first. Returns the weight of what is then left of the responses.
+  [[nodiscard]] double rotate(double lambda, double weight, const double* magnitudes);
+  [[nodiscard]] const double* left() const { return row_.get() + columns_; }
+  void accumulate(double lambda, double left_weight);
+
   /// What the rows so far (weighted by lambda) say of the row that waits in row(), which stays:
   /// its response 0 minus their prediction, and the share 1 / (1 + leverage) in (0, 1] by which
   /// the prediction's own uncertainty enlarges that error's variance. A row in a direction never
@@ -124,6 +131,8 @@ class GivensQr {
     double gain;  // s
     double kept;  // lambda d / d'
   };
+  /// Rotates the row into the factor; returns the weight of what is left.
+  double eliminate(double lambda, double weight);
   Share weigh(int i, double lambda, double entry, double& inverse_row_weight);
 
   int columns_;

@@ -157,7 +157,7 @@ TEST_CASE("a hidden gain error is found in its channel, with its size and its s.
 }
 
 TEST_CASE("a usual error is seen sooner than an unusual one of the same size") {
-  // The same gain error at a quarter of the samples: the directed test must say more than the
+  // A small gain error on few samples: the directed test must say more than the
   // block test in most of 20 seeds (it concentrates 5 of 13 degrees of freedom on the truth).
   const ModelSpec spec = first_order(2, 2, 15.0);
   int directed = 0;
@@ -165,7 +165,7 @@ TEST_CASE("a usual error is seen sooner than an unusual one of the same size") {
     ChannelTest channel_test = make_test(spec);
     OpenLoop loop(seed);
     loop.hidden_ratio = 0.1;
-    loop.run(channel_test, spec, 400);
+    loop.run(channel_test, spec, 500);
     directed +=
         channel_test.evidence(0, 0).numerator_freedom < channel_test.block_columns() ? 1 : 0;
   }
