@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace mpm {
+
+/// Past inputs (deviations after the static blocks), each stored twice so that any window of the
+/// last `capacity` values lies in one piece.
+class InputHistory {
+ public:
+  InputHistory(int inputs, int capacity)
+      : capacity_(capacity), values_(static_cast<std::size_t>(2 * inputs * capacity), 0.0) {}
+
+  void fill(int input, double value) {
+    const auto first = values_.begin() + 2 * input * capacity_;
+    std::fill(first, first + 2 * capacity_, value);
+  }
+  void next() { newest_ = newest_ + 1 == capacity_ ? 0 : newest_ + 1; }
+  void set_newest(int input, double value) {
+    double* row = values_.data() + 2 * input * capacity_;
+    row[newest_] = value;
+    row[newest_ + capacity_] = value;
+  }
+  /// Points to the newest value; element -l is l samples older, l < capacity.
+  [[nodiscard]] const double* newest(int input) const {
+    return values_.data() + 2 * input * capacity_ + newest_ + capacity_;
+  }
+
+ private:
+  int capacity_;
+  int newest_ = 0;
+  std::vector<double> values_;
+};
+
+}  // namespace mpm
