@@ -5,6 +5,7 @@
 
 #include "idl/sample_readers.hpp"
 #include "idl/unit_publisher.hpp"
+#include "tests/allocation_counter.hpp"
 #include "tests/idl/test_domain.hpp"
 
 namespace mpm::idl {
@@ -77,7 +78,7 @@ TEST_CASE("a lossless writer at full speed loses nothing to a reader, in order, 
   CHECK(count == 2 * kFrames);
   CHECK(in_order);
   CHECK(max_skew < 1024);
-  CHECK(resident_kb() - early_kb < 5000);
+  if (test::resident_memory_is_ours()) CHECK(resident_kb() - early_kb < 5000);
 }
 
 TEST_CASE("a writer that never pauses keeps no history for readers that follow") {
@@ -105,7 +106,8 @@ TEST_CASE("a writer that never pauses keeps no history for readers that follow")
   }));
   CHECK(count == 300 * 35);
   WARN("history took " << resident_kb() - before_kb << " kB");
-  CHECK(resident_kb() - before_kb < 15'000);  // 45 MB if all is kept
+  if (test::resident_memory_is_ours())
+    CHECK(resident_kb() - before_kb < 15'000);  // 45 MB if all is kept
 }
 
 TEST_CASE("a real-time writer is never held up by a reader that takes nothing") {
