@@ -29,6 +29,7 @@ struct Field {
 template <class Settings>
 [[nodiscard]] std::vector<std::string> keys(const std::vector<Field<Settings>>& fields) {
   std::vector<std::string> names;
+  names.reserve(fields.size());
   for (const Field<Settings>& field : fields) names.emplace_back(field.key);
   return names;
 }

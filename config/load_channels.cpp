@@ -41,7 +41,7 @@ TransferFunction read_continuous(const Map& map, double sample_time_s) {
       dead_time->error("is longer than " + yaml_text(kMostDelaySamples) + " samples");
   }
   if (const Value* flag = map.find("integrating")) tf.integrating = flag->boolean().value_or(false);
-  const bool proper = constants != nullptr ? constants->items().size() > 0 : tf.integrating;
+  const bool proper = constants != nullptr ? !constants->items().empty() : tf.integrating;
   if (tf.lead_s != 0.0 && !proper)
     map.find("lead")->error("a channel with a lead needs a time constant");
   return tf;

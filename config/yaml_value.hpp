@@ -34,8 +34,8 @@ class Map;
 /// when they return nothing.
 class Value {
  public:
-  Value(YAML::Node node, YAML::Mark mark, std::string path, Report& report)
-      : node_(std::move(node)), mark_(mark), path_(std::move(path)), report_(&report) {}
+  Value(const YAML::Node& node, YAML::Mark mark, std::string path, Report& report)
+      : node_(node), mark_(mark), path_(std::move(path)), report_(&report) {}
 
   [[nodiscard]] const std::string& path() const { return path_; }
   /// Line of the file, from 1.

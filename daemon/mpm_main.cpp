@@ -6,7 +6,9 @@
 #include "daemon/commands/watch.hpp"
 #include "daemon/service/version.hpp"
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   // Exit codes of all programs of the project: 0 done, 1 found, 2 failed, 3 bad usage or input.
   int exit_code = 0;
   CLI::App app("The engineer's side of the model-plant-mismatch monitor.");
@@ -18,9 +20,17 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 3;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "mpm: error: " << error.what() << '\n';
     return 2;
   }
-  return exit_code;
 }

@@ -88,11 +88,7 @@ int run(const Options& options) {
   return kDone;
 }
 
-}  // namespace
-}  // namespace mpm::daemon
-
-int main(int argc, char** argv) {
-  using namespace mpm::daemon;
+int parse_and_run(int argc, char** argv) {
   CLI::App app("Monitors MPC units for model-plant mismatch: DDS in, verdicts and alarms out.");
   Options options;
   declare(app, options);
@@ -101,8 +97,16 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   }
+  return run(options);
+}
+
+}  // namespace
+}  // namespace mpm::daemon
+
+int main(int argc, char** argv) {
+  using namespace mpm::daemon;
   try {
-    return run(options);
+    return parse_and_run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "mpmd: error: " << error.what() << '\n';
     return kFailed;

@@ -79,7 +79,7 @@ std::string domain_xml(const DomainOptions& options) {
   // Heartbeats ask for acknowledgements only in a pause of writing this long. By default that is
   // 100 ms: a writer that writes more often keeps its whole history and repairs nothing.
   xml += "</Discovery><Internal>";
-  xml += "<HeartbeatInterval min=\"1 ms\" minsched=\"1 ms\">1 ms</HeartbeatInterval>";
+  xml += R"(<HeartbeatInterval min="1 ms" minsched="1 ms">1 ms</HeartbeatInterval>)";
   xml += "<Watermarks><WhcHigh>" + std::to_string(options.max_unacknowledged_kb) +
          " kB</WhcHigh></Watermarks></Internal>";
   return xml;

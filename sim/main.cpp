@@ -123,11 +123,7 @@ int run(const Options& options) {
   return run_dds(setup, options);
 }
 
-}  // namespace
-}  // namespace mpm::sim
-
-int main(int argc, char** argv) {
-  using namespace mpm::sim;
+int parse_and_run(int argc, char** argv) {
   CLI::App app("Simulates an MPC-controlled plant whose process may differ from the model.");
   Options options;
   declare(app, options);
@@ -138,8 +134,16 @@ int main(int argc, char** argv) {
   }
   spdlog::set_default_logger(spdlog::stderr_color_mt("mpmsim"));
   spdlog::set_pattern("%n: %^%l%$: %v");
+  return run(options);
+}
+
+}  // namespace
+}  // namespace mpm::sim
+
+int main(int argc, char** argv) {
+  using namespace mpm::sim;
   try {
-    return run(options);
+    return parse_and_run(argc, argv);
   } catch (const BadInput& error) {
     if (*error.what() != '\0') std::cerr << "mpmsim: " << error.what() << '\n';
     return kBadInput;

@@ -1,10 +1,10 @@
 #include "sim/publish.hpp"
 
-#include <signal.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <limits>
 

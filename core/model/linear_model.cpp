@@ -21,7 +21,7 @@ using BoolMatrix = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
 /// The unit-step response of one channel stays within `tolerance` from the returned sample on.
 int settling_of(LinearModel& channel, const ChannelFacts& facts, double tolerance, int limit) {
   if (facts.unstable) return limit;
-  const double order = static_cast<double>(facts.order);
+  const auto order = static_cast<double>(facts.order);
   const double horizon = facts.dead_time + 10.0 +
                          facts.slowest * (10.0 + 5.0 * order + 2.0 * std::log1p(1.0 / tolerance));
   const int length = horizon < limit ? static_cast<int>(horizon) : limit;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -13,10 +14,10 @@ void check_saturation(const Saturation& limits) {
 }
 
 double polynomial_value(const Polynomial& polynomial, double deviation) {
-  double value = 0.0;
-  for (auto it = polynomial.coefficients.rbegin(); it != polynomial.coefficients.rend(); ++it)
-    value = (value + *it) * deviation;
-  return value;
+  const std::vector<double>& c = polynomial.coefficients;
+  return std::accumulate(c.rbegin(), c.rend(), 0.0, [deviation](double value, double coefficient) {
+    return (value + coefficient) * deviation;
+  });
 }
 
 int sign_of(double value) { return (value > 0.0) - (value < 0.0); }

@@ -43,7 +43,7 @@ void LineReader::split(char delimiter, std::vector<Cell>& cells) {
     };
     skip();
     const std::size_t begin = at;
-    std::size_t end = at;
+    std::size_t end;  // set either way below
     if (at < line_.size() && line_[at] == '"') {
       end = ++at;  // doubled quotes shrink to one in place
       while (true) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kRowsAhead = 200;
 constexpr double kSampleTimeTolerance = 0.1;
-constexpr double kSecond_ns = 1e9;
+constexpr double kNsPerSecond = 1e9;
 
 std::unique_ptr<std::istream> open_file(const std::string& path) {
   const auto fail = [&path](const char* message) {
@@ -73,7 +73,7 @@ void CsvReader::check_sample_time(int first_line) const {
   for (std::size_t i = 1; i < ahead_.size(); ++i) {
     const auto step_ns =
         static_cast<double>(ahead_[i].source_time_ns - ahead_[i - 1].source_time_ns);
-    if (step_ns > 0.0) steps_s.push_back(step_ns / kSecond_ns);
+    if (step_ns > 0.0) steps_s.push_back(step_ns / kNsPerSecond);
   }
   if (steps_s.empty()) return;
   const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
@@ -98,7 +98,7 @@ bool CsvReader::next(Frame& frame) {
     return false;
   }
   const auto elapsed_ns = static_cast<double>(frame.source_time_ns - first_ns_);
-  frame.interval = std::llround(elapsed_ns / (sample_time_s_ * kSecond_ns));
+  frame.interval = std::llround(elapsed_ns / (sample_time_s_ * kNsPerSecond));
   return true;
 }
 

@@ -8,8 +8,8 @@
 namespace mpm::io {
 namespace {
 
-constexpr std::int64_t kLatest_ns = std::numeric_limits<std::int64_t>::max() / 2;
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kLatestNs = std::numeric_limits<std::int64_t>::max() / 2;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr int kMostDigits = 18;  // always fits an int64
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -68,7 +68,7 @@ std::optional<std::int64_t> scaled(std::string_view digits, int exponent) {
   }
   const auto next = static_cast<std::size_t>(length);
   if (next < digits.size() && digits[next] >= '5') ++value;
-  if (value > static_cast<std::uint64_t>(kLatest_ns)) return std::nullopt;
+  if (value > static_cast<std::uint64_t>(kLatestNs)) return std::nullopt;
   return static_cast<std::int64_t>(value);
 }
 
@@ -156,12 +156,12 @@ std::optional<std::int64_t> parse_iso(std::string_view text, std::string& proble
   if (!zone_s) return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
   const std::int64_t seconds = 86400 * days + 3600 * hour + 60 * minute + second - *zone_s;
-  if (std::abs(seconds) >= kLatest_ns / kSecond_ns) {
+  if (std::abs(seconds) >= kLatestNs / kNsPerSecond) {
     problem = "is out of range";
     return std::nullopt;
   }
   problem.clear();
-  return seconds * kSecond_ns + fraction_ns;
+  return seconds * kNsPerSecond + fraction_ns;
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ StepResponse stretched(const StepResponse& response, double ratio, double error_
   const auto dead = static_cast<double>(begin);
   if (dead + error_samples < 0.0)
     throw std::invalid_argument("the dead time would become negative");
-  const double last = static_cast<double>(values.size() - 1);
+  const auto last = static_cast<double>(values.size() - 1);
   const auto length =
       static_cast<std::size_t>(std::ceil(dead + error_samples + (last - dead) * ratio)) + 1;
   StepResponse result;

@@ -35,6 +35,7 @@ template <class Item>
 std::vector<Item> reordered(const std::vector<Item>& items, const std::vector<Index>& order) {
   if (items.empty()) return {};
   std::vector<Item> result;
+  result.reserve(order.size());
   for (const Index place : order) result.push_back(items[static_cast<std::size_t>(place)]);
   return result;
 }
