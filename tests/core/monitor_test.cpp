@@ -103,7 +103,7 @@ TEST_CASE("a hidden gain error raises the alarm of its channel alone") {
     CHECK(monitor.channel(0, 0).verdict == Verdict::kMatch);
     CHECK(monitor.channel(1, 0).verdict == Verdict::kMatch);
     CHECK(monitor.channel(1, 1).verdict == Verdict::kMatch);
-    // Between input 1 and CV 0 the plant moves too little: e falls when u rises by -(-0.25).
+    // The plant gain is less negative than the model says, so the residual rises with the input.
     CHECK(monitor.channel(0, 1).partial_correlation > 0.1);
     CHECK(monitor.channel(0, 1).lag >= 1);
   }
