@@ -22,7 +22,7 @@ struct AlarmTransition {
 /// What the monitor did with the frames so far.
 struct MonitorCounters {
   std::uint64_t frames = 0;        ///< pushed
-  std::uint64_t used = 0;          ///< entered the statistics with a full lag window
+  std::uint64_t used = 0;          ///< gave some CV a row
   std::uint64_t missing = 0;       ///< intervals skipped between frames
   std::uint64_t out_of_order = 0;  ///< frames not newer than the last one; ignored
   std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed
@@ -42,7 +42,7 @@ class Monitor {
   ~Monitor();
 
   /// Takes the frame of the next interval; frames come in increasing interval order, a jump is a
-  /// gap: it closes the lag window, which then refills.
+  /// gap, of which nothing is known.
   void push(const Frame& frame);
 
   [[nodiscard]] const ChannelStatus& channel(int cv, int input) const;
