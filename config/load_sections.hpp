@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "config/choice.hpp"
 #include "config/fields.hpp"
+#include "config/suggest.hpp"
 #include "config/unit_config.hpp"
 #include "config/yaml_value.hpp"
 
@@ -30,6 +32,20 @@ void load_static_blocks(const Map& model, UnitConfig& config);
 [[nodiscard]] int find_tag(const Value& value, const std::vector<std::string>& tags,
                            std::string_view noun);
 
+/// The kind that `value` names; `otherwise` (reported) where it names none.
+template <class Kind>
+[[nodiscard]] Kind read_choice(const Value& value, Kind otherwise) {
+  const std::optional<std::string> name = value.text();
+  if (!name) return otherwise;
+  std::vector<std::string> names;
+  for (const Choice<Kind>& choice : choices(otherwise)) {
+    if (*name == choice.name) return choice.kind;
+    names.emplace_back(choice.name);
+  }
+  value.error("must be one of " + join(names) + ", not '" + *name + "'");
+  return otherwise;
+}
+
 /// Fills `settings` from the keys of `map` that `fields` describes.
 template <class Settings>
 void read_fields(const Map& map, const std::vector<Field<Settings>>& fields, Settings& settings) {
@@ -45,6 +61,8 @@ void read_fields(const Map& map, const std::vector<Field<Settings>>& fields, Set
         target = value->integer(field.range).value_or(target);
       } else if constexpr (std::is_same_v<Type, bool>) {
         target = value->boolean().value_or(target);
+      } else if constexpr (std::is_enum_v<Type>) {
+        target = read_choice(*value, target);
       } else {
         target = value->free_text().value_or(target);
       }

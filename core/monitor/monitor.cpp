@@ -6,6 +6,7 @@
 
 #include "core/mismatch/channel_test.hpp"
 #include "core/mismatch/lagged_correlation.hpp"
+#include "core/mismatch/mean_line.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/derived_settings.hpp"
 #include "core/statistics/f_distribution.hpp"
@@ -38,7 +39,7 @@ struct Monitor::State {
         inputs(Eigen::VectorXd::Zero(signal_counts.inputs())),
         residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
         correlation({signal_counts.inputs(), signal_counts.cv, settings.controlling_lags,
-                     settings.first_lag, settings.last_lag},
+                     settings.first_lag, settings.last_lag, settings.correlation},
                     settings.lambda),
         test({signal_counts.inputs(), signal_counts.cv, settings.fir_lags, settings.residual_order,
               settings.tail_poles},
@@ -89,6 +90,7 @@ struct Monitor::State {
     double denominator;
     double value;
   };
+  double line = 0.0;                  // with ThresholdKind::kMeanLine
   std::vector<Threshold> thresholds;  // one per kind of test, refreshed with the denominator
   MonitorCounters counters;
 };
@@ -194,6 +196,7 @@ void Monitor::push(const Frame& frame) {
 
 void Monitor::State::judge() {
   const double channel_rate = settings.false_alarm_rate / (counts.inputs() * counts.cv);
+  if (settings.threshold == ThresholdKind::kMeanLine) line = mean_line(correlation);
   for (int i = 0; i < counts.inputs(); ++i)
     for (int j = 0; j < counts.cv; ++j) judge_channel(j, i, channel_rate);
 }
@@ -217,13 +220,19 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   channel.p_value = evidence.p_value;
   channel.statistic = evidence.statistic;
   channel.threshold = threshold_for(evidence, channel_rate);
+  bool exceeds = evidence.p_value < channel_rate;
+  if (settings.threshold == ThresholdKind::kMeanLine) {
+    channel.statistic = std::abs(channel.partial_correlation);
+    channel.threshold = line;
+    exceeds = channel.statistic > channel.threshold;
+  }
   channel.effect_size = evidence.gain_error_ratio * evidence.reference_gain;
   channel.smallest_error = std::min(kVisible * evidence.excitation_index, kBlind);
   channel.excited = channel.smallest_error <= settings.gain_error_of_interest;
   const bool overwhelming =
       channel.smallest_error < kBlind && evidence.p_value < kOverwhelming * channel_rate;
-  if (channel.excited || overwhelming) {
-    channel.verdict = evidence.p_value < channel_rate ? Verdict::kMismatch : Verdict::kMatch;
+  if (channel.excited || (overwhelming && exceeds)) {
+    channel.verdict = exceeds ? Verdict::kMismatch : Verdict::kMatch;
     channel.reason = Reason::kNone;
   } else if (kVisible * evidence.excitation_index_alone <= settings.gain_error_of_interest &&
              evidence.confounder >= 0) {

@@ -1,14 +1,24 @@
 #pragma once
 
+#include "core/mismatch/correlation_kind.hpp"
+
 namespace mpm {
+
+/// What decides between match and mismatch.
+enum class ThresholdKind {
+  kFTest,     ///< the calibrated channel test
+  kMeanLine,  ///< the thesis's mean line (core/mismatch/mean_line.hpp); not calibrated
+};
 
 /// What the user may set; 0 or empty means "derive from the model and the sample time".
 struct MonitorSettings {
   double memory_s = 0.0;                 ///< sample_time / (1 - lambda); 0 = 4000 effective samples
   double false_alarm_rate = 0.01;        ///< of the whole unit at any one time, 0..1
   double gain_error_of_interest = 0.25;  ///< relative; larger errors must be visible to say match
-  int controlling_lags = 40;             ///< g of (3.15)
-  int first_lag = -10;                   ///< reported range of lags d of (3.15)
+  CorrelationKind correlation = CorrelationKind::kLaggedPartial;  ///< the one that is reported
+  ThresholdKind threshold = ThresholdKind::kFTest;
+  int controlling_lags = 40;  ///< g of (3.15)
+  int first_lag = -10;        ///< reported range of lags d of (3.15)
   int last_lag = 20;
   int fir_lags = 0;        ///< block length of the channel test
   int residual_order = 0;  ///< lags of all residuals
