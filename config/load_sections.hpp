@@ -18,10 +18,13 @@ inline constexpr std::size_t kLongestTag = 128;
 void load_signals(const Value* section, UnitConfig& config);
 void load_model(const Value& root, const Value* section, const Value* top_level_origin,
                 UnitConfig& config);
-void load_monitor(const Value* section, UnitConfig& config);
+/// Overwrites in `monitor` what the section gives.
+void load_monitor(const Value* section, double sample_time_s, MonitorSettings& monitor);
 void load_alarms(const Value* section, UnitConfig& config);
 void load_dds(const Value* section, UnitConfig& config);
 void load_simulation(const Value* section, UnitConfig& config);
+/// Overwrites in `simulation` the limits that the value gives by tag.
+void load_limits(const Value& value, const UnitConfig& config, SimulationSettings& simulation);
 
 /// Parts of `load_model`.
 void load_channels(const Value& list, UnitConfig& config);
