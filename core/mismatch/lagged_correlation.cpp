@@ -30,8 +30,8 @@ LaggedCorrelation::Shape checked(LaggedCorrelation::Shape shape, double lambda) 
 LaggedCorrelation::LaggedCorrelation(const Shape& shape, double lambda)
     : shape_(checked(shape, lambda)),
       lambda_(lambda),
-      block_columns_(
-          shape_.kind == CorrelationKind::kLaggedPartial ? shape_.controlling_lags + 1 : 1),
+      block_columns_(shape_.kind == CorrelationKind::kLaggedPartial ? shape_.controlling_lags + 1
+                                                                    : 1),
       window_rows_(shape_.last_lag + std::max(shape_.controlling_lags, -shape_.first_lag) + 1),
       origin_(Eigen::VectorXd::Zero(shape.inputs)),
       correlations_(Eigen::MatrixXd::Zero(lag_count(), shape.inputs * shape.cvs)),

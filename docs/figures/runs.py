@@ -20,7 +20,7 @@ STUDIES = (
     ("S1", "Scenario 1: nothing hidden", SHELL, "none", ()),
     ("S2, no integral action", "Scenario 2 as written, no integral action", SHELL,
      "s2_gain25_no_integral", (U1_Y1, U1_Y2)),
-    ("S2, |u| <= 1.5", "Scenario 2 as written, |u| \u2264 1.5", SHELL, "s2_gain25_limits",
+    ("S2, tight limits", "Scenario 2 as written, |u| \u2264 1.5", SHELL, "s2_gain25_limits",
      (U1_Y1, U1_Y2)),
     ("S2, high model", "Scenario 2, (4.1) is the plant and the model is too high", HIGH_MODEL,
      "s2_gain25", (U1_Y1, U1_Y2)),
