@@ -44,7 +44,8 @@ void solve_free(const Eigen::Matrix3d& r, const Eigen::Vector3d& c, const std::a
   }
   for (int b = count - 1; b >= 0; --b) {
     double value = shares(b);
-    for (int a = b + 1; a < count; ++a) value -= triangle(b, a) * x(at[static_cast<std::size_t>(a)]);
+    for (int a = b + 1; a < count; ++a)
+      value -= triangle(b, a) * x(at[static_cast<std::size_t>(a)]);
     x(at[static_cast<std::size_t>(b)]) = value / triangle(b, b);
   }
 }

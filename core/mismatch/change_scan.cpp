@@ -112,7 +112,8 @@ void ChangeScan::name_input(const ChannelTest& test, int cv, ChangePoint& change
   const int freedom = rows - shape_.lead_in() - block;
   if (freedom < kFewestFreedom || !(least > 0.0)) return;
   change.p_value = std::min(
-      1.0, shape_.inputs * f_upper_tail((nothing - least) / block / (least / freedom), block, freedom));
+      1.0,
+      shape_.inputs * f_upper_tail((nothing - least) / block / (least / freedom), block, freedom));
 }
 
 // parts[m] holds the rows younger than moments_[m] (newest first) or at least as old.

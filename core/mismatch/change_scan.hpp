@@ -12,10 +12,10 @@ enum class ChangeKind : unsigned char { kBegan, kEnded, kOther };
 
 struct ChangePoint {
   ChangeKind kind = ChangeKind::kBegan;
-  int samples = 0;            ///< since the change
-  double gain = 0.0;          ///< by how much it beats "no change", in residual variances
-  int input = -1;             ///< that explains the rows since then best, were it alone
-  double p_value = 1.0;       ///< of no change in any input, from these rows; kEnded: 1
+  int samples = 0;       ///< since the change
+  double gain = 0.0;     ///< by how much it beats "no change", in residual variances
+  int input = -1;        ///< that explains the rows since then best, were it alone
+  double p_value = 1.0;  ///< of no change in any input, from these rows; kEnded: 1
 };
 
 /// Looks for the moment at which a CV's mismatch began, ended or became another one, in the rows
@@ -25,8 +25,8 @@ struct ChangePoint {
 ///
 /// the constant and the residuals' own lags in common. The first two have as many parameters as "no
 /// change" and must beat it by kMargin; the last has all blocks once more and must beat these by
-/// what that many could gain by chance (Andrews 1993, on the likelihood ratio over all moments). One
-/// pass over the rows in each direction gives the residual squares for all moments at once.
+/// what that many could gain by chance (Andrews 1993, on the likelihood ratio over all moments).
+/// One pass over the rows in each direction gives the residual squares for all moments at once.
 class ChangeScan {
  public:
   explicit ChangeScan(const RegressionShape& shape);
@@ -57,7 +57,7 @@ class ChangeScan {
   std::vector<int> moments_;  // ages
   GivensQr whole_;            // [inputs | lead-in]
   GivensQr lead_in_;
-  GivensQr one_input_;        // [lead-in | one input]
+  GivensQr one_input_;  // [lead-in | one input]
   Eigen::VectorXd inputs_;
   std::vector<Part> after_with_, after_without_, before_with_, before_without_;
 };

@@ -208,8 +208,7 @@ void ChannelEvaluator::judge(int cv, int input, const Scale& scale, ChannelEvide
   const double spread = std::sqrt(scale.variance);
   evidence.excitation_index = spread / std::sqrt(information);
   evidence.excitation_index_alone = spread / std::sqrt(alone);
-  evidence.gain_error_ratio =
-      information > 0.0 ? whitened_beta_.dot(whitened_) / information : 0.0;
+  evidence.gain_error_ratio = information > 0.0 ? whitened_beta_.dot(whitened_) / information : 0.0;
   evidence.gain_error = {evidence.gain_error_ratio, evidence.excitation_index};
   direction_.col(input) = whitened_beta_;
   whiten_transposed(direction_.col(input));
@@ -257,7 +256,8 @@ void ChannelEvaluator::judge_usual_errors(const Channel& channel, const Scale& s
   evidence.tests = 2;
 }
 
-// [gain, time, shift] = Q R by Gram-Schmidt, twice each (Kahan; Parlett 1980), and Q' of the target.
+// [gain, time, shift] = Q R by Gram-Schmidt, twice each (Kahan; Parlett 1980), and Q' of the
+// target.
 ChannelEvaluator::Reduced ChannelEvaluator::reduce(const Eigen::Ref<const Eigen::VectorXd>& target,
                                                    const Eigen::Ref<const Eigen::MatrixXd>& columns,
                                                    int shift) {
@@ -309,18 +309,18 @@ void ChannelEvaluator::judge_materiality(const Channel& channel, const Scale& sc
     evidence.dead_time_error = {shift == kLater ? fit(2) : -fit(2), deviations(2)};
   }
   const int free = block_ - 3;
-  evidence.usual = free > 0 && f_upper_tail(nearest / (free * scale.variance), free,
-                                            scale.freedom) > kUnusual;
+  evidence.usual =
+      free > 0 && f_upper_tail(nearest / (free * scale.variance), free, scale.freedom) > kUnusual;
   if (!evidence.usual) {
     judge_unusual(channel.limits, scale, evidence);
     return;
   }
   const MaterialityLimits& limits = channel.limits;
   const double log_time = std::log1p(limits.time_constant);
-  const double beyond = std::min(
-      {beyond_limit(evidence.gain_error, limits.gain, scale.freedom),
-       beyond_limit(evidence.log_time_error, log_time, scale.freedom),
-       beyond_limit(evidence.dead_time_error, limits.dead_time_samples, scale.freedom)});
+  const double beyond =
+      std::min({beyond_limit(evidence.gain_error, limits.gain, scale.freedom),
+                beyond_limit(evidence.log_time_error, log_time, scale.freedom),
+                beyond_limit(evidence.dead_time_error, limits.dead_time_samples, scale.freedom)});
   evidence.p_value_material = std::min(1.0, 3.0 * beyond);
   evidence.harmless = surely_within(evidence.gain_error, limits.gain) &&
                       surely_within(evidence.log_time_error, log_time) &&
@@ -342,13 +342,13 @@ void ChannelEvaluator::judge_unusual(const MaterialityLimits& limits, const Scal
   double nearest_usual = kInfinity;
   for (const int shift : {static_cast<int>(kLater), static_cast<int>(kEarlier)}) {
     const Reduced whole = reduce(whitened_, generators_, shift);
-    const Reduced usual = reduce(usual_whitened_.head(usual_rank_),
-                                 usual_generators_.topRows(usual_rank_), shift);
+    const Reduced usual =
+        reduce(usual_whitened_.head(usual_rank_), usual_generators_.topRows(usual_rank_), shift);
     nearest = std::min(nearest, whole.rest_square +
                                     box_least_squares(whole.r, whole.c, low, high).distance_square);
     nearest_usual =
-        std::min(nearest_usual, usual.rest_square + box_least_squares(usual.r, usual.c, low, high)
-                                                        .distance_square);
+        std::min(nearest_usual, usual.rest_square +
+                                    box_least_squares(usual.r, usual.c, low, high).distance_square);
   }
   const double block_p = f_upper_tail(nearest / (block_ * scale.variance), block_, scale.freedom);
   const double usual_p =

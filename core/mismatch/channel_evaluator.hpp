@@ -55,9 +55,10 @@ struct RegressionMemory {
 /// W1^2 / W2 - columns degrees of freedom.
 ///
 /// Materiality. Where errors of gain, time constant and dead time explain what is seen, each is
-/// tested against its limit (one-sided t, three times). Where they do not, both tests are made again
-/// of the hypothesis that the error is some combination of these three within their limits: the
-/// distance from the estimate to the nearest such error takes the place of the distance to none.
+/// tested against its limit (one-sided t, three times). Where they do not, both tests are made
+/// again of the hypothesis that the error is some combination of these three within their limits:
+/// the distance from the estimate to the nearest such error takes the place of the distance to
+/// none.
 ///
 /// The factor is never squared: with R_t the trailing triangle of all inputs' columns and
 /// T = R_t^-1, the factor S of block i's covariance (S S' = T_i T_i', T_i the block's rows of T)
@@ -76,8 +77,8 @@ class ChannelEvaluator {
 
  private:
   struct Channel {
-    std::vector<Signature> errors;    // of a 100 % gain error first
-    std::vector<Signature> shifts;    // one sample later, one earlier, minus the response itself
+    std::vector<Signature> errors;  // of a 100 % gain error first
+    std::vector<Signature> shifts;  // one sample later, one earlier, minus the response itself
     double gain = 0.0;  // steady gain (integrating: rise in the slowest tail's time constant)
     MaterialityLimits limits;
   };
@@ -122,22 +123,22 @@ class ChannelEvaluator {
   std::vector<Channel> channels_;  // input-major
 
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  int padded_;                    // columns of all inputs, rounded up to whole granules
-  RowMajor triangle_;             // R_t, columns scaled to norm 1; padded with zeros
-  RowMajor inverse_;              // T, likewise
-  Eigen::VectorXd norms_;         // of the columns
-  Eigen::VectorXd scales_;        // 1 / norms_
-  Eigen::VectorXd rotated_;       // the CV's rotated responses of those rows
-  Eigen::VectorXd estimate_;      // scaled coefficients
-  Eigen::VectorXd coefficients_;  // of the whole regression
+  int padded_;                        // columns of all inputs, rounded up to whole granules
+  RowMajor triangle_;                 // R_t, columns scaled to norm 1; padded with zeros
+  RowMajor inverse_;                  // T, likewise
+  Eigen::VectorXd norms_;             // of the columns
+  Eigen::VectorXd scales_;            // 1 / norms_
+  Eigen::VectorXd rotated_;           // the CV's rotated responses of those rows
+  Eigen::VectorXd estimate_;          // scaled coefficients
+  Eigen::VectorXd coefficients_;      // of the whole regression
   const double* own_lags_ = nullptr;  // a_1..a_p of the CV's own residual, in coefficients_
-  double residual_norm_ = 0.0;    // of the CV's own last residual
-  RowMajor covariance_;           // S: S S' = T_i T_i', covariance of block i's scaled coefficients
-  RowMajor behind_;               // of T_i, columns behind the block; then their reflectors
-  Eigen::MatrixXd direction_;     // B x m: weights of the gain-error estimate on the block
-  Eigen::MatrixXd usual_;         // orthonormal basis of the usual errors, whitened
+  double residual_norm_ = 0.0;        // of the CV's own last residual
+  RowMajor covariance_;        // S: S S' = T_i T_i', covariance of block i's scaled coefficients
+  RowMajor behind_;            // of T_i, columns behind the block; then their reflectors
+  Eigen::MatrixXd direction_;  // B x m: weights of the gain-error estimate on the block
+  Eigen::MatrixXd usual_;      // orthonormal basis of the usual errors, whitened
   int usual_rank_ = 0;
-  Eigen::MatrixXd generators_;    // whitened: 100 % gain, ln time constant, sample later, earlier
+  Eigen::MatrixXd generators_;  // whitened: 100 % gain, ln time constant, sample later, earlier
   Eigen::MatrixXd usual_generators_;  // the generators in the coordinates of usual_
   Eigen::VectorXd usual_whitened_;    // the estimate, likewise
   Eigen::MatrixXd reduced_basis_;     // of `reduce`

@@ -6,9 +6,9 @@ namespace mpm {
 
 /// Errors of a channel's model that do not matter. Larger ones are material.
 struct MaterialityLimits {
-  double gain = 0.05;               ///< relative to the model's gain, > 0
-  double time_constant = 0.10;      ///< relative to the model's, > 0
-  double dead_time_samples = 0.5;   ///< > 0
+  double gain = 0.05;              ///< relative to the model's gain, > 0
+  double time_constant = 0.10;     ///< relative to the model's, > 0
+  double dead_time_samples = 0.5;  ///< > 0
 };
 
 /// An estimate with its standard deviation; the s.d. is infinite where nothing is known.
@@ -31,9 +31,9 @@ struct ChannelEvidence {
   double excitation_index_alone = 0;  ///< the same, were the other inputs known not to matter
   int confounder = -1;                ///< input whose estimate is most correlated with this one's
 
-  bool usual = false;        ///< errors of gain, time constant and dead time explain all that is seen
-  bool harmless = false;     ///< and all three are within the limits, each with 95 % confidence
-  Estimate gain_error;       ///< relative to the reference gain, whatever else is wrong
+  bool usual = false;     ///< errors of gain, time constant and dead time explain all that is seen
+  bool harmless = false;  ///< and all three are within the limits, each with 95 % confidence
+  Estimate gain_error;    ///< relative to the reference gain, whatever else is wrong
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
   Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
 };

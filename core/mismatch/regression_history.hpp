@@ -9,8 +9,8 @@
 namespace mpm {
 
 /// What the residual of every CV is regressed on: a constant, the last `residual_order` residuals
-/// of all CVs, and per input a block: its last `fir_lags` values and, beyond them, one exponentially
-/// weighted mean per tail pole.
+/// of all CVs, and per input a block: its last `fir_lags` values and, beyond them, one
+/// exponentially weighted mean per tail pole.
 struct RegressionShape {
   int inputs = 1;
   int cvs = 1;
@@ -65,16 +65,16 @@ class RegressionHistory {
 
   RegressionShape shape_;
   int depth_;
-  int filled_ = 0;                    // intervals so far, until a row has all its lags
-  std::vector<bool> has_origin_;      // per input
-  Eigen::VectorXd origin_;            // first known value: keeps the windows' values small
-  Eigen::VectorXd last_input_;        // about the origin
-  Eigen::VectorXd unknown_;           // all NaN
+  int filled_ = 0;                // intervals so far, until a row has all its lags
+  std::vector<bool> has_origin_;  // per input
+  Eigen::VectorXd origin_;        // first known value: keeps the windows' values small
+  Eigen::VectorXd last_input_;    // about the origin
+  Eigen::VectorXd unknown_;       // all NaN
   std::vector<LagWindow> input_windows_;
   std::vector<LagWindow> tail_windows_;  // input-major
   std::vector<LagWindow> residual_windows_;
-  std::vector<int> unknown_run_;   // per CV, unknown residuals up to now
-  std::vector<int> since_gap_;     // per CV, samples since the last long gap
+  std::vector<int> unknown_run_;  // per CV, unknown residuals up to now
+  std::vector<int> since_gap_;    // per CV, samples since the last long gap
   std::vector<bool> usable_;
 };
 

@@ -59,9 +59,10 @@ struct ChannelStatus {
   Reason reason = Reason::kWarmingUp;
   int confounder = -1;               ///< input index, for kCollinear; -1 otherwise
   double p_value = 1.0;              ///< of the channel test, 0..1
-  double statistic = 0.0;            ///< F of the channel test
-  double threshold = 0.0;            ///< F at which the verdict turns to mismatch
-  double partial_correlation = 0.0;  ///< (3.15) where its magnitude is largest for lags >= 1
+  double statistic = 0.0;            ///< F of the channel test; |correlation| with the mean line
+  double threshold = 0.0;            ///< of the statistic, where the verdict turns to mismatch
+  double partial_correlation = 0.0;  ///< where its magnitude is largest for lags >= 1; (3.15), or
+                                     ///< the kind that the settings name
   int lag = 0;                       ///< samples, where that is
   bool excited = false;
   double p_value_material = 1.0;  ///< that the error is within the materiality limits, at most

@@ -5,13 +5,14 @@
 namespace mpm {
 namespace {
 
-// Samples between two searches for a change; fewer where the errors are very much larger than usual.
+// Samples between two searches for a change; fewer where the errors are very much larger than
+// usual.
 constexpr std::int64_t kBetweenScans = 100;
 constexpr std::int64_t kBetweenUrgentScans = 20;
 constexpr double kUrgent = 2.0;  // surprise
 
-// A change is looked for once an error is this likely, or the last 100 one-step errors are this much
-// larger than usual: while a memory spans the change, its p-value is slow to fall.
+// A change is looked for once an error is this likely, or the last 100 one-step errors are this
+// much larger than usual: while a memory spans the change, its p-value is slow to fall.
 constexpr double kSuspicious = 1e-5;
 constexpr double kSurprise = 1.3;
 
@@ -48,8 +49,8 @@ constexpr double kMaterial = 1e-3;
 // An alarm stays while its error is significant at this level and might matter.
 constexpr double kSignificant = 0.05;
 
-// What the condition looks at: to raise, that there is an error, and that it matters; to clear, that
-// it does not matter, or is not there.
+// What the condition looks at: to raise, that there is an error, and that it matters; to clear,
+// that it does not matter, or is not there.
 double condition_p(const Evidence& evidence, AlarmState state) {
   if (state == AlarmState::kCleared)
     return evidence.material < kMaterial ? evidence.any : std::max(evidence.any, evidence.material);
@@ -87,8 +88,7 @@ void CvAlarms::step(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     const AlarmState before = conditions_[i].state();
     const Evidence evidence = combined(cv, static_cast<int>(i), test);
-    const bool changed =
-        conditions_[i].update(condition_p(evidence, before), limits);
+    const bool changed = conditions_[i].update(condition_p(evidence, before), limits);
     risen = risen || (changed && before == AlarmState::kCleared);
   }
   const bool urgent = test.surprise(cv) > kUrgent;
@@ -111,8 +111,8 @@ std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, const Chann
                                                  ChangeScan& scan) {
   since_scan_ = 0;
   std::optional<ChangePoint> change = scan.scan(test, cv);
-  const bool certain = change && (risen || change->kind == ChangeKind::kEnded ||
-                                  change->p_value < kCertain);
+  const bool certain =
+      change && (risen || change->kind == ChangeKind::kEnded || change->p_value < kCertain);
   if (!certain) change.reset();
   return change;
 }
@@ -123,8 +123,7 @@ void CvAlarms::settle(int cv, const ChannelTest& test, const Condition::Limits& 
     const AlarmState before = conditions_[i].state();
     if (before == AlarmState::kActive && condition_p(evidence, before) > limits.clear_above)
       conditions_[i].set(AlarmState::kCleared);
-    if (before == AlarmState::kCleared &&
-        condition_p(evidence, before) < limits.raise_below)
+    if (before == AlarmState::kCleared && condition_p(evidence, before) < limits.raise_below)
       conditions_[i].set(AlarmState::kActive);
   }
 }

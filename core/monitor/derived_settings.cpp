@@ -81,6 +81,8 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
   DerivedSettings derived;
   derived.false_alarm_rate = monitor.false_alarm_rate;
   derived.gain_error_of_interest = monitor.gain_error_of_interest;
+  derived.correlation = monitor.correlation;
+  derived.threshold = monitor.threshold;
   derived.controlling_lags = monitor.controlling_lags;
   derived.first_lag = monitor.first_lag;
   derived.last_lag = monitor.last_lag;

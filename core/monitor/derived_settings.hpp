@@ -18,6 +18,8 @@ struct DerivedSettings {
   std::vector<MaterialityLimits> materiality;  ///< per channel, input-major
   double false_alarm_rate = 0.01;
   double gain_error_of_interest = 0.0;
+  CorrelationKind correlation = CorrelationKind::kLaggedPartial;
+  ThresholdKind threshold = ThresholdKind::kFTest;
   int controlling_lags = 0;
   int first_lag = 0;
   int last_lag = 0;

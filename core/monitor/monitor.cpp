@@ -7,6 +7,7 @@
 #include "core/mismatch/change_scan.hpp"
 #include "core/mismatch/channel_test.hpp"
 #include "core/mismatch/lagged_correlation.hpp"
+#include "core/mismatch/mean_line.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/derived_settings.hpp"
@@ -56,7 +57,7 @@ struct Monitor::State {
         residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
         held_residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
         correlation({signal_counts.inputs(), signal_counts.cv, settings.controlling_lags,
-                     settings.first_lag, settings.last_lag},
+                     settings.first_lag, settings.last_lag, settings.correlation},
                     settings.lambda),
         test({signal_counts.inputs(), signal_counts.cv, settings.fir_lags, settings.residual_order,
               settings.tail_poles},
@@ -138,6 +139,7 @@ struct Monitor::State {
     double denominator;
     double value;
   };
+  double line = 0.0;                  // with ThresholdKind::kMeanLine
   std::vector<Threshold> thresholds;  // one per kind of test, refreshed with the denominator
   MonitorCounters counters;
 };
@@ -290,6 +292,7 @@ void Monitor::push(const Frame& frame) {
 
 void Monitor::State::judge() {
   const double channel_rate = settings.false_alarm_rate / (counts.inputs() * counts.cv);
+  if (settings.threshold == ThresholdKind::kMeanLine) line = mean_line(correlation);
   for (int i = 0; i < counts.inputs(); ++i)
     for (int j = 0; j < counts.cv; ++j) judge_channel(j, i, channel_rate);
 }
@@ -322,6 +325,13 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   channel.p_value_material = evidence.p_value_material;
   channel.statistic = evidence.statistic;
   channel.threshold = threshold_for(evidence, memory.freedom(), channel_rate);
+  const bool alarmed = alarms.state(input) == AlarmState::kActive;
+  bool exceeds = evidence.p_value < channel_rate || alarmed;
+  if (settings.threshold == ThresholdKind::kMeanLine) {
+    channel.statistic = std::abs(channel.partial_correlation);
+    channel.threshold = line;
+    exceeds = channel.statistic > channel.threshold;
+  }
   channel.model_gain = evidence.reference_gain;
   channel.usual = evidence.usual;
   channel.log_time_error = evidence.log_time_error;
@@ -332,13 +342,11 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   channel.effect_high = channel.effect_size + half * std::abs(evidence.reference_gain);
   channel.smallest_error = std::min(kVisible * evidence.excitation_index, kBlind);
   channel.excited = channel.smallest_error <= settings.gain_error_of_interest;
-  const bool alarmed = alarms.state(input) == AlarmState::kActive;
   channel.material = alarmed || evidence.p_value_material < channel_rate;
   const bool overwhelming =
       channel.smallest_error < kBlind && evidence.p_value < kOverwhelming * channel_rate;
-  if (channel.excited || overwhelming || alarmed) {
-    const bool mismatch = evidence.p_value < channel_rate || alarmed;
-    channel.verdict = mismatch ? Verdict::kMismatch : Verdict::kMatch;
+  if (channel.excited || ((overwhelming || alarmed) && exceeds)) {
+    channel.verdict = exceeds ? Verdict::kMismatch : Verdict::kMatch;
     channel.reason = Reason::kNone;
     return;
   }

@@ -47,8 +47,8 @@ class Monitor {
 
   [[nodiscard]] const ChannelStatus& channel(int cv, int input) const;
   [[nodiscard]] AlarmState alarm(int cv, int input) const;
-  /// Partial correlations (3.15) of a channel for lags first_lag()..last_lag(). Undefined ones
-  /// (silent or collinear input) are 0.
+  /// Correlations of a channel, of the kind that the settings name ((3.15) if none), for lags
+  /// first_lag()..last_lag(). Undefined ones (silent or collinear input) are 0.
   [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> partial_correlations(int cv, int input) const;
   [[nodiscard]] int first_lag() const;
   [[nodiscard]] int last_lag() const;

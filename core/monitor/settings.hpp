@@ -3,8 +3,15 @@
 #include <vector>
 
 #include "core/mismatch/channel_evidence.hpp"
+#include "core/mismatch/correlation_kind.hpp"
 
 namespace mpm {
+
+/// What decides between match and mismatch.
+enum class ThresholdKind {
+  kFTest,     ///< the calibrated channel test
+  kMeanLine,  ///< the thesis's mean line (core/mismatch/mean_line.hpp); not calibrated
+};
 
 /// Materiality limits of one channel, in place of the unit's.
 struct ChannelLimits {
@@ -20,8 +27,10 @@ struct MonitorSettings {
   bool sliding_window = false;     ///< the long memory is a window of the effective samples instead
   double false_alarm_rate = 0.01;  ///< of the whole unit at any one time, 0..1
   double gain_error_of_interest = 0.25;  ///< relative; larger errors must be visible to say match
-  int controlling_lags = 40;             ///< g of (3.15)
-  int first_lag = -10;                   ///< reported range of lags d of (3.15)
+  CorrelationKind correlation = CorrelationKind::kLaggedPartial;  ///< the one that is reported
+  ThresholdKind threshold = ThresholdKind::kFTest;
+  int controlling_lags = 40;  ///< g of (3.15)
+  int first_lag = -10;        ///< reported range of lags d of (3.15)
   int last_lag = 20;
   int fir_lags = 0;        ///< block length of the channel test
   int residual_order = 0;  ///< lags of all residuals

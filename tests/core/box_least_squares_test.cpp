@@ -25,8 +25,7 @@ TEST_CASE("least squares in a box: no point of a fine grid is better") {
     for (int a = 0; a <= 40; ++a)
       for (int b = 0; b <= 40; ++b)
         for (int d = 0; d <= 40; ++d) {
-          const Eigen::Vector3d x =
-              low + Eigen::Vector3d(a, b, d).cwiseProduct(high - low) / 40.0;
+          const Eigen::Vector3d x = low + Eigen::Vector3d(a, b, d).cwiseProduct(high - low) / 40.0;
           best = std::min(best, (c - r * x).squaredNorm());
         }
     CAPTURE(trial);

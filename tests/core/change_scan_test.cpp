@@ -70,8 +70,8 @@ TEST_CASE("the end of a mismatch is seen as such") {
 }
 
 TEST_CASE("a mismatch that was there all along, no mismatch, and louder noise are no change") {
-  // Of healthy runs none may be certain. A mismatch that lasts may be split where the noise trebles,
-  // but seldom: it then only begins again.
+  // Of healthy runs none may be certain. A mismatch that lasts may be split where the noise
+  // trebles, but seldom: it then only begins again.
   int split = 0;
   for (std::uint64_t seed = 21; seed <= 60; ++seed) {
     for (const double size : {0.0, 0.1, 0.4})

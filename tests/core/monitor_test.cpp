@@ -200,6 +200,39 @@ TEST_CASE("without movement of any manipulated variable the controller is off") 
     for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).reason == Reason::kControllerOff);
 }
 
+TEST_CASE("the mean line decides where the settings say so, on the correlation they name") {
+  const CorrelationKind kind =
+      GENERATE(CorrelationKind::kLaggedPartial, CorrelationKind::kPartial,
+               CorrelationKind::kConventional, CorrelationKind::kAlternative);
+  Experiment experiment;
+  experiment.gain_ratio = 0.75;
+  MonitorSettings settings;
+  settings.correlation = kind;
+  Monitor usual(experiment.model, experiment.counts, {true, true}, settings, {});
+  settings.threshold = ThresholdKind::kMeanLine;
+  Monitor monitor(experiment.model, experiment.counts, {true, true}, settings, {});
+  experiment.run(2000, [&](const Frame& frame) {
+    usual.push(frame);
+    monitor.push(frame);
+  });
+  double sum = 0.0;
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) sum += monitor.partial_correlations(j, i).cwiseAbs().mean();
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const ChannelStatus& channel = monitor.channel(j, i);
+      CHECK(channel.threshold == Approx(sum / 4.0).epsilon(1e-12));
+      // Lags 1..20 of -10..20.
+      CHECK(channel.statistic == monitor.partial_correlations(j, i).tail(20).cwiseAbs().maxCoeff());
+      CHECK((channel.verdict == Verdict::kMismatch) == (channel.statistic > channel.threshold));
+      CHECK(channel.p_value == usual.channel(j, i).p_value);
+      CHECK(usual.channel(j, i).statistic != channel.statistic);
+      CHECK((usual.channel(j, i).verdict == Verdict::kMismatch) == (j == 0 && i == 1));
+      CHECK(usual.partial_correlations(j, i) == monitor.partial_correlations(j, i));
+    }
+  CHECK(monitor.channel(0, 1).verdict == Verdict::kMismatch);
+}
+
 TEST_CASE("before there is enough data nothing is said") {
   const Experiment experiment;
   Monitor monitor = experiment.monitor();

@@ -9,7 +9,8 @@ namespace {
 
 const double kNan = std::nan("");
 
-std::vector<double> row_of(const RegressionHistory& history, const RegressionShape& shape, int age) {
+std::vector<double> row_of(const RegressionHistory& history, const RegressionShape& shape,
+                           int age) {
   std::vector<double> row(static_cast<std::size_t>(shape.columns()));
   history.fill(age, row.data());
   return row;
