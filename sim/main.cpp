@@ -22,6 +22,8 @@
 namespace mpm::sim {
 namespace {
 
+constexpr std::int64_t kDefaultSamples = 3000;  // of a data file
+
 /// Bad input that has been told already, or whose text is the whole message.
 struct BadInput : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -39,6 +41,14 @@ config::UnitConfig load_unit(const std::string& file) {
   return std::move(loaded.config);
 }
 
+/// Length of the run where it has an end.
+std::optional<double> run_length_s(const Options& options, const config::UnitConfig& unit) {
+  std::optional<std::int64_t> samples = options.samples;
+  if (!samples && !options.csv.empty()) samples = kDefaultSamples;
+  if (!samples) return std::nullopt;
+  return static_cast<double>(*samples) * unit.sample_time_s;
+}
+
 config::ScenarioConfig load_scenario(const Options& options, const config::UnitConfig& unit) {
   if (options.scenario == "none") {
     config::ScenarioConfig nothing;
@@ -46,7 +56,7 @@ config::ScenarioConfig load_scenario(const Options& options, const config::UnitC
     return nothing;
   }
   const std::string file = config::find_scenario(options.scenario, options.config);
-  config::ScenarioResult loaded = config::load_scenario(file, unit);
+  config::ScenarioResult loaded = config::load_scenario(file, unit, run_length_s(options, unit));
   report(loaded.findings);
   return std::move(loaded.scenario);
 }
@@ -97,7 +107,6 @@ int run_csv(const LoopSetup& setup, const Options& options) {
   std::ostream& out = options.csv == "-" ? std::cout : file;
   ClosedLoop loop(setup);
   CsvWriter csv(out, setup.unit, static_cast<double>(setup.start_time_ns) * 1e-9);
-  constexpr std::int64_t kDefaultSamples = 3000;
   const std::int64_t samples = options.samples.value_or(kDefaultSamples);
   for (std::int64_t k = 0; k < samples; ++k) {
     const Frame& frame = loop.step();

@@ -9,6 +9,8 @@
 #include "sim/mpc/mpc.hpp"
 #include "sim/plant/plant.hpp"
 #include "sim/signals/coloured_noise.hpp"
+#include "sim/signals/intervals.hpp"
+#include "sim/signals/output_disturbance.hpp"
 #include "sim/signals/setpoints.hpp"
 
 namespace mpm::sim {
@@ -34,33 +36,31 @@ class ClosedLoop {
   /// Runs the next interval. The frame stays valid until the next call.
   [[nodiscard]] const Frame& step();
 
-  /// y(k) of the last frame without noise.
+  /// y(k) of the last frame without noise and disturbances.
   [[nodiscard]] const Eigen::VectorXd& true_output() const { return true_output_; }
   /// False once a value is no longer finite.
   [[nodiscard]] bool finite() const { return finite_; }
   [[nodiscard]] const Mpc& controller() const { return controller_; }
 
  private:
-  struct NoiseStep {
-    int cv;
-    double sigma_ratio;
-    std::int64_t first_interval;
-  };
-  void begin_noise_changes();
-
   double sample_time_s_;
   std::int64_t start_time_ns_;
   std::int64_t interval_ = 0;
   Plant plant_;
   Mpc controller_;
   RandomBinarySetpoints setpoints_;
-  std::vector<ColouredNoise> noise_, movement_;
-  std::vector<NoiseStep> noise_steps_;
-  Eigen::VectorXd noise_ratio_, disturbance_origin_;
+  OutputDisturbance output_disturbance_;
+  std::vector<ColouredNoise> movement_;
+  std::vector<IntervalRange> controller_off_;
+  Eigen::VectorXd disturbance_origin_;
   Eigen::VectorXd true_output_, input_;
   Frame frame_;
   bool finite_ = true;
 };
+
+/// The unit's simulation settings with the scenario's MV limits.
+[[nodiscard]] config::SimulationSettings limited_settings(const config::UnitConfig& unit,
+                                                          const config::ScenarioConfig& scenario);
 
 /// Share of the output disturbance that the scenario's controller feeds back: 1 with integral
 /// action; without it what `disturbance_feedback` says, or nothing if that says 1.

@@ -1,5 +1,6 @@
 #include "sim/output/truth.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "sim/mpc/linear_gain.hpp"
@@ -10,7 +11,87 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+template <class Type>
+Json or_null(const std::optional<Type>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+/// An end that never comes is null.
+Json end_of(double until_s) { return std::isfinite(until_s) ? Json(until_s) : Json(nullptr); }
+
+const char* name_of(config::DisturbanceKind kind) {
+  switch (kind) {
+    case config::DisturbanceKind::kStep:
+      return "step";
+    case config::DisturbanceKind::kRamp:
+      return "ramp";
+    case config::DisturbanceKind::kDrift:
+      return "drift";
+    case config::DisturbanceKind::kPeriodic:
+      return "periodic";
+    case config::DisturbanceKind::kSensorNoise:
+      return "sensor_noise";
+  }
+  return "";
+}
+
+Json disturbance_json(const config::Disturbance& disturbance) {
+  Json json = {{"cv", disturbance.cv},
+               {"kind", name_of(disturbance.kind)},
+               {"size", disturbance.size},
+               {"from", disturbance.from_s},
+               {"until", end_of(disturbance.until_s)}};
+  switch (disturbance.kind) {
+    case config::DisturbanceKind::kStep:
+      json["time_constant"] = disturbance.time_constant_s;
+      break;
+    case config::DisturbanceKind::kRamp:
+      json["duration"] = disturbance.duration_s;
+      break;
+    case config::DisturbanceKind::kDrift:
+      json["pole"] = disturbance.pole;
+      break;
+    case config::DisturbanceKind::kPeriodic:
+      json["period"] = disturbance.period_s;
+      json["phase"] = disturbance.phase_degrees;
+      break;
+    case config::DisturbanceKind::kSensorNoise:
+      break;
+  }
+  return json;
+}
+
+Json noise_json(const config::NoiseChange& change) {
+  Json json = {{"cv", or_null(change.cv)},
+               {"sigma_ratio", change.sigma_ratio},
+               {"from", change.from_s},
+               {"until", end_of(change.until_s)}};
+  if (change.student_t) json["student_t"] = *change.student_t;
+  if (change.follows) {
+    json["follows"] = *change.follows;
+    json["lag"] = change.lag_samples;
+    json["gain"] = change.gain;
+  }
+  return json;
+}
+
+Json setpoints_json(const config::ScenarioConfig& scenario) {
+  return {{"amplitude_ratio",
+           scenario.constant_setpoints ? 0.0 : scenario.setpoint_amplitude_ratio.value_or(1.0)},
+          {"equal", scenario.equal_setpoints},
+          {"moving", or_null(scenario.moving_setpoints)}};
+}
+
+Json mv_limits_json(const LoopSetup& setup) {
+  Json json = Json::object();
+  if (setup.scenario.mv_limits.empty()) return json;
+  const config::SimulationSettings settings = limited_settings(setup.unit, setup.scenario);
+  for (std::size_t mv = 0; mv < setup.unit.mv.size(); ++mv)
+    json[setup.unit.mv[mv].tag] = {{"low", or_null(settings.mv_limits[mv].low)},
+                                   {"high", or_null(settings.mv_limits[mv].high)},
+                                   {"max_move", or_null(settings.mv_limits[mv].max_move)}};
+  return json;
+}
 
 }  // namespace
 
@@ -32,12 +113,19 @@ std::string truth_json(const LoopSetup& setup, const std::string& controller_fil
                                 {"gain_ratio", change.gain_ratio},
                                 {"time_constant_ratio", change.time_constant_ratio},
                                 {"dead_time_error", change.dead_time_error_s},
-                                {"from", change.from_s}});
+                                {"from", change.from_s},
+                                {"until", end_of(change.until_s)}});
   truth["noise"] = Json::array();
   for (const config::NoiseChange& change : setup.scenario.noise)
-    truth["noise"].push_back({{"cv", change.cv ? Json(*change.cv) : Json(nullptr)},
-                              {"sigma_ratio", change.sigma_ratio},
-                              {"from", change.from_s}});
+    truth["noise"].push_back(noise_json(change));
+  truth["disturbances"] = Json::array();
+  for (const config::Disturbance& disturbance : setup.scenario.disturbances)
+    truth["disturbances"].push_back(disturbance_json(disturbance));
+  truth["setpoints"] = setpoints_json(setup.scenario);
+  truth["controller_off"] = Json::array();
+  for (const config::TimeSpan& off : setup.scenario.controller_off)
+    truth["controller_off"].push_back({{"from", off.from_s}, {"until", end_of(off.until_s)}});
+  truth["mv_limits"] = mv_limits_json(setup);
   const GainAgreement gains =
       compare_gains(operating_gain(setup.controller_model, mvs),
                     operating_gain(plant_stages(unit.model, setup.changes).back().model, mvs),

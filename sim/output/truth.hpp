@@ -6,9 +6,10 @@
 
 namespace mpm::sim {
 
-/// What a run hides, as JSON: scenario, seed, every changed channel (plant against model), noise
-/// changes, and the determinants of the gains that the controller believes in and that the plant
-/// has in the end (null where there are not as many CVs as MVs).
+/// What a run hides, as JSON: scenario, seed, every changed channel (plant against model), noise,
+/// disturbances, set-points, what became of the controller, and the determinants of the gains that
+/// the controller believes in and that the plant has in the end (null where there are not as many
+/// CVs as MVs).
 [[nodiscard]] std::string truth_json(const LoopSetup& setup, const std::string& controller_file);
 
 }  // namespace mpm::sim

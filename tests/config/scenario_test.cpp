@@ -106,7 +106,9 @@ TEST_CASE("Every mistake in a scenario is told at its place") {
        "dead_time_error"},
       {"draw: {gain_ratio: 2, count: 4}\n",
        "folder/s.yaml:1:30: error: draw.count: must be >= 1 and <= 3, not 4"},
-      {"noise: [{cv: y1}]\n", "folder/s.yaml:1:9: error: noise[0]: `sigma_ratio` is missing"},
+      {"noise: [{cv: y1}]\n",
+       "folder/s.yaml:1:9: error: noise[0]: changes nothing: give sigma_ratio, student_t or "
+       "follows"},
       {"setpoints: {constant: maybe}\n",
        "folder/s.yaml:1:23: error: setpoints.constant: must be true or false, not 'maybe'"},
       {"controller: {disturbance_feedback: 2}\n",
