@@ -68,6 +68,78 @@ TEST_CASE("Every key of a scenario arrives") {
   CHECK(scenario.disturbance_feedback == 0.5);
 }
 
+TEST_CASE("Every key of disturbances, noise and the loop arrives, in seconds and CV units") {
+  UnitConfig plant = unit();
+  plant.sample_time_s = 2.0;
+  plant.simulation.noise[1] = {0.03, 0.8};  // s.d. 0.03 / sqrt(1 - 0.64) = 0.05
+  const ScenarioResult result = load_scenario_text(
+      "changes: [{mv: 1, cv: 1, dead_time_error: -1 samples, from: 10 samples, until: 50%}]\n"
+      "noise:\n"
+      "  - {student_t: 2.5, from: 25 %, until: 75 %}\n"
+      "  - {cv: 2, follows: y1, lag: 5, gain: 0.5}\n"
+      "disturbances:\n"
+      "  - {step: -2 sd, cv: y2, time_constant: 30, from: 5 samples, until: 100 s}\n"
+      "  - {ramp: 0.5, cv: 1, duration: 50 %}\n"
+      "  - {drift: 0.1, cv: 1, pole: 0.99}\n"
+      "  - {periodic: 0.1, period: 70 samples, phase: 45, cv: [1, 2]}\n"
+      "  - {sensor_noise: 0.1}\n"
+      "setpoints: {equal: [y2, y1], moving: 2}\n"
+      "controller:\n"
+      "  off: [{from: 10, until: 20}, {from: 90 %}]\n"
+      "  mv_limits: [{mv: u1, ratio: 0.5}, {mv: 2, low: -1, high: 2, max_move: 0.1}]\n",
+      "s.yaml", plant, 1000.0);
+  for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
+  const ScenarioConfig& scenario = result.scenario;
+  REQUIRE(scenario.changes.size() == 1);
+  CHECK(scenario.changes[0].cv == "y1");
+  CHECK(scenario.changes[0].mv == "u1");
+  CHECK(scenario.changes[0].dead_time_error_s == -2.0);
+  CHECK(scenario.changes[0].from_s == 20.0);
+  CHECK(scenario.changes[0].until_s == 500.0);
+  CHECK(scenario.changes[0].place.file == "s.yaml");
+  CHECK(scenario.changes[0].place.line == 1);
+  CHECK(scenario.changes[0].place.column == 11);
+  CHECK(scenario.changes[0].place.key == "changes[0]");
+  REQUIRE(scenario.noise.size() == 2);
+  CHECK_FALSE(scenario.noise[0].cv);
+  CHECK(scenario.noise[0].student_t == 2.5);
+  CHECK(scenario.noise[0].from_s == 250.0);
+  CHECK(scenario.noise[0].until_s == 750.0);
+  CHECK(scenario.noise[1].cv == "y2");
+  CHECK(scenario.noise[1].follows == "y1");
+  CHECK(scenario.noise[1].lag_samples == 5);
+  CHECK(scenario.noise[1].gain == 0.5);
+  const std::vector<Disturbance>& shapes = scenario.disturbances;
+  REQUIRE(shapes.size() == 7);
+  CHECK(shapes[0].kind == DisturbanceKind::kStep);
+  CHECK(shapes[0].cv == "y2");
+  CHECK(shapes[0].size == Approx(-0.1));
+  CHECK(shapes[0].time_constant_s == 30.0);
+  CHECK(shapes[0].from_s == 10.0);
+  CHECK(shapes[0].until_s == 100.0);
+  CHECK(shapes[1].kind == DisturbanceKind::kRamp);
+  CHECK(shapes[1].duration_s == 500.0);
+  CHECK(shapes[1].until_s == kForEver);
+  CHECK(shapes[2].pole == 0.99);
+  CHECK(shapes[3].period_s == 140.0);
+  CHECK(shapes[3].phase_degrees == 45.0);
+  CHECK(shapes[4].cv == "y2");
+  CHECK(shapes[5].kind == DisturbanceKind::kSensorNoise);
+  CHECK(shapes[6].cv == "y2");
+  CHECK(scenario.equal_setpoints == std::vector<std::string>{"y2", "y1"});
+  REQUIRE(scenario.moving_setpoints);
+  CHECK(*scenario.moving_setpoints == std::vector<std::string>{"y2"});
+  REQUIRE(scenario.controller_off.size() == 2);
+  CHECK(scenario.controller_off[0].until_s == 20.0);
+  CHECK(scenario.controller_off[1].from_s == 900.0);
+  REQUIRE(scenario.mv_limits.size() == 2);
+  CHECK(scenario.mv_limits[0].ratio == 0.5);
+  CHECK(scenario.mv_limits[1].mv == "u2");
+  CHECK(scenario.mv_limits[1].low == -1.0);
+  CHECK(scenario.mv_limits[1].high == 2.0);
+  CHECK(scenario.mv_limits[1].max_move == 0.1);
+}
+
 TEST_CASE("Lists of tags stand for one change each") {
   const ScenarioResult result = load("changes: [{cv: [y1, y2], gain_ratio: 2}]\n");
   CHECK(result.findings.empty());
@@ -109,6 +181,36 @@ TEST_CASE("Every mistake in a scenario is told at its place") {
       {"noise: [{cv: y1}]\n",
        "folder/s.yaml:1:9: error: noise[0]: changes nothing: give sigma_ratio, student_t or "
        "follows"},
+      {"noise: [{cv: y1, student_t: 2}]\n",
+       "folder/s.yaml:1:29: error: noise[0].student_t: must be > 2 and <= 1000, not 2"},
+      {"noise: [{cv: y1, follows: y1}]\n",
+       "folder/s.yaml:1:27: error: noise[0].follows: a CV's noise cannot follow itself"},
+      {"noise: [{sigma_ratio: 2, lag: 3}]\n",
+       "folder/s.yaml:1:31: error: noise[0].lag: belongs to `follows`, the CV whose noise leads"},
+      {"disturbances: [{cv: y1}]\n",
+       "folder/s.yaml:1:16: error: disturbances[0]: give one of step, ramp, drift, periodic, "
+       "sensor_noise"},
+      {"disturbances: [{step: 1, period: 3}]\n",
+       "folder/s.yaml:1:26: error: disturbances[0].period: unknown key of a step (known: cv, from, "
+       "until, step, time_constant)"},
+      {"disturbances: [{step: 1, cv: 3}]\n",
+       "folder/s.yaml:1:30: error: disturbances[0].cv: '3' is no cv of this unit (known: y1, y2)"},
+      {"disturbances: [{ramp: 1}]\n",
+       "folder/s.yaml:1:16: error: disturbances[0]: `duration` is missing"},
+      {"disturbances: [{step: 1, from: 50 %}]\n",
+       "folder/s.yaml:1:32: error: disturbances[0].from: a share of the run, but the length of the "
+       "run is not given (--samples)"},
+      {"disturbances: [{step: 1, from: 10, until: 5}]\n",
+       "folder/s.yaml:1:43: error: disturbances[0].until: must be after `from`"},
+      {"disturbances: [{step: 1 sd, cv: y1}]\n",
+       "folder/s.yaml:1:23: error: disturbances[0].step: the unit file gives y1 no noise: give the "
+       "size in CV units"},
+      {"disturbances: [{step: 3 days, cv: y1}]\n",
+       "folder/s.yaml:1:23: error: disturbances[0].step: must be a number, not '3 days'"},
+      {"setpoints: {equal: y1}\n",
+       "folder/s.yaml:1:20: error: setpoints.equal: give two CVs or more"},
+      {"controller: {mv_limits: {mv: u1, low: 2, high: 1}}\n",
+       "folder/s.yaml:1:48: error: controller.mv_limits.high: must be above low"},
       {"setpoints: {constant: maybe}\n",
        "folder/s.yaml:1:23: error: setpoints.constant: must be true or false, not 'maybe'"},
       {"controller: {disturbance_feedback: 2}\n",
@@ -131,5 +233,5 @@ TEST_CASE("A scenario is found by name or path") {
                     Catch::Matchers::StartsWith(
                         "error: unknown scenario 's3_dely' (did you mean 's3_delay'?); known: "));
   CHECK_THROWS_WITH(find_scenario("", "nowhere.yaml"),
-                    Catch::Matchers::StartsWith("error: unknown scenario '' (known: "));
+                    Catch::Matchers::StartsWith("error: unknown scenario ''; known: "));
 }

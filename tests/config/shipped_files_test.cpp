@@ -100,15 +100,31 @@ TEST_CASE("The Wood-Berry plant is the published one, in seconds") {
 TEST_CASE("Shipped scenarios load for the Shell plant without a finding") {
   const std::string unit_file = kConfigFolder + "plants/shell3x3.yaml";
   const UnitConfig unit = load_clean(unit_file);
-  for (const char* name :
-       {"none", "hidden_gain", "s2_gain15", "s3_delay", "s4_gain40", "constant_setpoints"}) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kConfigFolder + "scenarios")) {
+    const std::string name = entry.path().stem();
     CAPTURE(name);
+    ++files;
     const std::string path = find_scenario(name, unit_file);
-    CHECK(std::filesystem::exists(path));
-    const ScenarioResult result = load_scenario(path, unit);
+    CHECK(std::filesystem::equivalent(path, entry.path()));
+    const ScenarioResult result = load_scenario(path, unit, 6000.0);
     for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
     CHECK(result.scenario.name == name);
     CHECK_FALSE(result.scenario.description.empty());
+  }
+  CHECK(files >= 27);
+}
+
+TEST_CASE("Events without a mismatch are for any plant") {
+  const UnitConfig unit = load_clean(kConfigFolder + "plants/wood_berry.yaml");
+  for (const char* name :
+       {"noise_x3", "sensor_noise", "periodic", "coupled_noise", "heavy_tails", "all_events",
+        "step_small", "step_large", "lagged_step", "ramp", "drift", "equal_setpoints",
+        "one_setpoint", "controller_off", "constrained", "change_delay"}) {
+    CAPTURE(name);
+    const ScenarioResult result =
+        load_scenario(kConfigFolder + "scenarios/" + name + ".yaml", unit, 180000.0);
+    for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
   }
 }
 
