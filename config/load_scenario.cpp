@@ -104,7 +104,7 @@ void load_root(const Value& document, const ScenarioContext& context, ScenarioCo
     return;
   }
   const Map root = document.map({"scenario", "description", "changes", "draw", "noise",
-                                 "disturbances", "setpoints", "controller"});
+                                 "disturbances", "setpoints", "controller", "bad_data"});
   if (const Value* name = root.find("scenario"))
     scenario.name = name->text().value_or(scenario.name);
   if (const Value* text = root.find("description"))
@@ -118,6 +118,7 @@ void load_root(const Value& document, const ScenarioContext& context, ScenarioCo
     load_scenario_setpoints(*setpoints, context, scenario);
   if (const Value* controller = root.find("controller"))
     load_scenario_controller(*controller, context, scenario);
+  load_list(root, "bad_data", [&](const Value& item) { load_bad_data(item, context, scenario); });
 }
 
 ScenarioResult load_text(const std::string& text, const std::string& name,

@@ -7,10 +7,6 @@
 namespace mpm::config {
 namespace {
 
-double noise_deviation(const NoiseSettings& noise) {
-  return noise.sigma / std::sqrt(1.0 - noise.pole * noise.pole);
-}
-
 std::vector<std::string> mv_tags(const UnitConfig& unit) {
   std::vector<std::string> tags = unit.input_tags();
   tags.resize(unit.mv.size());
@@ -91,17 +87,24 @@ void read_span(const Map& map, const ScenarioContext& context, double& from_s, d
   if (until_s <= from_s) until->error("must be after `from`");
 }
 
+double noise_deviation(const ScenarioContext& context, int cv, const Value& value) {
+  const auto index = static_cast<std::size_t>(cv);
+  const std::vector<NoiseSettings>& noise = context.unit.simulation.noise;
+  const double deviation =
+      index < noise.size()
+          ? noise[index].sigma / std::sqrt(1.0 - noise[index].pole * noise[index].pole)
+          : 0.0;
+  if (deviation == 0.0)
+    value.error("the unit file gives " + context.unit.cv[index].tag +
+                " no noise: give the size in CV units");
+  return deviation;
+}
+
 double read_size(const Value& value, const ScenarioContext& context, int cv, const Range& range) {
   const std::optional<Quantity> size = value.quantity({"sd"}, range);
   if (!size) return 0.0;
   if (size->unit.empty()) return size->number;
-  const auto index = static_cast<std::size_t>(cv);
-  const std::vector<NoiseSettings>& noise = context.unit.simulation.noise;
-  const double deviation = index < noise.size() ? noise_deviation(noise[index]) : 0.0;
-  if (deviation == 0.0)
-    value.error("the unit file gives " + context.unit.cv[index].tag +
-                " no noise: give the size in CV units");
-  return size->number * deviation;
+  return size->number * noise_deviation(context, cv, value);
 }
 
 int find_signal(const Value& value, const std::vector<std::string>& known, std::string_view noun) {

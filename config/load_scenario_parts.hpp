@@ -22,6 +22,8 @@ struct ScenarioContext {
                                               const Range& range = kNotNegative);
 /// `from` and `until`.
 void read_span(const Map& map, const ScenarioContext& context, double& from_s, double& until_s);
+/// s.d. of the unit's noise on a CV; reported at `value` where it is 0.
+[[nodiscard]] double noise_deviation(const ScenarioContext& context, int cv, const Value& value);
 /// `0.5` in CV units or `3 sd` of the unit's noise on that CV; in CV units.
 [[nodiscard]] double read_size(const Value& value, const ScenarioContext& context, int cv,
                                const Range& range = kAny);
@@ -37,6 +39,7 @@ void read_span(const Map& map, const ScenarioContext& context, double& from_s, d
 
 void load_noise(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario);
 void load_disturbance(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario);
+void load_bad_data(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario);
 void load_scenario_setpoints(const Value& section, const ScenarioContext& context,
                              ScenarioConfig& scenario);
 void load_scenario_controller(const Value& section, const ScenarioContext& context,

@@ -89,6 +89,33 @@ struct MvLimitChange {
   std::optional<double> low = {}, high = {}, max_move = {};  ///< instead, MV units
 };
 
+enum class BadDataKind {
+  kMissing,     ///< no value, quality bad
+  kUncertain,   ///< the true value, quality uncertain
+  kGaps,        ///< whole rows are not reported
+  kFrozen,      ///< the value repeats, quality good
+  kSpikes,      ///< the value plus or minus a size, quality good
+  kClipping,    ///< values beyond a range read as its end
+  kTimeJitter,  ///< time stamps are off by up to `share` of the sample time to either side
+  kClockSteps,  ///< the clock jumps
+};
+
+/// What goes wrong between the loop and whoever reads its data. The loop itself sees nothing of it.
+struct BadData {
+  BadDataKind kind = BadDataKind::kMissing;
+  std::vector<std::string> tags;  ///< of MVs, DVs, CVs, predictions or set-points
+  double share = 0.0;             ///< of the samples of each tag, or of the rows
+  int run_samples = 0;            ///< length of a run; 0 = every sample for itself
+  std::vector<double> sizes;      ///< of spikes, one per tag
+  /// Of clipping; missing = the range that `share` of the run's values lie beyond.
+  std::optional<double> low = {}, high = {};
+  std::vector<double> steps_s;  ///< of the clock, one after the other, at random times
+  double from_s = 0.0;
+  double until_s = kForEver;
+};
+
+[[nodiscard]] std::string name_of(BadDataKind kind);
+
 struct TimeSpan {
   double from_s = 0.0;
   double until_s = kForEver;
@@ -111,6 +138,7 @@ struct ScenarioConfig {
   double disturbance_feedback = 1.0;     ///< 0..1, part of the output disturbance that is fed back
   std::vector<TimeSpan> controller_off;  ///< MVs stay where they are
   std::vector<MvLimitChange> mv_limits;
+  std::vector<BadData> bad_data;
 };
 
 struct ScenarioResult {
@@ -129,6 +157,12 @@ struct ScenarioResult {
 [[nodiscard]] ScenarioResult load_scenario_text(const std::string& text, const std::string& name,
                                                 const UnitConfig& unit,
                                                 std::optional<double> run_s = std::nullopt);
+
+/// Adds one entry of `bad_data` as the command line gives it: `KIND=SHARE`, then more of the
+/// entry's keys, such as `frozen=5%,run=60`.
+[[nodiscard]] std::vector<Finding> add_bad_data(const std::string& text, const UnitConfig& unit,
+                                                std::optional<double> run_s,
+                                                ScenarioConfig& scenario);
 
 /// `name` itself if it ends in .yaml or .yml, else NAME.yaml in `scenarios/` beside the unit file,
 /// in `../scenarios/`, or among the shipped ones. Throws InputError that lists the known names.

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -13,6 +14,7 @@
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
 #include "sim/options.hpp"
+#include "sim/output/bad_data.hpp"
 #include "sim/output/csv_writer.hpp"
 #include "sim/output/start_time.hpp"
 #include "sim/output/truth.hpp"
@@ -77,6 +79,10 @@ LoopSetup prepare(const Options& options) {
   LoopSetup setup;
   setup.unit = load_unit(options.config);
   setup.scenario = load_scenario(options, setup.unit);
+  const std::optional<double> run_s = run_length_s(options, setup.unit);
+  for (const std::string& entry : options.bad_data)
+    report(config::add_bad_data(entry, setup.unit, run_s, setup.scenario));
+  if (run_s) setup.samples = std::llround(*run_s / setup.unit.sample_time_s);
   setup.seed = options.seed;
   setup.start_time_ns = start_time_ns(options);
   setup.controller_model = setup.unit.model;
@@ -91,14 +97,15 @@ LoopSetup prepare(const Options& options) {
   return setup;
 }
 
-void write_truth(const LoopSetup& setup, const Options& options) {
+void write_truth(const LoopSetup& setup, const Options& options, const BadDataFilter& filter) {
+  if (options.truth.empty()) return;
   std::ofstream out(options.truth, std::ios::binary);
-  out << truth_json(setup, options.controller_model);
+  out << truth_json(setup, options.controller_model, &filter);
   out.close();
   if (!out) throw std::runtime_error("cannot write " + options.truth);
 }
 
-int run_csv(const LoopSetup& setup, const Options& options) {
+int run_csv(const LoopSetup& setup, const Options& options, BadDataFilter& filter) {
   std::ofstream file;
   if (options.csv != "-") {
     file.open(options.csv, std::ios::binary);
@@ -106,7 +113,8 @@ int run_csv(const LoopSetup& setup, const Options& options) {
   }
   std::ostream& out = options.csv == "-" ? std::cout : file;
   ClosedLoop loop(setup);
-  CsvWriter csv(out, setup.unit, static_cast<double>(setup.start_time_ns) * 1e-9);
+  CsvWriter csv(out, setup.unit, static_cast<double>(setup.start_time_ns) * 1e-9,
+                uncertain_tags(setup.scenario));
   const std::int64_t samples = options.samples.value_or(kDefaultSamples);
   for (std::int64_t k = 0; k < samples; ++k) {
     const Frame& frame = loop.step();
@@ -114,7 +122,7 @@ int run_csv(const LoopSetup& setup, const Options& options) {
       spdlog::error("sample {}: the loop has diverged, values are no longer finite", k);
       return kFailed;
     }
-    csv.write(frame);
+    if (const Frame* reported = filter.apply(frame)) csv.write(*reported, filter.time_error_s());
   }
   out.flush();
   if (!out) throw std::runtime_error("cannot write " + options.csv);
@@ -126,10 +134,17 @@ int run_csv(const LoopSetup& setup, const Options& options) {
 
 int run(const Options& options) {
   const LoopSetup setup = prepare(options);
-  if (!options.truth.empty()) write_truth(setup, options);
-  if (!options.csv.empty()) return run_csv(setup, options);
-  block_stop_signals();
-  return run_dds(setup, options);
+  BadDataFilter filter(setup);
+  write_truth(setup, options, filter);
+  int status = kDone;
+  if (!options.csv.empty()) {
+    status = run_csv(setup, options, filter);
+  } else {
+    block_stop_signals();
+    status = run_dds(setup, options, filter);
+  }
+  if (!setup.scenario.bad_data.empty()) write_truth(setup, options, filter);  // with its counts
+  return status;
 }
 
 int parse_and_run(int argc, char** argv) {

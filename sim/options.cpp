@@ -10,6 +10,12 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("-s,--scenario", options.scenario,
                  "what is hidden in the plant: a scenario's name or file")
       ->capture_default_str();
+  app.add_option("--bad-data", options.bad_data,
+                 "spoils what is reported, beside the scenario: KIND=SHARE of missing, uncertain, "
+                 "gaps, frozen, spikes, clipping, time_jitter; clock_steps=SECONDS; more keys "
+                 "behind a comma, as frozen=5%,run=60; may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--controller-model", options.controller_model,
                  "unit file whose model the controller uses instead of the plant's own");
   app.add_option("-n,--samples", options.samples,
@@ -37,6 +43,7 @@ void declare(CLI::App& app, Options& options) {
       "Examples:\n"
       "  mpmsim --config shell3x3.yaml --scenario hidden_gain --seed 7 --csv run.csv\n"
       "  mpmsim --config shell3x3.yaml --scenario s3_delay --speed 10\n"
+      "  mpmsim --config shell3x3.yaml --bad-data missing=5% --bad-data gaps=1% --csv run.csv\n"
       "Exit codes: 0 done, 2 the run failed, 3 bad usage or bad input");
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "config/scenario_config.hpp"
@@ -22,7 +23,8 @@ struct LoopSetup {
   config::ScenarioConfig scenario;     ///< noise, set-points and controller of the run
   std::vector<ChannelChange> changes;  ///< what is hidden in the plant
   std::uint64_t seed = 1;
-  std::int64_t start_time_ns = 0;  ///< source time of k = 0
+  std::int64_t start_time_ns = 0;            ///< source time of k = 0
+  std::optional<std::int64_t> samples = {};  ///< length of the run where it has an end
 };
 
 /// Plant, noise, set-points and controller, one control interval at a time, in the convention of

@@ -82,6 +82,33 @@ Json setpoints_json(const config::ScenarioConfig& scenario) {
           {"moving", or_null(scenario.moving_setpoints)}};
 }
 
+Json bad_data_json(const LoopSetup& setup, const BadDataFilter* filter) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < setup.scenario.bad_data.size(); ++i) {
+    const config::BadData& bad = setup.scenario.bad_data[i];
+    Json json = {{"kind", name_of(bad.kind)}, {"from", bad.from_s}, {"until", end_of(bad.until_s)}};
+    if (!bad.tags.empty()) json["tags"] = bad.tags;
+    if (bad.kind != config::BadDataKind::kClockSteps) json["share"] = bad.share;
+    if (bad.run_samples > 0) json["run"] = bad.run_samples;
+    if (!bad.sizes.empty()) json["sizes"] = bad.sizes;
+    if (!bad.steps_s.empty()) json["steps"] = bad.steps_s;
+    if (filter != nullptr) {
+      const BadDataFilter::Details& details = filter->details()[i];
+      if (bad.kind == config::BadDataKind::kClipping) {
+        json["low"] = Json::array();
+        json["high"] = Json::array();
+        for (const double low : details.low) json["low"].push_back(end_of(low));
+        for (const double high : details.high) json["high"].push_back(end_of(high));
+      }
+      if (!bad.steps_s.empty()) json["step_times"] = details.step_times_s;
+      json["touched"] = filter->counts()[i].samples;
+      json["possible"] = filter->counts()[i].possible;
+    }
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 Json mv_limits_json(const LoopSetup& setup) {
   Json json = Json::object();
   if (setup.scenario.mv_limits.empty()) return json;
@@ -95,7 +122,8 @@ Json mv_limits_json(const LoopSetup& setup) {
 
 }  // namespace
 
-std::string truth_json(const LoopSetup& setup, const std::string& controller_file) {
+std::string truth_json(const LoopSetup& setup, const std::string& controller_file,
+                       const BadDataFilter* filter) {
   const config::UnitConfig& unit = setup.unit;
   const int mvs = static_cast<int>(unit.mv.size());
   Json truth;
@@ -126,6 +154,7 @@ std::string truth_json(const LoopSetup& setup, const std::string& controller_fil
   for (const config::TimeSpan& off : setup.scenario.controller_off)
     truth["controller_off"].push_back({{"from", off.from_s}, {"until", end_of(off.until_s)}});
   truth["mv_limits"] = mv_limits_json(setup);
+  truth["bad_data"] = bad_data_json(setup, filter);
   const GainAgreement gains =
       compare_gains(operating_gain(setup.controller_model, mvs),
                     operating_gain(plant_stages(unit.model, setup.changes).back().model, mvs),

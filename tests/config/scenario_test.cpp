@@ -140,6 +140,61 @@ TEST_CASE("Every key of disturbances, noise and the loop arrives, in seconds and
   CHECK(scenario.mv_limits[1].max_move == 0.1);
 }
 
+TEST_CASE("Every kind of bad data arrives") {
+  UnitConfig plant = unit();
+  plant.simulation.noise = {{0.03, 0.8}, {0.06, 0.8}};  // s.d. 0.05 and 0.1
+  const ScenarioResult result = load_scenario_text(
+      "bad_data:\n"
+      "  - {missing: 5 %, from: 10 %}\n"
+      "  - {uncertain: 0.05, tags: [y1, d1]}\n"
+      "  - {gaps: 1 %}\n"
+      "  - {frozen: 20 %, run: 60, until: 500}\n"
+      "  - {spikes: 1 %, size: 10 sd}\n"
+      "  - {spikes: 1 %, size: 3, tags: u1}\n"
+      "  - {spikes: 1 %}\n"
+      "  - {clipping: 1 %}\n"
+      "  - {clipping: range, low: -1, high: 2, tags: y1}\n"
+      "  - {time_jitter: 20 %}\n"
+      "  - {clock_steps: [3600, -2 samples], count: 3}\n",
+      "s.yaml", plant, 1000.0);
+  for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
+  const std::vector<BadData>& bad = result.scenario.bad_data;
+  REQUIRE(bad.size() == 11);
+  const std::vector<std::string> measured = {"u1", "u2", "d1", "y1", "y2"};
+  const std::vector<std::string> cvs = {"y1", "y2"};
+  CHECK(bad[0].kind == BadDataKind::kMissing);
+  CHECK(bad[0].share == 0.05);
+  CHECK(bad[0].from_s == 100.0);
+  CHECK(bad[0].tags == measured);
+  CHECK(bad[0].run_samples == 0);
+  CHECK(bad[1].tags == std::vector<std::string>{"y1", "d1"});
+  CHECK(bad[2].tags.empty());
+  CHECK(bad[2].run_samples == 10);
+  CHECK(bad[3].run_samples == 60);
+  CHECK(bad[3].until_s == 500.0);
+  CHECK(bad[4].tags == cvs);
+  REQUIRE(bad[4].sizes.size() == 2);
+  CHECK(bad[4].sizes[0] == Approx(0.5));
+  CHECK(bad[4].sizes[1] == Approx(1.0));
+  CHECK(bad[5].sizes == std::vector<double>{3.0});
+  CHECK(bad[6].sizes[1] == Approx(2.0));  // 20 sd
+  CHECK(bad[7].tags == cvs);
+  CHECK(bad[7].share == 0.01);
+  CHECK(bad[8].low == -1.0);
+  CHECK(bad[8].high == 2.0);
+  CHECK(bad[9].share == 0.2);
+  CHECK(bad[10].steps_s == std::vector<double>{3600.0, -2.0, 3600.0});
+
+  ScenarioConfig scenario;
+  CHECK(add_bad_data("frozen=5%,run=60", plant, 1000.0, scenario).empty());
+  REQUIRE(scenario.bad_data.size() == 1);
+  CHECK(scenario.bad_data[0].share == 0.05);
+  CHECK(scenario.bad_data[0].run_samples == 60);
+  const std::vector<Finding> wrong = add_bad_data("frozen=5%,rnu=60", plant, 1000.0, scenario);
+  REQUIRE(wrong.size() == 1);
+  CHECK(format(wrong[0]) == "--bad-data: error: rnu: unknown key of frozen (did you mean 'run'?)");
+}
+
 TEST_CASE("Lists of tags stand for one change each") {
   const ScenarioResult result = load("changes: [{cv: [y1, y2], gain_ratio: 2}]\n");
   CHECK(result.findings.empty());
@@ -207,6 +262,27 @@ TEST_CASE("Every mistake in a scenario is told at its place") {
        "size in CV units"},
       {"disturbances: [{step: 3 days, cv: y1}]\n",
        "folder/s.yaml:1:23: error: disturbances[0].step: must be a number, not '3 days'"},
+      {"bad_data: [{tags: y1}]\n",
+       "folder/s.yaml:1:12: error: bad_data[0]: give one of missing, uncertain, gaps, frozen, "
+       "spikes, clipping, time_jitter, clock_steps"},
+      {"bad_data: [{missing: 5}]\n",
+       "folder/s.yaml:1:22: error: bad_data[0].missing: must be a share from 0 to 100 %, such as "
+       "0.05 or 5 %"},
+      {"bad_data: [{time_jitter: 50 %}]\n",
+       "folder/s.yaml:1:26: error: bad_data[0].time_jitter: must be a share from 0 to 50 %, such "
+       "as 0.05 or 5 %"},
+      {"bad_data: [{gaps: 1 %, tags: y1}]\n",
+       "folder/s.yaml:1:24: error: bad_data[0].tags: unknown key of gaps (known: run, gaps, from, "
+       "until)"},
+      {"bad_data: [{spikes: 1 %, tags: u1, size: 3 sd}]\n",
+       "folder/s.yaml:1:42: error: bad_data[0].size: standard deviations are known of CVs only: "
+       "give u1 a size in its units"},
+      {"bad_data: [{clipping: range}]\n",
+       "folder/s.yaml:1:23: error: bad_data[0].clipping: give `low` or `high`, or a share of the "
+       "samples"},
+      {"bad_data: [{clock_steps: 5}]\n",
+       "folder/s.yaml:1:26: error: bad_data[0].clock_steps: come at random times, but the length "
+       "of the run is not given (--samples)"},
       {"setpoints: {equal: y1}\n",
        "folder/s.yaml:1:20: error: setpoints.equal: give two CVs or more"},
       {"controller: {mv_limits: {mv: u1, low: 2, high: 1}}\n",
