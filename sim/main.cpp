@@ -90,6 +90,9 @@ LoopSetup prepare(const Options& options) {
     if (!options.controller_model.empty())
       setup.controller_model = match_signals(load_unit(options.controller_model), setup.unit);
     hide_changes(setup);
+  } catch (const RefusedScenario& error) {
+    if (error.finding().line > 0) report({error.finding()});
+    throw BadInput(options.config + ": " + config::format(error.finding()));
   } catch (const std::invalid_argument& error) {
     throw BadInput(options.config + ": error: scenario '" + setup.scenario.name +
                    "': " + error.what());
@@ -172,7 +175,7 @@ int main(int argc, char** argv) {
     if (*error.what() != '\0') std::cerr << "mpmsim: " << error.what() << '\n';
     return kBadInput;
   } catch (const mpm::config::InputError& error) {
-    std::cerr << "mpmsim: " << error.what() << '\n';
+    std::cerr << (error.finding().file.empty() ? "mpmsim: " : "") << error.what() << '\n';
     return kBadInput;
   } catch (const std::invalid_argument& error) {
     std::cerr << "mpmsim: error: " << error.what() << '\n';
