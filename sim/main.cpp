@@ -19,6 +19,7 @@
 #include "sim/output/start_time.hpp"
 #include "sim/output/truth.hpp"
 #include "sim/publish.hpp"
+#include "sim/scenario/materiality.hpp"
 #include "sim/scenario/prepare.hpp"
 
 namespace mpm::sim {
@@ -135,8 +136,20 @@ int run_csv(const LoopSetup& setup, const Options& options, BadDataFilter& filte
   return kDone;
 }
 
+int run_limits(const LoopSetup& setup, double percent) {
+  if (!setup.changes.empty())
+    throw BadInput("--limits: the scenario '" + setup.scenario.name +
+                   "' changes the plant; take one that does not");
+  const double rise = percent / 100.0;
+  print_limits(std::cout, setup, materiality_limits(setup, rise), rise);
+  std::cout.flush();
+  if (!std::cout) throw std::runtime_error("cannot write the limits");
+  return kDone;
+}
+
 int run(const Options& options) {
   const LoopSetup setup = prepare(options);
+  if (options.limits_percent) return run_limits(setup, *options.limits_percent);
   BadDataFilter filter(setup);
   write_truth(setup, options, filter);
   int status = kDone;

@@ -25,6 +25,11 @@ void declare(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--csv", options.csv, "write this data file (- is stdout); no DDS");
   app.add_option("--truth", options.truth, "write what was hidden to this JSON file");
+  app.add_option(
+         "--limits", options.limits_percent,
+         "print, for the unit file, which errors of each channel make the controller's cost "
+         "rise by so many per cent; no run")
+      ->check(CLI::Range(0.1, 1000.0));
   app.add_option("--start-time", options.start_time,
                  "of the first sample: ISO 8601 with zone, or seconds since 1970 "
                  "(0 with --csv, else now)");
@@ -44,6 +49,7 @@ void declare(CLI::App& app, Options& options) {
       "  mpmsim --config shell3x3.yaml --scenario hidden_gain --seed 7 --csv run.csv\n"
       "  mpmsim --config shell3x3.yaml --scenario s3_delay --speed 10\n"
       "  mpmsim --config shell3x3.yaml --bad-data missing=5% --bad-data gaps=1% --csv run.csv\n"
+      "  mpmsim --config shell3x3.yaml --limits 20\n"
       "Exit codes: 0 done, 2 the run failed, 3 bad usage or bad input");
 }
 

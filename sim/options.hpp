@@ -19,8 +19,9 @@ struct Options {
   std::string controller_model;       ///< unit file; empty = the plant's own model
   std::optional<std::int64_t> samples;
   std::uint64_t seed = 1;
-  std::string csv;    ///< empty = publish on DDS
-  std::string truth;  ///< empty = not written
+  std::string csv;                       ///< empty = publish on DDS
+  std::string truth;                     ///< empty = not written
+  std::optional<double> limits_percent;  ///< print materiality limits instead of running
   std::string start_time;
   double speed = 1.0;
   double wait_readers_s = 0.0;

@@ -106,3 +106,14 @@ TEST_CASE("mpmsim spoils the reported data and says how") {
         "time_jitter, clock_steps\n");
   CHECK(folder.run(run + "--scenario bad_data") == 0);
 }
+
+TEST_CASE("mpmsim prints materiality limits for the unit file") {
+  const Folder folder;
+  const std::string run =
+      "--config " + std::string(MPM_SOURCE_DIR) + "/config/plants/wood_berry.yaml --limits 50 ";
+  REQUIRE(folder.run(run) == 0);
+  CHECK(folder.read("out").find("  materiality:\n    channels:") != std::string::npos);
+  CHECK(folder.read("out").find("- {cv: xb, mv: steam, gain: 0.") != std::string::npos);
+  CHECK(folder.run(run + "--scenario change_delay") == 3);
+  CHECK(folder.read("err").find("change_delay") != std::string::npos);
+}
