@@ -162,8 +162,7 @@ std::optional<double> Value::number(const Range& range) const {
 
 std::optional<Quantity> Value::quantity(const std::vector<std::string>& units,
                                         const Range& range) const {
-  static const std::string kNone;
-  const std::string& text = node_.IsScalar() ? node_.Scalar() : kNone;
+  const std::string text = node_.IsScalar() ? node_.Scalar() : "";
   for (const std::string& unit : units) {
     if (text.size() <= unit.size() || !text.ends_with(unit)) continue;
     std::string rest = text.substr(0, text.size() - unit.size());

@@ -49,8 +49,10 @@ std::pair<SignalKind, int> find_signal(const std::string& tag, const config::Uni
 /// The range that a share of the values lies beyond, half of it on each side.
 std::pair<double, double> central_range(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
-  const double last = static_cast<double>(values.size() - 1);
-  const auto at = [&](double part) { return values[static_cast<std::size_t>(part * last + 0.5)]; };
+  const auto last = static_cast<double>(values.size() - 1);
+  const auto at = [&](double part) {
+    return values[static_cast<std::size_t>(std::llround(part * last))];
+  };
   return {at(share / 2.0), at(1.0 - share / 2.0)};
 }
 
