@@ -23,8 +23,6 @@ void load_monitor(const Value* section, double sample_time_s, MonitorSettings& m
 void load_alarms(const Value* section, UnitConfig& config);
 void load_dds(const Value* section, UnitConfig& config);
 void load_simulation(const Value* section, UnitConfig& config);
-/// Overwrites in `simulation` the limits that the value gives by tag.
-void load_limits(const Value& value, const UnitConfig& config, SimulationSettings& simulation);
 
 /// Parts of `load_model`.
 void load_channels(const Value& list, UnitConfig& config);

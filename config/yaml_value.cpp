@@ -160,6 +160,25 @@ std::optional<double> Value::number(const Range& range) const {
   return value;
 }
 
+std::optional<Quantity> Value::quantity(const std::vector<std::string>& units,
+                                        const Range& range) const {
+  const std::string text = node_.IsScalar() ? node_.Scalar() : "";
+  for (const std::string& unit : units) {
+    if (text.size() <= unit.size() || !text.ends_with(unit)) continue;
+    std::string rest = text.substr(0, text.size() - unit.size());
+    while (!rest.empty() && rest.back() == ' ') rest.pop_back();
+    if (rest.empty() || !(rest.back() == '.' || (rest.back() >= '0' && rest.back() <= '9')))
+      continue;  // another word that ends so
+    const std::optional<double> value =
+        Value(YAML::Node(rest), mark_, path_, *report_).number(range);
+    if (!value) return std::nullopt;
+    return Quantity{*value, unit};
+  }
+  const std::optional<double> value = number(range);
+  if (!value) return std::nullopt;
+  return Quantity{*value, ""};
+}
+
 std::optional<int> Value::integer(const Range& range) const {
   const std::optional<double> value = number(range);
   if (!value) return std::nullopt;

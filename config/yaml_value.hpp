@@ -19,6 +19,7 @@ class Report {
  public:
   explicit Report(std::string file) : file_(std::move(file)) {}
 
+  [[nodiscard]] const std::string& file() const { return file_; }
   void add(Severity severity, const YAML::Mark& mark, std::string key, std::string message);
   /// Sorted by place, one per place and message.
   [[nodiscard]] std::vector<Finding> take();
@@ -30,6 +31,12 @@ class Report {
 
 class Map;
 
+/// A number with an optional unit behind it, such as `3 samples`.
+struct Quantity {
+  double number = 0.0;
+  std::string unit;  ///< empty = none given
+};
+
 /// A node of the document with its path. Methods that return optional have reported what is wrong
 /// when they return nothing.
 class Value {
@@ -38,8 +45,10 @@ class Value {
       : node_(node), mark_(mark), path_(std::move(path)), report_(&report) {}
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Line of the file, from 1.
+  [[nodiscard]] const std::string& file() const { return report_->file(); }
+  /// Line and column of the file, from 1.
   [[nodiscard]] int line() const { return mark_.line + 1; }
+  [[nodiscard]] int column() const { return mark_.column + 1; }
   [[nodiscard]] bool is_null() const { return node_.IsNull(); }
   [[nodiscard]] bool is_scalar() const { return node_.IsScalar(); }
   [[nodiscard]] bool is_map() const { return node_.IsMap(); }
@@ -48,6 +57,9 @@ class Value {
 
   [[nodiscard]] std::optional<double> number(const Range& range = kAny) const;
   [[nodiscard]] std::optional<int> integer(const Range& range = kAny) const;
+  /// A number, or one followed by one of `units`.
+  [[nodiscard]] std::optional<Quantity> quantity(const std::vector<std::string>& units,
+                                                 const Range& range = kAny) const;
   [[nodiscard]] std::optional<bool> boolean() const;
   /// Not empty, printable, at most `longest` bytes.
   [[nodiscard]] std::optional<std::string> text(std::size_t longest = 1000) const;

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -13,14 +14,18 @@
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
 #include "sim/options.hpp"
+#include "sim/output/bad_data.hpp"
 #include "sim/output/csv_writer.hpp"
 #include "sim/output/start_time.hpp"
 #include "sim/output/truth.hpp"
 #include "sim/publish.hpp"
+#include "sim/scenario/materiality.hpp"
 #include "sim/scenario/prepare.hpp"
 
 namespace mpm::sim {
 namespace {
+
+constexpr std::int64_t kDefaultSamples = 3000;  // of a data file
 
 /// Bad input that has been told already, or whose text is the whole message.
 struct BadInput : std::runtime_error {
@@ -39,6 +44,14 @@ config::UnitConfig load_unit(const std::string& file) {
   return std::move(loaded.config);
 }
 
+/// Length of the run where it has an end.
+std::optional<double> run_length_s(const Options& options, const config::UnitConfig& unit) {
+  std::optional<std::int64_t> samples = options.samples;
+  if (!samples && !options.csv.empty()) samples = kDefaultSamples;
+  if (!samples) return std::nullopt;
+  return static_cast<double>(*samples) * unit.sample_time_s;
+}
+
 config::ScenarioConfig load_scenario(const Options& options, const config::UnitConfig& unit) {
   if (options.scenario == "none") {
     config::ScenarioConfig nothing;
@@ -46,7 +59,7 @@ config::ScenarioConfig load_scenario(const Options& options, const config::UnitC
     return nothing;
   }
   const std::string file = config::find_scenario(options.scenario, options.config);
-  config::ScenarioResult loaded = config::load_scenario(file, unit);
+  config::ScenarioResult loaded = config::load_scenario(file, unit, run_length_s(options, unit));
   report(loaded.findings);
   return std::move(loaded.scenario);
 }
@@ -67,6 +80,10 @@ LoopSetup prepare(const Options& options) {
   LoopSetup setup;
   setup.unit = load_unit(options.config);
   setup.scenario = load_scenario(options, setup.unit);
+  const std::optional<double> run_s = run_length_s(options, setup.unit);
+  for (const std::string& entry : options.bad_data)
+    report(config::add_bad_data(entry, setup.unit, run_s, setup.scenario));
+  if (run_s) setup.samples = std::llround(*run_s / setup.unit.sample_time_s);
   setup.seed = options.seed;
   setup.start_time_ns = start_time_ns(options);
   setup.controller_model = setup.unit.model;
@@ -74,6 +91,9 @@ LoopSetup prepare(const Options& options) {
     if (!options.controller_model.empty())
       setup.controller_model = match_signals(load_unit(options.controller_model), setup.unit);
     hide_changes(setup);
+  } catch (const RefusedScenario& error) {
+    if (error.finding().line > 0) report({error.finding()});
+    throw BadInput(options.config + ": " + config::format(error.finding()));
   } catch (const std::invalid_argument& error) {
     throw BadInput(options.config + ": error: scenario '" + setup.scenario.name +
                    "': " + error.what());
@@ -81,14 +101,15 @@ LoopSetup prepare(const Options& options) {
   return setup;
 }
 
-void write_truth(const LoopSetup& setup, const Options& options) {
+void write_truth(const LoopSetup& setup, const Options& options, const BadDataFilter& filter) {
+  if (options.truth.empty()) return;
   std::ofstream out(options.truth, std::ios::binary);
-  out << truth_json(setup, options.controller_model);
+  out << truth_json(setup, options.controller_model, &filter);
   out.close();
   if (!out) throw std::runtime_error("cannot write " + options.truth);
 }
 
-int run_csv(const LoopSetup& setup, const Options& options) {
+int run_csv(const LoopSetup& setup, const Options& options, BadDataFilter& filter) {
   std::ofstream file;
   if (options.csv != "-") {
     file.open(options.csv, std::ios::binary);
@@ -96,8 +117,8 @@ int run_csv(const LoopSetup& setup, const Options& options) {
   }
   std::ostream& out = options.csv == "-" ? std::cout : file;
   ClosedLoop loop(setup);
-  CsvWriter csv(out, setup.unit, static_cast<double>(setup.start_time_ns) * 1e-9);
-  constexpr std::int64_t kDefaultSamples = 3000;
+  CsvWriter csv(out, setup.unit, static_cast<double>(setup.start_time_ns) * 1e-9,
+                uncertain_tags(setup.scenario));
   const std::int64_t samples = options.samples.value_or(kDefaultSamples);
   for (std::int64_t k = 0; k < samples; ++k) {
     const Frame& frame = loop.step();
@@ -105,7 +126,7 @@ int run_csv(const LoopSetup& setup, const Options& options) {
       spdlog::error("sample {}: the loop has diverged, values are no longer finite", k);
       return kFailed;
     }
-    csv.write(frame);
+    if (const Frame* reported = filter.apply(frame)) csv.write(*reported, filter.time_error_s());
   }
   out.flush();
   if (!out) throw std::runtime_error("cannot write " + options.csv);
@@ -115,12 +136,31 @@ int run_csv(const LoopSetup& setup, const Options& options) {
   return kDone;
 }
 
+int run_limits(const LoopSetup& setup, double percent) {
+  if (!setup.changes.empty())
+    throw BadInput("--limits: the scenario '" + setup.scenario.name +
+                   "' changes the plant; take one that does not");
+  const double rise = percent / 100.0;
+  print_limits(std::cout, setup, materiality_limits(setup, rise), rise);
+  std::cout.flush();
+  if (!std::cout) throw std::runtime_error("cannot write the limits");
+  return kDone;
+}
+
 int run(const Options& options) {
   const LoopSetup setup = prepare(options);
-  if (!options.truth.empty()) write_truth(setup, options);
-  if (!options.csv.empty()) return run_csv(setup, options);
-  block_stop_signals();
-  return run_dds(setup, options);
+  if (options.limits_percent) return run_limits(setup, *options.limits_percent);
+  BadDataFilter filter(setup);
+  write_truth(setup, options, filter);
+  int status = kDone;
+  if (!options.csv.empty()) {
+    status = run_csv(setup, options, filter);
+  } else {
+    block_stop_signals();
+    status = run_dds(setup, options, filter);
+  }
+  if (!setup.scenario.bad_data.empty()) write_truth(setup, options, filter);  // with its counts
+  return status;
 }
 
 int parse_and_run(int argc, char** argv) {
@@ -148,7 +188,7 @@ int main(int argc, char** argv) {
     if (*error.what() != '\0') std::cerr << "mpmsim: " << error.what() << '\n';
     return kBadInput;
   } catch (const mpm::config::InputError& error) {
-    std::cerr << "mpmsim: " << error.what() << '\n';
+    std::cerr << (error.finding().file.empty() ? "mpmsim: " : "") << error.what() << '\n';
     return kBadInput;
   } catch (const std::invalid_argument& error) {
     std::cerr << "mpmsim: error: " << error.what() << '\n';

@@ -10,6 +10,12 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("-s,--scenario", options.scenario,
                  "what is hidden in the plant: a scenario's name or file")
       ->capture_default_str();
+  app.add_option("--bad-data", options.bad_data,
+                 "spoils what is reported, beside the scenario: KIND=SHARE of missing, uncertain, "
+                 "gaps, frozen, spikes, clipping, time_jitter; clock_steps=SECONDS; more keys "
+                 "behind a comma, as frozen=5%,run=60; may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--controller-model", options.controller_model,
                  "unit file whose model the controller uses instead of the plant's own");
   app.add_option("-n,--samples", options.samples,
@@ -19,6 +25,11 @@ void declare(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--csv", options.csv, "write this data file (- is stdout); no DDS");
   app.add_option("--truth", options.truth, "write what was hidden to this JSON file");
+  app.add_option(
+         "--limits", options.limits_percent,
+         "print, for the unit file, which errors of each channel make the controller's cost "
+         "rise by so many per cent; no run")
+      ->check(CLI::Range(0.1, 1000.0));
   app.add_option("--start-time", options.start_time,
                  "of the first sample: ISO 8601 with zone, or seconds since 1970 "
                  "(0 with --csv, else now)");
@@ -37,6 +48,8 @@ void declare(CLI::App& app, Options& options) {
       "Examples:\n"
       "  mpmsim --config shell3x3.yaml --scenario hidden_gain --seed 7 --csv run.csv\n"
       "  mpmsim --config shell3x3.yaml --scenario s3_delay --speed 10\n"
+      "  mpmsim --config shell3x3.yaml --bad-data missing=5% --bad-data gaps=1% --csv run.csv\n"
+      "  mpmsim --config shell3x3.yaml --limits 20\n"
       "Exit codes: 0 done, 2 the run failed, 3 bad usage or bad input");
 }
 

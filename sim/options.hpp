@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace mpm::sim {
 
@@ -14,11 +15,13 @@ inline constexpr int kDone = 0, kFailed = 2, kBadInput = 3;
 struct Options {
   std::string config;
   std::string scenario = "none";
-  std::string controller_model;  ///< unit file; empty = the plant's own model
+  std::vector<std::string> bad_data;  ///< each KIND=SHARE, as entries of a scenario
+  std::string controller_model;       ///< unit file; empty = the plant's own model
   std::optional<std::int64_t> samples;
   std::uint64_t seed = 1;
-  std::string csv;    ///< empty = publish on DDS
-  std::string truth;  ///< empty = not written
+  std::string csv;                       ///< empty = publish on DDS
+  std::string truth;                     ///< empty = not written
+  std::optional<double> limits_percent;  ///< print materiality limits instead of running
   std::string start_time;
   double speed = 1.0;
   double wait_readers_s = 0.0;

@@ -95,7 +95,7 @@ void block_stop_signals() {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
 
-int run_dds(const LoopSetup& setup, const Options& options) {
+int run_dds(const LoopSetup& setup, const Options& options, BadDataFilter& filter) {
   ClosedLoop loop(setup);
   const bool paced = options.speed > 0.0;
   const idl::Participant participant(domain_options(setup.unit.dds, options));
@@ -121,7 +121,8 @@ int run_dds(const LoopSetup& setup, const Options& options) {
       spdlog::error("sample {}: the loop has diverged, values are no longer finite", k);
       return kFailed;
     }
-    if (publisher.publish(frame)) continue;
+    const Frame* reported = filter.apply(frame);
+    if (reported == nullptr || publisher.publish(*reported)) continue;
     if (!paced) {
       spdlog::error("sample {}: a reader does not take samples", k);
       return kFailed;

@@ -14,17 +14,56 @@ VectorXd origin_of(const VectorXd& origin, int size) {
   return origin.size() != 0 ? origin : VectorXd::Zero(size);
 }
 
-double amplitude_ratio(const config::ScenarioConfig& scenario) {
-  return scenario.constant_setpoints ? 0.0 : scenario.setpoint_amplitude_ratio.value_or(1.0);
+bool holds(const std::vector<std::string>& tags, const std::string& tag) {
+  return std::find(tags.begin(), tags.end(), tag) != tags.end();
 }
 
-const std::vector<config::SetpointSettings> setpoint_settings(const config::UnitConfig& unit) {
+std::vector<SetpointSource> setpoint_sources(const config::UnitConfig& unit,
+                                             const config::ScenarioConfig& scenario) {
   std::vector<config::SetpointSettings> settings = unit.simulation.setpoints;
   settings.resize(unit.cv.size());
-  return settings;
+  const std::vector<std::string> tags = unit.cv_tags();
+  const double ratio =
+      scenario.constant_setpoints ? 0.0 : scenario.setpoint_amplitude_ratio.value_or(1.0);
+  std::vector<SetpointSource> sources;
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    const bool moves = !scenario.moving_setpoints || holds(*scenario.moving_setpoints, tags[i]);
+    settings[i].amplitude *= moves ? ratio : 0.0;
+    sources.push_back({settings[i], i});
+    if (holds(scenario.equal_setpoints, tags[i]))
+      sources.back().leader = static_cast<std::size_t>(
+          std::find(tags.begin(), tags.end(), scenario.equal_setpoints.front()) - tags.begin());
+  }
+  return sources;
+}
+
+void scale_about(std::optional<double>& limit, double origin, double ratio) {
+  if (limit) limit = origin + ratio * (*limit - origin);
 }
 
 }  // namespace
+
+config::SimulationSettings limited_settings(const config::UnitConfig& unit,
+                                            const config::ScenarioConfig& scenario) {
+  config::SimulationSettings settings = unit.simulation;
+  settings.mv_limits.resize(unit.mv.size());
+  const VectorXd origin = origin_of(unit.model.input_origin, unit.model.input_count);
+  for (const config::MvLimitChange& change : scenario.mv_limits) {
+    for (std::size_t mv = 0; mv < unit.mv.size(); ++mv) {
+      if (unit.mv[mv].tag != change.mv) continue;
+      config::MvLimits& limits = settings.mv_limits[mv];
+      scale_about(limits.low, origin(static_cast<Index>(mv)), change.ratio);
+      scale_about(limits.high, origin(static_cast<Index>(mv)), change.ratio);
+      if (change.low) limits.low = change.low;
+      if (change.high) limits.high = change.high;
+      if (change.max_move) limits.max_move = change.max_move;
+      if (limits.low && limits.high && *limits.low >= *limits.high)
+        throw std::invalid_argument("mv_limits: the low limit of " + change.mv +
+                                    " is not below its high limit");
+    }
+  }
+  return settings;
+}
 
 double feedback_share(const config::ScenarioConfig& scenario) {
   if (!scenario.integral_action && scenario.disturbance_feedback == 1.0) return 0.0;
@@ -36,10 +75,10 @@ ClosedLoop::ClosedLoop(const LoopSetup& setup)
       start_time_ns_(setup.start_time_ns),
       plant_(setup.unit.model, setup.changes),
       controller_(setup.controller_model, static_cast<int>(setup.unit.mv.size()),
-                  setup.unit.simulation, feedback_share(setup.scenario)),
-      setpoints_(setpoint_settings(setup.unit),
-                 origin_of(setup.unit.model.output_origin, setup.unit.model.cv_count),
-                 amplitude_ratio(setup.scenario), setup.seed),
+                  limited_settings(setup.unit, setup.scenario), feedback_share(setup.scenario)),
+      setpoints_(setpoint_sources(setup.unit, setup.scenario),
+                 origin_of(setup.unit.model.output_origin, setup.unit.model.cv_count), setup.seed),
+      output_disturbance_(setup.unit, setup.scenario, setup.seed),
       frame_(setup.unit.counts()) {
   const config::UnitConfig& unit = setup.unit;
   if (setup.controller_model.input_count != unit.model.input_count ||
@@ -49,24 +88,13 @@ ClosedLoop::ClosedLoop(const LoopSetup& setup)
   disturbance_origin_ = input_origin.tail(static_cast<Index>(unit.dv.size()));
   input_ = input_origin;
   true_output_ = plant_.output();
-  noise_ratio_ = VectorXd::Ones(unit.model.cv_count);
 
-  std::vector<config::NoiseSettings> noise = unit.simulation.noise;
   std::vector<config::NoiseSettings> movement = unit.simulation.dv_movement;
-  noise.resize(unit.cv.size());
   movement.resize(unit.dv.size());
-  for (std::size_t i = 0; i < noise.size(); ++i)
-    noise_.emplace_back(noise[i], RandomStream(setup.seed, StreamPurpose::kNoise, i));
   for (std::size_t i = 0; i < movement.size(); ++i)
     movement_.emplace_back(movement[i], RandomStream(setup.seed, StreamPurpose::kDisturbance, i));
-
-  const std::vector<std::string> cvs = unit.cv_tags();
-  for (const config::NoiseChange& change : setup.scenario.noise)
-    for (std::size_t cv = 0; cv < cvs.size(); ++cv)
-      if (!change.cv || *change.cv == cvs[cv])
-        noise_steps_.push_back(
-            {static_cast<int>(cv), change.sigma_ratio,
-             static_cast<std::int64_t>(std::ceil(change.from_s / sample_time_s_ - 1e-9))});
+  for (const config::TimeSpan& off : setup.scenario.controller_off)
+    controller_off_.emplace_back(off.from_s, off.until_s, sample_time_s_);
 
   for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
                                 SignalKind::kPrediction, SignalKind::kSetpoint})
@@ -74,22 +102,21 @@ ClosedLoop::ClosedLoop(const LoopSetup& setup)
 }
 
 const Frame& ClosedLoop::step() {
-  begin_noise_changes();
   SignalBlock& disturbances = frame_[SignalKind::kDv];
   for (std::size_t i = 0; i < movement_.size(); ++i)
     disturbances.values(static_cast<Index>(i)) =
         disturbance_origin_(static_cast<Index>(i)) + movement_[i].next();
   SignalBlock& measured = frame_[SignalKind::kCv];
   true_output_ = plant_.output();
-  for (std::size_t i = 0; i < noise_.size(); ++i) {
-    const auto cv = static_cast<Index>(i);
-    measured.values(cv) = true_output_(cv) + noise_[i].next(noise_ratio_(cv));
-  }
+  measured.values = true_output_ + output_disturbance_.next();
   SignalBlock& setpoints = frame_[SignalKind::kSetpoint];
   setpoints.values = setpoints_.next();
   frame_[SignalKind::kPrediction].values = controller_.prediction();
   SignalBlock& moved = frame_[SignalKind::kMv];
-  moved.values = controller_.control(measured.values, setpoints.values, disturbances.values);
+  const bool off = std::any_of(controller_off_.begin(), controller_off_.end(),
+                               [this](const IntervalRange& r) { return r.contains(interval_); });
+  moved.values = off ? controller_.hold(disturbances.values)
+                     : controller_.control(measured.values, setpoints.values, disturbances.values);
 
   input_.head(moved.values.size()) = moved.values;
   input_.tail(disturbances.values.size()) = disturbances.values;
@@ -101,11 +128,6 @@ const Frame& ClosedLoop::step() {
       start_time_ns_ + std::llround(static_cast<double>(interval_) * sample_time_s_ * 1e9);
   ++interval_;
   return frame_;
-}
-
-void ClosedLoop::begin_noise_changes() {
-  for (const NoiseStep& change : noise_steps_)
-    if (change.first_interval == interval_) noise_ratio_(change.cv) *= change.sigma_ratio;
 }
 
 }  // namespace mpm::sim

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "config/scenario_config.hpp"
@@ -9,6 +10,8 @@
 #include "sim/mpc/mpc.hpp"
 #include "sim/plant/plant.hpp"
 #include "sim/signals/coloured_noise.hpp"
+#include "sim/signals/intervals.hpp"
+#include "sim/signals/output_disturbance.hpp"
 #include "sim/signals/setpoints.hpp"
 
 namespace mpm::sim {
@@ -20,7 +23,8 @@ struct LoopSetup {
   config::ScenarioConfig scenario;     ///< noise, set-points and controller of the run
   std::vector<ChannelChange> changes;  ///< what is hidden in the plant
   std::uint64_t seed = 1;
-  std::int64_t start_time_ns = 0;  ///< source time of k = 0
+  std::int64_t start_time_ns = 0;            ///< source time of k = 0
+  std::optional<std::int64_t> samples = {};  ///< length of the run where it has an end
 };
 
 /// Plant, noise, set-points and controller, one control interval at a time, in the convention of
@@ -34,33 +38,31 @@ class ClosedLoop {
   /// Runs the next interval. The frame stays valid until the next call.
   [[nodiscard]] const Frame& step();
 
-  /// y(k) of the last frame without noise.
+  /// y(k) of the last frame without noise and disturbances.
   [[nodiscard]] const Eigen::VectorXd& true_output() const { return true_output_; }
   /// False once a value is no longer finite.
   [[nodiscard]] bool finite() const { return finite_; }
   [[nodiscard]] const Mpc& controller() const { return controller_; }
 
  private:
-  struct NoiseStep {
-    int cv;
-    double sigma_ratio;
-    std::int64_t first_interval;
-  };
-  void begin_noise_changes();
-
   double sample_time_s_;
   std::int64_t start_time_ns_;
   std::int64_t interval_ = 0;
   Plant plant_;
   Mpc controller_;
   RandomBinarySetpoints setpoints_;
-  std::vector<ColouredNoise> noise_, movement_;
-  std::vector<NoiseStep> noise_steps_;
-  Eigen::VectorXd noise_ratio_, disturbance_origin_;
+  OutputDisturbance output_disturbance_;
+  std::vector<ColouredNoise> movement_;
+  std::vector<IntervalRange> controller_off_;
+  Eigen::VectorXd disturbance_origin_;
   Eigen::VectorXd true_output_, input_;
   Frame frame_;
   bool finite_ = true;
 };
+
+/// The unit's simulation settings with the scenario's MV limits.
+[[nodiscard]] config::SimulationSettings limited_settings(const config::UnitConfig& unit,
+                                                          const config::ScenarioConfig& scenario);
 
 /// Share of the output disturbance that the scenario's controller feeds back: 1 with integral
 /// action; without it what `disturbance_feedback` says, or nothing if that says 1.

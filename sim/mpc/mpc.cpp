@@ -162,6 +162,12 @@ const VectorXd& Mpc::control(const Ref<const VectorXd>& measured,
   return mv_;
 }
 
+const VectorXd& Mpc::hold(const Ref<const VectorXd>& disturbance) {
+  input_.tail(input_.size() - mv_count_) = disturbance;
+  model_.advance(input_);
+  return mv_;
+}
+
 void Mpc::compute_free_response(const Ref<const VectorXd>& measured) {
   forecast_ = model_;
   for (Index l = 0; l < horizon_; ++l) {

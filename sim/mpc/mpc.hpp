@@ -41,6 +41,9 @@ class Mpc {
       const Eigen::Ref<const Eigen::VectorXd>& setpoint,
       const Eigen::Ref<const Eigen::VectorXd>& disturbance);
 
+  /// u(k) = u(k-1): the controller is off and only follows. It comes back without a bump.
+  [[nodiscard]] const Eigen::VectorXd& hold(const Eigen::Ref<const Eigen::VectorXd>& disturbance);
+
   /// Intervals in which some limit shaped the moves, and in which no solution was found.
   [[nodiscard]] std::int64_t limited_count() const { return limited_count_; }
   [[nodiscard]] std::int64_t held_count() const { return held_count_; }

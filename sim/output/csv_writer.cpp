@@ -1,5 +1,6 @@
 #include "sim/output/csv_writer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -20,13 +21,17 @@ std::string quoted(const std::string& tag) {
 
 }  // namespace
 
-CsvWriter::CsvWriter(std::ostream& out, const config::UnitConfig& unit, double start_s)
+CsvWriter::CsvWriter(std::ostream& out, const config::UnitConfig& unit, double start_s,
+                     const std::vector<std::string>& quality_tags)
     : out_(out), sample_time_s_(unit.sample_time_s), start_s_(start_s) {
   line_ = "time";
-  const auto add = [this](const std::string& tag, SignalKind kind, std::size_t index) {
+  const auto add = [&](const std::string& tag, SignalKind kind, std::size_t index) {
     if (tag.empty()) return;
-    columns_.push_back({kind, static_cast<int>(index)});
+    const bool has_quality =
+        std::find(quality_tags.begin(), quality_tags.end(), tag) != quality_tags.end();
+    columns_.push_back({kind, static_cast<int>(index), has_quality});
     line_ += ',' + quoted(tag);
+    if (has_quality) line_ += ',' + quoted(tag + ".quality");
   };
   for (std::size_t i = 0; i < unit.cv.size(); ++i)
     add(unit.cv[i].setpoint, SignalKind::kSetpoint, i);
@@ -38,12 +43,16 @@ CsvWriter::CsvWriter(std::ostream& out, const config::UnitConfig& unit, double s
   out_ << line_ << '\n';
 }
 
-void CsvWriter::write(const Frame& frame) {
+void CsvWriter::write(const Frame& frame, double time_error_s) {
   line_.clear();
-  append(start_s_ + static_cast<double>(frame.interval) * sample_time_s_);
+  append(start_s_ + static_cast<double>(frame.interval) * sample_time_s_ + time_error_s);
   for (const Column& column : columns_) {
     line_ += ',';
     append(frame[column.kind].values(column.index));
+    if (!column.has_quality) continue;
+    constexpr const char* kNames[] = {",good", ",uncertain", ",bad"};
+    line_ += kNames[static_cast<std::size_t>(
+        frame[column.kind].quality[static_cast<std::size_t>(column.index)])];
   }
   line_ += '\n';
   out_.write(line_.data(), static_cast<std::streamsize>(line_.size()));

@@ -160,7 +160,7 @@ std::vector<ChannelChange> resolve_changes(const std::vector<config::Change>& ch
             !has_channel(unit.model, cv, input))
           continue;
         resolved.push_back({cv, input, change.gain_ratio, change.time_constant_ratio,
-                            change.dead_time_error_s, change.from_s});
+                            change.dead_time_error_s, change.from_s, change.until_s});
       }
     }
     if (resolved.size() == before)

@@ -14,6 +14,7 @@ struct ChannelChange {
   double time_constant_ratio = 1.0;
   double dead_time_error_s = 0.0;
   double from_s = 0.0;
+  double until_s = config::kForEver;
 };
 
 /// One entry per channel that a change means; a missing CV or MV stands for all that have one.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/signals/intervals.hpp"
+
 namespace mpm::sim {
 
 std::vector<PlantStage> plant_stages(const ModelSpec& model, std::vector<ChannelChange> changes) {
@@ -11,13 +13,22 @@ std::vector<PlantStage> plant_stages(const ModelSpec& model, std::vector<Channel
                    [](const ChannelChange& left, const ChannelChange& right) {
                      return left.from_s < right.from_s;
                    });
-  std::vector<PlantStage> stages;
-  stages.push_back({0.0, model, {}});
+  std::vector<double> times = {0.0};
   for (const ChannelChange& change : changes) {
-    if (change.from_s > stages.back().from_s)
-      stages.push_back({change.from_s, stages.back().model, {}});
-    stages.back().model = changed_model(stages.back().model, {change});
-    stages.back().begun.push_back(change);
+    if (change.until_s <= change.from_s) continue;
+    times.push_back(change.from_s);
+    if (std::isfinite(change.until_s)) times.push_back(change.until_s);
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  std::vector<PlantStage> stages;
+  for (const double time_s : times) {
+    std::vector<ChannelChange> in_force, altered;
+    for (const ChannelChange& change : changes) {
+      if (change.from_s <= time_s && time_s < change.until_s) in_force.push_back(change);
+      if (change.from_s == time_s || change.until_s == time_s) altered.push_back(change);
+    }
+    stages.push_back({time_s, changed_model(model, in_force), std::move(altered)});
   }
   return stages;
 }
@@ -25,13 +36,12 @@ std::vector<PlantStage> plant_stages(const ModelSpec& model, std::vector<Channel
 Plant::Plant(const ModelSpec& model, std::vector<ChannelChange> changes)
     : output_(Eigen::VectorXd::Zero(model.cv_count)) {
   for (const PlantStage& stage : plant_stages(model, std::move(changes))) {
-    const double onset = stage.from_s / model.sample_time_s;
-    Stage next{static_cast<std::int64_t>(std::ceil(onset - 1e-9)),
+    Stage next{interval_at(stage.from_s, model.sample_time_s),
                LinearModel(stage.model),
                {},
                Eigen::VectorXd::Zero(model.cv_count)};
     const auto integrating = next.model.integrating();
-    for (const ChannelChange& change : stage.begun)
+    for (const ChannelChange& change : stage.altered)
       if (integrating(change.cv, change.input)) next.carried_cvs.push_back(change.cv);
     stages_.push_back(std::move(next));
   }

@@ -11,10 +11,10 @@ namespace mpm::sim {
 
 /// The true process: the model with a scenario's changes, each from its time on.
 ///
-/// One model per stage between onsets; all run from the start on the same inputs, and the output
-/// is that of the stage in force. So a change acts at once on what earlier inputs still do, as a
-/// changed process gain or pipe would, and every state is right. A CV on which a changed channel
-/// integrates keeps its level at the onset: only its further movement changes.
+/// One model per stage between onsets and ends; all run from the start on the same inputs, and the
+/// output is that of the stage in force. So a change acts at once on what earlier inputs still do,
+/// as a changed process gain or pipe would, and every state is right. A CV on which a changed
+/// channel integrates keeps its level at the onset: only its further movement changes.
 class Plant {
  public:
   Plant(const ModelSpec& model, std::vector<ChannelChange> changes);
@@ -39,12 +39,12 @@ class Plant {
   Eigen::VectorXd output_;
 };
 
-/// The model in force from each onset on, in order of time; the first entry is the one at the
-/// start.
+/// The model in force from each onset or end of a change on, in order of time; the first entry is
+/// the one at the start.
 struct PlantStage {
   double from_s = 0.0;
   ModelSpec model;
-  std::vector<ChannelChange> begun;  ///< changes that begin here
+  std::vector<ChannelChange> altered;  ///< changes that begin or end here
 };
 [[nodiscard]] std::vector<PlantStage> plant_stages(const ModelSpec& model,
                                                    std::vector<ChannelChange> changes);

@@ -55,6 +55,31 @@ std::vector<std::string> mv_tags(const config::UnitConfig& unit) {
   return tags;
 }
 
+/// Why the plant with the changes so far cannot be made or run.
+std::optional<std::string> why_not(const LoopSetup& setup) {
+  const config::UnitConfig& unit = setup.unit;
+  try {
+    const std::vector<PlantStage> stages = plant_stages(unit.model, setup.changes);
+    if (feedback_share(setup.scenario) != 1.0 || setup.scenario.allow_unstable) return std::nullopt;
+    return why_not_stabilisable(setup.controller_model, stages, static_cast<int>(unit.mv.size()),
+                                unit.simulation.cv_weights);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+/// Of the first change with which, and with those before it, the plant is too much.
+config::Place place_to_blame(LoopSetup setup) {
+  setup.changes.clear();
+  if (why_not(setup)) return {};  // already without a change
+  for (const config::Change& change : setup.scenario.changes) {
+    const std::vector<ChannelChange> resolved = resolve_changes({change}, setup.unit);
+    setup.changes.insert(setup.changes.end(), resolved.begin(), resolved.end());
+    if (why_not(setup)) return change.place;
+  }
+  return {};
+}
+
 }  // namespace
 
 ModelSpec match_signals(const config::UnitConfig& controller, const config::UnitConfig& plant) {
@@ -83,21 +108,22 @@ ModelSpec match_signals(const config::UnitConfig& controller, const config::Unit
   return model;
 }
 
+RefusedScenario::RefusedScenario(const config::Place& place, const std::string& scenario,
+                                 const std::string& reason)
+    : std::invalid_argument(reason),
+      finding_{place.file,   place.line,
+               place.column, config::Severity::kError,
+               place.key,    place.line > 0 ? reason : "scenario '" + scenario + "': " + reason} {}
+
 void hide_changes(LoopSetup& setup) {
-  if (!setup.scenario.mv_limits.empty()) {
-    setup.unit.simulation.mv_limits = setup.scenario.mv_limits;
-    setup.unit.simulation.cv_limits = setup.scenario.cv_limits;
-  }
-  const config::UnitConfig& unit = setup.unit;
-  setup.changes = resolve_changes(setup.scenario.changes, unit);
-  if (feedback_share(setup.scenario) == 1.0 && !setup.scenario.allow_unstable) {
-    const std::optional<std::string> reason =
-        why_not_stabilisable(setup.controller_model, plant_stages(unit.model, setup.changes),
-                             static_cast<int>(unit.mv.size()), unit.simulation.cv_weights);
-    if (reason) throw std::invalid_argument(*reason);
-  }
+  const config::ScenarioConfig& scenario = setup.scenario;
+  setup.changes = resolve_changes(scenario.changes, setup.unit);
+  if (const std::optional<std::string> reason = why_not(setup))
+    throw RefusedScenario(place_to_blame(setup), scenario.name, *reason);
   const std::optional<std::vector<ChannelChange>> drawn = draw_changes(setup);
-  if (!drawn) throw std::invalid_argument("too few channels can bear what the scenario draws from");
+  if (!drawn)
+    throw RefusedScenario(scenario.draw ? scenario.draw->place : config::Place{}, scenario.name,
+                          "too few channels can bear what the scenario draws from");
   setup.changes.insert(setup.changes.end(), drawn->begin(), drawn->end());
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <stdexcept>
+#include <string>
+
 #include "sim/loop/closed_loop.hpp"
 
 namespace mpm::sim {
@@ -9,9 +12,22 @@ namespace mpm::sim {
 [[nodiscard]] ModelSpec match_signals(const config::UnitConfig& controller,
                                       const config::UnitConfig& plant);
 
-/// Fills in `setup.changes` (named ones and what the draw adds) and the limits from its scenario.
-/// Throws std::invalid_argument with the reason where the scenario does not fit the unit, or where
-/// an offset-free controller could not hold such a plant and the scenario does not allow that.
+/// A plant that cannot be made, or that an offset-free controller could not hold
+/// (where the scenario does not allow that).
+class RefusedScenario : public std::invalid_argument {
+ public:
+  RefusedScenario(const config::Place& place, const std::string& scenario,
+                  const std::string& reason);
+  /// The reason at the place of the change that is too much; no place where it is in no file.
+  [[nodiscard]] const config::Finding& finding() const { return finding_; }
+
+ private:
+  config::Finding finding_;
+};
+
+/// Fills in `setup.changes` from its scenario: named changes and what the draw adds. Throws
+/// RefusedScenario with the reason, or std::invalid_argument where the scenario names what the unit
+/// does not have.
 void hide_changes(LoopSetup& setup);
 
 }  // namespace mpm::sim

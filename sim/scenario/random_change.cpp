@@ -29,8 +29,8 @@ VectorXd trial_amplitudes(const config::UnitConfig& unit) {
 double rest_error(const LoopSetup& setup, const std::vector<ChannelChange>& changes) {
   const config::UnitConfig& unit = setup.unit;
   Plant plant(unit.model, changes);
-  Mpc controller(setup.controller_model, static_cast<int>(unit.mv.size()), unit.simulation,
-                 feedback_share(setup.scenario));
+  Mpc controller(setup.controller_model, static_cast<int>(unit.mv.size()),
+                 limited_settings(unit, setup.scenario), feedback_share(setup.scenario));
   const VectorXd amplitudes = trial_amplitudes(unit);
   VectorXd origin = unit.model.output_origin;
   if (origin.size() == 0) origin = VectorXd::Zero(unit.model.cv_count);
@@ -73,7 +73,7 @@ std::vector<ChannelChange> candidates(const LoopSetup& setup, const config::Rand
   for (int cv = 0; cv < model.cv_count; ++cv) {
     for (int mv = 0; mv < static_cast<int>(setup.unit.mv.size()); ++mv) {
       if (!has_channel(model, cv, mv)) continue;
-      const ChannelChange none{cv, mv, 1.0, 1.0, 0.0, draw.from_s};
+      const ChannelChange none{cv, mv, 1.0, 1.0, 0.0, draw.from_s, draw.until_s};
       for (const double ratio : draw.gain_ratios) {
         result.push_back(none);
         result.back().gain_ratio = ratio;
@@ -93,7 +93,10 @@ std::vector<ChannelChange> candidates(const LoopSetup& setup, const config::Rand
 
 /// All changes in force at once and from the start.
 bool bearable(const LoopSetup& setup, std::vector<ChannelChange> changes) {
-  for (ChannelChange& change : changes) change.from_s = 0.0;
+  for (ChannelChange& change : changes) {
+    change.from_s = 0.0;
+    change.until_s = config::kForEver;
+  }
   try {
     const ModelSpec plant = changed_model(setup.unit.model, changes);
     const int mvs = static_cast<int>(setup.unit.mv.size());

@@ -30,6 +30,11 @@ double RandomStream::normal() {
   return radius * std::cos(angle);
 }
 
+double RandomStream::student_t(double freedom) {
+  const double radius = std::sqrt(freedom * (std::pow(1.0 - uniform(), -2.0 / freedom) - 1.0));
+  return radius * std::cos(2.0 * std::numbers::pi * uniform());
+}
+
 std::uint64_t RandomStream::below(std::uint64_t count) {
   // Rejects the few values that would make the remainder uneven.
   const std::uint64_t limit = engine_.max() - engine_.max() % count;

@@ -8,7 +8,16 @@ namespace mpm::sim {
 
 /// What a stream of random numbers is for. Each signal has a stream of its own, so that a change in
 /// one (another noise level, one set-point more) does not shift the numbers of another.
-enum class StreamPurpose : std::uint64_t { kNoise = 1, kDisturbance, kSetpoint, kHiddenChange };
+enum class StreamPurpose : std::uint64_t {
+  kNoise = 1,
+  kDisturbance,
+  kSetpoint,
+  kHiddenChange,
+  kTails,
+  kDrift,
+  kSensorNoise,
+  kBadData,
+};
 
 /// Random numbers of one purpose and index under one seed. The same on every platform: the standard
 /// fixes the engine but not its distributions, so these are written out here.
@@ -20,6 +29,8 @@ class RandomStream {
   [[nodiscard]] double uniform();
   /// Mean 0, variance 1 (Box and Muller 1958).
   [[nodiscard]] double normal();
+  /// Student's t with `freedom` > 0 degrees of freedom, not scaled (Bailey 1994).
+  [[nodiscard]] double student_t(double freedom);
   /// 0 .. count-1, count >= 1.
   [[nodiscard]] std::uint64_t below(std::uint64_t count);
 

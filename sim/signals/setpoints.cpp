@@ -2,16 +2,15 @@
 
 namespace mpm::sim {
 
-RandomBinarySetpoints::RandomBinarySetpoints(const std::vector<config::SetpointSettings>& settings,
-                                             const Eigen::VectorXd& origin, double amplitude_ratio,
-                                             std::uint64_t seed)
+RandomBinarySetpoints::RandomBinarySetpoints(const std::vector<SetpointSource>& sources,
+                                             const Eigen::VectorXd& origin, std::uint64_t seed)
     : origin_(origin), values_(origin) {
-  const auto count = static_cast<std::int64_t>(settings.size());
-  for (const config::SetpointSettings& each : settings) {
-    const auto index = static_cast<std::int64_t>(channels_.size());
-    channels_.push_back(
-        {each.amplitude * amplitude_ratio, each.hold_samples, each.hold_samples * index / count,
-         RandomStream(seed, StreamPurpose::kSetpoint, static_cast<std::uint64_t>(index))});
+  const auto count = static_cast<std::int64_t>(sources.size());
+  for (const SetpointSource& source : sources) {
+    const std::int64_t hold = sources.at(source.leader).settings.hold_samples;
+    channels_.push_back({source.settings.amplitude, hold,
+                         hold * static_cast<std::int64_t>(source.leader) / count,
+                         RandomStream(seed, StreamPurpose::kSetpoint, source.leader)});
   }
 }
 

@@ -9,13 +9,18 @@
 
 namespace mpm::sim {
 
+struct SetpointSource {
+  config::SetpointSettings settings;
+  std::size_t leader;  ///< the CV whose signs and times it takes; its own index = none
+};
+
 /// Random binary set-points around the operating point. CV j draws +-amplitude afresh every
 /// hold_samples, at k = phase_j + m hold with phase_j = j hold / n_cv, and once at k = 0.
 class RandomBinarySetpoints {
  public:
-  /// `amplitude_ratio` scales all amplitudes; 0 keeps the set-points constant.
-  RandomBinarySetpoints(const std::vector<config::SetpointSettings>& settings,
-                        const Eigen::VectorXd& origin, double amplitude_ratio, std::uint64_t seed);
+  /// One source per CV. An amplitude of 0 keeps a set-point constant.
+  RandomBinarySetpoints(const std::vector<SetpointSource>& sources, const Eigen::VectorXd& origin,
+                        std::uint64_t seed);
 
   /// Set-points of the next interval, starting with k = 0.
   [[nodiscard]] const Eigen::VectorXd& next();

@@ -38,7 +38,6 @@ TEST_CASE("Every key of a scenario arrives") {
       "noise: [{cv: y2, sigma_ratio: 3, from: 7}, {sigma_ratio: 0}]\n"
       "setpoints: {amplitude_ratio: 2, constant: true}\n"
       "controller: {integral_action: false, disturbance_feedback: 0.5, allow_unstable: true}\n"
-      "limits: {u2: {low: -1.5, high: 1.5}, y1: {high: 4}}\n"
       "monitor: {correlation: alternative, threshold: mean_line, controlling_lags: 5}\n");
   for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
   const ScenarioConfig& scenario = result.scenario;
@@ -69,39 +68,153 @@ TEST_CASE("Every key of a scenario arrives") {
   CHECK_FALSE(scenario.integral_action);
   CHECK(scenario.disturbance_feedback == 0.5);
   CHECK(scenario.allow_unstable);
-  REQUIRE(scenario.mv_limits.size() == 2);
-  CHECK(scenario.mv_limits[1].low == -1.5);
-  CHECK(scenario.mv_limits[1].high == 1.5);
-  CHECK(scenario.cv_limits.at(0).high == 4.0);
   CHECK(scenario.monitor.correlation == mpm::CorrelationKind::kAlternative);
   CHECK(scenario.monitor.threshold == mpm::ThresholdKind::kMeanLine);
   CHECK(scenario.monitor.controlling_lags == 5);
 }
 
-TEST_CASE("What a scenario says of limits and monitor goes over the unit's, the rest stays") {
+TEST_CASE("What a scenario says of the monitor goes over the unit's, the rest stays") {
   UnitConfig own = unit();
   own.monitor.memory_s = 77.0;
   own.monitor.controlling_lags = 12;
-  own.simulation.mv_limits[0] = {-5.0, 5.0, 1.0};
-  own.simulation.cv_limits[1] = {-3.0, 3.0};
-  const ScenarioResult result = load_scenario_text(
-      "limits: {u1: {high: 2}}\nmonitor: {correlation: partial, controlling_lags: 40}\n", "s.yaml",
-      own);
+  const ScenarioResult result =
+      load_scenario_text("monitor: {correlation: partial, controlling_lags: 40}\n", "s.yaml", own);
   for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
-  CHECK(result.scenario.mv_limits.at(0).low == -5.0);
-  CHECK(result.scenario.mv_limits.at(0).high == 2.0);
-  CHECK(result.scenario.mv_limits.at(0).max_move == 1.0);
-  CHECK_FALSE(result.scenario.mv_limits.at(1).low);
-  CHECK(result.scenario.cv_limits.at(1).high == 3.0);
   CHECK(result.scenario.monitor.memory_s == 77.0);
   CHECK(result.scenario.monitor.controlling_lags == 40);
   CHECK(result.scenario.monitor.correlation == mpm::CorrelationKind::kPartial);
   CHECK(result.scenario.monitor.threshold == mpm::ThresholdKind::kFTest);
 
   const ScenarioResult silent = load_scenario_text("{}\n", "s.yaml", own);
-  CHECK(silent.scenario.mv_limits.empty());
   CHECK(silent.scenario.monitor.memory_s == 77.0);
   CHECK(silent.scenario.monitor.controlling_lags == 12);
+}
+
+TEST_CASE("Every key of disturbances, noise and the loop arrives, in seconds and CV units") {
+  UnitConfig plant = unit();
+  plant.sample_time_s = 2.0;
+  plant.simulation.noise[1] = {0.03, 0.8};  // s.d. 0.03 / sqrt(1 - 0.64) = 0.05
+  const ScenarioResult result = load_scenario_text(
+      "changes: [{mv: 1, cv: 1, dead_time_error: -1 samples, from: 10 samples, until: 50%}]\n"
+      "noise:\n"
+      "  - {student_t: 2.5, from: 25 %, until: 75 %}\n"
+      "  - {cv: 2, follows: y1, lag: 5, gain: 0.5}\n"
+      "disturbances:\n"
+      "  - {step: -2 sd, cv: y2, time_constant: 30, from: 5 samples, until: 100 s}\n"
+      "  - {ramp: 0.5, cv: 1, duration: 50 %}\n"
+      "  - {drift: 0.1, cv: 1, pole: 0.99}\n"
+      "  - {periodic: 0.1, period: 70 samples, phase: 45, cv: [1, 2]}\n"
+      "  - {sensor_noise: 0.1}\n"
+      "setpoints: {equal: [y2, y1], moving: 2}\n"
+      "controller:\n"
+      "  off: [{from: 10, until: 20}, {from: 90 %}]\n"
+      "  mv_limits: [{mv: u1, ratio: 0.5}, {mv: 2, low: -1, high: 2, max_move: 0.1}]\n",
+      "s.yaml", plant, 1000.0);
+  for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
+  const ScenarioConfig& scenario = result.scenario;
+  REQUIRE(scenario.changes.size() == 1);
+  CHECK(scenario.changes[0].cv == "y1");
+  CHECK(scenario.changes[0].mv == "u1");
+  CHECK(scenario.changes[0].dead_time_error_s == -2.0);
+  CHECK(scenario.changes[0].from_s == 20.0);
+  CHECK(scenario.changes[0].until_s == 500.0);
+  CHECK(scenario.changes[0].place.file == "s.yaml");
+  CHECK(scenario.changes[0].place.line == 1);
+  CHECK(scenario.changes[0].place.column == 11);
+  CHECK(scenario.changes[0].place.key == "changes[0]");
+  REQUIRE(scenario.noise.size() == 2);
+  CHECK_FALSE(scenario.noise[0].cv);
+  CHECK(scenario.noise[0].student_t == 2.5);
+  CHECK(scenario.noise[0].from_s == 250.0);
+  CHECK(scenario.noise[0].until_s == 750.0);
+  CHECK(scenario.noise[1].cv == "y2");
+  CHECK(scenario.noise[1].follows == "y1");
+  CHECK(scenario.noise[1].lag_samples == 5);
+  CHECK(scenario.noise[1].gain == 0.5);
+  const std::vector<Disturbance>& shapes = scenario.disturbances;
+  REQUIRE(shapes.size() == 7);
+  CHECK(shapes[0].kind == DisturbanceKind::kStep);
+  CHECK(shapes[0].cv == "y2");
+  CHECK(shapes[0].size == Approx(-0.1));
+  CHECK(shapes[0].time_constant_s == 30.0);
+  CHECK(shapes[0].from_s == 10.0);
+  CHECK(shapes[0].until_s == 100.0);
+  CHECK(shapes[1].kind == DisturbanceKind::kRamp);
+  CHECK(shapes[1].duration_s == 500.0);
+  CHECK(shapes[1].until_s == kForEver);
+  CHECK(shapes[2].pole == 0.99);
+  CHECK(shapes[3].period_s == 140.0);
+  CHECK(shapes[3].phase_degrees == 45.0);
+  CHECK(shapes[4].cv == "y2");
+  CHECK(shapes[5].kind == DisturbanceKind::kSensorNoise);
+  CHECK(shapes[6].cv == "y2");
+  CHECK(scenario.equal_setpoints == std::vector<std::string>{"y2", "y1"});
+  REQUIRE(scenario.moving_setpoints);
+  CHECK(*scenario.moving_setpoints == std::vector<std::string>{"y2"});
+  REQUIRE(scenario.controller_off.size() == 2);
+  CHECK(scenario.controller_off[0].until_s == 20.0);
+  CHECK(scenario.controller_off[1].from_s == 900.0);
+  REQUIRE(scenario.mv_limits.size() == 2);
+  CHECK(scenario.mv_limits[0].ratio == 0.5);
+  CHECK(scenario.mv_limits[1].mv == "u2");
+  CHECK(scenario.mv_limits[1].low == -1.0);
+  CHECK(scenario.mv_limits[1].high == 2.0);
+  CHECK(scenario.mv_limits[1].max_move == 0.1);
+}
+
+TEST_CASE("Every kind of bad data arrives") {
+  UnitConfig plant = unit();
+  plant.simulation.noise = {{0.03, 0.8}, {0.06, 0.8}};  // s.d. 0.05 and 0.1
+  const ScenarioResult result = load_scenario_text(
+      "bad_data:\n"
+      "  - {missing: 5 %, from: 10 %}\n"
+      "  - {uncertain: 0.05, tags: [y1, d1]}\n"
+      "  - {gaps: 1 %}\n"
+      "  - {frozen: 20 %, run: 60, until: 500}\n"
+      "  - {spikes: 1 %, size: 10 sd}\n"
+      "  - {spikes: 1 %, size: 3, tags: u1}\n"
+      "  - {spikes: 1 %}\n"
+      "  - {clipping: 1 %}\n"
+      "  - {clipping: range, low: -1, high: 2, tags: y1}\n"
+      "  - {time_jitter: 20 %}\n"
+      "  - {clock_steps: [3600, -2 samples], count: 3}\n",
+      "s.yaml", plant, 1000.0);
+  for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
+  const std::vector<BadData>& bad = result.scenario.bad_data;
+  REQUIRE(bad.size() == 11);
+  const std::vector<std::string> measured = {"u1", "u2", "d1", "y1", "y2"};
+  const std::vector<std::string> cvs = {"y1", "y2"};
+  CHECK(bad[0].kind == BadDataKind::kMissing);
+  CHECK(bad[0].share == 0.05);
+  CHECK(bad[0].from_s == 100.0);
+  CHECK(bad[0].tags == measured);
+  CHECK(bad[0].run_samples == 0);
+  CHECK(bad[1].tags == std::vector<std::string>{"y1", "d1"});
+  CHECK(bad[2].tags.empty());
+  CHECK(bad[2].run_samples == 10);
+  CHECK(bad[3].run_samples == 60);
+  CHECK(bad[3].until_s == 500.0);
+  CHECK(bad[4].tags == cvs);
+  REQUIRE(bad[4].sizes.size() == 2);
+  CHECK(bad[4].sizes[0] == Approx(0.5));
+  CHECK(bad[4].sizes[1] == Approx(1.0));
+  CHECK(bad[5].sizes == std::vector<double>{3.0});
+  CHECK(bad[6].sizes[1] == Approx(2.0));  // 20 sd
+  CHECK(bad[7].tags == cvs);
+  CHECK(bad[7].share == 0.01);
+  CHECK(bad[8].low == -1.0);
+  CHECK(bad[8].high == 2.0);
+  CHECK(bad[9].share == 0.2);
+  CHECK(bad[10].steps_s == std::vector<double>{3600.0, -2.0, 3600.0});
+
+  ScenarioConfig scenario;
+  CHECK(add_bad_data("frozen=5%,run=60", plant, 1000.0, scenario).empty());
+  REQUIRE(scenario.bad_data.size() == 1);
+  CHECK(scenario.bad_data[0].share == 0.05);
+  CHECK(scenario.bad_data[0].run_samples == 60);
+  const std::vector<Finding> wrong = add_bad_data("frozen=5%,rnu=60", plant, 1000.0, scenario);
+  REQUIRE(wrong.size() == 1);
+  CHECK(format(wrong[0]) == "--bad-data: error: rnu: unknown key of frozen (did you mean 'run'?)");
 }
 
 TEST_CASE("Lists of tags stand for one change each") {
@@ -142,7 +255,60 @@ TEST_CASE("Every mistake in a scenario is told at its place") {
        "dead_time_error"},
       {"draw: {gain_ratio: 2, count: 4}\n",
        "folder/s.yaml:1:30: error: draw.count: must be >= 1 and <= 3, not 4"},
-      {"noise: [{cv: y1}]\n", "folder/s.yaml:1:9: error: noise[0]: `sigma_ratio` is missing"},
+      {"noise: [{cv: y1}]\n",
+       "folder/s.yaml:1:9: error: noise[0]: changes nothing: give sigma_ratio, student_t or "
+       "follows"},
+      {"noise: [{cv: y1, student_t: 2}]\n",
+       "folder/s.yaml:1:29: error: noise[0].student_t: must be > 2 and <= 1000, not 2"},
+      {"noise: [{cv: y1, follows: y1}]\n",
+       "folder/s.yaml:1:27: error: noise[0].follows: a CV's noise cannot follow itself"},
+      {"noise: [{sigma_ratio: 2, lag: 3}]\n",
+       "folder/s.yaml:1:31: error: noise[0].lag: belongs to `follows`, the CV whose noise leads"},
+      {"disturbances: [{cv: y1}]\n",
+       "folder/s.yaml:1:16: error: disturbances[0]: give one of step, ramp, drift, periodic, "
+       "sensor_noise"},
+      {"disturbances: [{step: 1, period: 3}]\n",
+       "folder/s.yaml:1:26: error: disturbances[0].period: unknown key of a step (known: cv, from, "
+       "until, step, time_constant)"},
+      {"disturbances: [{step: 1, cv: 3}]\n",
+       "folder/s.yaml:1:30: error: disturbances[0].cv: '3' is no cv of this unit (known: y1, y2)"},
+      {"disturbances: [{ramp: 1}]\n",
+       "folder/s.yaml:1:16: error: disturbances[0]: `duration` is missing"},
+      {"disturbances: [{step: 1, from: 50 %}]\n",
+       "folder/s.yaml:1:32: error: disturbances[0].from: a share of the run, but the length of the "
+       "run is not given (--samples)"},
+      {"disturbances: [{step: 1, from: 10, until: 5}]\n",
+       "folder/s.yaml:1:43: error: disturbances[0].until: must be after `from`"},
+      {"disturbances: [{step: 1 sd, cv: y1}]\n",
+       "folder/s.yaml:1:23: error: disturbances[0].step: the unit file gives y1 no noise: give the "
+       "size in CV units"},
+      {"disturbances: [{step: 3 days, cv: y1}]\n",
+       "folder/s.yaml:1:23: error: disturbances[0].step: must be a number, not '3 days'"},
+      {"bad_data: [{tags: y1}]\n",
+       "folder/s.yaml:1:12: error: bad_data[0]: give one of missing, uncertain, gaps, frozen, "
+       "spikes, clipping, time_jitter, clock_steps"},
+      {"bad_data: [{missing: 5}]\n",
+       "folder/s.yaml:1:22: error: bad_data[0].missing: must be a share from 0 to 100 %, such as "
+       "0.05 or 5 %"},
+      {"bad_data: [{time_jitter: 50 %}]\n",
+       "folder/s.yaml:1:26: error: bad_data[0].time_jitter: must be a share from 0 to 50 %, such "
+       "as 0.05 or 5 %"},
+      {"bad_data: [{gaps: 1 %, tags: y1}]\n",
+       "folder/s.yaml:1:24: error: bad_data[0].tags: unknown key of gaps (known: run, gaps, from, "
+       "until)"},
+      {"bad_data: [{spikes: 1 %, tags: u1, size: 3 sd}]\n",
+       "folder/s.yaml:1:42: error: bad_data[0].size: standard deviations are known of CVs only: "
+       "give u1 a size in its units"},
+      {"bad_data: [{clipping: range}]\n",
+       "folder/s.yaml:1:23: error: bad_data[0].clipping: give `low` or `high`, or a share of the "
+       "samples"},
+      {"bad_data: [{clock_steps: 5}]\n",
+       "folder/s.yaml:1:26: error: bad_data[0].clock_steps: come at random times, but the length "
+       "of the run is not given (--samples)"},
+      {"setpoints: {equal: y1}\n",
+       "folder/s.yaml:1:20: error: setpoints.equal: give two CVs or more"},
+      {"controller: {mv_limits: {mv: u1, low: 2, high: 1}}\n",
+       "folder/s.yaml:1:48: error: controller.mv_limits.high: must be above low"},
       {"setpoints: {constant: maybe}\n",
        "folder/s.yaml:1:23: error: setpoints.constant: must be true or false, not 'maybe'"},
       {"controller: {disturbance_feedback: 2}\n",
@@ -185,5 +351,5 @@ TEST_CASE("A scenario is found by name or path") {
                     Catch::Matchers::StartsWith(
                         "error: unknown scenario 's3_dely' (did you mean 's3_delay'?); known: "));
   CHECK_THROWS_WITH(find_scenario("", "nowhere.yaml"),
-                    Catch::Matchers::StartsWith("error: unknown scenario '' (known: "));
+                    Catch::Matchers::StartsWith("error: unknown scenario ''; known: "));
 }

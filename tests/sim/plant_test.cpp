@@ -153,3 +153,20 @@ TEST_CASE("changes add up in the order of their onsets") {
   CHECK(second.gain == 3.0);
   CHECK(second.dead_time_s == 3.0);
 }
+
+TEST_CASE("a change that ends leaves the plant as the model") {
+  const ModelSpec model = siso(TransferFunction{2.0, {5.0}, 0.0, 1.0, false});
+  ChannelChange change{0, 0, 1.5, 1.0, 0.0, 30.0, 60.0};
+  const auto stages = mpm::sim::plant_stages(model, {change});
+  REQUIRE(stages.size() == 3);
+  CHECK(std::get<TransferFunction>(stages[1].model.channels[0].dynamics).gain == 3.0);
+  CHECK(std::get<TransferFunction>(stages[2].model.channels[0].dynamics).gain == 2.0);
+  Plant changed(model, {change});
+  mpm::LinearModel exact(model);
+  for (int k = 0; k < 100; ++k) {
+    const double ratio = k >= 30 && k < 60 ? 1.5 : 1.0;
+    CHECK(changed.output()(0) == Approx(ratio * exact.output()(0)).epsilon(1e-12));
+    changed.advance(VectorXd::Ones(1));
+    exact.advance(VectorXd::Ones(1));
+  }
+}

@@ -82,6 +82,38 @@ TEST_CASE("mpmsim tells bad input from a failed run") {
   CHECK(folder.run("--config " + kShell + " --csv /nowhere/x.csv") == 2);
   CHECK(folder.run("--config " + kShell + " --scenario nonsense --csv x") == 3);
   CHECK(folder.read("err").find("s3_delay") != std::string::npos);  // lists what there is
-  CHECK(folder.run("--config " + kShell + " --scenario s2_gain25 --csv x") == 3);
-  CHECK(folder.read("err").find("determinant") != std::string::npos);
+  folder.write("s2.yaml", "scenario: s2\nchanges:\n  - {mv: u1, cv: [y1, y2], gain_ratio: 0.75}\n");
+  CHECK(folder.run("--config " + kShell + " --scenario " + folder.file("s2.yaml") + " --csv x") ==
+        3);
+  const std::string told = folder.read("err");
+  CHECK(told.find("determinant") != std::string::npos);
+  CHECK(told.rfind(folder.file("s2.yaml") + ":3:5: error: changes[0]: no offset-free", 0) == 0);
+  CHECK(told.find('\n') == told.size() - 1);  // one line
+}
+
+TEST_CASE("mpmsim spoils the reported data and says how") {
+  const Folder folder;
+  const std::string run = "--config " + kShell + " --samples 400 --csv " + folder.file("a") +
+                          " --truth " + folder.file("t") + " ";
+  REQUIRE(folder.run(run + "--bad-data missing=20% --bad-data uncertain=5%,tags=y1") == 0);
+  CHECK(folder.read("err").empty());
+  CHECK(folder.read("a").find("y1,y1.quality,y2") != std::string::npos);
+  CHECK(folder.read("a").find(",uncertain,") != std::string::npos);
+  CHECK(folder.read("t").find("\"touched\"") != std::string::npos);
+  CHECK(folder.run(run + "--bad-data nonsense=3") == 3);
+  CHECK(folder.read("err") ==
+        "--bad-data: error: give one of missing, uncertain, gaps, frozen, spikes, clipping, "
+        "time_jitter, clock_steps\n");
+  CHECK(folder.run(run + "--scenario bad_data") == 0);
+}
+
+TEST_CASE("mpmsim prints materiality limits for the unit file") {
+  const Folder folder;
+  const std::string run =
+      "--config " + std::string(MPM_SOURCE_DIR) + "/config/plants/wood_berry.yaml --limits 50 ";
+  REQUIRE(folder.run(run) == 0);
+  CHECK(folder.read("out").find("  materiality:\n    channels:") != std::string::npos);
+  CHECK(folder.read("out").find("- {cv: xb, mv: steam, gain: 0.") != std::string::npos);
+  CHECK(folder.run(run + "--scenario change_delay") == 3);
+  CHECK(folder.read("err").find("change_delay") != std::string::npos);
 }

@@ -65,14 +65,15 @@ TEST_CASE("coloured noise has the variance and memory of eq. 4.2") {
 }
 
 TEST_CASE("set-points hold, and are drawn one after the other") {
-  const std::vector<SetpointSettings> settings(3, SetpointSettings{0.5, 99});
-  RandomBinarySetpoints setpoints(settings, Eigen::Vector3d(1.0, 2.0, 3.0), 2.0, 5);
+  const SetpointSettings settings{1.0, 99};
+  RandomBinarySetpoints setpoints({{settings, 0}, {settings, 1}, {settings, 2}},
+                                  Eigen::Vector3d(1.0, 2.0, 3.0), 5);
   Eigen::VectorXd last = setpoints.next();
   int changes = 0;
   for (int k = 1; k < 20000; ++k) {
     const Eigen::VectorXd now = setpoints.next();
     for (int cv = 0; cv < 3; ++cv) {
-      CHECK(std::abs(now(cv) - (cv + 1.0)) == 1.0);  // amplitude 0.5, ratio 2
+      CHECK(std::abs(now(cv) - (cv + 1.0)) == 1.0);
       if (now(cv) == last(cv)) continue;
       ++changes;
       CHECK(k % 99 == 33 * cv);  // hold / n_cv apart

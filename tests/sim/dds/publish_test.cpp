@@ -104,6 +104,39 @@ TEST_CASE("what mpmsim publishes at full speed is the run of its seed, nothing m
   CHECK(simulator.wait() == 0);
 }
 
+TEST_CASE("bad data reach DDS as gaps, qualities and times") {
+  constexpr int kSamples = 1000;
+  const mpm::idl::DomainOptions domain = mpm::idl::test_domain("sim-bad-data");
+  const mpm::idl::Participant participant(domain);
+  mpm::idl::SampleReaders readers(participant);
+  mpm::idl::WaitSet wait_set;
+  readers.attach_to(wait_set);
+  Simulator simulator(
+      domain, {"--samples", std::to_string(kSamples), "--speed", "0", "--wait-readers", "10",
+               "--start-time", "1000", "--bad-data", "gaps=10%", "--bad-data",
+               "missing=20%,tags=y2", "--bad-data", "time_jitter=20%"});
+  // One run of 10 in every 100 intervals is absent.
+  constexpr int kRows = 900, kTopics = 4;
+  int count = 0, missing = 0, wrong = 0;
+  while (count < kTopics * kRows && wait_set.wait(std::chrono::seconds(10)))
+    readers.take([&](const mpm::idl::SampleView& sample) {
+      ++count;
+      const std::int64_t exact = (1000 + sample.interval) * 1'000'000'000;
+      if (std::abs(sample.source_time_ns - exact) > 200'001'000) ++wrong;
+      if (sample.kind != SignalKind::kCv) return;
+      const auto quality = [&](std::size_t cv) {
+        return sample.quality.empty() ? mpm::Quality::kGood
+                                      : static_cast<mpm::Quality>(sample.quality[cv]);
+      };
+      if (quality(1) == mpm::Quality::kBad) ++missing;
+      if (quality(0) != mpm::Quality::kGood) ++wrong;
+    });
+  CHECK(count == kTopics * kRows);
+  CHECK(wrong == 0);
+  CHECK(std::abs(missing - kRows / 5) < 60);  // binomial, sd 12
+  CHECK(simulator.wait() == 0);
+}
+
 TEST_CASE("mpmsim keeps its pace and ends on SIGTERM") {
   const mpm::idl::DomainOptions domain = mpm::idl::test_domain("sim-pace");
   const mpm::idl::Participant participant(domain);
