@@ -11,6 +11,9 @@ const std::vector<Field<MonitorSettings>>& monitor_fields() {
   using S = MonitorSettings;
   static const std::vector<Field<S>> fields = {
       {"memory", &S::memory_s, kNotNegative, "s, sample_time / (1 - lambda); 0 = 4000 samples"},
+      {"fast_memory", &S::fast_memory_s, kNotNegative, "s, likewise; 0 = 1000 samples"},
+      {"sliding_window", &S::sliding_window, kAny,
+       "the long memory counts its samples alike instead of forgetting"},
       {"false_alarm_rate", &S::false_alarm_rate, kRatio, "of the whole unit at any one time"},
       {"gain_error_of_interest", &S::gain_error_of_interest, kPositive,
        "relative; larger errors must be visible to say match"},
@@ -23,6 +26,16 @@ const std::vector<Field<MonitorSettings>>& monitor_fields() {
       {"fir_lags", &S::fir_lags, {.low = 0, .high = 10000}, "samples; 0 = derived"},
       {"residual_order", &S::residual_order, {.low = 0, .high = 1000}, "samples; 0 = derived"},
       {"tail", &S::tail_s, kNotNegative, "s; 0 = derived"},
+  };
+  return fields;
+}
+
+const std::vector<Field<MaterialitySettings>>& materiality_fields() {
+  using S = MaterialitySettings;
+  static const std::vector<Field<S>> fields = {
+      {"gain", &S::gain, kPositive, "relative"},
+      {"time_constant", &S::time_constant, kPositive, "relative"},
+      {"dead_time", &S::dead_time_s, kNotNegative, "s; 0 = half a sample"},
   };
   return fields;
 }

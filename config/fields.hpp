@@ -21,6 +21,7 @@ struct Field {
 };
 
 [[nodiscard]] const std::vector<Field<MonitorSettings>>& monitor_fields();
+[[nodiscard]] const std::vector<Field<MaterialitySettings>>& materiality_fields();
 [[nodiscard]] const std::vector<Field<AlarmSettings>>& alarm_fields();
 [[nodiscard]] const std::vector<Field<DdsSettings>>& dds_fields();
 [[nodiscard]] const std::vector<Field<SimulationSettings>>& simulation_fields();

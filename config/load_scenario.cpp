@@ -104,7 +104,7 @@ void load_root(const Value& document, const ScenarioContext& context, ScenarioCo
     return;
   }
   const Map root = document.map({"scenario", "description", "changes", "draw", "noise",
-                                 "disturbances", "setpoints", "controller", "bad_data"});
+                                 "disturbances", "setpoints", "controller", "bad_data", "monitor"});
   if (const Value* name = root.find("scenario"))
     scenario.name = name->text().value_or(scenario.name);
   if (const Value* text = root.find("description"))
@@ -119,6 +119,8 @@ void load_root(const Value& document, const ScenarioContext& context, ScenarioCo
   if (const Value* controller = root.find("controller"))
     load_scenario_controller(*controller, context, scenario);
   load_list(root, "bad_data", [&](const Value& item) { load_bad_data(item, context, scenario); });
+  scenario.monitor = context.unit.monitor;
+  load_monitor(root.find("monitor"), context.unit, scenario.monitor);
 }
 
 ScenarioResult load_text(const std::string& text, const std::string& name,

@@ -19,7 +19,7 @@ void load_signals(const Value* section, UnitConfig& config);
 void load_model(const Value& root, const Value* section, const Value* top_level_origin,
                 UnitConfig& config);
 /// Overwrites in `monitor` what the section gives.
-void load_monitor(const Value* section, double sample_time_s, MonitorSettings& monitor);
+void load_monitor(const Value* section, const UnitConfig& unit, MonitorSettings& monitor);
 void load_alarms(const Value* section, UnitConfig& config);
 void load_dds(const Value* section, UnitConfig& config);
 void load_simulation(const Value* section, UnitConfig& config);

@@ -9,15 +9,40 @@ const Value& place_of(const Map& map, std::string_view first, std::string_view s
   return value != nullptr ? *value : map.place();
 }
 
+void load_materiality(const Value& section, const UnitConfig& unit, MonitorSettings& monitor) {
+  std::vector<std::string> known = keys(materiality_fields());
+  known.emplace_back("channels");
+  const Map map = section.map(known);
+  read_fields(map, materiality_fields(), monitor.materiality);
+  const Value* channels = map.find("channels");
+  if (channels == nullptr || channels->is_null()) return;
+  known = keys(materiality_fields());
+  known.insert(known.end(), {"cv", "mv"});
+  for (const Value& item : channels->items()) {
+    const Map entry = item.map(known);
+    ChannelMateriality channel{-1, -1, monitor.materiality};
+    read_fields(entry, materiality_fields(), channel.limits);
+    if (const Value* cv = entry.require("cv")) channel.cv = find_tag(*cv, unit.cv_tags(), "cv");
+    if (const Value* mv = entry.require("mv"))
+      channel.input = find_tag(*mv, unit.input_tags(), "mv or dv");
+    if (channel.cv >= 0 && channel.input >= 0) monitor.channel_materiality.push_back(channel);
+  }
+}
+
 }  // namespace
 
-void load_monitor(const Value* section, double sample_time_s, MonitorSettings& monitor) {
+void load_monitor(const Value* section, const UnitConfig& unit, MonitorSettings& monitor) {
   if (section == nullptr) return;
-  const Map map = section->map(keys(monitor_fields()));
+  std::vector<std::string> known = keys(monitor_fields());
+  known.emplace_back("materiality");
+  const Map map = section->map(known);
   read_fields(map, monitor_fields(), monitor);
+  if (const Value* materiality = map.find("materiality"))
+    load_materiality(*materiality, unit, monitor);
   if (monitor.first_lag > monitor.last_lag)
     place_of(map, "first_lag", "last_lag").error("first_lag must not be above last_lag");
-  if (map.find("memory") != nullptr && monitor.memory_s > 0.0 && monitor.memory_s <= sample_time_s)
+  if (map.find("memory") != nullptr && monitor.memory_s > 0.0 &&
+      monitor.memory_s <= unit.sample_time_s)
     map.find("memory")->error("must be longer than the sample time");
 }
 

@@ -196,6 +196,24 @@ void print_simulation(const UnitConfig& config, std::ostream& out) {
   print_each("setpoints", cvs, simulation.setpoints, setpoint, out);
 }
 
+void print_materiality(const UnitConfig& config, std::ostream& out) {
+  const MonitorSettings& monitor = config.monitor;
+  const std::string limits = inline_fields(materiality_fields(), monitor.materiality);
+  out << "  materiality:";
+  if (monitor.channel_materiality.empty()) {
+    out << ' ' << limits << '\n';
+    return;
+  }
+  out << '\n';
+  for (const Field<MaterialitySettings>& field : materiality_fields())
+    out << "    " << field.key << ": " << field_text(field, monitor.materiality) << '\n';
+  out << "    channels:\n";
+  for (const ChannelMateriality& channel : monitor.channel_materiality)
+    out << "      - {cv: " << yaml_text(config.cv[static_cast<std::size_t>(channel.cv)].tag)
+        << ", mv: " << yaml_text(config.input_tag(channel.input)) << ", "
+        << inline_fields(materiality_fields(), channel.limits).substr(1) << '\n';
+}
+
 }  // namespace
 
 void print_unit(const UnitConfig& config, std::ostream& out) {
@@ -209,6 +227,7 @@ void print_unit(const UnitConfig& config, std::ostream& out) {
   print_model(config, out);
   out << "monitor:\n";
   print_fields(monitor_fields(), config.monitor, out);
+  print_materiality(config, out);
   out << "alarms:\n";
   print_fields(alarm_fields(), config.alarms, out);
   out << "dds:\n";

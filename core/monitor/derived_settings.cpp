@@ -22,6 +22,9 @@ constexpr int kMostFirLags = 60;
 
 constexpr int kResidualOrder = 8;
 
+// Dead-time error that does not matter, samples.
+constexpr double kDeadTimeLimit = 0.5;
+
 // Slowest time constants after which what a wrong start left behind is below 1 %.
 constexpr double kSettlingTimeConstants = 5.0;
 
@@ -63,11 +66,16 @@ void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
 
 void derive_materiality(const ModelSpec& spec, const MonitorSettings& monitor,
                         DerivedSettings& derived) {
+  const auto limits = [&](const MaterialitySettings& settings) {
+    return MaterialityLimits{
+        settings.gain, settings.time_constant,
+        settings.dead_time_s > 0.0 ? settings.dead_time_s / spec.sample_time_s : kDeadTimeLimit};
+  };
   derived.materiality.assign(static_cast<std::size_t>(spec.input_count * spec.cv_count),
-                             monitor.materiality);
-  for (const ChannelLimits& channel : monitor.channel_materiality)
+                             limits(monitor.materiality));
+  for (const ChannelMateriality& channel : monitor.channel_materiality)
     derived.materiality[static_cast<std::size_t>(channel.input * spec.cv_count + channel.cv)] =
-        channel.limits;
+        limits(channel.limits);
 }
 
 }  // namespace

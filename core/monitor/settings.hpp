@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/correlation_kind.hpp"
 
 namespace mpm {
@@ -13,11 +12,18 @@ enum class ThresholdKind {
   kMeanLine,  ///< the thesis's mean line (core/mismatch/mean_line.hpp); not calibrated
 };
 
-/// Materiality limits of one channel, in place of the unit's.
-struct ChannelLimits {
+/// Errors up to which a model is good enough: larger ones alarm.
+struct MaterialitySettings {
+  double gain = 0.05;           ///< relative to the model's
+  double time_constant = 0.10;  ///< relative to the model's
+  double dead_time_s = 0.0;     ///< 0 = half a sample time
+};
+
+/// The same of one channel, in place of the unit's.
+struct ChannelMateriality {
   int cv = 0;
   int input = 0;
-  MaterialityLimits limits;
+  MaterialitySettings limits;
 };
 
 /// What the user may set; 0 or empty means "derive from the model and the sample time".
@@ -35,8 +41,8 @@ struct MonitorSettings {
   int fir_lags = 0;        ///< block length of the channel test
   int residual_order = 0;  ///< lags of all residuals
   double tail_s = 0.0;     ///< time constant of the tail regressor
-  MaterialityLimits materiality;
-  std::vector<ChannelLimits> channel_materiality;
+  MaterialitySettings materiality;
+  std::vector<ChannelMateriality> channel_materiality;
 };
 
 /// When a channel's verdict becomes an alarm.

@@ -315,10 +315,6 @@ TEST_CASE("Every mistake in a scenario is told at its place") {
        "folder/s.yaml:1:36: error: controller.disturbance_feedback: must be >= 0 and <= 1, not 2"},
       {"controller: {allow_unstable: 1}\n",
        "folder/s.yaml:1:30: error: controller.allow_unstable: must be true or false, not '1'"},
-      {"limits: {u3: {low: 1}}\n",
-       "folder/s.yaml:1:10: error: limits.u3: unknown mv or cv (did you mean 'u1'?)"},
-      {"limits: {u1: {low: 2, high: 1}}\n",
-       "folder/s.yaml:1:29: error: limits.u1.high: must be above low"},
       {"monitor: {controling_lags: 5}\n",
        "folder/s.yaml:1:11: error: monitor.controling_lags: unknown key (did you mean "
        "'controlling_lags'?)"},
