@@ -14,8 +14,8 @@ struct Interval {
 /// be whole.
 [[nodiscard]] Interval wilson(double hits, double total);
 
-/// 95 % interval of the mean of a Poisson count (Garwood 1936, exact). Where nothing was counted the
-/// upper end is one-sided: 3.0.
+/// 95 % interval of the mean of a Poisson count (Garwood 1936, exact). Where nothing was counted
+/// the upper end is one-sided: 3.0.
 [[nodiscard]] Interval poisson(std::int64_t count);
 
 /// P(X >= hits) and P(X <= hits) for X binomial.

@@ -30,7 +30,8 @@ struct Options {
 };
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("--only", options.only, "experiments or tables by name or pattern, such as 's?_*'");
+  app.add_option("--only", options.only,
+                 "experiments or tables by name or pattern, such as 's?_*'");
   CLI::Option* seeds = app.add_option(
       "--seeds", options.seeds, "FIRST-LAST instead of each experiment's own; tuning: from 100001");
   app.add_option("--threads", options.threads, "instead of one per core")
@@ -96,8 +97,8 @@ void write_markdown(const Study& study, const Options& options,
   for (const Table& table : study.tables) {
     bool complete = true;
     for (const Experiment& experiment : study.experiments)
-      complete = complete && (!is_in(table, experiment.name) ||
-                              is_wanted(study, experiment, options.only));
+      complete = complete &&
+                 (!is_in(table, experiment.name) || is_wanted(study, experiment, options.only));
     const std::string rendered = render(table, summaries);
     if (complete && !rendered.empty())
       text = replace_part(text, table.name, "\n" + rendered + "\n");

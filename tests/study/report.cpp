@@ -35,8 +35,9 @@ std::string percent(const Share* share) {
 }
 
 std::string of(const Share* share) {
-  return share == nullptr ? "" : text("%lld of %lld", static_cast<long long>(share->hits),
-                                      static_cast<long long>(share->total));
+  return share == nullptr ? ""
+                          : text("%lld of %lld", static_cast<long long>(share->hits),
+                                 static_cast<long long>(share->total));
 }
 
 /// "3 of 1800, 0.17 % (...)"
@@ -67,8 +68,9 @@ std::string large_number(double value) {
 
 /// In bytes that start a character, for aligned columns.
 std::size_t width(const std::string& cell) {
-  return static_cast<std::size_t>(std::count_if(
-      cell.begin(), cell.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(cell.begin(), cell.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
 }
 
 std::string render_rows(const std::vector<Row>& rows) {
@@ -147,8 +149,7 @@ std::vector<Row> power_rows(const std::vector<const Summary*>& summaries) {
       const bool end = at == experiment.samples;
       rows.push_back({experiment.name, std::to_string(at), seeds_text(experiment),
                       of_percent(summary->find("wrong_mismatch", at)),
-                      percent(summary->find("ranked", at)),
-                      end ? of(summary->find("alarmed")) : "",
+                      percent(summary->find("ranked", at)), end ? of(summary->find("alarmed")) : "",
                       end ? of(summary->find("first_alarm_right")) : "",
                       end ? quartiles_text(summary->alarm_delay) : "",
                       of_percent(summary->find("healthy_mismatch", at)),
@@ -159,21 +160,19 @@ std::vector<Row> power_rows(const std::vector<const Summary*>& summaries) {
 }
 
 std::vector<Row> change_rows(const std::vector<const Summary*>& summaries) {
-  std::vector<Row> rows = {
-      {"experiment", "N", "seeds", "runs with a right alarm", "samples to it, median (quartiles)",
-       "first alarm on a wrong channel", "alarms on wrong channels", "false alarms",
-       "healthy channels in alarm at the end", "cleared after the return",
-       "samples to that, median (quartiles)"}};
+  std::vector<Row> rows = {{"experiment", "N", "seeds", "runs with a right alarm",
+                            "samples to it, median (quartiles)", "first alarm on a wrong channel",
+                            "alarms on wrong channels", "false alarms",
+                            "healthy channels in alarm at the end", "cleared after the return",
+                            "samples to that, median (quartiles)"}};
   for (const Summary* summary : summaries) {
     const Experiment& experiment = summary->experiment;
-    rows.push_back({experiment.name, std::to_string(experiment.samples), seeds_text(experiment),
-                    of_percent(summary->find("alarmed")), quartiles_text(summary->alarm_delay),
-                    of_percent(summary->find("first_alarm_right")),
-                    of_percent(summary->find("alarms_right")),
-                    std::to_string(summary->false_alarms),
-                    of_percent(summary->find("healthy_in_alarm")),
-                    of_percent(summary->find("cleared_after_return")),
-                    quartiles_text(summary->clear_delay)});
+    rows.push_back(
+        {experiment.name, std::to_string(experiment.samples), seeds_text(experiment),
+         of_percent(summary->find("alarmed")), quartiles_text(summary->alarm_delay),
+         of_percent(summary->find("first_alarm_right")), of_percent(summary->find("alarms_right")),
+         std::to_string(summary->false_alarms), of_percent(summary->find("healthy_in_alarm")),
+         of_percent(summary->find("cleared_after_return")), quartiles_text(summary->clear_delay)});
   }
   return rows;
 }
@@ -186,17 +185,16 @@ std::vector<Row> run_length_rows(const std::vector<const Summary*>& summaries) {
     const auto samples = static_cast<double>(summary->samples);
     const Interval& interval = summary->false_alarms_interval;
     const bool none = summary->false_alarms == 0;
-    rows.push_back(
-        {summary->experiment.name,
-         text("%lld x %d", static_cast<long long>(summary->runs - summary->diverged),
-              summary->experiment.samples),
-         seeds_text(summary->experiment), std::to_string(summary->channels),
-         std::to_string(summary->false_alarms),
-         none ? "" : large_number(samples / static_cast<double>(summary->false_alarms)),
-         none ? "more than " + large_number(samples / interval.high)
-              : large_number(samples / interval.high) + " to " +
-                    large_number(samples / interval.low),
-         percent(summary->find("tail_mismatch"))});
+    rows.push_back({summary->experiment.name,
+                    text("%lld x %d", static_cast<long long>(summary->runs - summary->diverged),
+                         summary->experiment.samples),
+                    seeds_text(summary->experiment), std::to_string(summary->channels),
+                    std::to_string(summary->false_alarms),
+                    none ? "" : large_number(samples / static_cast<double>(summary->false_alarms)),
+                    none ? "more than " + large_number(samples / interval.high)
+                         : large_number(samples / interval.high) + " to " +
+                               large_number(samples / interval.low),
+                    percent(summary->find("tail_mismatch"))});
   }
   return rows;
 }
@@ -210,15 +208,18 @@ std::vector<Row> tail_rows(const std::vector<const Summary*>& summaries) {
       const std::string from = "_from_" + std::to_string(kTailBins[bin]);
       Row row = {summary->experiment.name,
                  bin + 1 < kTailBins.size()
-                     ? text("%s%lld", "below ", static_cast<long long>(kTailBins[bin + 1]))
+                     ? text("%lld to %lld", static_cast<long long>(kTailBins[bin]),
+                            static_cast<long long>(kTailBins[bin + 1]))
                      : text("from %lld", static_cast<long long>(kTailBins[bin])),
                  ""};
       for (const double level : kTailLevels) {
         const Share* share = summary->find("tail_" + text("%g", level) + from);
         if (share == nullptr) break;
         row[2] = std::to_string(share->total);
-        row.push_back(text("x %.2g (%.2g to %.2g)", share->rate() / level,
-                           share->interval.low / level, share->interval.high / level));
+        row.push_back(share->hits == 0
+                          ? "0"
+                          : text("x %.2g (%.2g to %.2g)", share->rate() / level,
+                                 share->interval.low / level, share->interval.high / level));
       }
       if (row.size() == header.size()) rows.push_back(row);
     }

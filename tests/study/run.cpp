@@ -52,10 +52,8 @@ Truth truth_of(const std::vector<sim::ChannelChange>& changes, int cv, int input
     time_constant *= change.time_constant_ratio;
     dead_time_s += change.dead_time_error_s;
   }
-  const bool gain_only =
-      std::abs(time_constant - 1.0) < kSame && std::abs(dead_time_s) < kSame;
-  if (gain_only && std::abs(gain - 1.0) < kSame)
-    return before ? Truth::kReturned : Truth::kHealthy;
+  const bool gain_only = std::abs(time_constant - 1.0) < kSame && std::abs(dead_time_s) < kSame;
+  if (gain_only && std::abs(gain - 1.0) < kSame) return before ? Truth::kReturned : Truth::kHealthy;
   return gain_only && std::abs(gain - 1.0) < material - kSame ? Truth::kSmall : Truth::kWrong;
 }
 
@@ -169,8 +167,7 @@ std::optional<Prepared> prepare(const Experiment& experiment, std::string& why_n
     if (experiment.changes.empty()) return prepared;
     sim::LoopSetup trial = setup;
     sim::hide_changes(trial);
-    trial.changes.insert(trial.changes.end(), experiment.changes.begin(),
-                         experiment.changes.end());
+    trial.changes.insert(trial.changes.end(), experiment.changes.begin(), experiment.changes.end());
     const std::optional<std::string> reason = sim::why_not_stabilisable(
         trial.controller_model, sim::plant_stages(trial.unit.model, trial.changes),
         static_cast<int>(trial.unit.mv.size()), trial.unit.simulation.cv_weights);

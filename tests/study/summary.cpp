@@ -58,9 +58,7 @@ Count count_if(const Readings& readings, Truth truth,
 }
 
 /// One trial per run that has such channels: whether any of them hits.
-Count any(const Count& channels) {
-  return {channels.hits > 0 ? 1 : 0, channels.total > 0 ? 1 : 0};
-}
+Count any(const Count& channels) { return {channels.hits > 0 ? 1 : 0, channels.total > 0 ? 1 : 0}; }
 
 bool smaller(const ChannelReading& left, const ChannelReading& right) {
   if (left.p_value != right.p_value) return left.p_value < right.p_value;
@@ -96,8 +94,8 @@ void add_readings(Builder& builder, std::size_t which, int at) {
       });
     });
   for (const Truth truth : {Truth::kHealthy, Truth::kWrong})
-    for (const char* verdict : {"match", "mismatch", "warming_up", "not_excited", "collinear",
-                                "bad_data"})
+    for (const char* verdict :
+         {"match", "mismatch", "warming_up", "not_excited", "collinear", "bad_data"})
       builder.add((truth == Truth::kHealthy ? "healthy_" : "wrong_") + std::string(verdict), at,
                   [=](const RunRecord& run) {
                     return count_if(readings(run), truth, [=](const ChannelReading& reading) {
@@ -111,9 +109,8 @@ void add_readings(Builder& builder, std::size_t which, int at) {
   });
   builder.add("family_p", at, [=](const RunRecord& run) {
     const double level = kFamilyRate / static_cast<double>(readings(run).size());
-    return any(count_if(readings(run), Truth::kHealthy, [=](const ChannelReading& reading) {
-      return reading.p_value < level;
-    }));
+    return any(count_if(readings(run), Truth::kHealthy,
+                        [=](const ChannelReading& reading) { return reading.p_value < level; }));
   });
   builder.add("false_mismatch_runs", at, [=](const RunRecord& run) {
     return any(count_if(readings(run), Truth::kHealthy, [](const ChannelReading& reading) {
@@ -185,13 +182,13 @@ void add_alarms(Builder& builder) {
     for (std::size_t c = 0; c < run.truth.size(); ++c) {
       if (!run.truth[c].first(Truth::kWrong)) continue;
       ++count.total;
-      count.hits += std::any_of(run.alarms.begin(), run.alarms.end(),
-                                [c](const AlarmChange& change) {
-                                  return change.channel == static_cast<int>(c) &&
-                                         raised_right(change);
-                                })
-                        ? 1
-                        : 0;
+      count.hits +=
+          std::any_of(run.alarms.begin(), run.alarms.end(),
+                      [c](const AlarmChange& change) {
+                        return change.channel == static_cast<int>(c) && raised_right(change);
+                      })
+              ? 1
+              : 0;
     }
     return count;
   });
@@ -201,6 +198,9 @@ void add_alarms(Builder& builder) {
                      [](const AlarmChange& change) { return change.to == AlarmState::kActive; });
     if (!onset(run) || first == run.alarms.end()) return Count{};
     return Count{raised_right(*first) ? 1 : 0, 1};
+  });
+  builder.add("false_alarm_runs", 0, [](const RunRecord& run) {
+    return Count{std::any_of(run.alarms.begin(), run.alarms.end(), raised_false) ? 1 : 0, 1};
   });
   builder.add("alarms_right", 0, [](const RunRecord& run) {
     const auto right = std::count_if(run.alarms.begin(), run.alarms.end(), raised_right);
@@ -222,8 +222,7 @@ bool is_in_alarm_at(const RunRecord& run, int channel, std::int64_t sample) {
 
 bool raised_after(const RunRecord& run, int channel, std::int64_t sample) {
   return std::any_of(run.alarms.begin(), run.alarms.end(), [=](const AlarmChange& change) {
-    return change.channel == channel && change.sample > sample &&
-           change.to == AlarmState::kActive;
+    return change.channel == channel && change.sample > sample && change.to == AlarmState::kActive;
   });
 }
 
@@ -271,9 +270,8 @@ Quartiles clear_delays(const std::vector<const RunRecord*>& runs) {
             return change.channel == channel && change.sample > *back &&
                    change.to == AlarmState::kCleared;
           });
-      delays.push_back(cleared == run->alarms.end()
-                           ? kInfinity
-                           : static_cast<double>(cleared->sample - *back));
+      delays.push_back(cleared == run->alarms.end() ? kInfinity
+                                                    : static_cast<double>(cleared->sample - *back));
     }
   }
   return quartiles(delays);
@@ -335,8 +333,8 @@ std::vector<Finding> check_bounds(const Summary& summary) {
     const std::int64_t total = std::llround(share->independent_trials());
     const double scaled = static_cast<double>(share->hits) / share->design_effect;
     const bool most = bound.side == Bound::Side::kAtMost;
-    const std::int64_t hits = static_cast<std::int64_t>(most ? std::floor(scaled)
-                                                             : std::ceil(scaled));
+    const std::int64_t hits =
+        static_cast<std::int64_t>(most ? std::floor(scaled) : std::ceil(scaled));
     const double chance = most ? binomial_at_least(hits, total, bound.rate)
                                : binomial_at_most(hits, total, bound.rate);
     char text[200];

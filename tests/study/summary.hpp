@@ -22,8 +22,9 @@ namespace mpm::study {
 ///     tail_mismatch                        evaluations with a mismatch on a healthy channel
 ///     alarmed                              runs with an alarm on a wrong channel
 ///     alarmed_channels                     wrong channels that were in alarm while wrong
-///     first_alarm_right                    runs with an alarm, whose first one is on a wrong channel
-///     alarms_right                         alarms on wrong channels among these and false ones
+///     first_alarm_right                    runs with an alarm, whose first one is on a wrong
+///     channel alarms_right                         alarms on wrong channels among these and false
+///     ones false_alarm_runs                     runs with an alarm on a healthy channel
 ///     healthy_in_alarm                     healthy channels in alarm at the end
 ///     cleared_after_return                 channels in alarm when they returned or later, that are
 ///                                          not at the end
