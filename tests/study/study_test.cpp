@@ -130,9 +130,8 @@ TEST_CASE("every experiment of a table exists") {
     CHECK(std::adjacent_find(names.begin(), names.end()) == names.end());
     for (const Table& table : study.tables)
       for (const std::string& pattern : table.experiments)
-        CHECK(std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-          return matches(pattern, name);
-        }));
+        CHECK(std::any_of(names.begin(), names.end(),
+                          [&](const std::string& name) { return matches(pattern, name); }));
   }
 }
 
