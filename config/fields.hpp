@@ -13,7 +13,8 @@ namespace mpm::config {
 template <class Settings>
 struct Field {
   const char* key;
-  std::variant<double Settings::*, int Settings::*, bool Settings::*, std::string Settings::*>
+  std::variant<double Settings::*, int Settings::*, bool Settings::*, std::string Settings::*,
+               CorrelationKind Settings::*, ThresholdKind Settings::*>
       member;
   Range range;        ///< of numbers
   const char* notes;  ///< printed beside the value

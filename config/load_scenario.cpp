@@ -110,12 +110,22 @@ void load_loop(const Map& root, ScenarioConfig& scenario) {
       scenario.constant_setpoints = constant->boolean().value_or(false);
   }
   if (const Value* controller = root.find("controller")) {
-    const Map map = controller->map({"integral_action", "disturbance_feedback"});
+    const Map map = controller->map({"integral_action", "disturbance_feedback", "allow_unstable"});
     if (const Value* flag = map.find("integral_action"))
       scenario.integral_action = flag->boolean().value_or(true);
     if (const Value* part = map.find("disturbance_feedback"))
       scenario.disturbance_feedback = part->number({.low = 0.0, .high = 1.0}).value_or(1.0);
+    if (const Value* flag = map.find("allow_unstable"))
+      scenario.allow_unstable = flag->boolean().value_or(false);
   }
+}
+
+void load_limits(const Value* section, const UnitConfig& unit, ScenarioConfig& scenario) {
+  if (section == nullptr) return;
+  SimulationSettings simulation = unit.simulation;
+  load_limits(*section, unit, simulation);
+  scenario.mv_limits = std::move(simulation.mv_limits);
+  scenario.cv_limits = std::move(simulation.cv_limits);
 }
 
 template <class Load>
@@ -130,8 +140,8 @@ void load_root(const Value& document, const UnitConfig& unit, ScenarioConfig& sc
     document.error("a scenario is a map of keys such as `scenario:` and `changes:`");
     return;
   }
-  const Map root = document.map(
-      {"scenario", "description", "changes", "draw", "noise", "setpoints", "controller"});
+  const Map root = document.map({"scenario", "description", "changes", "draw", "noise", "setpoints",
+                                 "controller", "limits", "monitor"});
   if (const Value* name = root.find("scenario"))
     scenario.name = name->text().value_or(scenario.name);
   if (const Value* text = root.find("description"))
@@ -140,6 +150,9 @@ void load_root(const Value& document, const UnitConfig& unit, ScenarioConfig& sc
   if (const Value* draw = root.find("draw")) load_draw(*draw, unit, scenario);
   load_list(root, "noise", [&](const Value& item) { load_noise(item, unit, scenario); });
   load_loop(root, scenario);
+  load_limits(root.find("limits"), unit, scenario);
+  scenario.monitor = unit.monitor;
+  load_monitor(root.find("monitor"), unit.sample_time_s, scenario.monitor);
 }
 
 ScenarioResult load_text(const std::string& text, const std::string& name, const UnitConfig& unit,

@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "config/choice.hpp"
 #include "config/fields.hpp"
+#include "config/suggest.hpp"
 #include "config/unit_config.hpp"
 #include "config/yaml_value.hpp"
 
@@ -16,10 +18,13 @@ inline constexpr std::size_t kLongestTag = 128;
 void load_signals(const Value* section, UnitConfig& config);
 void load_model(const Value& root, const Value* section, const Value* top_level_origin,
                 UnitConfig& config);
-void load_monitor(const Value* section, UnitConfig& config);
+/// Overwrites in `monitor` what the section gives.
+void load_monitor(const Value* section, double sample_time_s, MonitorSettings& monitor);
 void load_alarms(const Value* section, UnitConfig& config);
 void load_dds(const Value* section, UnitConfig& config);
 void load_simulation(const Value* section, UnitConfig& config);
+/// Overwrites in `simulation` the limits that the value gives by tag.
+void load_limits(const Value& value, const UnitConfig& config, SimulationSettings& simulation);
 
 /// Parts of `load_model`.
 void load_channels(const Value& list, UnitConfig& config);
@@ -29,6 +34,20 @@ void load_static_blocks(const Map& model, UnitConfig& config);
 /// Index of the tag that `value` names, or -1 (reported as an unknown `noun`).
 [[nodiscard]] int find_tag(const Value& value, const std::vector<std::string>& tags,
                            std::string_view noun);
+
+/// The kind that `value` names; `otherwise` (reported) where it names none.
+template <class Kind>
+[[nodiscard]] Kind read_choice(const Value& value, Kind otherwise) {
+  const std::optional<std::string> name = value.text();
+  if (!name) return otherwise;
+  std::vector<std::string> names;
+  for (const Choice<Kind>& choice : choices(otherwise)) {
+    if (*name == choice.name) return choice.kind;
+    names.emplace_back(choice.name);
+  }
+  value.error("must be one of " + join(names) + ", not '" + *name + "'");
+  return otherwise;
+}
 
 /// Fills `settings` from the keys of `map` that `fields` describes.
 template <class Settings>
@@ -45,6 +64,8 @@ void read_fields(const Map& map, const std::vector<Field<Settings>>& fields, Set
         target = value->integer(field.range).value_or(target);
       } else if constexpr (std::is_same_v<Type, bool>) {
         target = value->boolean().value_or(target);
+      } else if constexpr (std::is_enum_v<Type>) {
+        target = read_choice(*value, target);
       } else {
         target = value->free_text().value_or(target);
       }

@@ -11,14 +11,13 @@ const Value& place_of(const Map& map, std::string_view first, std::string_view s
 
 }  // namespace
 
-void load_monitor(const Value* section, UnitConfig& config) {
+void load_monitor(const Value* section, double sample_time_s, MonitorSettings& monitor) {
   if (section == nullptr) return;
   const Map map = section->map(keys(monitor_fields()));
-  MonitorSettings& monitor = config.monitor;
   read_fields(map, monitor_fields(), monitor);
   if (monitor.first_lag > monitor.last_lag)
     place_of(map, "first_lag", "last_lag").error("first_lag must not be above last_lag");
-  if (monitor.memory_s > 0.0 && monitor.memory_s <= config.sample_time_s)
+  if (map.find("memory") != nullptr && monitor.memory_s > 0.0 && monitor.memory_s <= sample_time_s)
     map.find("memory")->error("must be longer than the sample time");
 }
 

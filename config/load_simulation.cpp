@@ -49,38 +49,18 @@ void read_each(const Map& map, std::string_view key, const std::vector<std::stri
   }
 }
 
-std::optional<double> read_optional(const Map& map, std::string_view key, const Range& range) {
-  const Value* value = map.find(key);
-  return value != nullptr ? value->number(range) : std::nullopt;
+void read_optional(const Map& map, std::string_view key, const Range& range,
+                   std::optional<double>& number) {
+  if (const Value* value = map.find(key)) number = value->number(range);
 }
 
 template <class Limits>
 void read_low_high(const Map& map, Limits& limits) {
-  limits.low = read_optional(map, "low", kAny);
-  limits.high = read_optional(map, "high", kAny);
+  read_optional(map, "low", kAny, limits.low);
+  read_optional(map, "high", kAny, limits.high);
+  const Value* high = map.find("high");
   if (limits.low && limits.high && *limits.low >= *limits.high)
-    map.find("high")->error("must be above low");
-}
-
-void read_limits(const Map& map, const UnitConfig& config, SimulationSettings& simulation) {
-  const Value* value = map.find("limits");
-  if (value == nullptr) return;
-  std::vector<std::string> tags;
-  for (const InputSignal& mv : config.mv) tags.push_back(mv.tag);
-  for (const CvSignal& cv : config.cv) tags.push_back(cv.tag);
-  const Map by_tag = value->map(tags, "mv or cv");
-  for (const Map::Entry& entry : by_tag.entries()) {
-    const auto index =
-        static_cast<std::size_t>(std::find(tags.begin(), tags.end(), entry.key) - tags.begin());
-    if (index < config.mv.size()) {
-      const Map limits = entry.value.map({"low", "high", "max_move"});
-      read_low_high(limits, simulation.mv_limits[index]);
-      simulation.mv_limits[index].max_move = read_optional(limits, "max_move", kPositive);
-    } else {
-      read_low_high(entry.value.map({"low", "high"}),
-                    simulation.cv_limits[index - config.mv.size()]);
-    }
-  }
+    (high != nullptr ? *high : map.place()).error("must be above low");
 }
 
 void read_move_blocks(const Map& map, SimulationSettings& simulation) {
@@ -101,6 +81,25 @@ void read_move_blocks(const Map& map, SimulationSettings& simulation) {
 }
 
 }  // namespace
+
+void load_limits(const Value& value, const UnitConfig& config, SimulationSettings& simulation) {
+  std::vector<std::string> tags;
+  for (const InputSignal& mv : config.mv) tags.push_back(mv.tag);
+  for (const CvSignal& cv : config.cv) tags.push_back(cv.tag);
+  const Map by_tag = value.map(tags, "mv or cv");
+  for (const Map::Entry& entry : by_tag.entries()) {
+    const auto index =
+        static_cast<std::size_t>(std::find(tags.begin(), tags.end(), entry.key) - tags.begin());
+    if (index < config.mv.size()) {
+      const Map limits = entry.value.map({"low", "high", "max_move"});
+      read_low_high(limits, simulation.mv_limits[index]);
+      read_optional(limits, "max_move", kPositive, simulation.mv_limits[index].max_move);
+    } else {
+      read_low_high(entry.value.map({"low", "high"}),
+                    simulation.cv_limits[index - config.mv.size()]);
+    }
+  }
+}
 
 void load_simulation(const Value* section, UnitConfig& config) {
   SimulationSettings& simulation = config.simulation;
@@ -126,7 +125,7 @@ void load_simulation(const Value* section, UnitConfig& config) {
   const std::vector<std::string> cvs = config.cv_tags();
   read_weights(map, "cv_weights", cvs, simulation.cv_weights);
   read_weights(map, "move_weights", mvs, simulation.move_weights);
-  read_limits(map, config, simulation);
+  if (const Value* limits = map.find("limits")) load_limits(*limits, config, simulation);
   read_each(map, "noise", cvs, noise_fields(), simulation.noise);
   read_each(map, "dv_movement", dvs, noise_fields(), simulation.dv_movement);
   read_each(map, "setpoints", cvs, setpoint_fields(), simulation.setpoints);

@@ -39,7 +39,7 @@ void load_root(const Value& document, UnitConfig& config) {
   // Without signals everything below would only complain about unknown tags.
   if (config.mv.empty() || config.cv.empty()) return;
   load_model(document, root.find("model"), root.find("operating_point"), config);
-  load_monitor(root.find("monitor"), config);
+  load_monitor(root.find("monitor"), config.sample_time_s, config.monitor);
   load_alarms(root.find("alarms"), config);
   load_dds(root.find("dds"), config);
   load_simulation(root.find("simulation"), config);

@@ -2,6 +2,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "config/choice.hpp"
 #include "config/fields.hpp"
 #include "config/load_unit.hpp"
 #include "config/yaml_text.hpp"
@@ -11,7 +12,14 @@ namespace {
 
 template <class Settings>
 std::string field_text(const Field<Settings>& field, const Settings& settings) {
-  return std::visit([&](auto member) { return yaml_text(settings.*member); }, field.member);
+  const auto text = [&](auto member) {
+    using Type = std::remove_cv_t<std::remove_reference_t<decltype(settings.*member)>>;
+    if constexpr (std::is_enum_v<Type>)
+      return name_of(settings.*member);
+    else
+      return yaml_text(settings.*member);
+  };
+  return std::visit(text, field.member);
 }
 
 /// One key per line, each with its note.

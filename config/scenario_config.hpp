@@ -45,6 +45,10 @@ struct ScenarioConfig {
   bool constant_setpoints = false;
   bool integral_action = true;        ///< of the controller: offset-free control
   double disturbance_feedback = 1.0;  ///< 0..1, part of the output disturbance that is fed back
+  bool allow_unstable = false;        ///< run although integral action cannot hold the plant
+  std::vector<MvLimits> mv_limits;    ///< the unit's with the scenario's over them; empty: unit's
+  std::vector<CvLimits> cv_limits;
+  MonitorSettings monitor;  ///< the unit's with the scenario's over them; for `mpm detect`
 };
 
 struct ScenarioResult {

@@ -30,6 +30,11 @@ class Condition {
     held_ = 0;
     return true;
   }
+  /// Decided elsewhere.
+  void set(AlarmState state) {
+    state_ = state;
+    held_ = 0;
+  }
   /// A sample without a verdict.
   void hold() { held_ = 0; }
 

@@ -1,162 +1,121 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
-#include "core/mismatch/signature.hpp"
+#include "core/mismatch/channel_evaluator.hpp"
+#include "core/mismatch/channel_evidence.hpp"
+#include "core/mismatch/regression_history.hpp"
 #include "core/model/linear_model.hpp"
-#include "core/regression/givens_qr.hpp"
-#include "core/signal/lag_window.hpp"
 
 namespace mpm {
 
-/// What the data say about one channel (input i to CV j).
-struct ChannelEvidence {
-  double statistic = 0.0;             ///< F of the test that says more
-  double p_value = 1.0;               ///< tests * P(F > statistic) where the channel matches, <= 1
-  double numerator_freedom = 0.0;     ///< of F; 0 = nothing to test with
-  int tests = 1;                      ///< that were made
-  double block_statistic = 0.0;       ///< F of the whole block
-  double reference_gain = 0.0;        ///< what 100 % means, CV units per input unit
-  double gain_error_ratio = 0.0;      ///< (plant gain - model gain) / reference, were it only gain
-  double excitation_index = 0.0;      ///< s.d. of gain_error_ratio; infinite = no information
-  double excitation_index_alone = 0;  ///< the same, were the other inputs known not to matter
-  int confounder = -1;                ///< input whose estimate is most correlated with this one's
+/// How long a memory is: rows fade with `lambda` per row, or, where `window` > 0, the last `window`
+/// samples count alike and older ones not at all.
+struct MemoryLength {
+  double lambda = 1.0;  ///< 0 < lambda <= 1; 1 in a sliding window
+  int window = 0;       ///< samples
 };
 
 /// Calibrated channel test. Per CV j the model residual e_j is regressed, in ARX form (the direct
-/// method, valid in closed loop because the innovation w_j(k) is independent of the past), on
-///
-///     1,  e_1..e_n (k-1 .. k-p),  and per input i:  u_i(k-1 .. k-L), s_it(k-L-1), t = 1..tails,
-///     s_it(k) = r_t s_it(k-1) + (1 - r_t) u_i(k),
-///
-/// and F tests that input i's block of B = L + tails coefficients is zero given all the others,
-/// which is so exactly where channel (j, i) matches (Ljung 1999, section 13.4, for the regression;
-/// Seber and Lee 2003, section 4.3, for F). Rows are weighted
+/// method, valid in closed loop because the innovation w_j(k) is independent of the past), on the
+/// rows of `RegressionHistory`, and F tests that input i's block of coefficients is zero given all
+/// the others, which is so exactly where channel (j, i) matches (Ljung 1999, section 13.4, for the
+/// regression; Seber and Lee 2003, section 4.3, for F; `ChannelEvaluator` for what is read off).
+/// Rows are weighted
 ///
 ///     lambda^age * min(1, 3 s / |r|)^2 / s^2,
 ///
 /// r the row's one-step prediction error and s its running s.d., so that a change of the noise
-/// level or heavy tails do not raise the false-alarm rate. Forgetting makes the estimate noisier
-/// than equal weights would: with W1 = sum lambda^age, W2 = sum lambda^(2 age), F is multiplied by
-/// W1 / W2 and has W1^2 / W2 - columns degrees of freedom.
+/// level or heavy tails do not raise the false-alarm rate.
 ///
-/// Two tests are made and the smaller p counts, doubled: F over the whole block, which sees any
-/// error, and F over the few directions in it that errors of gain, time constant and dead time of
-/// the model's own channel would take (`usual_errors`), which sees those sooner. Either way the
-/// other inputs' blocks are free, so that no error of theirs leaks in.
-///
-/// The factor is never squared: with R_t the trailing triangle of all inputs' columns and
-/// T = R_t^-1, the factor S of block i's covariance (S S' = T_i T_i', T_i the block's rows of T)
-/// comes from reflecting what T_i has behind the block into the block's own triangle.
+/// Several memories run side by side on the same rows: a long one that sees small errors, a short
+/// one that sees sudden ones sooner. A CV can be started afresh from any sample that is still
+/// remembered.
 class ChannelTest {
  public:
-  struct Shape {
-    int inputs = 1;
-    int cvs = 1;
-    int fir_lags = 20;               ///< L >= 1
-    int residual_order = 8;          ///< p >= 1
-    std::vector<double> tail_poles;  ///< r_t in (0, 1); at least one
-  };
+  /// `memories`: the first one is the longest; its prediction errors weigh the rows.
+  /// `remembered`: samples from which a CV can start afresh.
+  ChannelTest(const RegressionShape& shape, const std::vector<MemoryLength>& memories,
+              int remembered, const LinearModel& model,
+              std::vector<MaterialityLimits> limits = {{}});
 
-  /// `model` says what a gain error of 100 % in a channel looks like. Where it has no channel,
-  /// 100 % is a first-order lag with the slowest tail that moves the CV as much as its other
-  /// inputs do (or, where it has none, as much as the residual moves).
-  ChannelTest(const Shape& shape, double lambda, const LinearModel& model);
-
-  /// Takes u(k) (m values) and e(k) (n values), all finite, of the next interval. True where they
-  /// gave a row.
-  bool update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
+  /// Takes u(k) and e(k) of the next interval, NaN where unknown.
+  void update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
               const Eigen::Ref<const Eigen::VectorXd>& residuals);
-  /// `missing` intervals (>= 1) follow without usable values: inputs are taken as held, no row may
-  /// span the gap.
+  /// `missing` intervals (>= 1) of which nothing is known.
   void skip(std::int64_t missing);
+  /// Whether the last sample gave this CV a row.
+  [[nodiscard]] bool took_row(int cv) const { return weight_windows_[index(cv)].window()[0] > 0.0; }
 
-  /// Refreshes the evidence of all channels.
-  void evaluate();
-  [[nodiscard]] const ChannelEvidence& evidence(int cv, int input) const {
-    return evidence_[static_cast<std::size_t>(input * shape_.cvs + cv)];
+  /// Refreshes the evidence of one CV in one memory, which is ready.
+  void evaluate(int cv, int memory = 0);
+  [[nodiscard]] const ChannelEvidence& evidence(int cv, int input, int memory = 0) const {
+    return evidence_[at(cv, memory) * static_cast<std::size_t>(shape_.inputs) +
+                     static_cast<std::size_t>(input)];
   }
-  /// W1^2 / W2: rows that equal weights would need for the same precision.
-  [[nodiscard]] double effective_rows() const;
-  [[nodiscard]] double denominator_freedom() const { return effective_rows() - columns_; }
-  /// Enough rows for the evidence to mean anything: with fewer than six per column the tail of F
-  /// is too thin in closed loop (at four, p < 1e-4 came twenty times too often).
-  [[nodiscard]] bool ready() const {
-    return rows_ >= 6 * columns_ && denominator_freedom() >= columns_;
+  [[nodiscard]] const RegressionMemory& memory(int cv, int memory = 0) const {
+    return memories_[at(cv, memory)];
   }
-  [[nodiscard]] int block_columns() const { return block_; }
-  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int memory_count() const { return static_cast<int>(lengths_.size()); }
+
+  /// Forgets of this CV what is older than its last `samples` samples (>= 0).
+  void start_afresh(int cv, int samples);
+  /// Mean square of the one-step errors over the last 100 rows against that over the last 2000:
+  /// well above 1 where the noise rose or the channels changed.
+  [[nodiscard]] double surprise(int cv) const {
+    const Response& response = responses_[index(cv)];
+    return response.lasting_square > 0.0 ? response.recent_square / response.lasting_square : 1.0;
+  }
+  /// Samples of this CV that its memories may rest on, at most `remembered`.
+  [[nodiscard]] int span(int cv) const { return responses_[index(cv)].span; }
+
+  [[nodiscard]] const RegressionShape& shape() const { return shape_; }
+  [[nodiscard]] const RegressionHistory& history() const { return history_; }
+  /// Weight that multiplies the row of age `age`, 0 where there is none; 1 / CV units.
+  [[nodiscard]] double row_weight(int cv, int age) const {
+    return weight_windows_[index(cv)].window()[age];
+  }
+  /// The same with rows clipped at 6 instead of 3 s.d.: after a change many rows surprise, and they
+  /// are what tells of it.
+  [[nodiscard]] double lenient_weight(int cv, int age) const {
+    return std::min(2.0 * row_weight(cv, age), 1.0 / scale_windows_[index(cv)].window()[age]);
+  }
 
  private:
-  /// One CV's regression.
   struct Response {
-    explicit Response(int columns);
-    GivensQr factor;
-    Eigen::VectorXd coefficients;
     double scale = 1.0;       // running s.d. of the one-step error, CV units
     double scale_rows = 0.0;  // rows it rests on
     bool scaled = false;
+    int span = 0;
+    double recent_square = 0.0;   // mean square of the clipped errors, CV units, over 100 rows
+    double lasting_square = 0.0;  // over 2000
+    double square_rows = 0.0;
   };
-  struct Channel {
-    std::vector<Signature> errors;  // of a 100 % gain error first
-    double gain = 0.0;  // steady gain (integrating: rise in the slowest tail's time constant)
-  };
+  [[nodiscard]] std::size_t index(int cv) const { return static_cast<std::size_t>(cv); }
+  [[nodiscard]] std::size_t at(int cv, int memory) const {
+    return static_cast<std::size_t>(memory * shape_.cvs + cv);
+  }
+  void take_row(int cv, int age);
+  double weigh(int cv);
+  void begin_scale(int cv);
+  void slide(int cv, int memory);
+  void refill(int cv, int memory, int samples);
 
-  void build_row();
-  void take_row(int cv, double residual);
-  void evaluate_cv(int cv);
-  void invert_triangle();
-  void factor_covariance(int input);
-  /// x <- S^-1 x and x <- S'^-1 x
-  void whiten(Eigen::Ref<Eigen::VectorXd> x) const;
-  void whiten_transposed(Eigen::Ref<Eigen::VectorXd> x) const;
-  /// a_1..a_p of the CV's own residual
-  [[nodiscard]] const double* own_lags(int cv) const;
-  /// The directed test: replaces the evidence where it says more.
-  void judge_usual_errors(int cv, int input, double variance, double freedom,
-                          ChannelEvidence& evidence);
-  /// The gain-error estimate of an input (of the CV last evaluated) as weights on the factor's
-  /// rotated responses; two such estimates are correlated as these vectors are.
-  void gain_functional(int input, Eigen::Ref<Eigen::VectorXd> functional) const;
-  [[nodiscard]] int find_confounder(int input);
-  [[nodiscard]] double reference_gain(int cv, int input) const;
-
-  Shape shape_;
-  double lambda_;
-  int block_;    // B
-  int lead_in_;  // columns before the inputs' blocks: 1 + n p
-  int columns_;
-  int filled_ = 0;
-  int rows_ = 0;
-  double weight_sum_ = 0.0;     // W1
-  double weight_square_ = 0.0;  // W2
-  bool has_origin_ = false;
-  Eigen::VectorXd origin_;
-  std::vector<LagWindow> input_windows_;
-  std::vector<LagWindow> tail_windows_;  // input-major
-  std::vector<LagWindow> residual_windows_;
-  Eigen::VectorXd last_input_;
-  Eigen::VectorXd row_;
+  RegressionShape shape_;
+  std::vector<MemoryLength> lengths_;
+  int remembered_;
+  RegressionHistory history_;
+  ChannelEvaluator evaluator_;
   std::vector<Response> responses_;
-  std::vector<Channel> channels_;
+  std::vector<LagWindow> weight_windows_;   // per CV and row: 1 / scale, times the clip; 0 = no row
+  std::vector<LagWindow> scale_windows_;    // per CV and row: `Response::scale` before it
+  std::vector<RegressionMemory> memories_;  // memory-major
+  std::vector<int> slides_;                 // per memory: samples until its window is rebuilt
   std::vector<ChannelEvidence> evidence_;
-
-  // Work space of evaluate_cv.
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  int padded_;                 // columns of all inputs, rounded up to whole granules
-  RowMajor triangle_;          // R_t, columns scaled to norm 1; padded with zeros
-  RowMajor inverse_;           // T, likewise
-  Eigen::VectorXd norms_;      // of the columns
-  Eigen::VectorXd scales_;     // 1 / norms_
-  Eigen::VectorXd rotated_;    // the CV's rotated responses of those rows
-  Eigen::VectorXd estimate_;   // scaled coefficients
-  RowMajor covariance_;        // S: S S' = T_i T_i', covariance of block i's scaled coefficients
-  RowMajor behind_;            // of T_i, columns behind the block; then their reflectors
-  Eigen::MatrixXd direction_;  // B x m: weights of the gain-error estimate on the block
-  Eigen::MatrixXd usual_;      // orthonormal basis of the usual errors, whitened
-  Eigen::VectorXd beta_, whitened_, whitened_beta_;
-  Eigen::VectorXd functional_, other_functional_;
+  Eigen::VectorXd row_;
 };
 
 }  // namespace mpm

@@ -16,11 +16,12 @@ constexpr double kOwnMovement = 1e-18;
 constexpr double kTiny = std::numeric_limits<double>::min();
 
 // Before any member is built from it.
-const LaggedCorrelation::Shape& checked(const LaggedCorrelation::Shape& shape, double lambda) {
+LaggedCorrelation::Shape checked(LaggedCorrelation::Shape shape, double lambda) {
   if (shape.inputs < 1 || shape.cvs < 1 || shape.controlling_lags < 0 || shape.last_lag < 0 ||
-      shape.first_lag > shape.last_lag || shape.first_lag < -shape.controlling_lags ||
-      !(lambda > 0.0 && lambda <= 1.0))
+      shape.first_lag > shape.last_lag || !(lambda > 0.0 && lambda <= 1.0))
     throw std::invalid_argument("impossible shape of the lagged correlation");
+  if (shape.kind == CorrelationKind::kPartial || shape.kind == CorrelationKind::kConventional)
+    shape.controlling_lags = 0;
   return shape;
 }
 
@@ -29,13 +30,21 @@ const LaggedCorrelation::Shape& checked(const LaggedCorrelation::Shape& shape, d
 LaggedCorrelation::LaggedCorrelation(const Shape& shape, double lambda)
     : shape_(checked(shape, lambda)),
       lambda_(lambda),
-      window_rows_(std::max(shape.last_lag + shape.controlling_lags, 0) + 1),
+      block_columns_(shape_.kind == CorrelationKind::kLaggedPartial ? shape_.controlling_lags + 1
+                                                                    : 1),
+      window_rows_(shape_.last_lag + std::max(shape_.controlling_lags, -shape_.first_lag) + 1),
       origin_(Eigen::VectorXd::Zero(shape.inputs)),
-      factors_(1, shape.inputs, shape.controlling_lags + 1, shape.cvs * lag_count()),
-      correlations_(
-          Eigen::MatrixXd::Zero(shape.last_lag - shape.first_lag + 1, shape.inputs * shape.cvs)),
+      correlations_(Eigen::MatrixXd::Zero(lag_count(), shape.inputs * shape.cvs)),
       defined_(static_cast<std::size_t>(shape.inputs), false) {
-  for (int i = 0; i < shape.inputs; ++i) input_windows_.emplace_back(window_rows_);
+  const int responses = shape.cvs * lag_count();
+  const int shared_past =
+      shape_.kind == CorrelationKind::kAlternative ? shape.inputs * shape_.controlling_lags : 0;
+  if (!conventional())
+    factors_.emplace_back(1 + shared_past, shape.inputs, block_columns_, responses);
+  for (int i = 0; i < shape.inputs; ++i) {
+    input_windows_.emplace_back(window_rows_);
+    if (conventional()) factors_.emplace_back(1, 1, 1, responses);
+  }
   for (int j = 0; j < shape.cvs; ++j) residual_windows_.emplace_back(window_rows_);
   totals_.assign(static_cast<std::size_t>(shape.inputs), 0.0);
 }
@@ -52,30 +61,40 @@ void LaggedCorrelation::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
     residual_windows_[static_cast<std::size_t>(j)].push(residuals(j));
   filled_ = std::min(filled_ + 1, window_rows_);
   if (filled_ < window_rows_) return;
-  fill_row();
   for (int i = 0; i < shape_.inputs; ++i) {
-    const double own = input_windows_[static_cast<std::size_t>(i)].window()[shape_.last_lag];
+    const double own = *past(i);
     double& total = totals_[static_cast<std::size_t>(i)];
     total = lambda_ * total + own * own;
   }
-  factors_.update(lambda_);
+  for (std::size_t f = 0; f < factors_.size(); ++f) {
+    double* out = factors_[f].row();
+    *out++ = 1.0;
+    if (conventional())
+      *out++ = *past(static_cast<int>(f));
+    else
+      out = fill_inputs(out);
+    for (const LagWindow& residual : residual_windows_)
+      out = std::copy_n(residual.window(), lag_count(), out);  // lag last_lag first
+    factors_[f].update(lambda_);
+  }
 }
 
-void LaggedCorrelation::fill_row() {
-  double* out = factors_.row();
-  *out++ = 1.0;
-  for (const LagWindow& input : input_windows_)
-    out = std::copy_n(input.window() + shape_.last_lag, shape_.controlling_lags + 1, out);
-  for (const LagWindow& residual : residual_windows_)
-    out = std::copy_n(residual.window(), lag_count(), out);  // lag last_lag first
+double* LaggedCorrelation::fill_inputs(double* out) const {
+  if (shape_.kind == CorrelationKind::kAlternative)
+    for (int i = 0; i < shape_.inputs; ++i)
+      out = std::copy_n(past(i) + 1, shape_.controlling_lags, out);
+  for (int i = 0; i < shape_.inputs; ++i) out = std::copy_n(past(i), block_columns_, out);
+  return out;
 }
 
 void LaggedCorrelation::evaluate() {
   const int lags = lag_count();
   for (int i = 0; i < shape_.inputs; ++i) {
     const auto s = static_cast<std::size_t>(i);
-    const double* squares = factors_.residual_squares(i);
-    const double* products = factors_.residual_products(i);
+    const LeaveOneOutQr& factors = factors_[conventional() ? s : 0];
+    const int block = conventional() ? 0 : i;
+    const double* squares = factors.residual_squares(block);
+    const double* products = factors.residual_products(block);
     const double own = squares[0];
     defined_[s] = own > kOwnMovement * totals_[s] && own > 0.0;
     for (int j = 0; j < shape_.cvs; ++j) {

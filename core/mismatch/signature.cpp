@@ -47,14 +47,16 @@ void Signature::filter(const double* a, Eigen::Ref<Eigen::VectorXd> coefficients
   }
 }
 
+Eigen::VectorXd shifted(const Eigen::VectorXd& pulse, int by) {
+  const auto length = pulse.size();
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(length);
+  for (Eigen::Index l = 1; l < length; ++l)
+    if (l - by >= 0 && l - by < length) result(l) = pulse(l - by);
+  return result;
+}
+
 std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse) {
   const int length = static_cast<int>(pulse.size());
-  const auto shifted = [&](int by) {
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(length);
-    for (int l = 1; l < length; ++l)
-      if (l - by >= 0 && l - by < length) result(l) = pulse(l - by);
-    return result;
-  };
   // Step response stretched about the end of the dead time, by linear interpolation.
   constexpr double kStretch = 0.1;
   int start = 0;
@@ -70,7 +72,7 @@ std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse) {
   Eigen::VectorXd slower = Eigen::VectorXd::Zero(length);
   for (int l = 1; l < length; ++l)
     slower(l) = (stretched(l) - stretched(l - 1) - pulse(l)) / std::log(1.0 + kStretch);
-  return {pulse, slower, shifted(-2), shifted(2), shifted(6)};
+  return {pulse, slower, shifted(pulse, -2), shifted(pulse, 2), shifted(pulse, 6)};
 }
 
 }  // namespace mpm

@@ -45,6 +45,9 @@ class Signature {
   Eigen::MatrixXd tails_;  // tails x (p + 1), for shifts 0..p
 };
 
+/// A pulse response delayed by `by` samples (earlier where negative); as many values.
+[[nodiscard]] Eigen::VectorXd shifted(const Eigen::VectorXd& pulse, int by);
+
 /// Pulse responses of the errors a channel usually has, for its own pulse response: its gain (the
 /// response itself), its time constants (derivative by their logarithm), its dead time (2 samples
 /// earlier, 2 and 6 later). As many values as `pulse`.

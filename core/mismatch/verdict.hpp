@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/mismatch/channel_evidence.hpp"
+
 namespace mpm {
 
 enum class Verdict : std::uint8_t { kUndetermined, kMatch, kMismatch };
@@ -10,10 +12,13 @@ enum class Verdict : std::uint8_t { kUndetermined, kMatch, kMismatch };
 /// Why a verdict is undetermined.
 enum class Reason : std::uint8_t {
   kNone,
-  kWarmingUp,   ///< too few effective samples yet
-  kNotExcited,  ///< the input did not move enough to show an error of interest
-  kCollinear,   ///< the input moved only together with another one (`confounder`)
-  kBadData,     ///< the values needed are missing or bad
+  kWarmingUp,      ///< too few effective samples yet
+  kNotExcited,     ///< the input did not move enough to show an error of interest
+  kCollinear,      ///< the input moved only together with another one (`confounder`)
+  kBadData,        ///< too many of the values needed are missing, bad or implausible
+  kControllerOff,  ///< no manipulated variable moves: the controller is off or in manual
+  kConstrained,    ///< the input sits at a limit
+  kIsolating,      ///< something in this CV changed; samples since then are still too few
 };
 
 [[nodiscard]] constexpr std::string_view to_string(Verdict verdict) {
@@ -37,6 +42,12 @@ enum class Reason : std::uint8_t {
       return "collinear";
     case Reason::kBadData:
       return "bad_data";
+    case Reason::kControllerOff:
+      return "controller_off";
+    case Reason::kConstrained:
+      return "constrained";
+    case Reason::kIsolating:
+      return "isolating";
     default:
       return "";
   }
@@ -48,12 +59,21 @@ struct ChannelStatus {
   Reason reason = Reason::kWarmingUp;
   int confounder = -1;               ///< input index, for kCollinear; -1 otherwise
   double p_value = 1.0;              ///< of the channel test, 0..1
-  double statistic = 0.0;            ///< F of the channel test
-  double threshold = 0.0;            ///< F at which the verdict turns to mismatch
-  double partial_correlation = 0.0;  ///< (3.15) where its magnitude is largest for lags >= 1
+  double statistic = 0.0;            ///< F of the channel test; |correlation| with the mean line
+  double threshold = 0.0;            ///< of the statistic, where the verdict turns to mismatch
+  double partial_correlation = 0.0;  ///< where its magnitude is largest for lags >= 1; (3.15), or
+                                     ///< the kind that the settings name
   int lag = 0;                       ///< samples, where that is
   bool excited = false;
-  double effect_size = 0.0;     ///< estimated gain error, plant minus model, CV per input unit
+  double p_value_material = 1.0;  ///< that the error is within the materiality limits, at most
+  bool material = false;          ///< the error matters: it is beyond them
+  double model_gain = 0.0;        ///< what 100 % means, CV per input unit
+  double effect_size = 0.0;       ///< estimated gain error, plant minus model, CV per input unit
+  double effect_low = 0.0;        ///< its 95 % interval
+  double effect_high = 0.0;
+  bool usual = false;        ///< errors of gain, time constant and dead time explain what is seen
+  Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
+  Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
   double smallest_error = 0.0;  ///< smallest relative gain error that would have been seen, >= 0
   double effective_samples = 0.0;
 };

@@ -4,10 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "core/mismatch/change_scan.hpp"
 #include "core/mismatch/channel_test.hpp"
 #include "core/mismatch/lagged_correlation.hpp"
+#include "core/mismatch/mean_line.hpp"
 #include "core/model/linear_model.hpp"
+#include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/derived_settings.hpp"
+#include "core/monitor/input_motion.hpp"
 #include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
@@ -25,6 +29,19 @@ constexpr double kBlind = 100.0;
 // Different degrees of freedom that channels' tests can have; room for them is made up front.
 constexpr std::size_t kMostTests = 32;
 
+// Unknown values of a signal in a row that may be taken as unchanged.
+constexpr std::int64_t kHeld = 5;
+
+// A CV's data are bad while more than this share of its samples give no row (over the memory of
+// the noise level, 300 samples), and while no row has come for as long as an input's pulse lags.
+constexpr double kMostlyBad = 0.5;
+constexpr double kShareStep = 1.0 / 300.0;
+
+// Of a 95 % interval, s.d.
+constexpr double kInterval = 1.96;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 }  // namespace
 
 struct Monitor::State {
@@ -36,34 +53,63 @@ struct Monitor::State {
         has_prediction(predictions),
         settings(derive_settings(spec, model, monitor_settings, alarm_settings)),
         inputs(Eigen::VectorXd::Zero(signal_counts.inputs())),
+        held_inputs(Eigen::VectorXd::Zero(signal_counts.inputs())),
         residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
+        held_residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
         correlation({signal_counts.inputs(), signal_counts.cv, settings.controlling_lags,
-                     settings.first_lag, settings.last_lag},
+                     settings.first_lag, settings.last_lag, settings.correlation},
                     settings.lambda),
         test({signal_counts.inputs(), signal_counts.cv, settings.fir_lags, settings.residual_order,
               settings.tail_poles},
-             settings.lambda, model) {
+             settings.memories, settings.remembered, model, settings.materiality),
+        scan(test.shape()) {
     const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
     status.resize(channels);
-    conditions.resize(channels);
     transitions.reserve(channels);
     thresholds.reserve(kMostTests);
+    for (int j = 0; j < counts.cv; ++j) cvs.emplace_back(counts.inputs());
+    for (int i = 0; i < counts.inputs(); ++i) {
+      motions.emplace_back(settings.remembered / 4.0);
+      unknown_runs.push_back(0);
+      for (int j = 0; j < counts.cv; ++j) {
+        const Eigen::VectorXd pulse =
+            model.impulse_response(j, i, settings.settling_samples + settings.fir_lags);
+        acts.push_back(pulse.cwiseAbs().maxCoeff() > 0.0);
+      }
+    }
     simulates =
         std::find(has_prediction.begin(), has_prediction.end(), false) != has_prediction.end();
   }
 
+  /// One CV: whether its data serve, and its alarms.
+  struct Cv {
+    explicit Cv(int input_count) : alarms(input_count) {}
+    CvAlarms alarms;
+    std::int64_t settling = 0;     // samples until its simulated prediction can be trusted
+    std::int64_t unknown_run = 0;  // residuals unknown in a row up to now
+    std::int64_t without_row = 0;  // samples in a row
+    double bad_share = 0.0;
+    bool evaluated = false;  // in this sample
+    bool judged = false;     // there is evidence from the present memory
+  };
+
   [[nodiscard]] std::size_t index(int cv, int input) const {
     return static_cast<std::size_t>(input * counts.cv + cv);
   }
+  [[nodiscard]] Cv& of(int cv) { return cvs[static_cast<std::size_t>(cv)]; }
 
-  [[nodiscard]] bool read_inputs(const Frame& frame);
-  [[nodiscard]] bool read_residuals(const Frame& frame);
-  void simulate(bool inputs_usable);
+  void pass_gap(std::int64_t missing);
+  void read_inputs(const Frame& frame);
+  void read_residuals(const Frame& frame);
+  void distrust_simulation(int input);
+  void simulate();
+  void take_sample();
+  void evaluate();
   void judge();
   void judge_channel(int cv, int input, double channel_rate);
-  double threshold_for(const ChannelEvidence& evidence, double channel_rate);
+  [[nodiscard]] Reason why_not_excited(int cv, int input);
+  double threshold_for(const ChannelEvidence& evidence, double freedom, double channel_rate);
   void find_peak(int cv, int input, ChannelStatus& channel) const;
-  void update_alarms();
 
   SignalCounts counts;
   LinearModel model;
@@ -71,17 +117,21 @@ struct Monitor::State {
   DerivedSettings settings;
   bool simulates = false;
   bool model_started = false;
-  std::int64_t settling = 0;  // samples until a simulated prediction has forgotten its start
   bool first = true;
   std::int64_t last_interval = 0;
-  std::uint64_t unusable = 0;     // frames so far that lacked a value
-  std::int64_t unusable_run = 0;  // of them, in a row up to now
-  Eigen::VectorXd inputs;
+  std::int64_t samples = 0;
+  Eigen::VectorXd inputs;       // NaN where unknown
+  Eigen::VectorXd held_inputs;  // the last known values
   Eigen::VectorXd residuals;
+  Eigen::VectorXd held_residuals;
+  std::vector<bool> acts;                  // per channel: the model has it
+  std::vector<std::int64_t> unknown_runs;  // per input
+  std::vector<InputMotion> motions;        // per input
   LaggedCorrelation correlation;
   ChannelTest test;
+  ChangeScan scan;
+  std::vector<Cv> cvs;
   std::vector<ChannelStatus> status;
-  std::vector<Condition> conditions;
   std::vector<AlarmTransition> transitions;
   struct Threshold {
     double numerator;
@@ -89,56 +139,123 @@ struct Monitor::State {
     double denominator;
     double value;
   };
+  double line = 0.0;                  // with ThresholdKind::kMeanLine
   std::vector<Threshold> thresholds;  // one per kind of test, refreshed with the denominator
   MonitorCounters counters;
 };
 
-bool Monitor::State::read_inputs(const Frame& frame) {
-  bool usable = true;
+void Monitor::State::read_inputs(const Frame& frame) {
   for (int i = 0; i < counts.inputs(); ++i) {
     const bool is_mv = i < counts.mv;
     const SignalBlock& block = frame[is_mv ? SignalKind::kMv : SignalKind::kDv];
     const int at = is_mv ? i : i - counts.mv;
+    std::int64_t& run = unknown_runs[static_cast<std::size_t>(i)];
     if (block.usable(at)) {
-      inputs(i) = block.values(at);
-    } else {  // keeps the last value, for the simulation
-      usable = false;
+      inputs(i) = held_inputs(i) = block.values(at);
+      motions[static_cast<std::size_t>(i)].take(inputs(i));
+      run = 0;
+    } else {
+      inputs(i) = kUnknown;
       ++counters.bad_values;
+      if (++run > kHeld) distrust_simulation(i);
     }
   }
-  return usable;
 }
 
-bool Monitor::State::read_residuals(const Frame& frame) {
+// An input that was unknown for long moved unseen: what is simulated from it is wrong until it has
+// forgotten that.
+void Monitor::State::distrust_simulation(int input) {
+  for (int j = 0; j < counts.cv; ++j)
+    if (!has_prediction[static_cast<std::size_t>(j)] && acts[index(j, input)])
+      of(j).settling = settings.settling_samples;
+}
+
+void Monitor::State::read_residuals(const Frame& frame) {
   const SignalBlock& measured = frame[SignalKind::kCv];
   const SignalBlock& predicted = frame[SignalKind::kPrediction];
-  bool usable = true;
   for (int j = 0; j < counts.cv; ++j) {
     const bool given = has_prediction[static_cast<std::size_t>(j)];
+    Cv& cv = of(j);
+    residuals(j) = kUnknown;
     if (!measured.usable(j) || (given && !predicted.usable(j))) {
-      usable = false;
       ++counters.bad_values;
-      continue;
+    } else if (given) {
+      residuals(j) = measured.values(j) - predicted.values(j);
+    } else if (model_started && cv.settling == 0) {
+      residuals(j) = measured.values(j) - model.output()(j);
     }
-    residuals(j) = measured.values(j) - (given ? predicted.values(j) : model.output()(j));
+    if (std::isfinite(residuals(j))) {
+      held_residuals(j) = residuals(j);
+      cv.unknown_run = 0;
+    } else {
+      ++cv.unknown_run;
+    }
+    if (cv.settling > 0) --cv.settling;
   }
-  return usable;
 }
 
-void Monitor::State::simulate(bool inputs_usable) {
+void Monitor::State::simulate() {
   if (!simulates) return;
   // Where the plant stood before the first sample is unknown: at rest with the first inputs is the
   // least wrong, and what is wrong about it has died out once the model has settled.
-  if (!model_started && inputs_usable) {
+  if (!model_started) {
+    if (!inputs.allFinite()) return;
     model.reset_steady(inputs);
     model_started = true;
-    settling = settings.settling_samples;
-  } else if (!inputs_usable) {
-    settling = settings.settling_samples;
-  } else if (settling > 0) {
-    --settling;
+    for (Cv& cv : cvs) cv.settling = settings.settling_samples;
   }
-  if (model_started) model.advance(inputs);
+  model.advance(held_inputs);
+}
+
+void Monitor::State::pass_gap(std::int64_t missing) {
+  counters.missing += static_cast<std::uint64_t>(missing);
+  correlation.close_window();
+  test.skip(missing);
+  for (Cv& cv : cvs) cv.unknown_run += missing;
+  if (!model_started) return;
+  for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, settings.settling_samples); ++k)
+    model.advance(held_inputs);
+  if (missing > kHeld)
+    for (int i = 0; i < counts.inputs(); ++i) distrust_simulation(i);
+}
+
+void Monitor::State::take_sample() {
+  ++samples;
+  test.update(inputs, residuals);
+  bool used = false;
+  for (int j = 0; j < counts.cv; ++j) {
+    Cv& cv = of(j);
+    const bool took = test.took_row(j);
+    used = used || took;
+    cv.without_row = took ? 0 : cv.without_row + 1;
+    cv.bad_share += kShareStep * ((std::isfinite(residuals(j)) ? 0.0 : 1.0) - cv.bad_share);
+  }
+  if (used) ++counters.used;
+
+  const bool close =
+      std::all_of(cvs.begin(), cvs.end(), [](const Cv& cv) { return cv.unknown_run <= kHeld; }) &&
+      std::all_of(unknown_runs.begin(), unknown_runs.end(),
+                  [](std::int64_t run) { return run <= kHeld; });
+  if (close)
+    correlation.update(held_inputs, held_residuals);
+  else
+    correlation.close_window();
+}
+
+// Of each CV every so many samples, one CV after the other.
+void Monitor::State::evaluate() {
+  correlation.evaluate();
+  const std::int64_t stride = settings.evaluation_stride;
+  for (int j = 0; j < counts.cv; ++j) {
+    Cv& cv = of(j);
+    if (cv.alarms.isolating() || !test.memory(j).ready()) cv.judged = false;
+    const bool due = !cv.judged || (samples + j * stride / counts.cv) % stride == 0;
+    cv.evaluated = due && test.memory(j).ready();
+    if (!cv.evaluated) continue;
+    cv.judged = true;
+    for (int m = 0; m < test.memory_count(); ++m)
+      if (test.memory(j, m).ready()) test.evaluate(j, m);
+  }
 }
 
 Monitor::Monitor(const ModelSpec& model, const SignalCounts& counts,
@@ -160,85 +277,100 @@ void Monitor::push(const Frame& frame) {
   const std::int64_t missing = s.first ? 0 : frame.interval - s.last_interval - 1;
   s.first = false;
   s.last_interval = frame.interval;
-  if (missing > 0) {
-    s.counters.missing += static_cast<std::uint64_t>(missing);
-    s.correlation.close_window();
-    s.test.skip(missing);
-    if (s.simulates && s.model_started) {
-      for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, s.settings.settling_samples);
-           ++k)
-        s.model.advance(s.inputs);
-      s.settling = s.settings.settling_samples;
-    }
-  }
-
-  const bool inputs_usable = s.read_inputs(frame);
-  const bool residuals_usable = s.read_residuals(frame);
-  const bool settled = !s.simulates || (s.model_started && s.settling == 0);
-  s.simulate(inputs_usable);
-  const bool usable = inputs_usable && residuals_usable;
-  s.unusable += usable ? 0 : 1;
-  s.unusable_run = usable ? 0 : s.unusable_run + 1;
-  if (usable && settled) {
-    s.correlation.update(s.inputs, s.residuals);
-    if (s.test.update(s.inputs, s.residuals)) ++s.counters.used;
-    s.correlation.evaluate();
-    s.test.evaluate();
-  } else {
-    s.correlation.close_window();
-    s.test.skip(1);
-  }
+  if (missing > 0) s.pass_gap(missing);
+  s.read_inputs(frame);
+  s.read_residuals(frame);
+  s.simulate();
+  s.take_sample();
+  s.evaluate();
+  for (int j = 0; j < s.counts.cv; ++j)
+    s.of(j).alarms.update(j, s.of(j).evaluated, s.test, s.scan, s.settings.alarm, [&](int input) {
+      s.transitions.push_back({j, input, s.of(j).alarms.state(input)});
+    });
   s.judge();
-  s.update_alarms();
 }
 
 void Monitor::State::judge() {
   const double channel_rate = settings.false_alarm_rate / (counts.inputs() * counts.cv);
+  if (settings.threshold == ThresholdKind::kMeanLine) line = mean_line(correlation);
   for (int i = 0; i < counts.inputs(); ++i)
     for (int j = 0; j < counts.cv; ++j) judge_channel(j, i, channel_rate);
 }
 
 void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   ChannelStatus& channel = status[index(cv, input)];
-  channel.effective_samples = test.effective_rows();
+  const RegressionMemory& memory = test.memory(cv);
+  const CvAlarms& alarms = of(cv).alarms;
+  channel.effective_samples = memory.effective_rows();
   channel.confounder = -1;
   find_peak(cv, input, channel);
 
   channel.verdict = Verdict::kUndetermined;
-  if (unusable_run > settings.fir_lags || 2 * unusable > counters.frames) {
+  const bool outage = of(cv).without_row > settings.fir_lags &&
+                      of(cv).unknown_run > settings.fir_lags && of(cv).settling == 0;
+  const bool input_lost = unknown_runs[static_cast<std::size_t>(input)] > settings.fir_lags;
+  if (outage || input_lost || of(cv).bad_share > kMostlyBad) {
     channel.reason = Reason::kBadData;
     return;
   }
-  if (!test.ready()) {
-    channel.reason = Reason::kWarmingUp;
+  if (!memory.ready() || alarms.isolating()) {
+    const bool bad = samples >= 2 * memory.needed_rows() && !alarms.isolating();
+    channel.reason = alarms.isolating() ? Reason::kIsolating
+                     : bad              ? Reason::kBadData
+                                        : Reason::kWarmingUp;
     return;
   }
   const ChannelEvidence& evidence = test.evidence(cv, input);
   channel.p_value = evidence.p_value;
+  channel.p_value_material = evidence.p_value_material;
   channel.statistic = evidence.statistic;
-  channel.threshold = threshold_for(evidence, channel_rate);
-  channel.effect_size = evidence.gain_error_ratio * evidence.reference_gain;
+  channel.threshold = threshold_for(evidence, memory.freedom(), channel_rate);
+  const bool alarmed = alarms.state(input) == AlarmState::kActive;
+  bool exceeds = evidence.p_value < channel_rate || alarmed;
+  if (settings.threshold == ThresholdKind::kMeanLine) {
+    channel.statistic = std::abs(channel.partial_correlation);
+    channel.threshold = line;
+    exceeds = channel.statistic > channel.threshold;
+  }
+  channel.model_gain = evidence.reference_gain;
+  channel.usual = evidence.usual;
+  channel.log_time_error = evidence.log_time_error;
+  channel.dead_time_error = evidence.dead_time_error;
+  const double half = kInterval * std::min(evidence.gain_error.deviation, kBlind);
+  channel.effect_size = evidence.gain_error.value * evidence.reference_gain;
+  channel.effect_low = channel.effect_size - half * std::abs(evidence.reference_gain);
+  channel.effect_high = channel.effect_size + half * std::abs(evidence.reference_gain);
   channel.smallest_error = std::min(kVisible * evidence.excitation_index, kBlind);
   channel.excited = channel.smallest_error <= settings.gain_error_of_interest;
+  channel.material = alarmed || evidence.p_value_material < channel_rate;
   const bool overwhelming =
       channel.smallest_error < kBlind && evidence.p_value < kOverwhelming * channel_rate;
-  if (channel.excited || overwhelming) {
-    channel.verdict = evidence.p_value < channel_rate ? Verdict::kMismatch : Verdict::kMatch;
+  if (channel.excited || ((overwhelming || alarmed) && exceeds)) {
+    channel.verdict = exceeds ? Verdict::kMismatch : Verdict::kMatch;
     channel.reason = Reason::kNone;
-  } else if (kVisible * evidence.excitation_index_alone <= settings.gain_error_of_interest &&
-             evidence.confounder >= 0) {
-    channel.reason = Reason::kCollinear;
-    channel.confounder = evidence.confounder;
-  } else {
-    channel.reason = Reason::kNotExcited;
+    return;
   }
+  channel.reason = why_not_excited(cv, input);
+  if (channel.reason == Reason::kCollinear) channel.confounder = evidence.confounder;
+}
+
+Reason Monitor::State::why_not_excited(int cv, int input) {
+  const ChannelEvidence& evidence = test.evidence(cv, input);
+  const bool all_still = std::all_of(motions.begin(), motions.begin() + counts.mv,
+                                     [](const InputMotion& motion) { return motion.still(); });
+  if (all_still && input < counts.mv) return Reason::kControllerOff;
+  if (kVisible * evidence.excitation_index_alone <= settings.gain_error_of_interest &&
+      evidence.confounder >= 0)
+    return Reason::kCollinear;
+  if (motions[static_cast<std::size_t>(input)].at_limit()) return Reason::kConstrained;
+  return Reason::kNotExcited;
 }
 
 // F at which that evidence would be a mismatch. The quantile takes a search, so it is kept until
 // the degrees of freedom have changed by one per cent, which moves it by some 1e-5.
-double Monitor::State::threshold_for(const ChannelEvidence& evidence, double channel_rate) {
+double Monitor::State::threshold_for(const ChannelEvidence& evidence, double freedom,
+                                     double channel_rate) {
   if (evidence.numerator_freedom <= 0.0) return 0.0;
-  const double freedom = test.denominator_freedom();
   for (Threshold& known : thresholds) {
     if (known.numerator != evidence.numerator_freedom || known.tests != evidence.tests) continue;
     if (std::abs(known.denominator - freedom) > 0.01 * freedom) {
@@ -268,25 +400,10 @@ void Monitor::State::find_peak(int cv, int input, ChannelStatus& channel) const 
   }
 }
 
-void Monitor::State::update_alarms() {
-  for (int i = 0; i < counts.inputs(); ++i) {
-    for (int j = 0; j < counts.cv; ++j) {
-      const ChannelStatus& channel = status[index(j, i)];
-      Condition& condition = conditions[index(j, i)];
-      if (channel.verdict == Verdict::kUndetermined)
-        condition.hold();
-      else if (condition.update(channel.p_value, settings.alarm))
-        transitions.push_back({j, i, condition.state()});
-    }
-  }
-}
-
 const ChannelStatus& Monitor::channel(int cv, int input) const {
   return state_->status[state_->index(cv, input)];
 }
-AlarmState Monitor::alarm(int cv, int input) const {
-  return state_->conditions[state_->index(cv, input)].state();
-}
+AlarmState Monitor::alarm(int cv, int input) const { return state_->of(cv).alarms.state(input); }
 Eigen::Ref<const Eigen::VectorXd> Monitor::partial_correlations(int cv, int input) const {
   return state_->correlation.correlations(cv, input);
 }

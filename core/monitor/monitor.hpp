@@ -22,7 +22,7 @@ struct AlarmTransition {
 /// What the monitor did with the frames so far.
 struct MonitorCounters {
   std::uint64_t frames = 0;        ///< pushed
-  std::uint64_t used = 0;          ///< entered the statistics with a full lag window
+  std::uint64_t used = 0;          ///< gave some CV a row
   std::uint64_t missing = 0;       ///< intervals skipped between frames
   std::uint64_t out_of_order = 0;  ///< frames not newer than the last one; ignored
   std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed
@@ -42,13 +42,13 @@ class Monitor {
   ~Monitor();
 
   /// Takes the frame of the next interval; frames come in increasing interval order, a jump is a
-  /// gap: it closes the lag window, which then refills.
+  /// gap, of which nothing is known.
   void push(const Frame& frame);
 
   [[nodiscard]] const ChannelStatus& channel(int cv, int input) const;
   [[nodiscard]] AlarmState alarm(int cv, int input) const;
-  /// Partial correlations (3.15) of a channel for lags first_lag()..last_lag(). Undefined ones
-  /// (silent or collinear input) are 0.
+  /// Correlations of a channel, of the kind that the settings name ((3.15) if none), for lags
+  /// first_lag()..last_lag(). Undefined ones (silent or collinear input) are 0.
   [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> partial_correlations(int cv, int input) const;
   [[nodiscard]] int first_lag() const;
   [[nodiscard]] int last_lag() const;

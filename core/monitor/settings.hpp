@@ -1,18 +1,42 @@
 #pragma once
 
+#include <vector>
+
+#include "core/mismatch/channel_evidence.hpp"
+#include "core/mismatch/correlation_kind.hpp"
+
 namespace mpm {
+
+/// What decides between match and mismatch.
+enum class ThresholdKind {
+  kFTest,     ///< the calibrated channel test
+  kMeanLine,  ///< the thesis's mean line (core/mismatch/mean_line.hpp); not calibrated
+};
+
+/// Materiality limits of one channel, in place of the unit's.
+struct ChannelLimits {
+  int cv = 0;
+  int input = 0;
+  MaterialityLimits limits;
+};
 
 /// What the user may set; 0 or empty means "derive from the model and the sample time".
 struct MonitorSettings {
-  double memory_s = 0.0;                 ///< sample_time / (1 - lambda); 0 = 4000 effective samples
-  double false_alarm_rate = 0.01;        ///< of the whole unit at any one time, 0..1
+  double memory_s = 0.0;           ///< sample_time / (1 - lambda); 0 = 4000 effective samples
+  double fast_memory_s = 0.0;      ///< of the memory for sudden changes; 0 = 1000 effective samples
+  bool sliding_window = false;     ///< the long memory is a window of the effective samples instead
+  double false_alarm_rate = 0.01;  ///< of the whole unit at any one time, 0..1
   double gain_error_of_interest = 0.25;  ///< relative; larger errors must be visible to say match
-  int controlling_lags = 40;             ///< g of (3.15)
-  int first_lag = -10;                   ///< reported range of lags d of (3.15)
+  CorrelationKind correlation = CorrelationKind::kLaggedPartial;  ///< the one that is reported
+  ThresholdKind threshold = ThresholdKind::kFTest;
+  int controlling_lags = 40;  ///< g of (3.15)
+  int first_lag = -10;        ///< reported range of lags d of (3.15)
   int last_lag = 20;
   int fir_lags = 0;        ///< block length of the channel test
   int residual_order = 0;  ///< lags of all residuals
   double tail_s = 0.0;     ///< time constant of the tail regressor
+  MaterialityLimits materiality;
+  std::vector<ChannelLimits> channel_materiality;
 };
 
 /// When a channel's verdict becomes an alarm.

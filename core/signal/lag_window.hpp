@@ -17,6 +17,12 @@ class LagWindow {
     values_[position_] = value;
     values_[position_ + length_] = value;
   }
+  /// Replaces the value `lag` samples ago.
+  void set(int lag, double value) {
+    const std::size_t at = position_ + static_cast<std::size_t>(lag);
+    values_[at] = value;
+    values_[at < length_ ? at + length_ : at - length_] = value;
+  }
   /// window()[l] is the value l samples ago, 0 <= l < length.
   [[nodiscard]] const double* window() const { return values_.data() + position_; }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "config/load_unit.hpp"
+#include "config/scenario_config.hpp"
 #include "daemon/io/csv_reader.hpp"
 #include "daemon/monitoring/journal.hpp"
 #include "daemon/report/detect_report.hpp"
@@ -17,6 +18,7 @@ namespace {
 struct DetectOptions {
   std::string config;
   std::string data;
+  std::string scenario;
   std::string journal;
   bool json = false;
   bool fail_on_mismatch = false;
@@ -43,13 +45,23 @@ DetectReport run(const config::UnitConfig& unit, io::FrameSource& source, Journa
   return report;
 }
 
+/// Tells every finding; false if one is an error.
+bool report(const std::vector<config::Finding>& findings) {
+  for (const config::Finding& finding : findings) std::cerr << config::format(finding) << '\n';
+  return !config::has_errors(findings);
+}
+
 // 0, 1 if a mismatch was found and that was to fail, 3 on bad input.
 int detect(const DetectOptions& options) {
-  const config::LoadResult loaded = config::load_unit(options.config);
-  for (const config::Finding& finding : loaded.findings)
-    std::cerr << config::format(finding) << '\n';
-  if (!loaded.ok()) return 3;
+  config::LoadResult loaded = config::load_unit(options.config);
+  if (!report(loaded.findings)) return 3;
   try {
+    if (!options.scenario.empty()) {
+      const config::ScenarioResult scenario = config::load_scenario(
+          config::find_scenario(options.scenario, options.config), loaded.config);
+      if (!report(scenario.findings)) return 3;
+      loaded.config.monitor = scenario.scenario.monitor;
+    }
     io::CsvReader reader(options.data, loaded.config);
     std::optional<Journal> journal;
     if (!options.journal.empty()) journal.emplace(options.journal);
@@ -71,6 +83,8 @@ void add_detect(CLI::App& app, int& exit_code) {
       "detect", "Judge every channel on recorded data, exactly as the daemon would");
   command->add_option("--config", options->config, "unit file")->required();
   command->add_option("--data", options->data, "data file (CSV, any historian layout)")->required();
+  command->add_option("--scenario", options->scenario,
+                      "scenario (name or file) whose `monitor` settings replace the unit file's");
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--journal", options->journal,
                       "append every sample's verdicts and alarms to this file as JSON lines");

@@ -21,7 +21,7 @@ std::string describe(const ChannelRecord& channel) {
   text += "  " + channel.verdict;
   if (!channel.reason.empty()) text += " (" + channel.reason + ")";
   text.resize(std::max<std::size_t>(text.size(), 52), ' ');
-  text += format("  p %-8.1e  F %-7.2f", channel.p_value, channel.statistic);
+  text += format("  p %-8.1e  statistic %-7.3g", channel.p_value, channel.statistic);
   if (channel.verdict == "mismatch")
     text += format("  gain off by about %.3g (CV per MV unit)", channel.effect_size, 0.0);
   else if (channel.smallest_error > 0.0)

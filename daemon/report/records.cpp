@@ -1,5 +1,8 @@
 #include "daemon/report/records.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace mpm::daemon {
 
 nlohmann::ordered_json to_json(const ChannelRecord& record) {
@@ -17,7 +20,26 @@ nlohmann::ordered_json to_json(const ChannelRecord& record) {
   json["partial_correlation"] = record.partial_correlation;
   json["lag"] = record.lag;
   json["excited"] = record.excited;
+  json["p_value_material"] = record.p_value_material;
+  json["material"] = record.material;
   json["effect_size"] = record.effect_size;
+  json["effect_interval"] = {record.effect_low, record.effect_high};
+  json["model_gain"] = record.model_gain;
+  if (record.model_gain != 0.0) {
+    const auto percent = [&](double effect) {
+      return 100.0 * effect / std::abs(record.model_gain);
+    };
+    const double sign = record.model_gain < 0.0 ? -1.0 : 1.0;
+    json["gain_error_percent"] = percent(sign * record.effect_size);
+    const double ends[] = {percent(sign * record.effect_low), percent(sign * record.effect_high)};
+    json["gain_error_percent_interval"] = {std::min(ends[0], ends[1]), std::max(ends[0], ends[1])};
+  }
+  if (record.usual) {
+    json["time_constant_ratio"] = record.time_constant_ratio;
+    json["time_constant_ratio_interval"] = {record.time_constant_low, record.time_constant_high};
+    json["dead_time_error"] = record.dead_time_error_s;
+    json["dead_time_error_interval"] = {record.dead_time_low_s, record.dead_time_high_s};
+  }
   json["smallest_error"] = record.smallest_error;
   json["effective_samples"] = record.effective_samples;
   json["alarm"] = record.alarm_active ? "active" : "cleared";

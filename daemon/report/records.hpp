@@ -23,7 +23,15 @@ struct ChannelRecord {
   double partial_correlation = 0.0;
   int lag = 0;  ///< samples
   bool excited = false;
-  double effect_size = 0.0;     ///< CV units per input unit
+  double effect_size = 0.0;  ///< CV units per input unit
+  double effect_low = 0.0;   ///< its 95 % interval
+  double effect_high = 0.0;
+  double model_gain = 0.0;  ///< what 100 % means, CV units per input unit
+  double p_value_material = 1.0;
+  bool material = false;  ///< the error is beyond the materiality limits
+  bool usual = false;     ///< gain, time constant and dead time explain what is seen
+  double time_constant_ratio = 1.0, time_constant_low = 1.0, time_constant_high = 1.0;
+  double dead_time_error_s = 0.0, dead_time_low_s = 0.0, dead_time_high_s = 0.0;
   double smallest_error = 0.0;  ///< relative gain error
   double effective_samples = 0.0;
   bool alarm_active = false;

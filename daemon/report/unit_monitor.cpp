@@ -1,5 +1,7 @@
 #include "daemon/report/unit_monitor.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace mpm::daemon {
@@ -9,6 +11,32 @@ std::vector<bool> predictions_of(const config::UnitConfig& config) {
   std::vector<bool> given;
   for (const config::CvSignal& cv : config.cv) given.push_back(!cv.prediction.empty());
   return given;
+}
+
+// Two-sided 95 % of a normal estimate, s.d.; what is not known at all stays finite for readers.
+constexpr double kInterval = 1.96;
+constexpr double kWidest = 1e6;
+
+void fill_sizes(const ChannelStatus& status, double sample_time_s, ChannelRecord& record) {
+  record.effect_low = status.effect_low;
+  record.effect_high = status.effect_high;
+  record.model_gain = status.model_gain;
+  record.p_value_material = status.p_value_material;
+  record.material = status.material;
+  record.usual = status.usual;
+  const auto bounded = [](double value) { return std::clamp(value, -kWidest, kWidest); };
+  const auto half = [&](const Estimate& estimate) {
+    return std::min(kInterval * estimate.deviation, std::log(kWidest));
+  };
+  const Estimate& time = status.log_time_error;
+  record.time_constant_ratio = std::min(std::exp(time.value), kWidest);
+  record.time_constant_low = std::exp(bounded(time.value - half(time)));
+  record.time_constant_high = std::min(std::exp(time.value + half(time)), kWidest);
+  const Estimate& dead = status.dead_time_error;
+  const double dead_half = std::min(kInterval * dead.deviation, kWidest);
+  record.dead_time_error_s = bounded(dead.value) * sample_time_s;
+  record.dead_time_low_s = bounded(dead.value - dead_half) * sample_time_s;
+  record.dead_time_high_s = bounded(dead.value + dead_half) * sample_time_s;
 }
 
 }  // namespace
@@ -54,6 +82,7 @@ void UnitMonitor::push(const Frame& frame) {
       record.excited = status.excited;
       record.effect_size = status.effect_size;
       record.smallest_error = status.smallest_error;
+      fill_sizes(status, config_.model.sample_time_s, record);
       record.effective_samples = status.effective_samples;
       record.alarm_active = monitor_.alarm(j, i) == AlarmState::kActive;
       const Eigen::Ref<const Eigen::VectorXd> values = monitor_.partial_correlations(j, i);

@@ -84,9 +84,13 @@ ModelSpec match_signals(const config::UnitConfig& controller, const config::Unit
 }
 
 void hide_changes(LoopSetup& setup) {
+  if (!setup.scenario.mv_limits.empty()) {
+    setup.unit.simulation.mv_limits = setup.scenario.mv_limits;
+    setup.unit.simulation.cv_limits = setup.scenario.cv_limits;
+  }
   const config::UnitConfig& unit = setup.unit;
   setup.changes = resolve_changes(setup.scenario.changes, unit);
-  if (feedback_share(setup.scenario) == 1.0) {
+  if (feedback_share(setup.scenario) == 1.0 && !setup.scenario.allow_unstable) {
     const std::optional<std::string> reason =
         why_not_stabilisable(setup.controller_model, plant_stages(unit.model, setup.changes),
                              static_cast<int>(unit.mv.size()), unit.simulation.cv_weights);

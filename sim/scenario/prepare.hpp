@@ -9,9 +9,9 @@ namespace mpm::sim {
 [[nodiscard]] ModelSpec match_signals(const config::UnitConfig& controller,
                                       const config::UnitConfig& plant);
 
-/// Fills in `setup.changes` from its scenario: named changes and what the draw adds. Throws
-/// std::invalid_argument with the reason where the scenario does not fit the unit, or where an
-/// offset-free controller could not hold such a plant.
+/// Fills in `setup.changes` (named ones and what the draw adds) and the limits from its scenario.
+/// Throws std::invalid_argument with the reason where the scenario does not fit the unit, or where
+/// an offset-free controller could not hold such a plant and the scenario does not allow that.
 void hide_changes(LoopSetup& setup);
 
 }  // namespace mpm::sim

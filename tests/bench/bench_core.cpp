@@ -113,10 +113,14 @@ struct Channels {
   explicit Channels(const Size& size)
       : inputs(size.mvs, 1),
         residuals(size.cvs, 2),
-        test({size.mvs, size.cvs, 20, 8, {std::exp(-1.0 / 40.0)}}, 0.9995,
+        test({size.mvs, size.cvs, 20, 8, {std::exp(-1.0 / 40.0)}}, {{0.9995, 0}, {0.998, 0}}, 100,
              LinearModel(first_order_model(size))) {
-    while (!test.ready()) update();
-    test.evaluate();
+    while (!test.memory(0).ready()) update();
+    evaluate();
+  }
+  void evaluate() {
+    for (int m = 0; m < test.memory_count(); ++m)
+      for (int j = 0; j < test.shape().cvs; ++j) test.evaluate(j, m);
   }
   void update() { test.update(inputs.next(), residuals.next()); }
 
@@ -211,7 +215,7 @@ Step channel_update(const Size& size) {
   return [channels = make<Channels>(size)] { channels->update(); };
 }
 Step channel_evaluate(const Size& size) {
-  return [channels = make<Channels>(size)] { channels->test.evaluate(); };
+  return [channels = make<Channels>(size)] { channels->evaluate(); };
 }
 Step givens_update(const Size& size) {
   return [factor = make<Factor>(columns_of(size), responses_of(size))] { factor->update(); };

@@ -49,6 +49,8 @@ monitor:
   memory: 9000
   false_alarm_rate: 0.02
   gain_error_of_interest: 0.3
+  correlation: conventional
+  threshold: mean_line
   controlling_lags: 30
   first_lag: -5
   last_lag: 15
@@ -152,6 +154,8 @@ void check_full(const UnitConfig& config) {
   CHECK(config.monitor.memory_s == 9000);
   CHECK(config.monitor.false_alarm_rate == 0.02);
   CHECK(config.monitor.gain_error_of_interest == 0.3);
+  CHECK(config.monitor.correlation == CorrelationKind::kConventional);
+  CHECK(config.monitor.threshold == ThresholdKind::kMeanLine);
   CHECK(config.monitor.controlling_lags == 30);
   CHECK(config.monitor.first_lag == -5);
   CHECK(config.monitor.last_lag == 15);

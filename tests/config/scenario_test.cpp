@@ -37,7 +37,9 @@ TEST_CASE("Every key of a scenario arrives") {
       "count: 2}\n"
       "noise: [{cv: y2, sigma_ratio: 3, from: 7}, {sigma_ratio: 0}]\n"
       "setpoints: {amplitude_ratio: 2, constant: true}\n"
-      "controller: {integral_action: false, disturbance_feedback: 0.5}\n");
+      "controller: {integral_action: false, disturbance_feedback: 0.5, allow_unstable: true}\n"
+      "limits: {u2: {low: -1.5, high: 1.5}, y1: {high: 4}}\n"
+      "monitor: {correlation: alternative, threshold: mean_line, controlling_lags: 5}\n");
   for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
   const ScenarioConfig& scenario = result.scenario;
   CHECK(scenario.name == "many");
@@ -66,6 +68,40 @@ TEST_CASE("Every key of a scenario arrives") {
   CHECK(scenario.constant_setpoints);
   CHECK_FALSE(scenario.integral_action);
   CHECK(scenario.disturbance_feedback == 0.5);
+  CHECK(scenario.allow_unstable);
+  REQUIRE(scenario.mv_limits.size() == 2);
+  CHECK(scenario.mv_limits[1].low == -1.5);
+  CHECK(scenario.mv_limits[1].high == 1.5);
+  CHECK(scenario.cv_limits.at(0).high == 4.0);
+  CHECK(scenario.monitor.correlation == mpm::CorrelationKind::kAlternative);
+  CHECK(scenario.monitor.threshold == mpm::ThresholdKind::kMeanLine);
+  CHECK(scenario.monitor.controlling_lags == 5);
+}
+
+TEST_CASE("What a scenario says of limits and monitor goes over the unit's, the rest stays") {
+  UnitConfig own = unit();
+  own.monitor.memory_s = 77.0;
+  own.monitor.controlling_lags = 12;
+  own.simulation.mv_limits[0] = {-5.0, 5.0, 1.0};
+  own.simulation.cv_limits[1] = {-3.0, 3.0};
+  const ScenarioResult result = load_scenario_text(
+      "limits: {u1: {high: 2}}\nmonitor: {correlation: partial, controlling_lags: 40}\n", "s.yaml",
+      own);
+  for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
+  CHECK(result.scenario.mv_limits.at(0).low == -5.0);
+  CHECK(result.scenario.mv_limits.at(0).high == 2.0);
+  CHECK(result.scenario.mv_limits.at(0).max_move == 1.0);
+  CHECK_FALSE(result.scenario.mv_limits.at(1).low);
+  CHECK(result.scenario.cv_limits.at(1).high == 3.0);
+  CHECK(result.scenario.monitor.memory_s == 77.0);
+  CHECK(result.scenario.monitor.controlling_lags == 40);
+  CHECK(result.scenario.monitor.correlation == mpm::CorrelationKind::kPartial);
+  CHECK(result.scenario.monitor.threshold == mpm::ThresholdKind::kFTest);
+
+  const ScenarioResult silent = load_scenario_text("{}\n", "s.yaml", own);
+  CHECK(silent.scenario.mv_limits.empty());
+  CHECK(silent.scenario.monitor.memory_s == 77.0);
+  CHECK(silent.scenario.monitor.controlling_lags == 12);
 }
 
 TEST_CASE("Lists of tags stand for one change each") {
@@ -111,6 +147,26 @@ TEST_CASE("Every mistake in a scenario is told at its place") {
        "folder/s.yaml:1:23: error: setpoints.constant: must be true or false, not 'maybe'"},
       {"controller: {disturbance_feedback: 2}\n",
        "folder/s.yaml:1:36: error: controller.disturbance_feedback: must be >= 0 and <= 1, not 2"},
+      {"controller: {allow_unstable: 1}\n",
+       "folder/s.yaml:1:30: error: controller.allow_unstable: must be true or false, not '1'"},
+      {"limits: {u3: {low: 1}}\n",
+       "folder/s.yaml:1:10: error: limits.u3: unknown mv or cv (did you mean 'u1'?)"},
+      {"limits: {u1: {low: 2, high: 1}}\n",
+       "folder/s.yaml:1:29: error: limits.u1.high: must be above low"},
+      {"monitor: {controling_lags: 5}\n",
+       "folder/s.yaml:1:11: error: monitor.controling_lags: unknown key (did you mean "
+       "'controlling_lags'?)"},
+      {"monitor: {controlling_lags: 0}\n",
+       "folder/s.yaml:1:29: error: monitor.controlling_lags: must be >= 1 and <= 10000, not 0"},
+      {"monitor: {correlation: lagged}\n",
+       "folder/s.yaml:1:24: error: monitor.correlation: must be one of lagged_partial, partial, "
+       "conventional, alternative, not 'lagged'"},
+      {"monitor: {threshold: [f_test]}\n",
+       "folder/s.yaml:1:22: error: monitor.threshold: must be a text, not a list"},
+      {"monitor: {first_lag: 21}\n",
+       "folder/s.yaml:1:22: error: monitor.first_lag: first_lag must not be above last_lag"},
+      {"monitor: {memory: 1}\n",
+       "folder/s.yaml:1:19: error: monitor.memory: must be longer than the sample time"},
       {"none\n",
        "folder/s.yaml:1:1: error: a scenario is a map of keys such as `scenario:` and "
        "`changes:`"},

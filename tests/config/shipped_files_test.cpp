@@ -100,15 +100,57 @@ TEST_CASE("The Wood-Berry plant is the published one, in seconds") {
 TEST_CASE("Shipped scenarios load for the Shell plant without a finding") {
   const std::string unit_file = kConfigFolder + "plants/shell3x3.yaml";
   const UnitConfig unit = load_clean(unit_file);
-  for (const char* name :
-       {"none", "hidden_gain", "s2_gain15", "s3_delay", "s4_gain40", "constant_setpoints"}) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kConfigFolder + "scenarios")) {
+    const std::string name = entry.path().stem().string();
     CAPTURE(name);
+    ++files;
     const std::string path = find_scenario(name, unit_file);
-    CHECK(std::filesystem::exists(path));
     const ScenarioResult result = load_scenario(path, unit);
     for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
     CHECK(result.scenario.name == name);
     CHECK_FALSE(result.scenario.description.empty());
+  }
+  CHECK(files >= 19);
+}
+
+TEST_CASE("The sensitivity scenarios differ from theirs in g alone") {
+  const std::string unit_file = kConfigFolder + "plants/shell3x3.yaml";
+  const UnitConfig unit = load_clean(unit_file);
+  const auto load = [&](const std::string& name) {
+    return load_scenario(find_scenario(name, unit_file), unit).scenario;
+  };
+  for (const auto& [prefix, base] : {std::pair<std::string, std::string>{"s3_g", "s3_delay"},
+                                     std::pair<std::string, std::string>{"s4_g", "s4_gain40"}}) {
+    const std::vector<Change> expected = load(base).changes;
+    for (const int g : {5, 10, 20, 40, 80}) {
+      const ScenarioConfig scenario = load(prefix + std::to_string(g));
+      CAPTURE(scenario.name);
+      CHECK(scenario.monitor.controlling_lags == g);
+      REQUIRE(scenario.changes.size() == expected.size());
+      for (std::size_t c = 0; c < expected.size(); ++c) {
+        CHECK(scenario.changes[c].cv == expected[c].cv);
+        CHECK(scenario.changes[c].mv == expected[c].mv);
+        CHECK(scenario.changes[c].gain_ratio == expected[c].gain_ratio);
+        CHECK(scenario.changes[c].dead_time_error_s == expected[c].dead_time_error_s);
+      }
+    }
+  }
+}
+
+TEST_CASE("The plant with the high model, 25 % lower, is eq. 4.1 again") {
+  const UnitConfig shell = load_clean(kConfigFolder + "plants/shell3x3.yaml");
+  const UnitConfig high = load_clean(kConfigFolder + "plants/shell3x3_high_model.yaml");
+  REQUIRE(high.model.channels.size() == 9);
+  for (std::size_t c = 0; c < 9; ++c) {
+    const auto& expected = std::get<TransferFunction>(shell.model.channels[c].dynamics);
+    const int cv = high.model.channels[c].cv, input = high.model.channels[c].input;
+    const double ratio = input == 0 && cv < 2 ? 0.75 : 1.0;
+    CHECK(std::get<TransferFunction>(high.model.channels[c].dynamics).gain * ratio ==
+          Approx(expected.gain).epsilon(1e-14));
+    check_channel(high, cv, input,
+                  {std::get<TransferFunction>(high.model.channels[c].dynamics).gain,
+                   expected.time_constants_s[0], expected.dead_time_s});
   }
 }
 

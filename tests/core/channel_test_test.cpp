@@ -27,6 +27,12 @@ ModelSpec first_order(int inputs, int cvs, double time_constant_s) {
   return spec;
 }
 
+void evaluate_all(ChannelTest& channel_test) {
+  for (int m = 0; m < channel_test.memory_count(); ++m)
+    for (int j = 0; j < channel_test.shape().cvs; ++j)
+      if (channel_test.memory(j, m).ready()) channel_test.evaluate(j, m);
+}
+
 TEST_CASE("the channel test equals brute-force batch fits") {
   // Expected: tests/oracles/channel_test.py; signals drawn alike.
   const nlohmann::json oracle = test::read_oracle("channel_test.json");
@@ -35,7 +41,7 @@ TEST_CASE("the channel test equals brute-force batch fits") {
   const LinearModel model(first_order(m, n, 10.0));
   ChannelTest channel_test({m, n, oracle["fir_lags"], oracle["residual_order"],
                             oracle["tail_poles"].get<std::vector<double>>()},
-                           oracle["lambda"], model);
+                           {{oracle["lambda"], 0}}, 100, model);
   Eigen::VectorXd u(m), e(n), noise = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd before = Eigen::VectorXd::Zero(2);
   for (int k = 0; k < oracle["samples"].get<int>(); ++k) {
@@ -51,8 +57,8 @@ TEST_CASE("the channel test equals brute-force batch fits") {
     before(0) = u(1);
     channel_test.update(u, e);
   }
-  channel_test.evaluate();
-  CHECK(channel_test.effective_rows() ==
+  evaluate_all(channel_test);
+  CHECK(channel_test.memory(0).effective_rows() ==
         Approx(oracle["effective_rows"].get<double>()).epsilon(1e-10));
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < m; ++i) {
@@ -63,12 +69,12 @@ TEST_CASE("the channel test equals brute-force batch fits") {
       CHECK(evidence.block_statistic == Approx(expected).epsilon(1e-8));
       // Of two tests the better one counts, doubled.
       const double block_p =
-          f_upper_tail(expected, channel_test.block_columns(), channel_test.denominator_freedom());
+          f_upper_tail(expected, channel_test.shape().block(), channel_test.memory(0).freedom());
       CHECK(evidence.tests == 2);
       CHECK(evidence.p_value <= std::min(1.0, 2.0 * block_p) * (1.0 + 1e-6));
       CHECK(evidence.p_value ==
             Approx(std::min(1.0, 2.0 * f_upper_tail(evidence.statistic, evidence.numerator_freedom,
-                                                    channel_test.denominator_freedom())))
+                                                    channel_test.memory(0).freedom())))
                 .epsilon(1e-9));
     }
   }
@@ -100,12 +106,13 @@ struct OpenLoop {
       only_first(1) = 0.0;
       model.advance(only_first);
     }
-    channel_test.evaluate();
+    evaluate_all(channel_test);
   }
 };
 
 ChannelTest make_test(const ModelSpec& spec, double lambda = 1.0) {
-  return ChannelTest({2, 2, 12, 4, {std::exp(-1.0 / 15.0)}}, lambda, LinearModel(spec));
+  return ChannelTest({2, 2, 12, 4, {std::exp(-1.0 / 15.0)}}, {{lambda, 0}}, 2000,
+                     LinearModel(spec));
 }
 
 TEST_CASE("the p-value of a matching channel keeps its promise") {
@@ -167,7 +174,7 @@ TEST_CASE("a usual error is seen sooner than an unusual one of the same size") {
     loop.hidden_ratio = 0.1;
     loop.run(channel_test, spec, 500);
     directed +=
-        channel_test.evidence(0, 0).numerator_freedom < channel_test.block_columns() ? 1 : 0;
+        channel_test.evidence(0, 0).numerator_freedom < channel_test.shape().block() ? 1 : 0;
   }
   CHECK(directed > 10);
 }
@@ -224,8 +231,8 @@ TEST_CASE("units of any size give the same verdict") {
     plain.update(u, e);
     scaled.update(scaled_u, scaled_e);
   }
-  plain.evaluate();
-  scaled.evaluate();
+  evaluate_all(plain);
+  evaluate_all(scaled);
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i)
       CHECK(scaled.evidence(j, i).statistic ==
@@ -234,7 +241,8 @@ TEST_CASE("units of any size give the same verdict") {
 
 TEST_CASE("the channel test allocates nothing per sample") {
   const ModelSpec spec = first_order(3, 3, 50.0);
-  ChannelTest channel_test({3, 3, 20, 8, {0.98}}, 0.9995, LinearModel(spec));
+  ChannelTest channel_test({3, 3, 20, 8, {0.98}}, {{0.9995, 0}, {1.0, 500}}, 600,
+                           LinearModel(spec));
   Eigen::VectorXd u(3), e(3);
   const std::uint64_t before = test::allocation_count();
   for (int k = 0; k < 600; ++k) {
@@ -243,10 +251,12 @@ TEST_CASE("the channel test allocates nothing per sample") {
       e(static_cast<int>(i)) = test::coloured(410 + i, k);
     }
     if (k == 450) channel_test.skip(3);
+    if (k == 500) u(1) = e(2) = std::nan("");
     channel_test.update(u, e);
-    channel_test.evaluate();
+    if (k == 590) channel_test.start_afresh(1, 560);
+    evaluate_all(channel_test);
   }
-  CHECK(channel_test.ready());
+  CHECK(channel_test.memory(0).ready());
   CHECK(test::allocation_count() == before);
 }
 

@@ -25,12 +25,25 @@ void draw(int inputs, int cvs, double collinear, std::int64_t k, Signals& out) {
   }
 }
 
-LaggedCorrelation::Shape shape_of(const nlohmann::json& json) {
-  return {json["inputs"], json["cvs"], json["controlling_lags"], json["first_lag"],
-          json["last_lag"]};
+CorrelationKind kind_of(const std::string& name) {
+  if (name == "conventional") return CorrelationKind::kConventional;
+  if (name == "partial") return CorrelationKind::kPartial;
+  if (name == "alternative") return CorrelationKind::kAlternative;
+  REQUIRE(name == "lagged_partial");
+  return CorrelationKind::kLaggedPartial;
 }
 
-TEST_CASE("recursive lagged correlations equal batch least squares") {
+LaggedCorrelation::Shape shape_of(const nlohmann::json& json) {
+  return {json["inputs"],    json["cvs"],      json["controlling_lags"],
+          json["first_lag"], json["last_lag"], kind_of(json["kind"])};
+}
+
+CorrelationKind any_kind() {
+  return GENERATE(CorrelationKind::kLaggedPartial, CorrelationKind::kPartial,
+                  CorrelationKind::kConventional, CorrelationKind::kAlternative);
+}
+
+TEST_CASE("recursive correlations of every kind equal batch least squares") {
   // Expected: tests/oracles/lagged_correlation.py (numpy lstsq, SVD, refined once).
   const nlohmann::json oracle = test::read_oracle("lagged_correlation.json");
   for (const nlohmann::json& json : oracle["cases"]) {
@@ -63,8 +76,9 @@ TEST_CASE("recursive lagged correlations equal batch least squares") {
 }
 
 TEST_CASE("a silent input has no correlation and does not disturb the others") {
-  const LaggedCorrelation::Shape with{3, 1, 5, -2, 4};
-  const LaggedCorrelation::Shape without{2, 1, 5, -2, 4};
+  const CorrelationKind kind = any_kind();
+  const LaggedCorrelation::Shape with{3, 1, 5, -2, 4, kind};
+  const LaggedCorrelation::Shape without{2, 1, 5, -2, 4, kind};
   LaggedCorrelation three(with, 0.99);
   LaggedCorrelation two(without, 0.99);
   Signals signals{Eigen::VectorXd(3), Eigen::VectorXd(1)};
@@ -85,7 +99,9 @@ TEST_CASE("a silent input has no correlation and does not disturb the others") {
 }
 
 TEST_CASE("exactly collinear inputs are undefined, never NaN") {
-  LaggedCorrelation correlation({3, 2, 10, -5, 8}, 0.999);
+  const CorrelationKind kind = any_kind();
+  const bool controlled = kind != CorrelationKind::kConventional;
+  LaggedCorrelation correlation({3, 2, 10, -5, 8, kind}, 0.999);
   Signals signals{Eigen::VectorXd(3), Eigen::VectorXd(2)};
   for (int k = 0; k < 3000; ++k) {
     draw(3, 2, 0.0, k, signals);
@@ -99,15 +115,16 @@ TEST_CASE("exactly collinear inputs are undefined, never NaN") {
         REQUIRE(values.cwiseAbs().maxCoeff() <= 1.0 + 1e-12);
       }
   }
-  CHECK_FALSE(correlation.defined(0));
+  CHECK(correlation.defined(0) != controlled);
   CHECK(correlation.defined(1));
-  CHECK_FALSE(correlation.defined(2));
+  CHECK(correlation.defined(2) != controlled);
 }
 
 TEST_CASE("a closed window leaves no row that spans the gap") {
   // Two halves of one record with a gap between must give what the rows of the halves give: the
   // gap's correlation would show up at once because the second half is shifted by 1000.
-  LaggedCorrelation gapped({2, 1, 4, -1, 3}, 1.0);
+  const LaggedCorrelation::Shape shape{2, 1, 4, -1, 3, any_kind()};
+  LaggedCorrelation gapped(shape, 1.0);
   Signals signals{Eigen::VectorXd(2), Eigen::VectorXd(1)};
   const auto run = [&](LaggedCorrelation& into, int begin, int end, double offset) {
     for (int k = begin; k < end; ++k) {
@@ -123,7 +140,7 @@ TEST_CASE("a closed window leaves no row that spans the gap") {
   run(gapped, 500, 900, 0.0);
   gapped.evaluate();
 
-  LaggedCorrelation halves({2, 1, 4, -1, 3}, 1.0);
+  LaggedCorrelation halves(shape, 1.0);
   run(halves, 0, 400, 0.0);
   halves.close_window();
   run(halves, 500, 900, 0.0);
@@ -132,8 +149,8 @@ TEST_CASE("a closed window leaves no row that spans the gap") {
     CHECK((gapped.correlations(0, i) - halves.correlations(0, i)).isZero(0.0));
 }
 
-TEST_CASE("the lagged correlation allocates nothing per sample") {
-  LaggedCorrelation correlation({3, 3, 40, -10, 20}, 0.999);
+TEST_CASE("a correlation of any kind allocates nothing per sample") {
+  LaggedCorrelation correlation({3, 3, 40, -10, 20, any_kind()}, 0.999);
   Signals signals{Eigen::VectorXd(3), Eigen::VectorXd(3)};
   const std::uint64_t before = test::allocation_count();
   for (int k = 0; k < 300; ++k) {

@@ -76,10 +76,9 @@ def weigh(x, y):
             scale_rows = min(scale_rows + 1, 300.0)
             scale *= np.sqrt(1 + (clipped**2 - 1) / scale_rows)
         elif k + 1 >= 2 * COLUMNS:
-            # As the recursion does it: the sums of weights do not hold this row yet.
             now = LAM ** ((k - np.arange(k + 1)) / 2.0)
             _, sse = fit(x[:k + 1] * now[:, None], y[:k + 1] * now)
-            w1, w2 = np.sum(age**2), np.sum(age**4)
+            w1, w2 = np.sum(now**2), np.sum(now**4)
             freedom = w1 * w1 / w2 - COLUMNS
             scale = np.sqrt(sse / w1 * (freedom + COLUMNS) / max(freedom, 1.0))
             scale_rows = min(max(freedom, 1.0), 300.0)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <stdexcept>
@@ -101,6 +102,42 @@ TEST_CASE("a plant that the controller cannot hold is refused with its determina
   setup.controller_model = mpm::sim::changed_model(
       setup.unit.model, {ChannelChange{0, 0, 1 / 0.75}, ChannelChange{1, 0, 1 / 0.75}});
   CHECK_NOTHROW(hide_changes(setup));
+}
+
+TEST_CASE("the thesis's scenario 2 as written is refused with integral action, its readings run") {
+  const std::string scenarios = std::string(MPM_SOURCE_DIR) + "/config/scenarios/";
+  const auto prepared = [&](const std::string& plant, const std::string& scenario) {
+    LoopSetup setup = healthy_loop(load_plant(plant));
+    const auto loaded = mpm::config::load_scenario(scenarios + scenario + ".yaml", setup.unit);
+    REQUIRE(loaded.ok());
+    setup.scenario = loaded.scenario;
+    hide_changes(setup);
+    return setup;
+  };
+  CHECK_THROWS_WITH(prepared("shell3x3", "s2_gain25"),
+                    Catch::Matchers::Contains("20.8 in the model") &&
+                        Catch::Matchers::Contains("-7.82 in the plant"));
+  for (const auto& [plant, scenario] :
+       {std::pair{"shell3x3", "s2_gain25_no_integral"}, std::pair{"shell3x3", "s2_gain25_limits"},
+        std::pair{"shell3x3", "s2_gain15"}, std::pair{"shell3x3_high_model", "s2_gain25"}}) {
+    CAPTURE(plant, scenario);
+    const LoopSetup setup = prepared(plant, scenario);
+    mpm::sim::ClosedLoop loop(setup);
+    double largest_input = 0.0, largest_output = 0.0;
+    for (int k = 0; k < 3000; ++k) {
+      const mpm::Frame& frame = loop.step();
+      largest_input =
+          std::max(largest_input, frame[mpm::SignalKind::kMv].values.cwiseAbs().maxCoeff());
+      largest_output =
+          std::max(largest_output, frame[mpm::SignalKind::kCv].values.cwiseAbs().maxCoeff());
+    }
+    CHECK(loop.finite());
+    CHECK(largest_output < 5.0);
+    const bool limited = std::string(scenario) == "s2_gain25_limits";
+    CHECK(largest_input < (limited ? 1.5 + 1e-9 : 5.0));
+    CHECK((setup.unit.simulation.mv_limits[0].high == 1.5) == limited);
+    CHECK(setup.unit.simulation.mv_limits[0].max_move == 1.0);  // of the unit file
+  }
 }
 
 TEST_CASE("a drawn change is one that the loop can bear, and the seed decides") {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "core/monitor/settings.hpp"
+
+/// Settings that are one of a few, and what the files call each.
+namespace mpm::config {
+
+template <class Kind>
+struct Choice {
+  const char* name;
+  Kind kind;
+};
+
+[[nodiscard]] constexpr auto choices(CorrelationKind /*which*/) {
+  return std::array{Choice<CorrelationKind>{"lagged_partial", CorrelationKind::kLaggedPartial},
+                    Choice<CorrelationKind>{"partial", CorrelationKind::kPartial},
+                    Choice<CorrelationKind>{"conventional", CorrelationKind::kConventional},
+                    Choice<CorrelationKind>{"alternative", CorrelationKind::kAlternative}};
+}
+[[nodiscard]] constexpr auto choices(ThresholdKind /*which*/) {
+  return std::array{Choice<ThresholdKind>{"f_test", ThresholdKind::kFTest},
+                    Choice<ThresholdKind>{"mean_line", ThresholdKind::kMeanLine}};
+}
+
+template <class Kind>
+[[nodiscard]] std::string name_of(Kind kind) {
+  for (const Choice<Kind>& choice : choices(kind))
+    if (choice.kind == kind) return choice.name;
+  return {};
+}
+
+}  // namespace mpm::config

@@ -1,0 +1,177 @@
+#include "core/mismatch/change_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/statistics/f_distribution.hpp"
+
+namespace mpm {
+namespace {
+
+// Moments looked at.
+constexpr int kMoments = 100;
+
+// By how many sigma^2 a change must beat no change: chance gives a few.
+constexpr double kMargin = 20.0;
+
+// What `inputs` more parameters gain by chance is chi-square; this many s.d. above its mean.
+constexpr double kDeviations = 6.0;
+
+}  // namespace
+
+ChangeScan::ChangeScan(const RegressionShape& shape)
+    : shape_(shape),
+      whole_(shape.columns(), 1),
+      lead_in_(shape.lead_in(), 1),
+      one_input_(shape.lead_in() + shape.block(), 1),
+      inputs_(Eigen::VectorXd::Zero(shape.inputs * shape.block())),
+      after_with_(kMoments),
+      after_without_(kMoments),
+      before_with_(kMoments),
+      before_without_(kMoments) {
+  const auto entries =
+      static_cast<std::size_t>(shape.lead_in()) * static_cast<std::size_t>(shape.lead_in() + 1);
+  for (auto* parts : {&after_with_, &after_without_, &before_with_, &before_without_})
+    for (Part& part : *parts) part.triangle.resize(entries);
+  moments_.reserve(kMoments);
+}
+
+std::optional<ChangePoint> ChangeScan::scan(const ChannelTest& test, int cv) {
+  const int span = test.span(cv);
+  if (span < 2 * kMoments) return std::nullopt;
+  moments_.clear();  // ages at which a part ends, newest first
+  for (int m = 1; m < kMoments; ++m) moments_.push_back(m * span / kMoments);
+  pass(test, cv, true, true, after_with_);
+  pass(test, cv, true, false, after_without_);
+  pass(test, cv, false, true, before_with_);
+  const double constant = whole_.residual_square(0);
+  const double freedom = test.memory(cv).rows - shape_.columns();
+  pass(test, cv, false, false, before_without_);
+  if (!(constant > 0.0) || freedom <= 0.0) return std::nullopt;
+
+  const double inputs = shape_.inputs * shape_.block();
+  const double chance = inputs + kDeviations * std::sqrt(2.0 * inputs);
+  const double per_square = freedom / constant;
+  const auto gain_of = [&](const Part& after, const Part& before) {
+    // Where one side is noisier than all rows together, so is what it gains by chance.
+    const double noise =
+        std::max({1.0, variance_of(after) * per_square, variance_of(before) * per_square});
+    return (constant - joined(after, before)) * per_square / noise;
+  };
+  ChangePoint best{ChangeKind::kBegan, 0, kMargin};
+  for (std::size_t m = 0; m < moments_.size(); ++m) {
+    const double began = gain_of(after_with_[m], before_without_[m]);
+    if (began > best.gain) best = {ChangeKind::kBegan, moments_[m], began};
+    const double ended = gain_of(after_without_[m], before_with_[m]);
+    if (ended > best.gain) best = {ChangeKind::kEnded, moments_[m], ended};
+  }
+  double bar = best.gain + chance;
+  for (std::size_t m = 0; m < moments_.size(); ++m) {
+    if (moments_[m] < 2 * shape_.columns()) continue;
+    const double other = gain_of(after_with_[m], before_with_[m]);
+    if (other <= bar) continue;
+    best = {ChangeKind::kOther, moments_[m], other};
+    bar = other;
+  }
+  if (best.samples == 0) return std::nullopt;
+  if (best.kind != ChangeKind::kEnded) name_input(test, cv, best);
+  return best;
+}
+
+// The input that alone explains the rows since the change best, and its F on these rows alone.
+void ChangeScan::name_input(const ChannelTest& test, int cv, ChangePoint& change) {
+  const int block = shape_.block();
+  const RegressionHistory& history = test.history();
+  double least = std::numeric_limits<double>::infinity();
+  double nothing = 0.0;
+  int rows = 0;
+  for (int input = -1; input < shape_.inputs; ++input) {
+    GivensQr& factor = input < 0 ? lead_in_ : one_input_;
+    factor.clear();
+    rows = 0;
+    for (int age = change.samples - 1; age >= 0; --age) {
+      const double weight = test.lenient_weight(cv, age);
+      if (!(weight > 0.0)) continue;
+      double* row = factor.row();
+      history.fill_lead_in(age, row);
+      if (input >= 0) {
+        history.fill_inputs(age, inputs_.data());
+        std::copy_n(inputs_.data() + input * block, block, row + shape_.lead_in());
+      }
+      row[factor.columns()] = history.residual(cv, age);
+      for (int c = 0; c <= factor.columns(); ++c) row[c] *= weight;
+      factor.update(1.0);
+      ++rows;
+    }
+    if (input < 0) nothing = factor.residual_square(0);
+    if (input < 0 || factor.residual_square(0) >= least) continue;
+    least = factor.residual_square(0);
+    change.input = input;
+  }
+  const int freedom = rows - shape_.lead_in() - block;
+  if (freedom < kFewestFreedom || !(least > 0.0)) return;
+  change.p_value = std::min(
+      1.0,
+      shape_.inputs * f_upper_tail((nothing - least) / block / (least / freedom), block, freedom));
+}
+
+// parts[m] holds the rows younger than moments_[m] (newest first) or at least as old.
+void ChangeScan::pass(const ChannelTest& test, int cv, bool newest_first, bool with_inputs,
+                      std::vector<Part>& parts) {
+  GivensQr& factor = with_inputs ? whole_ : lead_in_;
+  factor.clear();
+  const RegressionHistory& history = test.history();
+  const int first = with_inputs ? shape_.inputs * shape_.block() : 0;
+  const int span = test.span(cv);
+  int rows = 0;
+  for (int step = 0; step < span; ++step) {
+    const int age = newest_first ? step : span - 1 - step;
+    if (newest_first) {
+      const auto found = std::find(moments_.begin(), moments_.end(), age);
+      if (found != moments_.end())
+        store(factor, first, rows, parts[static_cast<std::size_t>(found - moments_.begin())]);
+    }
+    const double weight = test.lenient_weight(cv, age);
+    if (weight > 0.0) {
+      double* row = factor.row();
+      if (with_inputs) history.fill_inputs(age, row);
+      history.fill_lead_in(age, row + first);
+      row[first + shape_.lead_in()] = history.residual(cv, age);
+      for (int c = 0; c <= first + shape_.lead_in(); ++c) row[c] *= weight;
+      factor.update(1.0);
+      ++rows;
+    }
+    if (!newest_first) {
+      const auto found = std::find(moments_.begin(), moments_.end(), age);
+      if (found != moments_.end())
+        store(factor, first, rows, parts[static_cast<std::size_t>(found - moments_.begin())]);
+    }
+  }
+}
+
+void ChangeScan::store(const GivensQr& factor, int first, int rows, Part& part) const {
+  const int columns = shape_.lead_in();
+  part.square = factor.residual_square(0);
+  part.freedom = rows - factor.columns();
+  double* out = part.triangle.data();
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j < columns; ++j) *out++ = j < i ? 0.0 : factor.r(first + i, first + j);
+    *out++ = factor.z(first + i, 0);
+  }
+}
+
+double ChangeScan::joined(const Part& a, const Part& b) {
+  lead_in_.clear();
+  const int columns = shape_.lead_in();
+  for (const Part* part : {&a, &b}) {
+    const double* from = part->triangle.data();
+    for (int i = 0; i < columns; ++i, from += columns + 1) {
+      std::copy_n(from, columns + 1, lead_in_.row());
+      lead_in_.update(1.0);
+    }
+  }
+  return a.square + b.square + lead_in_.residual_square(0);
+}
+
+}  // namespace mpm

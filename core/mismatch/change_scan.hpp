@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/mismatch/channel_test.hpp"
+
+namespace mpm {
+
+/// What a CV's channels did at some moment inside its memory.
+enum class ChangeKind : unsigned char { kBegan, kEnded, kOther };
+
+struct ChangePoint {
+  ChangeKind kind = ChangeKind::kBegan;
+  int samples = 0;       ///< since the change
+  double gain = 0.0;     ///< by how much it beats "no change", in residual variances
+  int input = -1;        ///< that explains the rows since then best, were it alone
+  double p_value = 1.0;  ///< of no change in any input, from these rows; kEnded: 1
+};
+
+/// Looks for the moment at which a CV's mismatch began, ended or became another one, in the rows
+/// that its memory rests on. "No change" fits all inputs' blocks to all rows; the rivals fit them
+///
+///     to the rows after a moment (began), to those before it (ended), or twice, before and after,
+///
+/// the constant and the residuals' own lags in common. The first two have as many parameters as "no
+/// change" and must beat it by kMargin; the last has all blocks once more and must beat these by
+/// what that many could gain by chance (Andrews 1993, on the likelihood ratio over all moments).
+/// One pass over the rows in each direction gives the residual squares for all moments at once.
+class ChangeScan {
+ public:
+  explicit ChangeScan(const RegressionShape& shape);
+
+  [[nodiscard]] std::optional<ChangePoint> scan(const ChannelTest& test, int cv);
+
+ private:
+  /// What a part of the rows leaves once the inputs' blocks are eliminated (or, where the inputs
+  /// take no part, were never there): the triangle of the lead-in columns and the residual square.
+  struct Part {
+    std::vector<double> triangle;  // lead_in rows of lead_in + 1
+    double square = 0.0;
+    int freedom = 0;  // rows - columns
+  };
+  /// Residual variance; 0 where the rows are too few to tell.
+  [[nodiscard]] static double variance_of(const Part& part) {
+    return part.freedom >= kFewestFreedom ? part.square / part.freedom : 0.0;
+  }
+  static constexpr int kFewestFreedom = 15;
+
+  void pass(const ChannelTest& test, int cv, bool newest_first, bool with_inputs,
+            std::vector<Part>& parts);
+  void name_input(const ChannelTest& test, int cv, ChangePoint& change);
+  void store(const GivensQr& factor, int first, int rows, Part& part) const;
+  [[nodiscard]] double joined(const Part& a, const Part& b);
+
+  RegressionShape shape_;
+  std::vector<int> moments_;  // ages
+  GivensQr whole_;            // [inputs | lead-in]
+  GivensQr lead_in_;
+  GivensQr one_input_;  // [lead-in | one input]
+  Eigen::VectorXd inputs_;
+  std::vector<Part> after_with_, after_without_, before_with_, before_without_;
+};
+
+}  // namespace mpm

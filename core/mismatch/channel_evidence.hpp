@@ -1,0 +1,41 @@
+#pragma once
+
+#include <limits>
+
+namespace mpm {
+
+/// Errors of a channel's model that do not matter. Larger ones are material.
+struct MaterialityLimits {
+  double gain = 0.05;              ///< relative to the model's gain, > 0
+  double time_constant = 0.10;     ///< relative to the model's, > 0
+  double dead_time_samples = 0.5;  ///< > 0
+};
+
+/// An estimate with its standard deviation; the s.d. is infinite where nothing is known.
+struct Estimate {
+  double value = 0.0;
+  double deviation = std::numeric_limits<double>::infinity();
+};
+
+/// What the data say about one channel (input i to CV j).
+struct ChannelEvidence {
+  double statistic = 0.0;             ///< F of the test that says more
+  double p_value = 1.0;               ///< tests * P(F > statistic) where the channel matches, <= 1
+  double numerator_freedom = 0.0;     ///< of F; 0 = nothing to test with
+  int tests = 1;                      ///< that were made
+  double block_statistic = 0.0;       ///< F of the whole block
+  double p_value_material = 1.0;      ///< the same where the error is within the limits, at most
+  double reference_gain = 0.0;        ///< what 100 % means, CV units per input unit
+  double gain_error_ratio = 0.0;      ///< (plant gain - model gain) / reference, were it only gain
+  double excitation_index = 0.0;      ///< s.d. of gain_error_ratio; infinite = no information
+  double excitation_index_alone = 0;  ///< the same, were the other inputs known not to matter
+  int confounder = -1;                ///< input whose estimate is most correlated with this one's
+
+  bool usual = false;     ///< errors of gain, time constant and dead time explain all that is seen
+  bool harmless = false;  ///< and all three are within the limits, each with 95 % confidence
+  Estimate gain_error;    ///< relative to the reference gain, whatever else is wrong
+  Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
+  Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
+};
+
+}  // namespace mpm

@@ -1,0 +1,115 @@
+#include "core/mismatch/regression_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace mpm {
+namespace {
+
+// Unknown residuals in a row that are interpolated.
+constexpr int kInterpolated = 2;
+
+}  // namespace
+
+RegressionHistory::RegressionHistory(const RegressionShape& shape, int depth)
+    : shape_(shape),
+      depth_(depth),
+      has_origin_(static_cast<std::size_t>(shape.inputs), false),
+      origin_(Eigen::VectorXd::Zero(shape.inputs)),
+      last_input_(Eigen::VectorXd::Zero(shape.inputs)),
+      unknown_(Eigen::VectorXd::Constant(std::max(shape.inputs, shape.cvs),
+                                         std::numeric_limits<double>::quiet_NaN())),
+      unknown_run_(static_cast<std::size_t>(shape.cvs), 0),
+      since_gap_(static_cast<std::size_t>(shape.cvs), 0),
+      usable_(static_cast<std::size_t>(shape.cvs), false) {
+  if (shape.inputs < 1 || shape.cvs < 1 || shape.fir_lags < 1 || shape.residual_order < 1 ||
+      shape.tail_poles.empty() || depth < 1)
+    throw std::invalid_argument("impossible shape of the regression");
+  const int length = depth + std::max(shape.fir_lags, shape.residual_order) + 2;
+  for (int i = 0; i < shape.inputs; ++i) {
+    input_windows_.emplace_back(length);
+    for (std::size_t t = 0; t < shape.tail_poles.size(); ++t) tail_windows_.emplace_back(length);
+  }
+  for (int j = 0; j < shape.cvs; ++j) residual_windows_.emplace_back(length);
+}
+
+void RegressionHistory::push(const Eigen::Ref<const Eigen::VectorXd>& inputs,
+                             const Eigen::Ref<const Eigen::VectorXd>& residuals) {
+  const bool full = filled_ > std::max(shape_.fir_lags, shape_.residual_order);
+  for (int j = 0; j < shape_.cvs; ++j) {
+    const auto s = static_cast<std::size_t>(j);
+    usable_[s] = full && std::isfinite(residuals(j)) && unknown_run_[s] == 0 &&
+                 since_gap_[s] >= shape_.residual_order;
+    push_residual(j, residuals(j));
+  }
+  push_inputs(inputs);
+  if (!full) ++filled_;
+}
+
+void RegressionHistory::push_residual(int cv, double residual) {
+  const auto s = static_cast<std::size_t>(cv);
+  LagWindow& window = residual_windows_[s];
+  const double held = window.window()[0];
+  if (!std::isfinite(residual)) {
+    window.push(held);
+    if (++unknown_run_[s] > kInterpolated) since_gap_[s] = 0;
+    return;
+  }
+  const int run = unknown_run_[s];
+  window.push(residual);
+  if (run > 0 && run <= kInterpolated)
+    for (int back = 1; back <= run; ++back)
+      window.set(back, residual + (held - residual) * back / (run + 1));
+  unknown_run_[s] = 0;
+  ++since_gap_[s];
+  if (since_gap_[s] > shape_.residual_order) since_gap_[s] = shape_.residual_order + 1;
+}
+
+void RegressionHistory::push_inputs(const Eigen::Ref<const Eigen::VectorXd>& inputs) {
+  const std::size_t tails = shape_.tail_poles.size();
+  for (int i = 0; i < shape_.inputs; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    if (std::isfinite(inputs(i))) {
+      if (!has_origin_[s]) origin_(i) = inputs(i);
+      has_origin_[s] = true;
+      last_input_(i) = inputs(i) - origin_(i);
+    }
+    const double u = last_input_(i);
+    input_windows_[s].push(u);
+    for (std::size_t t = 0; t < tails; ++t) {
+      LagWindow& window = tail_windows_[s * tails + t];
+      const double pole = shape_.tail_poles[t];
+      window.push(pole * window.window()[0] + (1.0 - pole) * u);
+    }
+  }
+}
+
+void RegressionHistory::skip(std::int64_t missing) {
+  // Beyond all memory a gap changes nothing more.
+  for (std::int64_t k = 0; k < std::min(missing, static_cast<std::int64_t>(depth_)); ++k)
+    push(unknown_.head(shape_.inputs), unknown_.head(shape_.cvs));
+}
+
+void RegressionHistory::fill(int age, double* row) const {
+  fill_lead_in(age, row);
+  fill_inputs(age, row + shape_.lead_in());
+}
+
+void RegressionHistory::fill_lead_in(int age, double* row) const {
+  *row++ = 1.0;
+  for (const LagWindow& residual : residual_windows_)
+    row = std::copy_n(residual.window() + age + 1, shape_.residual_order, row);
+}
+
+void RegressionHistory::fill_inputs(int age, double* row) const {
+  const std::size_t tails = shape_.tail_poles.size();
+  for (std::size_t i = 0; i < input_windows_.size(); ++i) {
+    row = std::copy_n(input_windows_[i].window() + age + 1, shape_.fir_lags, row);
+    for (std::size_t t = 0; t < tails; ++t)
+      *row++ = tail_windows_[i * tails + t].window()[age + shape_.fir_lags + 1];
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/signal/lag_window.hpp"
+
+namespace mpm {
+
+/// What the residual of every CV is regressed on: a constant, the last `residual_order` residuals
+/// of all CVs, and per input a block: its last `fir_lags` values and, beyond them, one
+/// exponentially weighted mean per tail pole.
+struct RegressionShape {
+  int inputs = 1;
+  int cvs = 1;
+  int fir_lags = 20;               ///< L >= 1
+  int residual_order = 8;          ///< p >= 1
+  std::vector<double> tail_poles;  ///< r_t in (0, 1); at least one
+
+  [[nodiscard]] int block() const { return fir_lags + static_cast<int>(tail_poles.size()); }
+  [[nodiscard]] int lead_in() const { return 1 + cvs * residual_order; }
+  [[nodiscard]] int columns() const { return lead_in() + inputs * block(); }
+};
+
+/// The last samples of a unit and the regression rows that they make:
+///
+///     1,  e_1..e_n (k-1 .. k-p),  and per input i:  u_i(k-1 .. k-L), s_it(k-L-1), t = 1..tails,
+///     s_it(k) = r_t s_it(k-1) + (1 - r_t) u_i(k).
+///
+/// Unknown values (NaN) do not break the window. An unknown input counts as unchanged: where the
+/// model is right e does not depend on u, so this cannot raise a false alarm. A residual that is
+/// unknown once or twice in a row is interpolated when the next one comes; longer gaps are not.
+/// A CV's row counts (`usable`) where its response and the one before are known, and none of its
+/// own lags lies in a long gap: the residual just before has a large coefficient, and what is
+/// guessed there would correlate with the inputs through the controller's feedback.
+///
+/// No allocation after construction.
+class RegressionHistory {
+ public:
+  /// Remembers `depth` rows.
+  RegressionHistory(const RegressionShape& shape, int depth);
+
+  /// Takes u(k) and e(k) of the next interval; NaN where unknown.
+  void push(const Eigen::Ref<const Eigen::VectorXd>& inputs,
+            const Eigen::Ref<const Eigen::VectorXd>& residuals);
+  /// `missing` intervals (>= 1) of which nothing is known.
+  void skip(std::int64_t missing);
+
+  [[nodiscard]] int depth() const { return depth_; }
+  /// Whether the newest row serves this CV.
+  [[nodiscard]] bool usable(int cv) const { return usable_[static_cast<std::size_t>(cv)]; }
+  /// The row whose response is `age` samples old, 0 <= age < depth: columns() values.
+  void fill(int age, double* row) const;
+  /// The same in two parts: the constant and residual lags, and the inputs' blocks.
+  void fill_lead_in(int age, double* row) const;
+  void fill_inputs(int age, double* row) const;
+  [[nodiscard]] double residual(int cv, int age) const {
+    return residual_windows_[static_cast<std::size_t>(cv)].window()[age];
+  }
+
+ private:
+  void push_inputs(const Eigen::Ref<const Eigen::VectorXd>& inputs);
+  void push_residual(int cv, double residual);
+
+  RegressionShape shape_;
+  int depth_;
+  int filled_ = 0;                // intervals so far, until a row has all its lags
+  std::vector<bool> has_origin_;  // per input
+  Eigen::VectorXd origin_;        // first known value: keeps the windows' values small
+  Eigen::VectorXd last_input_;    // about the origin
+  Eigen::VectorXd unknown_;       // all NaN
+  std::vector<LagWindow> input_windows_;
+  std::vector<LagWindow> tail_windows_;  // input-major
+  std::vector<LagWindow> residual_windows_;
+  std::vector<int> unknown_run_;  // per CV, unknown residuals up to now
+  std::vector<int> since_gap_;    // per CV, samples since the last long gap
+  std::vector<bool> usable_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,155 @@
+#include "core/monitor/cv_alarms.hpp"
+
+#include <algorithm>
+
+namespace mpm {
+namespace {
+
+// Samples between two searches for a change; fewer where the errors are very much larger than
+// usual.
+constexpr std::int64_t kBetweenScans = 100;
+constexpr std::int64_t kBetweenUrgentScans = 20;
+constexpr double kUrgent = 2.0;  // surprise
+
+// A change is looked for once an error is this likely, or the last 100 one-step errors are this
+// much larger than usual: while a memory spans the change, its p-value is slow to fall.
+constexpr double kSuspicious = 1e-5;
+constexpr double kSurprise = 1.3;
+
+// A change is certain where its p-value, of the likeliest moment and input, is below this.
+constexpr double kCertain = 1e-9;
+
+// Of all memories that say something.
+struct Evidence {
+  double material = 1.0;  // p-value of "within the limits", times the memories asked
+  double any = 1.0;       // p-value of "no error", likewise
+  bool harmless = true;   // the long memory is sure that the error is within the limits
+};
+
+Evidence combined(int cv, int input, const ChannelTest& test) {
+  Evidence evidence;
+  int ready = 0;
+  for (int m = 0; m < test.memory_count(); ++m) {
+    if (!test.memory(cv, m).ready()) continue;
+    ++ready;
+    const ChannelEvidence& channel = test.evidence(cv, input, m);
+    evidence.material = std::min(evidence.material, channel.p_value_material);
+    evidence.any = std::min(evidence.any, channel.p_value);
+  }
+  evidence.harmless = test.evidence(cv, input).harmless;
+  evidence.material = std::min(1.0, ready * evidence.material);
+  evidence.any = std::min(1.0, ready * evidence.any);
+  return evidence;
+}
+
+// That the error matters may be a little less certain than that there is one: to raise an alarm it
+// must have at most this p-value.
+constexpr double kMaterial = 1e-3;
+
+// An alarm stays while its error is significant at this level and might matter.
+constexpr double kSignificant = 0.05;
+
+// What the condition looks at: to raise, that there is an error, and that it matters; to clear,
+// that it does not matter, or is not there.
+double condition_p(const Evidence& evidence, AlarmState state) {
+  if (state == AlarmState::kCleared)
+    return evidence.material < kMaterial ? evidence.any : std::max(evidence.any, evidence.material);
+  const bool stays = evidence.any < kSignificant && !evidence.harmless;
+  return stays ? 0.0 : evidence.material;
+}
+
+}  // namespace
+
+bool CvAlarms::any() const {
+  return std::any_of(conditions_.begin(), conditions_.end(), [](const Condition& condition) {
+    return condition.state() == AlarmState::kActive;
+  });
+}
+
+void CvAlarms::hold() {
+  for (Condition& condition : conditions_) condition.hold();
+}
+
+void CvAlarms::step(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
+                    const Condition::Limits& limits) {
+  ++since_scan_;
+  if (!test.memory(cv).ready()) {
+    hold();
+    return;
+  }
+  if (isolating_) {
+    if (!evaluated) return;
+    isolating_ = false;
+    settle(cv, test, limits);
+    return;
+  }
+  const bool quiet = !any();
+  bool risen = false;
+  for (std::size_t i = 0; i < conditions_.size(); ++i) {
+    const AlarmState before = conditions_[i].state();
+    const Evidence evidence = combined(cv, static_cast<int>(i), test);
+    const bool changed = conditions_[i].update(condition_p(evidence, before), limits);
+    risen = risen || (changed && before == AlarmState::kCleared);
+  }
+  const bool urgent = test.surprise(cv) > kUrgent;
+  const bool due = evaluated && since_scan_ >= (urgent ? kBetweenUrgentScans : kBetweenScans);
+  const bool suspicious =
+      due && (something_wrong(cv, quiet, test) || memories_disagree(cv, test, limits));
+  if (!risen && !suspicious) return;
+  const std::optional<ChangePoint> change = find_change(cv, risen, test, scan);
+  if (!change) return;
+  test.start_afresh(cv, change->samples);
+  isolating_ = true;
+  if (!quiet || change->kind == ChangeKind::kEnded) return;
+  // Of a change from quiet only the likeliest channel is blamed until the CV is isolated.
+  for (std::size_t i = 0; i < conditions_.size(); ++i)
+    conditions_[i].set(static_cast<int>(i) == change->input ? AlarmState::kActive
+                                                            : AlarmState::kCleared);
+}
+
+std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, const ChannelTest& test,
+                                                 ChangeScan& scan) {
+  since_scan_ = 0;
+  std::optional<ChangePoint> change = scan.scan(test, cv);
+  const bool certain =
+      change && (risen || change->kind == ChangeKind::kEnded || change->p_value < kCertain);
+  if (!certain) change.reset();
+  return change;
+}
+
+void CvAlarms::settle(int cv, const ChannelTest& test, const Condition::Limits& limits) {
+  for (std::size_t i = 0; i < conditions_.size(); ++i) {
+    const Evidence evidence = combined(cv, static_cast<int>(i), test);
+    const AlarmState before = conditions_[i].state();
+    if (before == AlarmState::kActive && condition_p(evidence, before) > limits.clear_above)
+      conditions_[i].set(AlarmState::kCleared);
+    if (before == AlarmState::kCleared && condition_p(evidence, before) < limits.raise_below)
+      conditions_[i].set(AlarmState::kActive);
+  }
+}
+
+bool CvAlarms::something_wrong(int cv, bool quiet, const ChannelTest& test) const {
+  if (test.surprise(cv) > kSurprise) return true;
+  if (!quiet) return false;
+  for (std::size_t i = 0; i < conditions_.size(); ++i)
+    if (combined(cv, static_cast<int>(i), test).any < kSuspicious) return true;
+  return false;
+}
+
+bool CvAlarms::memories_disagree(int cv, const ChannelTest& test,
+                                 const Condition::Limits& limits) const {
+  for (int m = 1; m < test.memory_count(); ++m) {
+    if (!test.memory(cv, m).ready()) continue;
+    for (std::size_t i = 0; i < conditions_.size(); ++i) {
+      const ChannelEvidence& fast = test.evidence(cv, static_cast<int>(i), m);
+      const ChannelEvidence& lasting = test.evidence(cv, static_cast<int>(i));
+      const bool active = conditions_[i].state() == AlarmState::kActive;
+      if (active && fast.p_value_material > limits.clear_above &&
+          lasting.p_value_material < limits.clear_above)
+        return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace mpm

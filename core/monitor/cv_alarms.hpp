@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/alarm/condition.hpp"
+#include "core/mismatch/change_scan.hpp"
+#include "core/mismatch/channel_test.hpp"
+
+namespace mpm {
+
+/// The alarms of one CV's channels, and what follows from them.
+///
+/// An alarm rises where an error that matters is beyond doubt in some memory. Was the error there
+/// all along, then the memory is of one piece and its evidence stands. Did it begin inside the
+/// memory (`ChangeScan`), then no constant model fits the memory and healthy channels would be
+/// blamed too: only the strongest alarm rises, the CV forgets what was before the change, and it is
+/// `isolating` until enough samples have come since then. What the fresh memory then confirms stays
+/// or rises; the rest clears at once. While an alarm stands the fast memory is watched: where it
+/// disagrees with the long one, something changed again (a return to normal as a rule) and the CV
+/// forgets once more.
+class CvAlarms {
+ public:
+  explicit CvAlarms(int inputs) : conditions_(static_cast<std::size_t>(inputs)) {
+    before_.reserve(conditions_.size());
+  }
+
+  /// After each sample; `evaluated`: the CV's evidence is new. Calls `changed(input)` for each
+  /// alarm that rose or cleared.
+  template <class Changed>
+  void update(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
+              const Condition::Limits& limits, Changed changed) {
+    before_.clear();
+    for (const Condition& condition : conditions_) before_.push_back(condition.state());
+    step(cv, evaluated, test, scan, limits);
+    for (std::size_t i = 0; i < conditions_.size(); ++i)
+      if (conditions_[i].state() != before_[i]) changed(static_cast<int>(i));
+  }
+  /// A sample without any verdict of this CV.
+  void hold();
+
+  [[nodiscard]] AlarmState state(int input) const {
+    return conditions_[static_cast<std::size_t>(input)].state();
+  }
+  [[nodiscard]] bool any() const;
+  [[nodiscard]] bool isolating() const { return isolating_; }
+
+ private:
+  void step(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
+            const Condition::Limits& limits);
+  void settle(int cv, const ChannelTest& test, const Condition::Limits& limits);
+  [[nodiscard]] bool something_wrong(int cv, bool quiet, const ChannelTest& test) const;
+  [[nodiscard]] bool memories_disagree(int cv, const ChannelTest& test,
+                                       const Condition::Limits& limits) const;
+  [[nodiscard]] std::optional<ChangePoint> find_change(int cv, bool risen, const ChannelTest& test,
+                                                       ChangeScan& scan);
+
+  std::vector<Condition> conditions_;
+  std::vector<AlarmState> before_;
+  bool isolating_ = false;
+  std::int64_t since_scan_ = 0;
+};
+
+}  // namespace mpm

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+
+namespace mpm {
+
+/// How one input has moved lately: the share of samples at which it had stood still for long, and
+/// the share at which it rested at the end of its range. Exponentially weighted.
+class InputMotion {
+ public:
+  /// `memory_samples` > 0.
+  explicit InputMotion(double memory_samples) : step_(1.0 / memory_samples) {}
+
+  void take(double value) {
+    if (samples_ == 0) {
+      low_ = high_ = last_ = value;
+    } else {
+      const bool same = value == last_;
+      const double range = high_ - low_;
+      const double reach = 1e-6 * range;
+      run_ = same ? run_ + 1 : 0;
+      const bool at_end = same && range > 0.0 && (value <= low_ + reach || value >= high_ - reach);
+      const double step = std::max(step_, 1.0 / (samples_ + 1.0));
+      still_ += step * ((run_ >= kLongRun ? 1.0 : 0.0) - still_);
+      at_end_ += step * ((at_end ? 1.0 : 0.0) - at_end_);
+      low_ = std::min(low_, value);
+      high_ = std::max(high_, value);
+      last_ = value;
+    }
+    ++samples_;
+  }
+
+  [[nodiscard]] bool still() const { return still_ > kMostly; }
+  [[nodiscard]] bool at_limit() const { return at_end_ > kMostly; }
+
+ private:
+  static constexpr double kMostly = 0.5;
+  static constexpr int kLongRun = 60;  // samples
+  double step_;
+  double samples_ = 0.0;
+  int run_ = 0;
+  double still_ = 0.0, at_end_ = 0.0;
+  double low_ = 0.0, high_ = 0.0, last_ = 0.0;
+};
+
+}  // namespace mpm
