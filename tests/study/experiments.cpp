@@ -75,6 +75,18 @@ void add_changes(std::vector<Experiment>& experiments) {
   experiments.back().samples = 12000;
 }
 
+/// The long memory as a window with sharp edges instead of an exponential one.
+void add_windows(std::vector<Experiment>& experiments) {
+  for (const char* scenario : {"none", "hidden_gain", "change_gain_mv3_cv2", "change_delay"}) {
+    Experiment experiment = usual(scenario, 50);
+    experiment.name = std::string("window_") + scenario;
+    experiment.samples = 6000;
+    experiment.also_at = {};
+    experiment.settings = [](MonitorSettings& settings) { settings.sliding_window = true; };
+    experiments.push_back(experiment);
+  }
+}
+
 Experiment long_run(const std::string& unit, int runs) {
   Experiment experiment;
   experiment.name = "long_" + unit;
@@ -97,6 +109,7 @@ Study full_study() {
   for (Experiment& experiment : experiments)
     if (experiment.name == "s4_gain40") experiment.material = 0.1;
   add_changes(experiments);
+  add_windows(experiments);
   add_grid(experiments);
   for (const std::string unit : {"wood_berry", "shell7x5", "ogunnaike_ray"}) {
     for (const std::string scenario : {"none", "hidden_gain"}) {
@@ -121,7 +134,7 @@ Study full_study() {
        TableKind::kPower,
        {"s2_gain15", "s3_delay", "s4_gain40", "hidden_gain", "*_hidden_gain"}},
       {"grid", TableKind::kGrid, {"grid_*"}},
-      {"changes", TableKind::kChange, {"change_*"}},
+      {"changes", TableKind::kChange, {"change_*", "window_*"}},
       {"run_length", TableKind::kRunLength, {"long_*"}},
       {"tail", TableKind::kTail, {"none", "wood_berry_none", "long_*"}},
   };

@@ -118,17 +118,20 @@ std::vector<Row> healthy_rows(const std::vector<const Summary*>& summaries) {
 }
 
 std::vector<Row> verdict_rows(const std::vector<const Summary*>& summaries) {
-  std::vector<Row> rows = {{"experiment", "N", "seeds", "channels", "match", "mismatch",
-                            "warming up", "not excited", "collinear", "bad data"}};
+  Row header = {"experiment", "N", "seeds", "channels"};
+  for (const std::string& verdict : verdict_names()) {
+    header.push_back(verdict);
+    std::replace(header.back().begin(), header.back().end(), '_', ' ');
+  }
+  std::vector<Row> rows = {header};
   for (const Summary* summary : summaries) {
     const Experiment& experiment = summary->experiment;
     for (const int at : reading_times(experiment)) {
       for (const std::string truth : {"healthy", "wrong"}) {
         if (summary->find(truth + "_match", at) == nullptr) continue;
         Row row = {experiment.name, std::to_string(at), seeds_text(experiment), truth};
-        for (const char* verdict :
-             {"_match", "_mismatch", "_warming_up", "_not_excited", "_collinear", "_bad_data"}) {
-          const Share* share = summary->find(truth + verdict, at);
+        for (const std::string& verdict : verdict_names()) {
+          const Share* share = summary->find(truth + "_" + verdict, at);
           row.push_back(share->hits == 0 ? "0" : percent(share));
         }
         rows.push_back(row);

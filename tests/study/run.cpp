@@ -106,7 +106,8 @@ void count_tail(const Monitor& monitor, const SignalCounts& counts, std::int64_t
     for (int cv = 0; cv < counts.cv; ++cv, ++channel) {
       const ChannelStatus& status = monitor.channel(cv, input);
       if (record.truth[channel].at(sample) != Truth::kHealthy ||
-          status.reason == Reason::kWarmingUp || status.reason == Reason::kBadData)
+          status.reason == Reason::kWarmingUp || status.reason == Reason::kBadData ||
+          status.reason == Reason::kIsolating)
         continue;
       ++tail.evaluations;
       for (std::size_t level = 0; level < kTailLevels.size(); ++level)

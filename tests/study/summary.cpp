@@ -24,6 +24,12 @@ std::string verdict_text(const ChannelReading& reading) {
                                                                : to_string(reading.verdict));
 }
 
+/// A p-value that is of now.
+bool has_p_value(const ChannelReading& reading) {
+  return reading.reason != Reason::kWarmingUp && reading.reason != Reason::kBadData &&
+         reading.reason != Reason::kIsolating;
+}
+
 using RunCount = std::function<Count(const RunRecord&)>;
 
 class Builder {
@@ -90,7 +96,7 @@ void add_readings(Builder& builder, std::size_t which, int at) {
   for (const double level : {0.05, 0.01, 0.001, 0.0001})
     builder.add("healthy_p_" + level_text(level), at, [=](const RunRecord& run) {
       return count_if(readings(run), Truth::kHealthy, [=](const ChannelReading& reading) {
-        return reading.reason != Reason::kWarmingUp && reading.p_value < level;
+        return has_p_value(reading) && reading.p_value < level;
       });
     });
   for (const Truth truth : {Truth::kHealthy, Truth::kWrong})
@@ -278,6 +284,18 @@ Quartiles clear_delays(const std::vector<const RunRecord*>& runs) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& verdict_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = {"match", "mismatch"};
+    for (const Reason reason :
+         {Reason::kWarmingUp, Reason::kNotExcited, Reason::kCollinear, Reason::kBadData,
+          Reason::kControllerOff, Reason::kConstrained, Reason::kIsolating})
+      all.emplace_back(to_string(reason));
+    return all;
+  }();
+  return names;
+}
 
 const Share* Summary::find(const std::string& name, int at) const {
   for (const Metric& metric : metrics)

@@ -59,6 +59,9 @@ struct Summary {
 
 [[nodiscard]] Summary summarise(const Experiment& experiment, const std::vector<RunRecord>& runs);
 
+/// Match, mismatch and the reasons for undetermined, as they stand in the names of metrics.
+[[nodiscard]] const std::vector<std::string>& verdict_names();
+
 /// What a bound says of a summary.
 struct Finding {
   std::string text;
