@@ -89,7 +89,7 @@ Share share_of(const std::vector<Count>& runs, Within within) {
       const double miss = static_cast<double>(run.hits) - rate * static_cast<double>(run.total);
       square += miss * miss;
     }
-    const double between = used / (used - 1.0) * square / (total * total);
+    const double between = square / (total * total);
     share.design_effect = std::max(1.0, between * total / (rate * (1.0 - rate)));
   }
   share.interval =

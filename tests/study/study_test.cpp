@@ -46,9 +46,12 @@ TEST_CASE("runs whose trials go together count as fewer trials") {
     together.push_back({run % 4 == 0 ? 10 : 0, 10});
     apart.push_back({run % 2 == 0 ? 2 : 3, 10});
   }
-  CHECK(share_of(together).design_effect == Approx(10.0 * 100.0 / 99.0));
+  CHECK(share_of(together).design_effect == Approx(10.0));
   CHECK(share_of(apart).design_effect == 1.0);
   CHECK(share_of(together).rate() == Approx(0.25));
+  std::vector<Count> single(30, Count{0, 1});
+  single[3].hits = single[7].hits = 1;
+  CHECK(share_of(single).design_effect == Approx(1.0));
   const std::vector<Count> silent(50, Count{0, 200});
   CHECK(share_of(silent, Within::kOneTrial).independent_trials() == Approx(50.0));
   CHECK(share_of(silent).independent_trials() == Approx(10000.0));

@@ -349,10 +349,8 @@ std::vector<Finding> check_bounds(const Summary& summary) {
     }
     // As many trials as are worth that of independent ones.
     const std::int64_t total = std::llround(share->independent_trials());
-    const double scaled = static_cast<double>(share->hits) / share->design_effect;
+    const std::int64_t hits = std::llround(static_cast<double>(share->hits) / share->design_effect);
     const bool most = bound.side == Bound::Side::kAtMost;
-    const std::int64_t hits =
-        static_cast<std::int64_t>(most ? std::floor(scaled) : std::ceil(scaled));
     const double chance = most ? binomial_at_least(hits, total, bound.rate)
                                : binomial_at_most(hits, total, bound.rate);
     char text[200];
