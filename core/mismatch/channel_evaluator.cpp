@@ -27,6 +27,12 @@ constexpr double kIndependent = 1e-6;
 // The other inputs mask this one where they make its gain's s.d. this many times larger.
 constexpr double kMasked = 2.0;
 
+// In a regression on its own past F is too large on few rows, by a factor that falls with
+// columns / freedom (Bartlett 1937 on such factors): the residuals' lags come out too fast, and what
+// moves slowly seems too certain. Fitted on seeds that no study scores; see docs/validation.md.
+constexpr double kUsualBartlett = 1.35;
+constexpr double kBlockBartlett = 0.26;
+
 // Below this p-value errors of gain, time constant and dead time do not explain what is seen.
 constexpr double kUnusual = 1e-3;
 
@@ -143,11 +149,14 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
   const double freedom = memory.freedom();
   const double variance = memory.factor.residual_square(0) / memory.weight_sum *
                           (freedom + memory.factor.columns()) / freedom;
-  const Scale scale{variance * memory.weight_square / memory.weight_sum, freedom};
+  const double inflated = variance * memory.weight_square / memory.weight_sum;
+  const double per_freedom = memory.factor.columns() / freedom;
+  const Scale scale{inflated * (1.0 + kUsualBartlett * per_freedom),
+                    inflated * (1.0 + kBlockBartlett * per_freedom), freedom};
   for (int i = 0; i < shape_.inputs; ++i) {
     evidence[i] = ChannelEvidence{};
     const auto norms = norms_.segment(i * block_, block_);
-    if (norms.minCoeff() > 0.0 && scale.variance > 0.0) {
+    if (norms.minCoeff() > 0.0 && inflated > 0.0) {
       judge(cv, i, scale, evidence[i]);
     } else {
       evidence[i].excitation_index = kInfinity;
@@ -191,7 +200,7 @@ void ChannelEvaluator::judge(int cv, int input, const Scale& scale, ChannelEvide
   whitened_ = estimate_.segment(at, block_);
   whiten(whitened_);
   evidence.numerator_freedom = block_;
-  evidence.block_statistic = whitened_.squaredNorm() / (block_ * scale.variance);
+  evidence.block_statistic = whitened_.squaredNorm() / (block_ * scale.block_variance);
   evidence.statistic = evidence.block_statistic;
   evidence.p_value = f_upper_tail(evidence.statistic, evidence.numerator_freedom, scale.freedom);
   evidence.p_value_material = evidence.p_value;
@@ -350,7 +359,8 @@ void ChannelEvaluator::judge_unusual(const MaterialityLimits& limits, const Scal
         std::min(nearest_usual, usual.rest_square +
                                     box_least_squares(usual.r, usual.c, low, high).distance_square);
   }
-  const double block_p = f_upper_tail(nearest / (block_ * scale.variance), block_, scale.freedom);
+  const double block_p =
+      f_upper_tail(nearest / (block_ * scale.block_variance), block_, scale.freedom);
   const double usual_p =
       f_upper_tail(nearest_usual / (usual_rank_ * scale.variance), usual_rank_, scale.freedom);
   evidence.p_value_material = std::min(1.0, 2.0 * std::min(block_p, usual_p));

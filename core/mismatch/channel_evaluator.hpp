@@ -37,12 +37,17 @@ struct RegressionMemory {
     return weight_square > 0.0 ? weight_sum * weight_sum / weight_square : 0.0;
   }
   [[nodiscard]] double freedom() const { return effective_rows() - factor.columns(); }
-  /// Enough rows for the evidence to mean anything: with fewer than six per column the tail of F
-  /// is too thin in closed loop (at four, p < 1e-4 came twenty times too often).
-  [[nodiscard]] int needed_rows() const { return 6 * factor.columns(); }
+  /// Enough rows for the evidence to mean anything: with four per column p < 1e-4 still comes seven
+  /// times too often, with five as often as it should. `heavy_tails`, 0..1, asks for more.
+  [[nodiscard]] double needed_rows() const {
+    return (kRowsPerColumn + kMoreRowsPerColumn * heavy_tails) * factor.columns();
+  }
   [[nodiscard]] bool ready() const {
     return rows >= needed_rows() && freedom() >= factor.columns();
   }
+  double heavy_tails = 0.0;
+  static constexpr double kRowsPerColumn = 5.0;
+  static constexpr double kMoreRowsPerColumn = 20.0;
 };
 
 /// Reads off a CV's factor what the data say about each of its channels.
@@ -90,7 +95,8 @@ class ChannelEvaluator {
     double rest_square = 0.0;
   };
   struct Scale {
-    double variance;  // of the estimate's noise: residual variance, inflated by forgetting
+    double variance;  // of the estimate's noise: residual variance, inflated by forgetting, few rows
+    double block_variance;  // the same for the whole block at once
     double freedom;
   };
 

@@ -314,7 +314,7 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
     return;
   }
   if (!memory.ready() || alarms.isolating()) {
-    const bool bad = samples >= 2 * memory.needed_rows() && !alarms.isolating();
+    const bool bad = static_cast<double>(samples) >= 2.0 * memory.needed_rows() && !alarms.isolating();
     channel.reason = alarms.isolating() ? Reason::kIsolating
                      : bad              ? Reason::kBadData
                                         : Reason::kWarmingUp;
