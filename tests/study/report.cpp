@@ -132,7 +132,7 @@ std::vector<Row> verdict_rows(const std::vector<const Summary*>& summaries) {
         Row row = {experiment.name, std::to_string(at), seeds_text(experiment), truth};
         for (const std::string& verdict : verdict_names()) {
           const Share* share = summary->find(truth + "_" + verdict, at);
-          row.push_back(share->hits == 0 ? "0" : percent(share));
+          row.push_back(share == nullptr || share->hits == 0 ? "0" : percent(share));
         }
         rows.push_back(row);
       }

@@ -22,23 +22,6 @@ std::string first_error(const std::vector<config::Finding>& findings) {
   return "";
 }
 
-// The run's length is what a scenario's times in per cent refer to.
-template <class Unit>
-config::ScenarioResult load_scenario(const std::string& file, const Unit& unit, double run_s) {
-  if constexpr (requires { config::load_scenario(file, unit, run_s); })
-    return config::load_scenario(file, unit, run_s);
-  else
-    return config::load_scenario(file, unit);
-}
-
-template <class Change>
-double until_s(const Change& change) {
-  if constexpr (requires { change.until_s; })
-    return change.until_s;
-  else
-    return std::numeric_limits<double>::infinity();
-}
-
 Truth truth_of(const std::vector<sim::ChannelChange>& changes, int cv, int input, double time_s,
                double material, bool before) {
   double gain = 1.0;
@@ -46,7 +29,7 @@ Truth truth_of(const std::vector<sim::ChannelChange>& changes, int cv, int input
   double dead_time_s = 0.0;
   for (const sim::ChannelChange& change : changes) {
     if (change.cv != cv || change.input != input || change.from_s > time_s + kSame ||
-        until_s(change) <= time_s + kSame)
+        change.until_s <= time_s + kSame)
       continue;
     gain *= change.gain_ratio;
     time_constant *= change.time_constant_ratio;
@@ -61,7 +44,7 @@ std::vector<Timeline> timelines(const sim::LoopSetup& setup, double material) {
   std::vector<double> times = {0.0};
   for (const sim::ChannelChange& change : setup.changes) {
     times.push_back(change.from_s);
-    if (std::isfinite(until_s(change))) times.push_back(until_s(change));
+    if (std::isfinite(change.until_s)) times.push_back(change.until_s);
   }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -156,7 +139,7 @@ std::optional<Prepared> prepare(const Experiment& experiment, std::string& why_n
   try {
     if (experiment.scenario != "none") {
       config::ScenarioResult scenario =
-          load_scenario(config::find_scenario(experiment.scenario, unit_file), setup.unit,
+          config::load_scenario(config::find_scenario(experiment.scenario, unit_file), setup.unit,
                         experiment.samples * setup.unit.sample_time_s);
       if (!scenario.ok()) {
         why_not = first_error(scenario.findings);
