@@ -28,8 +28,9 @@ constexpr double kIndependent = 1e-6;
 constexpr double kMasked = 2.0;
 
 // In a regression on its own past F is too large on few rows, by a factor that falls with
-// columns / freedom (Bartlett 1937 on such factors): the residuals' lags come out too fast, and what
-// moves slowly seems too certain. Fitted on seeds that no study scores; see docs/validation.md.
+// columns / freedom (Bartlett 1937 on such factors): the residuals' lags come out too fast, and
+// what moves slowly seems too certain. Fitted on seeds that no study scores; see
+// docs/validation.md.
 constexpr double kUsualBartlett = 1.35;
 constexpr double kBlockBartlett = 0.26;
 

@@ -95,7 +95,8 @@ class ChannelEvaluator {
     double rest_square = 0.0;
   };
   struct Scale {
-    double variance;  // of the estimate's noise: residual variance, inflated by forgetting, few rows
+    double
+        variance;  // of the estimate's noise: residual variance, inflated by forgetting, few rows
     double block_variance;  // the same for the whole block at once
     double freedom;
   };

@@ -12,8 +12,8 @@ namespace {
 constexpr double kScaleRows = 300.0;
 constexpr double kClip = 3.0;
 
-// Shares of clipped rows from which on tails are somewhat and very heavy (normal: 0.3 %). With heavy
-// tails the same evidence takes more rows: of 528, p < 0.01 came in 10 % of healthy channels.
+// Shares of clipped rows from which on tails are somewhat and very heavy (normal: 0.3 %). With
+// heavy tails the same evidence takes more rows: of 528, p < 0.01 came in 10 % of healthy channels.
 constexpr double kNormalClipped = 0.008;
 constexpr double kHeavyClipped = 0.02;
 

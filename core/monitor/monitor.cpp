@@ -37,6 +37,11 @@ constexpr std::int64_t kHeld = 5;
 constexpr double kMostlyBad = 0.5;
 constexpr double kShareStep = 1.0 / 300.0;
 
+// Values that an instrument falsifies are not missing at random (it clips what is large): of more
+// than this share of them, over 1000 samples, no verdict is drawn.
+constexpr double kMuchImplausible = 0.1;
+constexpr double kImplausibleStep = 1.0 / 1000.0;
+
 // Of a 95 % interval, s.d.
 constexpr double kInterval = 1.96;
 
@@ -56,6 +61,7 @@ struct Monitor::State {
         held_inputs(Eigen::VectorXd::Zero(signal_counts.inputs())),
         residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
         held_residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
+        screen(signal_counts, predictions),
         correlation({signal_counts.inputs(), signal_counts.cv, settings.controlling_lags,
                      settings.first_lag, settings.last_lag, settings.correlation},
                     settings.lambda),
@@ -89,6 +95,7 @@ struct Monitor::State {
     std::int64_t unknown_run = 0;  // residuals unknown in a row up to now
     std::int64_t without_row = 0;  // samples in a row
     double bad_share = 0.0;
+    double implausible_share = 0.0;
     bool evaluated = false;  // in this sample
     bool judged = false;     // there is evidence from the present memory
   };
@@ -98,6 +105,7 @@ struct Monitor::State {
   }
   [[nodiscard]] Cv& of(int cv) { return cvs[static_cast<std::size_t>(cv)]; }
 
+  void take_frame(const Frame& frame);
   void pass_gap(std::int64_t missing);
   void read_inputs(const Frame& frame);
   void read_residuals(const Frame& frame);
@@ -118,12 +126,14 @@ struct Monitor::State {
   bool simulates = false;
   bool model_started = false;
   bool first = true;
-  std::int64_t last_interval = 0;
+  std::int64_t last_interval = 0;   // pushed
+  std::int64_t taken_interval = 0;  // left the screen
   std::int64_t samples = 0;
   Eigen::VectorXd inputs;       // NaN where unknown
   Eigen::VectorXd held_inputs;  // the last known values
   Eigen::VectorXd residuals;
   Eigen::VectorXd held_residuals;
+  Screen screen;
   std::vector<bool> acts;                  // per channel: the model has it
   std::vector<std::int64_t> unknown_runs;  // per input
   std::vector<InputMotion> motions;        // per input
@@ -176,6 +186,10 @@ void Monitor::State::read_residuals(const Frame& frame) {
   for (int j = 0; j < counts.cv; ++j) {
     const bool given = has_prediction[static_cast<std::size_t>(j)];
     Cv& cv = of(j);
+    const auto at = static_cast<std::size_t>(j);
+    const bool implausible = measured.quality[at] == Quality::kImplausible ||
+                             (given && predicted.quality[at] == Quality::kImplausible);
+    cv.implausible_share += kImplausibleStep * ((implausible ? 1.0 : 0.0) - cv.implausible_share);
     residuals(j) = kUnknown;
     if (!measured.usable(j) || (given && !predicted.usable(j))) {
       ++counters.bad_values;
@@ -274,20 +288,27 @@ void Monitor::push(const Frame& frame) {
     ++s.counters.out_of_order;
     return;
   }
-  const std::int64_t missing = s.first ? 0 : frame.interval - s.last_interval - 1;
   s.first = false;
   s.last_interval = frame.interval;
-  if (missing > 0) s.pass_gap(missing);
-  s.read_inputs(frame);
-  s.read_residuals(frame);
-  s.simulate();
-  s.take_sample();
-  s.evaluate();
-  for (int j = 0; j < s.counts.cv; ++j)
-    s.of(j).alarms.update(j, s.of(j).evaluated, s.test, s.scan, s.settings.alarm, [&](int input) {
-      s.transitions.push_back({j, input, s.of(j).alarms.state(input)});
+  const Frame* screened = s.screen.push(frame);
+  s.counters.implausible = s.screen.counters();
+  if (screened != nullptr) s.take_frame(*screened);
+}
+
+void Monitor::State::take_frame(const Frame& frame) {
+  const std::int64_t missing = samples == 0 ? 0 : frame.interval - taken_interval - 1;
+  taken_interval = frame.interval;
+  if (missing > 0) pass_gap(missing);
+  read_inputs(frame);
+  read_residuals(frame);
+  simulate();
+  take_sample();
+  evaluate();
+  for (int j = 0; j < counts.cv; ++j)
+    of(j).alarms.update(j, of(j).evaluated, test, scan, settings.alarm, [&](int input) {
+      transitions.push_back({j, input, of(j).alarms.state(input)});
     });
-  s.judge();
+  judge();
 }
 
 void Monitor::State::judge() {
@@ -309,12 +330,14 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   const bool outage = of(cv).without_row > settings.fir_lags &&
                       of(cv).unknown_run > settings.fir_lags && of(cv).settling == 0;
   const bool input_lost = unknown_runs[static_cast<std::size_t>(input)] > settings.fir_lags;
-  if (outage || input_lost || of(cv).bad_share > kMostlyBad) {
+  if (outage || input_lost || of(cv).bad_share > kMostlyBad ||
+      of(cv).implausible_share > kMuchImplausible) {
     channel.reason = Reason::kBadData;
     return;
   }
   if (!memory.ready() || alarms.isolating()) {
-    const bool bad = static_cast<double>(samples) >= 2.0 * memory.needed_rows() && !alarms.isolating();
+    const bool bad =
+        static_cast<double>(samples) >= 2.0 * memory.needed_rows() && !alarms.isolating();
     channel.reason = alarms.isolating() ? Reason::kIsolating
                      : bad              ? Reason::kBadData
                                         : Reason::kWarmingUp;

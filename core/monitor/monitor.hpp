@@ -9,6 +9,7 @@
 #include "core/model/model_spec.hpp"
 #include "core/monitor/settings.hpp"
 #include "core/signal/frame.hpp"
+#include "core/signal/screen.hpp"
 
 namespace mpm {
 
@@ -26,6 +27,7 @@ struct MonitorCounters {
   std::uint64_t missing = 0;       ///< intervals skipped between frames
   std::uint64_t out_of_order = 0;  ///< frames not newer than the last one; ignored
   std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed
+  ScreenCounters implausible;      ///< of these: good by their quality, but not by their look
 };
 
 /// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
@@ -42,7 +44,8 @@ class Monitor {
   ~Monitor();
 
   /// Takes the frame of the next interval; frames come in increasing interval order, a jump is a
-  /// gap, of which nothing is known.
+  /// gap, of which nothing is known. What is said after it rests on frames up to `Screen::kDelay`
+  /// before it.
   void push(const Frame& frame);
 
   [[nodiscard]] const ChannelStatus& channel(int cv, int input) const;

@@ -9,8 +9,9 @@
 
 namespace mpm {
 
-/// OPC UA severity of one value. Bad values are never used.
-enum class Quality : std::uint8_t { kGood = 0, kUncertain = 1, kBad = 2 };
+/// OPC UA severity of one value. Bad values are never used, nor those that claim to be good and
+/// that `Screen` finds implausible.
+enum class Quality : std::uint8_t { kGood = 0, kUncertain = 1, kBad = 2, kImplausible = 3 };
 
 /// The groups of signals of a unit; one DDS topic each (aux: files only).
 enum class SignalKind : std::uint8_t { kMv, kDv, kCv, kPrediction, kSetpoint, kAux };
@@ -51,7 +52,7 @@ struct SignalBlock {
   [[nodiscard]] int size() const { return static_cast<int>(values.size()); }
   /// True where the value may enter a statistic: finite and not bad.
   [[nodiscard]] bool usable(int index) const {
-    return quality[static_cast<std::size_t>(index)] != Quality::kBad &&
+    return quality[static_cast<std::size_t>(index)] <= Quality::kUncertain &&
            std::isfinite(values(index));
   }
 };

@@ -41,6 +41,9 @@ DetectReport run(const config::UnitConfig& unit, io::FrameSource& source, Journa
   report.missing = counters.missing;
   report.out_of_order = counters.out_of_order;
   report.bad_values = counters.bad_values;
+  report.frozen = counters.implausible.frozen;
+  report.clipped = counters.implausible.clipped;
+  report.spikes = counters.implausible.spikes;
   report.channels = monitor.channels();
   return report;
 }

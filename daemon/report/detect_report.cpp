@@ -43,6 +43,9 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
                               {"missing_samples", report.missing},
                               {"out_of_order_samples", report.out_of_order},
                               {"bad_values", report.bad_values},
+                              {"frozen_values", report.frozen},
+                              {"clipped_values", report.clipped},
+                              {"spikes", report.spikes},
                               {"channels", nlohmann::ordered_json::array()},
                               {"alarms", nlohmann::ordered_json::array()}};
   for (const ChannelRecord& channel : report.channels) {
@@ -66,6 +69,12 @@ std::string to_text(const DetectReport& report) {
   if (report.missing > 0) text += ", " + std::to_string(report.missing) + " missing";
   if (report.out_of_order > 0) text += ", " + std::to_string(report.out_of_order) + " out of order";
   if (report.bad_values > 0) text += ", " + std::to_string(report.bad_values) + " bad values";
+  const auto implausible = [&](std::uint64_t count, const char* what) {
+    if (count > 0) text += ", " + std::to_string(count) + " of them " + what;
+  };
+  implausible(report.frozen, "frozen");
+  implausible(report.clipped, "clipped");
+  implausible(report.spikes, "spikes");
   text += '\n';
   for (const ChannelRecord& channel : report.channels) text += "  " + describe(channel) + '\n';
   for (const AlarmRecord& alarm : report.alarms)

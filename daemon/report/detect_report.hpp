@@ -17,6 +17,7 @@ struct DetectReport {
   std::uint64_t missing = 0;       ///< intervals without a row
   std::uint64_t out_of_order = 0;  ///< rows whose time did not grow
   std::uint64_t bad_values = 0;
+  std::uint64_t frozen = 0, clipped = 0, spikes = 0;  ///< of these: only by their look
   std::vector<ChannelRecord> channels;
   std::vector<AlarmRecord> alarms;
 

@@ -143,9 +143,9 @@ std::vector<Row> verdict_rows(const std::vector<const Summary*>& summaries) {
 
 std::vector<Row> power_rows(const std::vector<const Summary*>& summaries) {
   std::vector<Row> rows = {{"experiment", "N", "seeds", "wrong channels called mismatch",
-                            "wrong ones on top", "runs with a right alarm",
-                            "first alarm on a wrong channel", "samples to it, median (quartiles)",
-                            "healthy channels called mismatch", "false alarms"}};
+                            "wrong ones on top", "runs with a right alarm", "first alarm right",
+                            "samples to it, median (quartiles)", "healthy channels called mismatch",
+                            "false alarms"}};
   for (const Summary* summary : summaries) {
     const Experiment& experiment = summary->experiment;
     for (const int at : reading_times(experiment)) {
@@ -164,7 +164,7 @@ std::vector<Row> power_rows(const std::vector<const Summary*>& summaries) {
 
 std::vector<Row> change_rows(const std::vector<const Summary*>& summaries) {
   std::vector<Row> rows = {{"experiment", "N", "seeds", "runs with a right alarm",
-                            "samples to it, median (quartiles)", "first alarm on a wrong channel",
+                            "samples to it, median (quartiles)", "first alarm right",
                             "alarms on wrong channels", "false alarms",
                             "healthy channels in alarm at the end", "cleared after the return",
                             "samples to that, median (quartiles)"}};

@@ -140,7 +140,7 @@ std::optional<Prepared> prepare(const Experiment& experiment, std::string& why_n
     if (experiment.scenario != "none") {
       config::ScenarioResult scenario =
           config::load_scenario(config::find_scenario(experiment.scenario, unit_file), setup.unit,
-                        experiment.samples * setup.unit.sample_time_s);
+                                experiment.samples * setup.unit.sample_time_s);
       if (!scenario.ok()) {
         why_not = first_error(scenario.findings);
         return std::nullopt;

@@ -1,0 +1,164 @@
+#include "core/signal/screen.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+// Odds against a run of repeated values being chance.
+constexpr double kChance = 1e-6;
+
+// Values exactly at the end of a signal's range that make that end a limit of the instrument.
+constexpr int kEndHits = 3;
+
+// A spike leaves and comes back by this many times the usual difference.
+constexpr double kSpike = 6.0;
+constexpr double kScaleSamples = 300.0;
+constexpr double kFirstSamples = 30.0;
+
+}  // namespace
+
+void Screen::Repeats::take(double value) {
+  if (taken == 0) {
+    low = high = last = before_last = value;
+    at_low = at_high = 1;
+    taken = 1;
+    return;
+  }
+  const bool same = value == last;
+  // Of a long run only its beginning tells of the resolution.
+  if (!coarse() || !frozen()) {
+    counted += 1.0;
+    repeated += same ? 1.0 : 0.0;
+  }
+  const auto hit = [&](double& end, int& hits, bool beyond) {
+    if (beyond) {
+      end = value;
+      hits = 1;
+    } else if (value == end) {
+      hits = std::min(hits + 1, 1000);
+    }
+  };
+  hit(low, at_low, value < low);
+  hit(high, at_high, value > high);
+  const bool at_an_end = value == low || value == high;  // where a clipped signal returns to
+  if (!same && taken > 1 && value == before_last && !at_an_end)
+    returns = std::min(returns + 1, kReturns);
+  run = same ? run + 1 : 0;
+  if (!same) before_last = last;
+  last = value;
+  taken = std::min(taken + 1, 2);
+}
+
+bool Screen::Repeats::frozen() const {
+  if (!coarse()) return run > 0;
+  return run > 0 && run * std::log(repeated / counted) < std::log(kChance);
+}
+
+bool Screen::Repeats::at_end() const {
+  if (coarse() || !(high > low)) return false;  // a coarse signal is there by right
+  return (last == low && at_low >= kEndHits) || (last == high && at_high >= kEndHits);
+}
+
+Screen::Screen(const SignalCounts& counts, std::vector<bool> has_prediction)
+    : counts_(counts),
+      has_prediction_(std::move(has_prediction)),
+      inputs_matter_(std::find(has_prediction_.begin(), has_prediction_.end(), false) !=
+                     has_prediction_.end()),
+      ring_(kDelay + 1, Frame(counts)),
+      jumps_(static_cast<std::size_t>(counts.cv)) {
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+    repeats_.emplace_back(static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind))));
+}
+
+const Frame* Screen::push(const Frame& frame) {
+  position_ = (position_ + 1) % (kDelay + 1);
+  ring_[static_cast<std::size_t>(position_)] = frame;
+  held_ = std::min(held_ + 1, kDelay + 1);
+
+  for (const SignalKind kind :
+       {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction}) {
+    const SignalBlock& block = frame[kind];
+    for (int i = 0; i < block.size(); ++i)
+      if (block.usable(i))
+        repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)].take(block.values(i));
+  }
+  const auto& mvs = repeats_[static_cast<std::size_t>(SignalKind::kMv)];
+  const bool all_rest = std::all_of(mvs.begin(), mvs.end(),
+                                    [](const Repeats& repeats) { return repeats.run > 0; });
+  if (inputs_matter_) {
+    screen_repeats(SignalKind::kMv, all_rest);
+    screen_repeats(SignalKind::kDv, false);
+  }
+  screen_repeats(SignalKind::kPrediction, all_rest);
+  screen_repeats(SignalKind::kCv, false);
+  if (held_ > kDelay)
+    for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
+  return held_ > kDelay ? &ago(kDelay) : nullptr;
+}
+
+void Screen::screen_repeats(SignalKind kind, bool may_rest) {
+  const bool input = kind == SignalKind::kMv || kind == SignalKind::kDv;
+  for (int i = 0; i < ago(0)[kind].size(); ++i) {
+    const Repeats& repeats = repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    if (!ago(0)[kind].usable(i)) continue;
+    if (may_rest || (input && repeats.at_end())) continue;
+    if (repeats.at_end()) mark(kind, i, 0, counters_.clipped);
+    if (!repeats.frozen()) continue;
+    for (int frames = 0; frames < std::min({repeats.run, kDelay + 1, held_}); ++frames)
+      mark(kind, i, frames, counters_.frozen);
+  }
+}
+
+void Screen::mark(SignalKind kind, int index, int frames, std::uint64_t& counter) {
+  Quality& quality = ago(frames)[kind].quality[static_cast<std::size_t>(index)];
+  if (quality > Quality::kUncertain) return;
+  quality = Quality::kImplausible;
+  ++counter;
+}
+
+// What should move smoothly: the residual where a prediction comes along, else the measurement.
+bool Screen::level(int cv, int frames, double& value) {
+  const Frame& frame = ago(frames);
+  if (!frame[SignalKind::kCv].usable(cv)) return false;
+  value = frame[SignalKind::kCv].values(cv);
+  if (!has_prediction_[static_cast<std::size_t>(cv)]) return true;
+  if (!frame[SignalKind::kPrediction].usable(cv)) return false;
+  value -= frame[SignalKind::kPrediction].values(cv);
+  return true;
+}
+
+void Screen::screen_spikes(int cv) {
+  // Oldest first: levels[0] is about to leave, levels[1] to be judged against what follows it.
+  std::array<double, kDelay + 1> levels{};
+  std::array<bool, kDelay + 1> known{};
+  for (int f = 0; f <= kDelay; ++f)
+    known[static_cast<std::size_t>(f)] = level(cv, kDelay - f, levels[static_cast<std::size_t>(f)]);
+  Jumps& jumps = jumps_[static_cast<std::size_t>(cv)];
+  ++jumps.since_home;
+  if (known[0]) {
+    jumps.home = levels[0];
+    jumps.since_home = 0;
+  }
+  if (jumps.samples > kFirstSamples && jumps.since_home <= kDelay && known[1]) {
+    const double away = levels[1] - jumps.home;
+    const auto back_at = [&](std::size_t next) {
+      if (!known[next]) return false;
+      const double home = levels[next] - levels[1];
+      return std::abs(home) > kSpike * jumps.scale && away * home < 0.0 &&
+             std::abs(levels[next] - jumps.home) < 0.5 * std::abs(away);
+    };
+    if (std::abs(away) > kSpike * jumps.scale && (back_at(2) || back_at(3)))
+      mark(SignalKind::kCv, cv, kDelay - 1, counters_.spikes);
+  }
+  if (!known[2] || !known[3]) return;
+  const double difference = std::abs(levels[3] - levels[2]);
+  jumps.samples += 1.0;
+  const double bounded =
+      jumps.samples > kFirstSamples ? std::min(difference, 3.0 * jumps.scale) : difference;
+  jumps.scale += (bounded - jumps.scale) / std::min(jumps.samples, kScaleSamples);
+}
+
+}  // namespace mpm

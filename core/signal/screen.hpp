@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/signal/frame.hpp"
+
+namespace mpm {
+
+/// What the screen found implausible so far, in values.
+struct ScreenCounters {
+  std::uint64_t frozen = 0;
+  std::uint64_t clipped = 0;
+  std::uint64_t spikes = 0;
+};
+
+/// Looks at the values that claim to be good and marks those that no process gives: a signal
+/// that repeats one value longer than its resolution explains (frozen), rests at the end of its
+/// range (clipped), or jumps away and right back (spike). To judge a value by what follows it, frames
+/// pass with a delay of `kDelay`.
+///
+/// Inputs may rest: a controller in manual or at a limit holds them. They count as frozen only
+/// where `inputs_matter` (predictions are simulated from them), inside their range, and while
+/// another MV moves; predictions only while an MV moves. What a signal's resolution explains is
+/// learnt: a coarse signal also returns to the value before the last, a fine one never does. Of a
+/// fine one any repetition is frozen; of a coarse one, with a share r of repetitions, a run is
+/// frozen once r^length falls below one in a million. No allocation after construction.
+class Screen {
+ public:
+  static constexpr int kDelay = 3;
+  /// Returns that make a signal a coarse one.
+  static constexpr int kReturns = 3;
+
+  Screen(const SignalCounts& counts, std::vector<bool> has_prediction);
+
+  /// Takes a frame; the one `kDelay` frames ago with its qualities as found, null for the first
+  /// ones. Valid until the next call.
+  [[nodiscard]] const Frame* push(const Frame& frame);
+
+  [[nodiscard]] const ScreenCounters& counters() const { return counters_; }
+
+ private:
+  /// One signal's repetitions.
+  struct Repeats {
+    double last = 0.0, before_last = 0.0;
+    int run = 0;                            // values in a row equal to the one before
+    int returns = 0;                        // to the value before the last
+    double repeated = 0.5, counted = 50.0;  // prior: one in a hundred
+    double low = 0.0, high = 0.0;
+    int at_low = 0, at_high = 0;  // how often exactly there
+    int taken = 0;
+    void take(double value);
+    [[nodiscard]] bool coarse() const { return returns >= kReturns; }
+    [[nodiscard]] bool frozen() const;
+    [[nodiscard]] bool at_end() const;
+  };
+  /// One CV's residual (or measurement) for spikes.
+  struct Jumps {
+    double scale = 0.0;  // of the differences
+    double samples = 0.0;
+    double home = 0.0;   // last level that left without a mark
+    int since_home = 0;  // frames
+  };
+  [[nodiscard]] Frame& ago(int frames) {
+    return ring_[static_cast<std::size_t>((position_ + kDelay + 1 - frames) % (kDelay + 1))];
+  }
+  void screen_repeats(SignalKind kind, bool may_rest);
+  void mark(SignalKind kind, int index, int frames, std::uint64_t& counter);
+  void screen_spikes(int cv);
+  [[nodiscard]] bool level(int cv, int frames, double& value);
+
+  SignalCounts counts_;
+  std::vector<bool> has_prediction_;
+  bool inputs_matter_ = false;
+  std::vector<Frame> ring_;
+  int position_ = 0;
+  int held_ = 0;
+  std::vector<std::vector<Repeats>> repeats_;  // per kind
+  std::vector<Jumps> jumps_;                   // per CV
+  ScreenCounters counters_;
+};
+
+}  // namespace mpm

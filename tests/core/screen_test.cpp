@@ -1,0 +1,122 @@
+#include "core/signal/screen.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "tests/allocation_counter.hpp"
+#include "tests/core/counter_noise.hpp"
+
+namespace mpm {
+namespace {
+
+const SignalCounts kCounts{1, 0, 1, 0};
+
+// 1000 samples of a noisy unit; `spoil` falsifies a frame. Returns which CV values got through.
+std::vector<bool> usable(Screen& screen, const std::function<void(int, Frame&)>& spoil,
+                         double resolution = 0.0) {
+  std::vector<bool> passed;
+  double noise = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    Frame frame(kCounts);
+    for (SignalBlock& block : frame.blocks)
+      std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
+    frame.interval = k;
+    noise = 0.9 * noise + 0.1 * test::uniform(40, k);
+    const auto rounded = [&](double value) {
+      return resolution > 0.0 ? std::round(value / resolution) * resolution : value;
+    };
+    frame[SignalKind::kMv].values(0) = test::uniform(41, k);
+    frame[SignalKind::kPrediction].values(0) = std::sin(0.01 * k);
+    frame[SignalKind::kCv].values(0) = rounded(std::sin(0.01 * k) + noise);
+    spoil(k, frame);
+    if (const Frame* out = screen.push(frame)) {
+      CHECK(out->interval == k - Screen::kDelay);
+      passed.push_back((*out)[SignalKind::kCv].usable(0));
+    }
+  }
+  return passed;
+}
+
+int rejected(const std::vector<bool>& passed) {
+  return static_cast<int>(std::count(passed.begin(), passed.end(), false));
+}
+
+TEST_CASE("what a process gives passes the screen") {
+  Screen screen(kCounts, {true});
+  CHECK(rejected(usable(screen, [](int, Frame&) {})) == 0);
+  // A coarse sensor repeats itself. Until it is known to be coarse a
+  // few are lost.
+  for (const double resolution : {0.02, 0.1}) {
+    Screen coarse(kCounts, {true});
+    CAPTURE(resolution);
+    CHECK(rejected(usable(coarse, [](int, Frame&) {}, resolution)) < 20);
+  }
+}
+
+TEST_CASE("a frozen sensor is caught from its first repetition on, and let go at once") {
+  Screen screen(kCounts, {true});
+  double stuck = 0.0;
+  const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
+    if (k == 500) stuck = frame[SignalKind::kCv].values(0);
+    if (k > 500 && k < 560) frame[SignalKind::kCv].values(0) = stuck;
+  });
+  for (std::size_t k = 0; k < passed.size(); ++k) CHECK(passed[k] == !(k > 500 && k < 560));
+  CHECK(screen.counters().frozen == 59);
+}
+
+TEST_CASE("values at the end of an instrument's range are caught") {
+  Screen screen(kCounts, {true});
+  int clipped = 0;
+  const std::vector<bool> passed = usable(screen, [&](int, Frame& frame) {
+    double& value = frame[SignalKind::kCv].values(0);
+    if (value > 0.95) ++clipped;
+    value = std::min(value, 0.95);
+  });
+  REQUIRE(clipped > 100);
+  CHECK(rejected(passed) >= clipped - 8);  // the first few, before the end is known
+  CHECK(rejected(passed) <= clipped);
+}
+
+TEST_CASE("spikes of one and two samples are caught, steps are not") {
+  Screen screen(kCounts, {true});
+  const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
+    double& value = frame[SignalKind::kCv].values(0);
+    if (k == 300) value += 3.0;
+    if (k == 400 || k == 401) value -= 3.0;
+    if (k >= 600) value += 3.0;
+  });
+  for (std::size_t k = 0; k < passed.size(); ++k)
+    CHECK(passed[k] == (k != 300 && k != 400 && k != 401));
+  CHECK(screen.counters().spikes == 3);
+}
+
+TEST_CASE("a controller in manual is no frozen sensor") {
+  for (const bool predicted : {true, false}) {
+    Screen screen(kCounts, {predicted});
+    int lost = 0;
+    const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
+      if (k < 400) return;
+      frame[SignalKind::kMv].values(0) = 0.123;
+      frame[SignalKind::kPrediction].values(0) = 0.5;
+    });
+    lost = rejected(passed);
+    CHECK(lost == 0);
+    CHECK(screen.counters().frozen == 0);
+  }
+}
+
+TEST_CASE("the screen allocates nothing per frame") {
+  Screen screen(kCounts, {true});
+  Frame frame(kCounts);
+  const std::uint64_t before = test::allocation_count();
+  for (int k = 0; k < 100; ++k) {
+    frame.interval = k;
+    static_cast<void>(screen.push(frame));
+  }
+  CHECK(test::allocation_count() == before);
+}
+
+}  // namespace
+}  // namespace mpm
