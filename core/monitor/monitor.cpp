@@ -45,6 +45,15 @@ constexpr double kImplausibleStep = 1.0 / 1000.0;
 // Of a 95 % interval, s.d.
 constexpr double kInterval = 1.96;
 
+std::vector<bool> channels_of(const LinearModel& model, const DerivedSettings& settings) {
+  std::vector<bool> acts;
+  const int length = settings.settling_samples + settings.fir_lags;
+  for (int i = 0; i < model.input_count(); ++i)
+    for (int j = 0; j < model.cv_count(); ++j)
+      acts.push_back(model.impulse_response(j, i, length).cwiseAbs().maxCoeff() > 0.0);
+  return acts;
+}
+
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -61,7 +70,9 @@ struct Monitor::State {
         held_inputs(Eigen::VectorXd::Zero(signal_counts.inputs())),
         residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
         held_residuals(Eigen::VectorXd::Zero(signal_counts.cv)),
-        screen(signal_counts, predictions),
+        acts(channels_of(model, settings)),
+        screen(signal_counts, predictions, acts,
+               static_cast<int>(std::ceil(model.longest_dead_time_samples()))),
         correlation({signal_counts.inputs(), signal_counts.cv, settings.controlling_lags,
                      settings.first_lag, settings.last_lag, settings.correlation},
                     settings.lambda),
@@ -77,11 +88,6 @@ struct Monitor::State {
     for (int i = 0; i < counts.inputs(); ++i) {
       motions.emplace_back(settings.remembered / 4.0);
       unknown_runs.push_back(0);
-      for (int j = 0; j < counts.cv; ++j) {
-        const Eigen::VectorXd pulse =
-            model.impulse_response(j, i, settings.settling_samples + settings.fir_lags);
-        acts.push_back(pulse.cwiseAbs().maxCoeff() > 0.0);
-      }
     }
     simulates =
         std::find(has_prediction.begin(), has_prediction.end(), false) != has_prediction.end();
@@ -133,8 +139,8 @@ struct Monitor::State {
   Eigen::VectorXd held_inputs;  // the last known values
   Eigen::VectorXd residuals;
   Eigen::VectorXd held_residuals;
+  std::vector<bool> acts;  // per channel, input-major: the model has it
   Screen screen;
-  std::vector<bool> acts;                  // per channel: the model has it
   std::vector<std::int64_t> unknown_runs;  // per input
   std::vector<InputMotion> motions;        // per input
   LaggedCorrelation correlation;

@@ -62,11 +62,15 @@ bool Screen::Repeats::at_end() const {
   return (last == low && at_low >= kEndHits) || (last == high && at_high >= kEndHits);
 }
 
-Screen::Screen(const SignalCounts& counts, std::vector<bool> has_prediction)
+Screen::Screen(const SignalCounts& counts, std::vector<bool> has_prediction, std::vector<bool> acts,
+               int dead_time)
     : counts_(counts),
       has_prediction_(std::move(has_prediction)),
+      acts_(std::move(acts)),
+      dead_time_(dead_time),
       inputs_matter_(std::find(has_prediction_.begin(), has_prediction_.end(), false) !=
                      has_prediction_.end()),
+      since_rest_(static_cast<std::size_t>(counts.inputs()), 0),
       ring_(kDelay + 1, Frame(counts)),
       jumps_(static_cast<std::size_t>(counts.cv)) {
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
@@ -85,26 +89,47 @@ const Frame* Screen::push(const Frame& frame) {
       if (block.usable(i))
         repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)].take(block.values(i));
   }
-  const auto& mvs = repeats_[static_cast<std::size_t>(SignalKind::kMv)];
-  const bool all_rest = std::all_of(mvs.begin(), mvs.end(),
-                                    [](const Repeats& repeats) { return repeats.run > 0; });
+  follow_inputs();
   if (inputs_matter_) {
-    screen_repeats(SignalKind::kMv, all_rest);
-    screen_repeats(SignalKind::kDv, false);
+    screen_repeats(SignalKind::kMv);
+    screen_repeats(SignalKind::kDv);
   }
-  screen_repeats(SignalKind::kPrediction, all_rest);
-  screen_repeats(SignalKind::kCv, false);
+  screen_repeats(SignalKind::kPrediction);
+  screen_repeats(SignalKind::kCv);
   if (held_ > kDelay)
     for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
   return held_ > kDelay ? &ago(kDelay) : nullptr;
 }
 
-void Screen::screen_repeats(SignalKind kind, bool may_rest) {
+void Screen::follow_inputs() {
+  all_mvs_rest_ = true;
+  for (int i = 0; i < counts_.inputs(); ++i) {
+    const bool is_mv = i < counts_.mv;
+    const auto& of_kind =
+        repeats_[static_cast<std::size_t>(is_mv ? SignalKind::kMv : SignalKind::kDv)];
+    const bool rests = of_kind[static_cast<std::size_t>(is_mv ? i : i - counts_.mv)].run > 0;
+    int& since = since_rest_[static_cast<std::size_t>(i)];
+    since = rests ? 0 : since + 1;
+    if (is_mv && !rests) all_mvs_rest_ = false;
+  }
+}
+
+bool Screen::may_rest(SignalKind kind, int index) const {
+  if (kind == SignalKind::kMv) return all_mvs_rest_;
+  if (kind != SignalKind::kPrediction) return false;
+  for (int i = 0; i < counts_.inputs(); ++i)
+    if (acts_[static_cast<std::size_t>(i * counts_.cv + index)] &&
+        since_rest_[static_cast<std::size_t>(i)] > dead_time_ + 1)
+      return false;
+  return true;
+}
+
+void Screen::screen_repeats(SignalKind kind) {
   const bool input = kind == SignalKind::kMv || kind == SignalKind::kDv;
   for (int i = 0; i < ago(0)[kind].size(); ++i) {
     const Repeats& repeats = repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
     if (!ago(0)[kind].usable(i)) continue;
-    if (may_rest || (input && repeats.at_end())) continue;
+    if (may_rest(kind, i) || (input && repeats.at_end())) continue;
     if (repeats.at_end()) mark(kind, i, 0, counters_.clipped);
     if (!repeats.frozen()) continue;
     for (int frames = 0; frames < std::min({repeats.run, kDelay + 1, held_}); ++frames)

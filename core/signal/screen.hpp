@@ -16,22 +16,25 @@ struct ScreenCounters {
 
 /// Looks at the values that claim to be good and marks those that no process gives: a signal
 /// that repeats one value longer than its resolution explains (frozen), rests at the end of its
-/// range (clipped), or jumps away and right back (spike). To judge a value by what follows it, frames
-/// pass with a delay of `kDelay`.
+/// range (clipped), or jumps away and right back (spike). To judge a value by what follows it,
+/// frames pass with a delay of `kDelay`.
 ///
 /// Inputs may rest: a controller in manual or at a limit holds them. They count as frozen only
 /// where `inputs_matter` (predictions are simulated from them), inside their range, and while
-/// another MV moves; predictions only while an MV moves. What a signal's resolution explains is
-/// learnt: a coarse signal also returns to the value before the last, a fine one never does. Of a
-/// fine one any repetition is frozen; of a coarse one, with a share r of repetitions, a run is
-/// frozen once r^length falls below one in a million. No allocation after construction.
+/// another MV moves; predictions only where an input that acts on them has moved all the time of
+/// its dead time. What a signal's resolution explains is learnt: a coarse signal also returns to
+/// the value before the last, a fine one never does. Of a fine one any repetition is frozen; of a
+/// coarse one, with a share r of repetitions, a run is frozen once r^length falls below one in a
+/// million. No allocation after construction.
 class Screen {
  public:
   static constexpr int kDelay = 3;
   /// Returns that make a signal a coarse one.
   static constexpr int kReturns = 3;
 
-  Screen(const SignalCounts& counts, std::vector<bool> has_prediction);
+  /// `acts[input * cvs + cv]`: the model has that channel; `dead_time`: its longest, samples.
+  Screen(const SignalCounts& counts, std::vector<bool> has_prediction, std::vector<bool> acts,
+         int dead_time);
 
   /// Takes a frame; the one `kDelay` frames ago with its qualities as found, null for the first
   /// ones. Valid until the next call.
@@ -64,14 +67,20 @@ class Screen {
   [[nodiscard]] Frame& ago(int frames) {
     return ring_[static_cast<std::size_t>((position_ + kDelay + 1 - frames) % (kDelay + 1))];
   }
-  void screen_repeats(SignalKind kind, bool may_rest);
+  void follow_inputs();
+  [[nodiscard]] bool may_rest(SignalKind kind, int index) const;
+  void screen_repeats(SignalKind kind);
   void mark(SignalKind kind, int index, int frames, std::uint64_t& counter);
   void screen_spikes(int cv);
   [[nodiscard]] bool level(int cv, int frames, double& value);
 
   SignalCounts counts_;
   std::vector<bool> has_prediction_;
+  std::vector<bool> acts_;
+  int dead_time_;
   bool inputs_matter_ = false;
+  bool all_mvs_rest_ = true;
+  std::vector<int> since_rest_;  // per input, samples
   std::vector<Frame> ring_;
   int position_ = 0;
   int held_ = 0;

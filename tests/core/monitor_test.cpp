@@ -233,6 +233,87 @@ TEST_CASE("the mean line decides where the settings say so, on the correlation t
   CHECK(monitor.channel(0, 1).verdict == Verdict::kMismatch);
 }
 
+TEST_CASE("units of any size give the same verdicts") {
+  // Input 0 in units 2^20 larger, CV 1 in units 2^20 smaller: powers of two, so that no rounding
+  // differs and the statistics are the same to the last digits.
+  Experiment experiment;
+  experiment.gain_ratio = 0.9;
+  Experiment scaled = experiment;
+  const double input_scale = 0x1p20;
+  const double cv_scale = 0x1p-20;
+  for (ChannelSpec& channel : scaled.model.channels) {
+    double& gain = std::get<TransferFunction>(channel.dynamics).gain;
+    if (channel.input == 0) gain /= input_scale;
+    if (channel.cv == 1) gain *= cv_scale;
+  }
+  scaled.model.input_origin(0) *= input_scale;
+  scaled.model.output_origin(1) *= cv_scale;
+  Monitor plain_monitor = experiment.monitor();
+  Monitor scaled_monitor = scaled.monitor();
+  experiment.run(1500, [&](const Frame& original) {
+    plain_monitor.push(original);
+    Frame frame = original;
+    frame[SignalKind::kMv].values(0) *= input_scale;
+    frame[SignalKind::kCv].values(1) *= cv_scale;
+    frame[SignalKind::kPrediction].values(1) *= cv_scale;
+    scaled_monitor.push(frame);
+  });
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      CAPTURE(j, i);
+      const ChannelStatus& a = plain_monitor.channel(j, i);
+      const ChannelStatus& b = scaled_monitor.channel(j, i);
+      CHECK(a.verdict == b.verdict);
+      CHECK(b.statistic == Approx(a.statistic).epsilon(1e-6));
+      CHECK(b.effect_size / b.model_gain == Approx(a.effect_size / a.model_gain).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("a CV without model: an input that moves it after all is found") {
+  Experiment experiment;
+  ModelSpec plant = experiment.model;
+  experiment.model.channels.resize(2);  // CV 1 has none left
+  for (const double hidden : {0.0, 0.3}) {
+    ModelSpec spec = plant;
+    std::get<TransferFunction>(spec.channels[2].dynamics).gain = hidden;
+    std::get<TransferFunction>(spec.channels[3].dynamics).gain = 0.0;
+    LinearModel process(spec);
+    Monitor monitor = experiment.monitor();
+    experiment.run(2000, [&](const Frame& original) {
+      Frame frame = original;
+      frame[SignalKind::kCv].values(1) += process.output()(1) - spec.output_origin(1);
+      monitor.push(frame);
+      process.advance(frame[SignalKind::kMv].values);
+    });
+    CAPTURE(hidden);
+    // Without a model there is no gain of which 25 % should be visible: never a mere "match".
+    CHECK(monitor.channel(1, 0).verdict ==
+          (hidden > 0.0 ? Verdict::kMismatch : Verdict::kUndetermined));
+    CHECK(monitor.channel(1, 1).verdict == Verdict::kUndetermined);
+    CHECK(monitor.channel(0, 0).verdict == Verdict::kMatch);
+  }
+}
+
+TEST_CASE("integrating channels: silent when right, found when wrong") {
+  Experiment experiment;
+  std::get<TransferFunction>(experiment.model.channels[1].dynamics) =
+      TransferFunction{-0.05, {}, 0, 2, true};  // a level, with the noise of its other channel
+  for (const double ratio : {1.0, 0.8}) {
+    experiment.gain_ratio = ratio;
+    Monitor monitor = experiment.monitor();
+    int transitions = 0;
+    experiment.run(3000, [&](const Frame& frame) {
+      monitor.push(frame);
+      transitions += static_cast<int>(monitor.transitions().size());
+    });
+    CAPTURE(ratio);
+    CHECK(monitor.channel(0, 1).verdict == (ratio < 1.0 ? Verdict::kMismatch : Verdict::kMatch));
+    CHECK(monitor.channel(0, 0).verdict != Verdict::kMismatch);
+    CHECK(transitions == (ratio < 1.0 ? 1 : 0));
+    for (int i = 0; i < 2; ++i) CHECK(monitor.channel(1, i).verdict == Verdict::kMatch);
+  }
+}
+
 TEST_CASE("before there is enough data nothing is said") {
   const Experiment experiment;
   Monitor monitor = experiment.monitor();

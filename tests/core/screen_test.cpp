@@ -44,19 +44,20 @@ int rejected(const std::vector<bool>& passed) {
 }
 
 TEST_CASE("what a process gives passes the screen") {
-  Screen screen(kCounts, {true});
+  Screen screen(kCounts, {true}, {true}, 0);
   CHECK(rejected(usable(screen, [](int, Frame&) {})) == 0);
   // A coarse sensor repeats itself. Until it is known to be coarse a
   // few are lost.
   for (const double resolution : {0.02, 0.1}) {
-    Screen coarse(kCounts, {true});
+    Screen coarse(kCounts, {true}, {true}, 0);
     CAPTURE(resolution);
-    CHECK(rejected(usable(coarse, [](int, Frame&) {}, resolution)) < 20);
+    CHECK(rejected(usable(
+              coarse, [](int, Frame&) {}, resolution)) < 20);
   }
 }
 
 TEST_CASE("a frozen sensor is caught from its first repetition on, and let go at once") {
-  Screen screen(kCounts, {true});
+  Screen screen(kCounts, {true}, {true}, 0);
   double stuck = 0.0;
   const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
     if (k == 500) stuck = frame[SignalKind::kCv].values(0);
@@ -67,7 +68,7 @@ TEST_CASE("a frozen sensor is caught from its first repetition on, and let go at
 }
 
 TEST_CASE("values at the end of an instrument's range are caught") {
-  Screen screen(kCounts, {true});
+  Screen screen(kCounts, {true}, {true}, 0);
   int clipped = 0;
   const std::vector<bool> passed = usable(screen, [&](int, Frame& frame) {
     double& value = frame[SignalKind::kCv].values(0);
@@ -80,7 +81,7 @@ TEST_CASE("values at the end of an instrument's range are caught") {
 }
 
 TEST_CASE("spikes of one and two samples are caught, steps are not") {
-  Screen screen(kCounts, {true});
+  Screen screen(kCounts, {true}, {true}, 0);
   const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
     double& value = frame[SignalKind::kCv].values(0);
     if (k == 300) value += 3.0;
@@ -94,7 +95,7 @@ TEST_CASE("spikes of one and two samples are caught, steps are not") {
 
 TEST_CASE("a controller in manual is no frozen sensor") {
   for (const bool predicted : {true, false}) {
-    Screen screen(kCounts, {predicted});
+    Screen screen(kCounts, {predicted}, {true}, 0);
     int lost = 0;
     const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
       if (k < 400) return;
@@ -108,7 +109,7 @@ TEST_CASE("a controller in manual is no frozen sensor") {
 }
 
 TEST_CASE("the screen allocates nothing per frame") {
-  Screen screen(kCounts, {true});
+  Screen screen(kCounts, {true}, {true}, 0);
   Frame frame(kCounts);
   const std::uint64_t before = test::allocation_count();
   for (int k = 0; k < 100; ++k) {
