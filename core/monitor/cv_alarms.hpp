@@ -45,6 +45,8 @@ class CvAlarms {
   }
   [[nodiscard]] bool any() const;
   [[nodiscard]] bool isolating() const { return isolating_; }
+  /// Of no change, while isolating.
+  [[nodiscard]] double change_p_value() const { return change_p_value_; }
 
  private:
   void step(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
@@ -59,6 +61,7 @@ class CvAlarms {
   std::vector<Condition> conditions_;
   std::vector<AlarmState> before_;
   bool isolating_ = false;
+  double change_p_value_ = 1.0;
   std::int64_t since_scan_ = 0;
 };
 

@@ -342,6 +342,12 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
     return;
   }
   if (!memory.ready() || alarms.isolating()) {
+    const double effective_samples = channel.effective_samples;
+    channel = ChannelStatus{};  // what was known before says nothing now
+    channel.effective_samples = effective_samples;
+    find_peak(cv, input, channel);
+    if (alarms.isolating() && alarms.state(input) == AlarmState::kActive)
+      channel.p_value = alarms.change_p_value();
     const bool bad =
         static_cast<double>(samples) >= 2.0 * memory.needed_rows() && !alarms.isolating();
     channel.reason = alarms.isolating() ? Reason::kIsolating

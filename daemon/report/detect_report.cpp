@@ -15,6 +15,21 @@ std::string format(const char* pattern, double a, double b) {
   return text;
 }
 
+// How large a mismatch is, in per cent of the model where it has this channel.
+std::string size_of(const ChannelRecord& channel) {
+  if (channel.model_gain == 0.0)
+    return format("  gain off by about %.3g (CV per MV unit)", channel.effect_size, 0.0);
+  const double percent = 100.0 / channel.model_gain;
+  const double half = 0.5 * std::abs((channel.effect_high - channel.effect_low) * percent);
+  std::string text = format("  gain %+.1f +- %.1f %%", channel.effect_size * percent, half);
+  if (channel.usual) {
+    text += format(", time constant x%.2f, dead time %+.2g s", channel.time_constant_ratio,
+                   channel.dead_time_error_s);
+  }
+  if (!channel.material) text += "; too small to matter";
+  return text;
+}
+
 std::string describe(const ChannelRecord& channel) {
   std::string text = channel.mv + " -> " + channel.cv;
   text.resize(std::max<std::size_t>(text.size(), 24), ' ');
@@ -23,7 +38,7 @@ std::string describe(const ChannelRecord& channel) {
   text.resize(std::max<std::size_t>(text.size(), 52), ' ');
   text += format("  p %-8.1e  statistic %-7.3g", channel.p_value, channel.statistic);
   if (channel.verdict == "mismatch")
-    text += format("  gain off by about %.3g (CV per MV unit)", channel.effect_size, 0.0);
+    text += size_of(channel);
   else if (channel.smallest_error > 0.0)
     text += format("  would show a gain error of %.0f %%", 100.0 * channel.smallest_error, 0.0);
   return text;
