@@ -79,19 +79,30 @@ std::optional<ChangePoint> ChangeScan::scan(const ChannelTest& test, int cv) {
   return best;
 }
 
-// The input that alone explains the rows since the change best, and its F on these rows alone.
+// The input that alone explains the rows since the change best, and its F on these rows alone: with
+// rows clipped as leniently as above and as strictly as in the test, the larger p. A burst of noise
+// passes the first, hardly both.
 void ChangeScan::name_input(const ChannelTest& test, int cv, ChangePoint& change) {
+  const InputFit lenient = best_input(test, cv, change.samples, false);
+  const InputFit strict = best_input(test, cv, change.samples, true);
+  change.input = lenient.input;
+  change.p_value = std::max(lenient.p_value, strict.p_value);
+}
+
+ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int samples,
+                                            bool strict) {
   const int block = shape_.block();
   const RegressionHistory& history = test.history();
   double least = std::numeric_limits<double>::infinity();
   double nothing = 0.0;
   int rows = 0;
+  InputFit best;
   for (int input = -1; input < shape_.inputs; ++input) {
     GivensQr& factor = input < 0 ? lead_in_ : one_input_;
     factor.clear();
     rows = 0;
-    for (int age = change.samples - 1; age >= 0; --age) {
-      const double weight = test.lenient_weight(cv, age);
+    for (int age = samples - 1; age >= 0; --age) {
+      const double weight = strict ? test.row_weight(cv, age) : test.lenient_weight(cv, age);
       if (!(weight > 0.0)) continue;
       double* row = factor.row();
       history.fill_lead_in(age, row);
@@ -107,13 +118,13 @@ void ChangeScan::name_input(const ChannelTest& test, int cv, ChangePoint& change
     if (input < 0) nothing = factor.residual_square(0);
     if (input < 0 || factor.residual_square(0) >= least) continue;
     least = factor.residual_square(0);
-    change.input = input;
+    best.input = input;
   }
   const int freedom = rows - shape_.lead_in() - block;
-  if (freedom < kFewestFreedom || !(least > 0.0)) return;
-  change.p_value = std::min(
-      1.0,
-      shape_.inputs * f_upper_tail((nothing - least) / block / (least / freedom), block, freedom));
+  if (freedom < kFewestFreedom || !(least > 0.0)) return best;
+  const double statistic = (nothing - least) / block / (least / freedom);
+  best.p_value = std::min(1.0, shape_.inputs * f_upper_tail(statistic, block, freedom));
+  return best;
 }
 
 // parts[m] holds the rows younger than moments_[m] (newest first) or at least as old.

@@ -49,7 +49,12 @@ class ChangeScan {
 
   void pass(const ChannelTest& test, int cv, bool newest_first, bool with_inputs,
             std::vector<Part>& parts);
+  struct InputFit {
+    int input = -1;
+    double p_value = 1.0;
+  };
   void name_input(const ChannelTest& test, int cv, ChangePoint& change);
+  [[nodiscard]] InputFit best_input(const ChannelTest& test, int cv, int samples, bool strict);
   void store(const GivensQr& factor, int first, int rows, Part& part) const;
   [[nodiscard]] double joined(const Part& a, const Part& b);
 

@@ -16,6 +16,8 @@ constexpr double kClip = 3.0;
 // heavy tails the same evidence takes more rows: of 528, p < 0.01 came in 10 % of healthy channels.
 constexpr double kNormalClipped = 0.008;
 constexpr double kHeavyClipped = 0.02;
+// A CV is taken to have heavy tails until its rows say otherwise; so many rows stand behind that.
+constexpr double kPriorRows = 200.0;
 
 constexpr double kRecentRows = 100.0;
 constexpr double kLastingRows = 2000.0;
@@ -47,6 +49,7 @@ ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryL
     }
   }
   responses_.resize(static_cast<std::size_t>(shape.cvs));
+  for (Response& response : responses_) response.clipped_share = kHeavyClipped;
   for (int j = 0; j < shape.cvs; ++j) {
     weight_windows_.emplace_back(remembered);
     scale_windows_.emplace_back(remembered);
@@ -121,11 +124,10 @@ double ChannelTest::weigh(int cv) {
   response.lasting_square +=
       (square - response.lasting_square) / std::min(response.square_rows, kLastingRows);
   response.clipped_share += ((error > kClip ? 1.0 : 0.0) - response.clipped_share) /
-                            std::min(response.square_rows, kLastingRows);
+                            std::min(kPriorRows + response.square_rows, kLastingRows);
   const double heavy = (response.clipped_share - kNormalClipped) / (kHeavyClipped - kNormalClipped);
   for (int m = 0; m < memory_count(); ++m)
-    memories_[at(cv, m)].heavy_tails =
-        response.square_rows < kRecentRows ? 0.0 : std::clamp(heavy, 0.0, 1.0);
+    memories_[at(cv, m)].heavy_tails = std::clamp(heavy, 0.0, 1.0);
   response.scale_rows = std::min(response.scale_rows + 1.0, kScaleRows);
   response.scale *= std::sqrt(1.0 + (clipped * clipped - 1.0) / response.scale_rows);
   return weight;
@@ -188,7 +190,7 @@ void ChannelTest::start_afresh(int cv, int samples) {
   if (response.span == 0) return;
   response.scale = scale_windows_[index(cv)].window()[response.span - 1];
   response.square_rows = response.recent_square = response.lasting_square = 0.0;
-  response.clipped_share = 0.0;
+  response.clipped_share = kNormalClipped;
   for (int age = response.span - 1; age >= 0; --age) {
     scale_windows_[index(cv)].set(age, response.scale);
     if (!(row_weight(cv, age) > 0.0)) continue;

@@ -93,7 +93,7 @@ class ChannelTest {
     double recent_square = 0.0;   // mean square of the clipped errors, CV units, over 100 rows
     double lasting_square = 0.0;  // over 2000
     double square_rows = 0.0;
-    double clipped_share = 0.0;  // of the rows, likewise over 2000
+    double clipped_share = 0.0;  // of the rows, over 2000
   };
   [[nodiscard]] std::size_t index(int cv) const { return static_cast<std::size_t>(cv); }
   [[nodiscard]] std::size_t at(int cv, int memory) const {

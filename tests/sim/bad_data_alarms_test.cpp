@@ -24,8 +24,7 @@ struct Outcome {
 Outcome run(const std::string& bad_data, std::uint64_t seed, double gain_ratio = 1.0) {
   mpm::sim::LoopSetup setup = mpm::test::healthy_loop(mpm::test::load_plant("shell3x3"), seed);
   setup.samples = 3000;
-  if (gain_ratio != 1.0)
-    setup.scenario.changes = {mpm::test::gain_change("y2", "u3", gain_ratio)};
+  if (gain_ratio != 1.0) setup.scenario.changes = {mpm::test::gain_change("y2", "u3", gain_ratio)};
   for (const auto& finding :
        mpm::config::add_bad_data(bad_data, setup.unit, 3000.0, setup.scenario))
     FAIL(format(finding));
@@ -54,9 +53,9 @@ Outcome run(const std::string& bad_data, std::uint64_t seed, double gain_ratio =
 }  // namespace
 
 TEST_CASE("no alarm comes of bad data") {
-  // Healthy units; seeds of their own. What each kind does to the verdicts is in docs/validation.md.
-  const std::string kind =
-      GENERATE("missing", "uncertain", "gaps", "frozen", "spikes", "clipping");
+  // Healthy units; seeds of their own. What each kind does to the verdicts is in
+  // docs/validation.md.
+  const std::string kind = GENERATE("missing", "uncertain", "gaps", "frozen", "spikes", "clipping");
   const std::string share = GENERATE("1%", "5%", "20%");
   for (std::uint64_t seed = 7001; seed <= 7003; ++seed) {
     const Outcome outcome = run(kind + "=" + share, seed);
@@ -68,8 +67,7 @@ TEST_CASE("no alarm comes of bad data") {
     if (kind == "clipping") CHECK(outcome.counters.implausible.clipped > 0);
     if (kind == "spikes") CHECK(outcome.counters.implausible.spikes > 0);
     // So much falsified is said to be too much.
-    if (share == "20%" && (kind == "frozen" || kind == "clipping"))
-      CHECK(outcome.bad_data == 9);
+    if (share == "20%" && (kind == "frozen" || kind == "clipping")) CHECK(outcome.bad_data == 9);
   }
 }
 
