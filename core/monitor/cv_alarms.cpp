@@ -112,8 +112,8 @@ std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, const Chann
                                                  ChangeScan& scan) {
   since_scan_ = 0;
   std::optional<ChangePoint> change = scan.scan(test, cv);
-  const bool certain =
-      change && (risen || change->kind == ChangeKind::kEnded || change->p_value < kCertain);
+  const bool ended = change && change->kind == ChangeKind::kEnded && any();
+  const bool certain = change && (risen || ended || change->p_value < kCertain);
   if (!certain) change.reset();
   return change;
 }

@@ -165,9 +165,8 @@ std::vector<Row> power_rows(const std::vector<const Summary*>& summaries) {
 std::vector<Row> change_rows(const std::vector<const Summary*>& summaries) {
   std::vector<Row> rows = {{"experiment", "N", "seeds", "runs with a right alarm",
                             "samples to it, median (quartiles)", "first alarm right",
-                            "alarms on wrong channels", "false alarms",
-                            "healthy channels in alarm at the end", "cleared after the return",
-                            "samples to that, median (quartiles)"}};
+                            "alarms right", "false alarms", "healthy channels in alarm at the end",
+                            "cleared after the return", "samples to that, median (quartiles)"}};
   for (const Summary* summary : summaries) {
     const Experiment& experiment = summary->experiment;
     rows.push_back(
