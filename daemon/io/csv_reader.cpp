@@ -16,6 +16,13 @@ constexpr std::size_t kRowsAhead = 200;
 constexpr double kSampleTimeTolerance = 0.1;
 constexpr double kNsPerSecond = 1e9;
 
+// A clock was set back by more intervals than these if that many rows in a row say so.
+constexpr double kClockStep = 10.0;
+constexpr std::size_t kRowsToBelieve = 3;
+
+// Part of a time stamp's deviation that is taken for the clock's own drift.
+constexpr double kFollow = 0.02;
+
 std::unique_ptr<std::istream> open_file(const std::string& path) {
   const auto fail = [&path](const char* message) {
     throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
@@ -97,8 +104,49 @@ bool CsvReader::next(Frame& frame) {
     row_notices_.clear();
     return false;
   }
+  number(frame);
+  return true;
+}
+
+double CsvReader::elapsed(const Frame& frame) const {
   const auto elapsed_ns = static_cast<double>(frame.source_time_ns - first_ns_);
-  frame.interval = std::llround(elapsed_ns / (sample_time_s_ * kNsPerSecond));
+  return elapsed_ns / (sample_time_s_ * kNsPerSecond) - phase_;
+}
+
+// Time stamps that jitter round to their interval; a clock that runs a little fast or slow is
+// followed; one that was set back goes on counting after a gap. A clock set forward looks like a
+// gap.
+void CsvReader::number(Frame& frame) {
+  double at = elapsed(frame);
+  if (at < static_cast<double>(last_) - kClockStep && clock_stays_back(at)) {
+    notices_.push_back("the clock went back by " +
+                       seconds((static_cast<double>(last_) - at) * sample_time_s_) +
+                       "; the rows after it are taken as they follow");
+    phase_ += at - static_cast<double>(last_ + 2);
+    at = static_cast<double>(last_ + 2);
+  }
+  frame.interval = std::llround(at);
+  if (frame.interval != last_ + 1) {
+    last_ = std::max(last_, frame.interval);
+    return;
+  }
+  last_ = frame.interval;
+  phase_ += kFollow * (at - static_cast<double>(frame.interval));
+}
+
+// The next rows go on from there rather than from the last interval.
+bool CsvReader::clock_stays_back(double at) {
+  while (ahead_.size() < kRowsToBelieve) {
+    Frame frame;
+    if (!rows_->next(frame)) return false;
+    ahead_.push_back(std::move(frame));
+  }
+  double before = at;
+  for (std::size_t i = 0; i < kRowsToBelieve; ++i) {
+    const double next = elapsed(ahead_[i]);
+    if (next <= before || next >= static_cast<double>(last_) - kClockStep) return false;
+    before = next;
+  }
   return true;
 }
 

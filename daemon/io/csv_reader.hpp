@@ -35,6 +35,10 @@ class CsvReader : public FrameSource {
   void open(const SignalCounts& counts);
   void check_sample_time(int first_line) const;
   [[nodiscard]] bool read(Frame& frame);
+  void number(Frame& frame);
+  /// Intervals since the first row, by the clock of the file as followed so far.
+  [[nodiscard]] double elapsed(const Frame& frame) const;
+  [[nodiscard]] bool clock_stays_back(double at);
 
   double sample_time_s_;
   LineReader lines_;
@@ -43,8 +47,10 @@ class CsvReader : public FrameSource {
   std::vector<std::string> notices_;
   std::vector<bool> has_prediction_;
   std::unique_ptr<RowSource> rows_;
-  std::deque<Frame> ahead_;  ///< the first rows, read to learn their spacing
+  std::deque<Frame> ahead_;  ///< rows read to learn what follows
   std::int64_t first_ns_ = 0;
+  std::int64_t last_ = -1;  ///< largest interval so far
+  double phase_ = 0.0;      ///< of the file's clock against the numbering, intervals
 };
 
 }  // namespace mpm::io

@@ -25,6 +25,8 @@ std::string size_of(const ChannelRecord& channel) {
   if (channel.usual) {
     text += format(", time constant x%.2f, dead time %+.2g s", channel.time_constant_ratio,
                    channel.dead_time_error_s);
+  } else {
+    text += ", but not of that alone: the dynamics or the dead time differ by much";
   }
   if (!channel.material) text += "; too small to matter";
   return text;

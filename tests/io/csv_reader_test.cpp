@@ -1,5 +1,6 @@
 #include "daemon/io/csv_reader.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
@@ -161,6 +162,35 @@ TEST_CASE("Intervals are counted from the first row and survive gaps, repeats an
   for (const Frame& frame : frames) intervals.push_back(frame.interval);
   CHECK(intervals == std::vector<std::int64_t>{0, 1, 2, 7, 7, 6, 8, 9, 10});
   CHECK(frames[1].source_time_ns == 101'020'000'000);
+}
+
+TEST_CASE("A clock that was set back goes on counting after a gap") {
+  std::string text = "time,u1,u2,y1\n";
+  for (int i = 0; i < 100; ++i)
+    text += std::to_string(i < 50 ? 5000 + i : 1400 + i) + "," + std::to_string(i) + ",0,1\n";
+  CsvReader csv = reader(text);
+  Frame frame;
+  std::vector<std::int64_t> intervals;
+  while (csv.next(frame)) intervals.push_back(frame.interval);
+  REQUIRE(intervals.size() == 100);
+  for (int i = 0; i < 100; ++i)
+    CHECK(intervals[static_cast<std::size_t>(i)] == (i < 50 ? i : i + 1));
+  CHECK(std::find_if(csv.notices().begin(), csv.notices().end(), [](const std::string& notice) {
+          return notice.rfind("the clock went back by 3599 s", 0) == 0;
+        }) != csv.notices().end());
+}
+
+TEST_CASE("A clock that drifts and jitters loses no interval") {
+  // 0.1 % fast, stamps off by up to 0.3 s: without following, sample 500 would be half a sample
+  // off.
+  std::string text = "time,u1,u2,y1\n";
+  for (int i = 0; i < 3000; ++i) {
+    const double jitter = 0.3 * ((i * 7919) % 1000 / 500.0 - 1.0);
+    text += std::to_string(1.001 * i + (i == 0 ? 0.0 : jitter)) + ",1,0,1\n";
+  }
+  const std::vector<Frame> frames = frames_of(text);
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    REQUIRE(frames[i].interval == static_cast<std::int64_t>(i));
 }
 
 TEST_CASE("Long input streams past the rows read ahead") {
