@@ -42,6 +42,9 @@ constexpr double kShareStep = 1.0 / 300.0;
 constexpr double kMuchImplausible = 0.1;
 constexpr double kImplausibleStep = 1.0 / 1000.0;
 
+// Where spikes are found more often than this, others side by side pass the screen unseen.
+constexpr double kMuchSpiky = 0.003;
+
 // Of a 95 % interval, s.d.
 constexpr double kInterval = 1.96;
 
@@ -102,6 +105,8 @@ struct Monitor::State {
     std::int64_t without_row = 0;  // samples in a row
     double bad_share = 0.0;
     double implausible_share = 0.0;
+    double spike_share = 0.0;
+    std::uint64_t spikes = 0;
     bool evaluated = false;  // in this sample
     bool judged = false;     // there is evidence from the present memory
   };
@@ -118,6 +123,10 @@ struct Monitor::State {
   void distrust_simulation(int input);
   void simulate();
   void take_sample();
+  [[nodiscard]] bool implausible(int cv) const {
+    const Cv& state = cvs[static_cast<std::size_t>(cv)];
+    return state.implausible_share > kMuchImplausible || state.spike_share > kMuchSpiky;
+  }
   void evaluate();
   void judge();
   void judge_channel(int cv, int input, double channel_rate);
@@ -248,6 +257,10 @@ void Monitor::State::take_sample() {
     const bool took = test.took_row(j);
     used = used || took;
     cv.without_row = took ? 0 : cv.without_row + 1;
+    const double spiked = screen.spikes(j) > cv.spikes ? 1.0 : 0.0;
+    cv.spikes = screen.spikes(j);
+    cv.spike_share +=
+        std::max(kImplausibleStep, 1.0 / static_cast<double>(samples)) * (spiked - cv.spike_share);
     cv.bad_share += kShareStep * ((std::isfinite(residuals(j)) ? 0.0 : 1.0) - cv.bad_share);
   }
   if (used) ++counters.used;
@@ -310,10 +323,15 @@ void Monitor::State::take_frame(const Frame& frame) {
   simulate();
   take_sample();
   evaluate();
-  for (int j = 0; j < counts.cv; ++j)
+  for (int j = 0; j < counts.cv; ++j) {
+    if (implausible(j)) {
+      of(j).alarms.hold();
+      continue;
+    }
     of(j).alarms.update(j, of(j).evaluated, test, scan, settings.alarm, [&](int input) {
       transitions.push_back({j, input, of(j).alarms.state(input)});
     });
+  }
   judge();
 }
 
@@ -336,8 +354,7 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   const bool outage = of(cv).without_row > settings.fir_lags &&
                       of(cv).unknown_run > settings.fir_lags && of(cv).settling == 0;
   const bool input_lost = unknown_runs[static_cast<std::size_t>(input)] > settings.fir_lags;
-  if (outage || input_lost || of(cv).bad_share > kMostlyBad ||
-      of(cv).implausible_share > kMuchImplausible) {
+  if (outage || input_lost || of(cv).bad_share > kMostlyBad || implausible(cv)) {
     channel.reason = Reason::kBadData;
     return;
   }

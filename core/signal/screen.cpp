@@ -175,8 +175,10 @@ void Screen::screen_spikes(int cv) {
       return std::abs(home) > kSpike * jumps.scale && away * home < 0.0 &&
              std::abs(levels[next] - jumps.home) < 0.5 * std::abs(away);
     };
-    if (std::abs(away) > kSpike * jumps.scale && (back_at(2) || back_at(3)))
+    if (std::abs(away) > kSpike * jumps.scale && (back_at(2) || back_at(3))) {
       mark(SignalKind::kCv, cv, kDelay - 1, counters_.spikes);
+      ++jumps.spikes;
+    }
   }
   if (!known[2] || !known[3]) return;
   const double difference = std::abs(levels[3] - levels[2]);

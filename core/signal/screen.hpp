@@ -41,6 +41,10 @@ class Screen {
   [[nodiscard]] const Frame* push(const Frame& frame);
 
   [[nodiscard]] const ScreenCounters& counters() const { return counters_; }
+  /// Spikes of one CV so far.
+  [[nodiscard]] std::uint64_t spikes(int cv) const {
+    return jumps_[static_cast<std::size_t>(cv)].spikes;
+  }
 
  private:
   /// One signal's repetitions.
@@ -63,6 +67,7 @@ class Screen {
     double samples = 0.0;
     double home = 0.0;   // last level that left without a mark
     int since_home = 0;  // frames
+    std::uint64_t spikes = 0;
   };
   [[nodiscard]] Frame& ago(int frames) {
     return ring_[static_cast<std::size_t>((position_ + kDelay + 1 - frames) % (kDelay + 1))];
