@@ -76,6 +76,10 @@ std::string dynamics_text(const StepResponse& step) {
   return "step_response: " + yaml_text(step.values);
 }
 
+std::string dynamics_text(const TankChain& tanks) {
+  return "tanks: {time_constants: " + yaml_text(tanks.time_constants_s) + "}";
+}
+
 std::string block_text(const Polynomial& block) {
   return "{polynomial: " + yaml_text(block.coefficients) + "}";
 }

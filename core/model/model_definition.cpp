@@ -61,6 +61,10 @@ ModelDefinition::ModelDefinition(ModelSpec given) : spec(std::move(given)) {
   }
 }
 
+ChannelFacts ModelDefinition::add(const ChannelSpec&, const TankChain&) {
+  throw std::invalid_argument("tanks in series cannot be simulated yet");
+}
+
 ChannelFacts ModelDefinition::add(const ChannelSpec& channel, const TransferFunction& transfer) {
   LagChannel lag = make_lag_channel(channel, transfer, spec.sample_time_s, state_count);
   const ChannelFacts result = facts_of(lag, transfer, spec.sample_time_s);

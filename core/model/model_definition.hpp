@@ -37,6 +37,7 @@ struct ModelDefinition {
   ChannelFacts add(const ChannelSpec& channel, const TransferFunction& transfer);
   ChannelFacts add(const ChannelSpec& channel, const DiscreteFilter& filter);
   ChannelFacts add(const ChannelSpec& channel, const StepResponse& response);
+  ChannelFacts add(const ChannelSpec& channel, const TankChain& tanks);
 };
 
 }  // namespace mpm

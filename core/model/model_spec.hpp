@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -33,10 +34,21 @@ struct StepResponse {
   std::vector<double> values;
 };
 
-struct ChannelSpec {
-  int cv = 0;
-  int input = 0;
-  std::variant<TransferFunction, DiscreteFilter, StepResponse> dynamics;
+/// Tanks in series, the first fed by the input, each draining into the next through an outlet whose
+/// flow goes with the square root of its level; the CV is the level of the last. Levels h and flows
+/// are relative to the operating point (h = 1, flow 1 there):
+///   (T_n / 2) dh_n/dt = inflow_n - sqrt(h_n),  inflow_1 = 1 + (u - u0) / (u0 - empty_input),
+///   CV = y0 + (y0 - empty_output) (h_last - 1).
+/// Around the operating point that is gain / prod (T_n s + 1) with
+/// gain = 2 (y0 - empty_output) / (u0 - empty_input). A level never passes its tank's overflow; of
+/// what overflows, `spill` falls into the next tank.
+struct TankChain {
+  std::vector<double> time_constants_s;  ///< of the linearised tanks, each > 0
+  double empty_input = 0.0;              ///< input without flow, input units
+  double empty_output = 0.0;             ///< CV at an empty last tank, CV units
+  std::vector<double> overflow;          ///< relative level, one per tank, > 1; infinity = never
+  double spill = 0.0;                    ///< 0..1
+  double dead_time_s = 0.0;              ///< >= 0
 };
 
 /// x(k+1) = A x(k) + B u(k), y(k) = C x(k) + D u(k-1), discrete at the sample time.
@@ -69,6 +81,52 @@ struct Scale {
 using InputBlock = std::variant<Polynomial, Saturation, Deadband, Stiction>;
 using OutputBlock = std::variant<Saturation, Offset, Scale>;
 
+struct ChannelSpec {
+  int cv = 0;
+  int input = 0;
+  std::variant<TransferFunction, DiscreteFilter, StepResponse, TankChain> dynamics;
+  std::optional<InputBlock> input_block = {};  ///< of this channel alone, after the input's own
+};
+
+/// A nonlinear function of the CV fed back into the input of one of its channels, which sees
+/// u(k) - phi(y(k)), y being that channel's own deviation of the CV from the operating point
+/// (Lur'e form): what a linear channel cannot do between its input and its output.
+struct RestoringForce {
+  double quadratic = 0.0;  ///< phi = quadratic y^2 + cubic y^3
+  double cubic = 0.0;
+};
+struct SquareRootOutflow {
+  /// CV at which nothing flows out. With K the channel's steady-state gain, Y = y0 - empty:
+  /// phi = (2 Y (sqrt((Y + y) / Y) - 1) - y) / K.
+  double empty_output = 0.0;
+};
+struct CoulombFriction {
+  double force = 0.0;  ///< input units; phi = force tanh((y(k) - y(k-1)) / (speed sample_time))
+  double speed = 1.0;  ///< CV units per s at which friction is nearly full, > 0
+};
+using StateBlock = std::variant<RestoringForce, SquareRootOutflow, CoulombFriction>;
+struct StateTerm {
+  int cv = 0;
+  int input = 0;  ///< the channel that it acts through
+  StateBlock block;
+};
+
+/// What adds itself to a CV at known times, on the clock of the data.
+enum class DisturbanceShape {
+  kStep,      ///< `size` from the onset on, through a first-order lag where time_constant_s > 0
+  kDrift,     ///< `size` CV units per s from the onset on
+  kPeriodic,  ///< size sin(2 pi (t - onset) / period) at all times
+};
+struct DisturbanceTerm {
+  int cv = 0;
+  DisturbanceShape shape = DisturbanceShape::kStep;
+  double onset_s = 0.0;
+  double size = 0.0;
+  double time_constant_s = 0.0;
+  double period_s = 0.0;
+  double until_s = std::numeric_limits<double>::infinity();  ///< a step goes back, a drift stops
+};
+
 struct ModelSpec {
   double sample_time_s = 1.0;
   int input_count = 0;  ///< MVs, then DVs
@@ -77,6 +135,8 @@ struct ModelSpec {
   std::optional<StateSpaceSpec> state_space;  ///< instead of channels
   std::vector<std::optional<InputBlock>> input_blocks;    ///< one per input
   std::vector<std::optional<OutputBlock>> output_blocks;  ///< one per CV
+  std::vector<StateTerm> state_terms;                     ///< at most one per channel
+  std::vector<DisturbanceTerm> disturbances;              ///< any number; they add up
   Eigen::VectorXd input_origin;                           ///< operating point of the inputs
   Eigen::VectorXd output_origin;                          ///< operating point of the CVs
 };
