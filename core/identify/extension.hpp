@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "core/identify/diagnosis.hpp"
+#include "core/identify/problem.hpp"
+#include "core/identify/search.hpp"
+
+namespace mpm {
+
+/// What was named, in the terms of the contract.
+[[nodiscard]] Finding to_finding(const Named& named, const Fit& fit, const Problem& problem);
+
+/// The problem's model with what was found: the effects, and for each CV that they touch the small
+/// channel errors and the level that were fitted beside them. A CV with `keep` false stays as it
+/// was; so do inputs' blocks and scales where no CV that they touch is kept.
+[[nodiscard]] ModelSpec extend(const Problem& problem, const SearchResult& found,
+                               const std::vector<bool>& keep);
+
+/// `extended` without the aux inputs that no channel uses; `used` lists the others, which become
+/// inputs after those of `base`.
+[[nodiscard]] ModelSpec finish(const ModelSpec& extended, const ModelSpec& base,
+                               std::vector<int>& used);
+
+}  // namespace mpm

@@ -1,0 +1,334 @@
+#include "core/identify/problem.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "core/identify/channel_edit.hpp"
+#include "core/identify/row_weights.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double spread(const VectorXd& values, const VectorXd& known) {
+  const double count = std::max(1.0, known.sum());
+  const double mean = values.dot(known) / count;
+  return std::sqrt(
+      std::max(1e-30, ((values.array() - mean).square() * known.array()).sum() / count));
+}
+
+/// Upper triangle of a QR without Q, last column = right-hand side.
+MatrixXd triangle(const MatrixXd& matrix) {
+  const Index columns = matrix.cols();
+  const Eigen::HouseholderQR<MatrixXd> qr(matrix);
+  return qr.matrixQR().topRows(std::min(columns, matrix.rows())).triangularView<Eigen::Upper>();
+}
+
+double prior_units(const Coordinate& c) { return (c.value - c.prior_mean) / c.prior_sd; }
+
+}  // namespace
+
+Problem::Problem(const ModelSpec& model, int model_inputs, const Recording& recording,
+                 const Tolerances& tolerances, int noise_order)
+    : model_(model),
+      surroundings_{recording.sample_time_s, recording.start_s, model_inputs},
+      simulator_(recording),
+      tolerances_(tolerances),
+      noise_order_(noise_order) {
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    CvData data;
+    const auto measured = recording.cvs.col(cv);
+    data.known = measured.unaryExpr([](double y) { return std::isfinite(y) ? 1.0 : 0.0; });
+    data.measured = measured.unaryExpr([](double y) { return std::isfinite(y) ? y : 0.0; });
+    data_.push_back(std::move(data));
+  }
+  settle({}, nullptr);
+}
+
+ModelSpec Problem::with(const std::vector<Effect>& effects) const {
+  ModelSpec model = model_;
+  for (const Effect& effect : effects) apply(effect, surroundings_, model);
+  return model;
+}
+
+void Problem::make_nuisances(const ModelSpec& model, int cv) {
+  CvData& data = data_[static_cast<std::size_t>(cv)];
+  const Index samples = data.measured.size();
+  const double scale = spread(data.measured, data.known);
+  std::vector<VectorXd> columns;
+  data.meaning.clear();
+  const auto add = [&](const SmallError& meaning, const VectorXd& column) {
+    columns.push_back(column);
+    data.meaning.push_back(meaning);
+  };
+  add({}, VectorXd::Constant(samples, 10.0 * scale));
+
+  std::vector<double> time_constants;
+  const VectorXd base = simulator_.cv(model, cv);
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    const ChannelSpec& channel = model.channels[c];
+    if (channel.cv != cv) continue;
+    time_constants.push_back(slowest_time_constant_s(channel, model.sample_time_s));
+    const auto difference = [&](const ChannelError& error, double step) -> VectorXd {
+      ModelSpec changed = model;
+      changed.channels[c] = edited(channel, error, model.sample_time_s);
+      return (simulator_.cv(changed, cv) - base) / step;
+    };
+    constexpr double kStep = 0.01;
+    const auto small = [&](const char* name, double sd, const VectorXd& derivative) {
+      add({channel.input, name, sd}, sd * derivative);
+    };
+    small("gain_ratio", tolerances_.gain, difference({1.0 + kStep, 1.0, 0.0}, kStep));
+    small("log_time_constant_ratio", tolerances_.log_time_constant,
+          difference({1.0, std::exp(kStep), 0.0}, kStep));
+    if (std::holds_alternative<TransferFunction>(channel.dynamics))
+      small("dead_time_samples", tolerances_.dead_time_samples,
+            difference({1.0, 1.0, 0.25 * model.sample_time_s}, 0.25));
+  }
+  // What the first state adds dies out with the model's own time constants: the shortest, the
+  // middle and the longest will do.
+  std::sort(time_constants.begin(), time_constants.end());
+  double last = 0.0;
+  for (const std::size_t pick :
+       {std::size_t{0}, time_constants.size() / 2, time_constants.size() - 1}) {
+    if (time_constants.empty()) break;
+    const double decay = time_constants[pick] / model.sample_time_s;
+    if (decay < 1.2 * last) continue;
+    last = decay;
+    add({}, VectorXd::NullaryExpr(samples, [&](Index k) {
+          return scale * std::exp(-static_cast<double>(k) / decay);
+        }));
+  }
+  data.nuisances.resize(samples, static_cast<Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    data.nuisances.col(static_cast<Index>(i)) = columns[i];
+}
+
+void Problem::settle(const std::vector<Effect>& effects, const Fit* fit) {
+  const ModelSpec model = with(effects);
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    make_nuisances(model, cv);
+    CvData& data = data_[static_cast<std::size_t>(cv)];
+    data.weights = data.known;
+    data.weights.head(std::min<Index>(noise_order_, data.weights.size())).setZero();
+    for (Index k = 0; k < data.known.size(); ++k)
+      if (data.known(k) == 0.0)
+        data.weights.segment(k, std::min<Index>(noise_order_ + 1, data.known.size() - k)).setZero();
+    if (fit)
+      for (const CvFit& state : fit->cvs)
+        if (state.cv == cv) reweigh(state.innovations, data.weights);
+    data.rows = static_cast<double>((data.weights.array() > 0.0).count());
+  }
+}
+
+VectorXd Problem::simulate(const std::vector<Effect>& effects, int cv) {
+  ModelSpec model = model_;
+  VectorXd simulated;
+  bool stale = true;
+  // Effects with an onset come last: each adds what it changes from its onset on.
+  for (const Effect& effect : effects)
+    if (effect.onset == 0 || effect.subject.cause == Cause::kOutputDisturbance)
+      apply(effect, surroundings_, model);
+  for (const Effect& effect : effects) {
+    if (effect.onset == 0 || effect.subject.cause == Cause::kOutputDisturbance ||
+        !touches(effect, model, cv))
+      continue;
+    if (stale) simulated = simulator_.cv(model, cv);
+    const VectorXd before = simulator_.cv(model, cv);
+    apply(effect, surroundings_, model);
+    const Index after = before.size() - effect.onset;
+    if (after > 0) simulated.tail(after) += (simulator_.cv(model, cv) - before).tail(after);
+    stale = false;
+  }
+  return stale ? simulator_.cv(model, cv) : simulated;
+}
+
+VectorXd Problem::sensitivity(const std::vector<Effect>& effects, std::size_t effect,
+                              std::size_t coordinate, int cv, const VectorXd& at) {
+  std::vector<Effect> moved = effects;
+  Coordinate& c = moved[effect].coordinates[coordinate];
+  const double step = c.value + c.step > c.high ? -c.step : c.step;
+  c.value += step;
+  return (simulate(moved, cv) - at) * (c.prior_sd / step);
+}
+
+MatrixXd Problem::nuisances(const std::vector<Effect>& effects, int cv) const {
+  const CvData& data = this->data(cv);
+  MatrixXd result = data.nuisances;
+  for (std::size_t b = 0; b < data.meaning.size(); ++b)
+    for (const Effect& effect : effects)
+      if (effect.onset == 0 && effect.subject.cv == cv &&
+          effect.subject.cause != Cause::kOutputScale &&
+          effect.subject.input == data.meaning[b].input && data.meaning[b].input >= 0 &&
+          effect.find(data.meaning[b].coordinate))
+        result.col(static_cast<Index>(b)).setZero();
+  return result;
+}
+
+void Problem::update(CvFit& state, const VectorXd& simulated, const MatrixXd& nuisances) const {
+  const CvData& data = this->data(state.cv);
+  state.residual = (data.measured - simulated - nuisances * state.beta).cwiseProduct(data.known);
+  state.noise = fit_whitening(state.residual, data.weights, noise_order_);
+  state.innovations = state.noise.apply(state.residual);
+  state.variance =
+      std::max(1e-30, state.innovations.cwiseAbs2().dot(data.weights) / std::max(1.0, data.rows));
+}
+
+Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std::vector<int>& cvs,
+                 int iterations) {
+  struct Free {
+    std::size_t effect, coordinate;
+  };
+  std::vector<Free> free;
+  for (std::size_t e = first_free; e < effects.size(); ++e)
+    for (std::size_t c = 0; c < effects[e].coordinates.size(); ++c) free.push_back({e, c});
+  const auto count = static_cast<Index>(free.size());
+
+  Fit best;
+  best.cost = std::numeric_limits<double>::infinity();
+  double best_misfit = std::numeric_limits<double>::infinity();
+  std::vector<CvFit> states;
+  std::vector<MatrixXd> small;  // the nuisances of each CV
+  for (const int cv : cvs) {
+    CvFit state;
+    state.cv = cv;
+    state.beta.setZero(data(cv).nuisances.cols());
+    states.push_back(std::move(state));
+    small.push_back(nuisances(effects, cv));
+  }
+  const auto value = [&](std::vector<Effect>& list, Index i) -> Coordinate& {
+    return list[free[static_cast<std::size_t>(i)].effect]
+        .coordinates[free[static_cast<std::size_t>(i)].coordinate];
+  };
+
+  std::vector<Effect> origin = effects;  // of the step that is being tried
+  std::vector<CvFit> origin_states = states;
+  int halvings = 0;
+  for (int iteration = 0;; ++iteration) {
+    double misfit = 0.0;
+    std::vector<VectorXd> simulated;
+    for (std::size_t s = 0; s < states.size(); ++s) {
+      CvFit& state = states[s];
+      simulated.push_back(simulate(effects, state.cv));
+      update(state, simulated.back(), small[s]);
+      misfit += data(state.cv).rows * std::log(state.variance) + state.beta.squaredNorm();
+    }
+    for (Index i = 0; i < count; ++i) misfit += std::pow(prior_units(value(effects, i)), 2);
+    const double before = best_misfit;
+    if (!(misfit < before) && iteration > 0) {  // half way back
+      if (++halvings > 3 || iteration >= iterations) break;
+      for (Index i = 0; i < count; ++i)
+        value(effects, i).value = 0.5 * (value(effects, i).value + value(origin, i).value);
+      for (std::size_t s = 0; s < states.size(); ++s)
+        states[s].beta = 0.5 * (states[s].beta + origin_states[s].beta);
+      continue;
+    }
+    halvings = 0;
+    best_misfit = misfit;
+
+    // Square-root information of each CV on the free coordinates.
+    double log_determinant = 0.0;
+    MatrixXd stacked(0, count + 1);
+    std::vector<MatrixXd> triangles;
+    std::vector<std::vector<Index>> columns;
+    for (std::size_t s = 0; s < states.size(); ++s) {
+      const CvFit& state = states[s];
+      const CvData& data = this->data(state.cv);
+      std::vector<Index> mine;
+      for (Index i = 0; i < count; ++i)
+        if (touches(effects[free[static_cast<std::size_t>(i)].effect], model_, state.cv))
+          mine.push_back(i);
+      const Index nuisances = small[s].cols(), m = static_cast<Index>(mine.size());
+      const Index samples = data.measured.size();
+      MatrixXd system = MatrixXd::Zero(samples + nuisances, nuisances + m + 1);
+      const VectorXd root = (data.weights / state.variance).cwiseSqrt();
+      const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) -> VectorXd {
+        return state.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);
+      };
+      for (Index b = 0; b < nuisances; ++b) {
+        system.col(b).head(samples) = whiten(small[s].col(b));
+        system(samples + b, b) = 1.0;
+      }
+      for (Index c = 0; c < m; ++c) {
+        const Free& f = free[static_cast<std::size_t>(mine[static_cast<std::size_t>(c)])];
+        system.col(nuisances + c).head(samples) =
+            whiten(sensitivity(effects, f.effect, f.coordinate, state.cv, simulated[s]));
+      }
+      system.col(nuisances + m).head(samples) = whiten(data.measured - simulated[s]);
+      const MatrixXd r = triangle(system);
+      for (Index b = 0; b < nuisances; ++b)
+        log_determinant += 2.0 * std::log(std::max(1e-300, std::abs(r(b, b))));
+      const Index old = stacked.rows();
+      stacked.conservativeResize(old + m, Eigen::NoChange);
+      stacked.bottomRows(m).setZero();
+      for (Index row = 0; row < m; ++row) {
+        for (Index c = 0; c < m; ++c)
+          stacked(old + row, mine[static_cast<std::size_t>(c)]) = r(nuisances + row, nuisances + c);
+        stacked(old + row, count) = r(nuisances + row, nuisances + m);
+      }
+      triangles.push_back(r);
+      columns.push_back(mine);
+    }
+    const Index data_rows = stacked.rows();
+    stacked.conservativeResize(data_rows + count, Eigen::NoChange);
+    stacked.bottomRows(count).setZero();
+    for (Index i = 0; i < count; ++i) {
+      stacked(data_rows + i, i) = 1.0;
+      stacked(data_rows + i, count) = -prior_units(value(effects, i));
+    }
+    VectorXd step = VectorXd::Zero(count);
+    MatrixXd shared;
+    if (count > 0) {
+      shared = triangle(stacked);
+      for (Index i = 0; i < count; ++i)
+        log_determinant += 2.0 * std::log(std::max(1e-300, std::abs(shared(i, i))));
+      step = shared.topLeftCorner(count, count)
+                 .triangularView<Eigen::Upper>()
+                 .solve(shared.col(count).head(count));
+    }
+
+    best.effects = effects;
+    best.cvs = states;
+    best.cost = misfit + log_determinant;
+    if (count > 0) {
+      const MatrixXd inverse = shared.topLeftCorner(count, count)
+                                   .triangularView<Eigen::Upper>()
+                                   .solve(MatrixXd::Identity(count, count));
+      VectorXd scales(count);
+      for (Index i = 0; i < count; ++i) scales(i) = value(effects, i).prior_sd;
+      best.covariance = scales.asDiagonal() * (inverse * inverse.transpose()) * scales.asDiagonal();
+    }
+    if (iteration >= iterations) break;
+
+    origin = effects;
+    origin_states = states;
+    double movement = 0.0;
+    for (Index i = 0; i < count; ++i) {
+      Coordinate& c = value(effects, i);
+      c.value = std::clamp(c.value + step(i) * c.prior_sd, c.low, c.high);
+    }
+    for (std::size_t s = 0; s < states.size(); ++s) {
+      const MatrixXd& r = triangles[s];
+      const Index m = static_cast<Index>(columns[s].size());
+      const Index nuisances = states[s].beta.size();
+      VectorXd mine(m);
+      for (Index c = 0; c < m; ++c) mine(c) = step(columns[s][static_cast<std::size_t>(c)]);
+      const VectorXd right =
+          r.col(nuisances + m).head(nuisances) - r.block(0, nuisances, nuisances, m) * mine;
+      const VectorXd beta =
+          r.topLeftCorner(nuisances, nuisances).triangularView<Eigen::Upper>().solve(right);
+      movement = std::max(movement, (beta - states[s].beta).norm());
+      states[s].beta = beta;
+    }
+    if (count > 0) movement = std::max(movement, step.cwiseAbs().maxCoeff());
+    if (movement < 1e-4 || (iteration > 1 && before - misfit < 0.02)) break;
+  }
+  for (const Effect& effect : best.effects) best.cost += effect.search_cost;
+  return best;
+}
+
+}  // namespace mpm

@@ -1,0 +1,293 @@
+#include "core/identify/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "core/identify/candidates.hpp"
+#include "core/identify/screening.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+
+/// Candidates fitted in full in every round, beside the best of each cause.
+constexpr std::size_t kShortlist = 16;
+/// 2 ln of the prior odds against any one kind of cause: the everyday ones are half as rare.
+double rarity(Cause cause) {
+  switch (cause) {
+    case Cause::kGain:
+    case Cause::kDeadTime:
+    case Cause::kTimeConstant:
+      return 2.0 * std::log(6.0);
+    case Cause::kStateNonlinearity:
+      return 2.0 * std::log(24.0);
+    default:
+      return 2.0 * std::log(12.0);
+  }
+}
+
+bool same_subject(const Subject& a, const Subject& b) {
+  return a.cause == b.cause && a.cv == b.cv && a.input == b.input && a.aux == b.aux &&
+         a.kind == b.kind;
+}
+
+bool same_variant(const Effect& a, const Effect& b) {
+  if (!same_subject(a.subject, b.subject) || a.coordinates.size() != b.coordinates.size() ||
+      (a.onset > 0) != (b.onset > 0))
+    return false;
+  for (std::size_t i = 0; i < a.coordinates.size(); ++i)
+    if (a.coordinates[i].name != b.coordinates[i].name) return false;
+  return true;
+}
+
+std::vector<int> touched(const Effect& effect, const Problem& problem) {
+  std::vector<int> cvs;
+  for (int cv = 0; cv < problem.model().cv_count; ++cv)
+    if (touches(effect, problem.model(), cv)) cvs.push_back(cv);
+  return cvs;
+}
+
+/// A candidate, fitted with the accepted effects that live on its CVs alone.
+struct Trial {
+  Effect candidate;
+  Fit fit;            ///< effects: the frozen ones, the accepted free ones, the candidate last
+  double odds = 0.0;  ///< 2 ln
+};
+
+class Search {
+ public:
+  Search(Problem& problem, const SearchSettings& settings)
+      : problem_(problem), settings_(settings) {}
+
+  SearchResult run() {
+    for (int round = 0; round < settings_.max_findings; ++round) {
+      if (!report(0.1 + 0.8 * round / settings_.max_findings)) break;
+      if (!find_one()) break;
+    }
+    drop_superfluous();
+    SearchResult result;
+    result.fit = everything();
+    for (std::size_t i = 0; i < accepted_.size(); ++i) {
+      named_[i].effect = result.fit.effects[i];
+      result.named.push_back(named_[i]);
+    }
+    return result;
+  }
+
+ private:
+  bool report(double share) const { return !settings_.progress || settings_.progress(share); }
+
+  /// Accepted effects that touch other CVs too come first and stay; returns how many.
+  std::size_t arrange(const std::vector<int>& cvs, std::vector<Effect>& effects) const {
+    std::vector<Effect> frozen, free;
+    for (const Effect& effect : accepted_) {
+      const std::vector<int> own = touched(effect, problem_);
+      const bool inside = std::includes(cvs.begin(), cvs.end(), own.begin(), own.end());
+      (inside ? free : frozen).push_back(effect);
+    }
+    const std::size_t first_free = frozen.size();
+    effects = std::move(frozen);
+    effects.insert(effects.end(), free.begin(), free.end());
+    return first_free;
+  }
+
+  const Fit& without(const std::vector<int>& cvs) {
+    const auto found = without_.find(cvs);
+    if (found != without_.end()) return found->second;
+    std::vector<Effect> effects;
+    const std::size_t first_free = arrange(cvs, effects);
+    return without_.emplace(cvs, problem_.fit(std::move(effects), first_free, cvs)).first->second;
+  }
+
+  Trial attempt(const Effect& candidate, int iterations) {
+    Trial trial;
+    trial.candidate = candidate;
+    const std::vector<int> cvs = touched(candidate, problem_);
+    std::vector<Effect> effects;
+    const std::size_t first_free = arrange(cvs, effects);
+    effects.push_back(candidate);
+    trial.fit = problem_.fit(std::move(effects), first_free, cvs, iterations);
+    trial.candidate = trial.fit.effects.back();
+    trial.odds = without(cvs).cost - trial.fit.cost - rarity(candidate.subject.cause);
+    return trial;
+  }
+
+  std::vector<Effect> shortlist() {
+    std::vector<CvFit> nulls;
+    for (int cv = 0; cv < problem_.model().cv_count; ++cv)
+      nulls.push_back(without({cv}).cvs.front());
+    std::vector<Effect> all = candidates(problem_, accepted_);
+    for (const CvFit& null : nulls)
+      for (Effect& effect : disturbance_candidates(problem_, null))
+        all.push_back(std::move(effect));
+    Screening screening(problem_, accepted_, nulls);
+    std::vector<double> scores;
+    for (const Effect& effect : all)
+      scores.push_back(screening.score(effect) - rarity(effect.subject.cause));
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
+    std::vector<Effect> list;
+    std::map<Cause, int> of_cause;
+    for (const std::size_t i : order) {
+      const auto repeats = std::count_if(list.begin(), list.end(), [&](const Effect& effect) {
+        return same_variant(effect, all[i]);
+      });
+      if (repeats >= 2) continue;
+      const bool first_of_cause = of_cause[all[i].subject.cause] < 2 && scores[i] > -15.0;
+      if (scores[i] < -20.0 || (list.size() >= kShortlist && !first_of_cause)) continue;
+      ++of_cause[all[i].subject.cause];
+      list.push_back(all[i]);
+    }
+    return list;
+  }
+
+  /// Moves the onset of a trial about until no other moment is better.
+  void place_onset(Trial& trial) {
+    Index reach = std::max<Index>(2, problem_.samples() / 40);
+    while (reach >= 2) {
+      bool moved = false;
+      for (const Effect& other : other_onsets(trial.candidate, reach, problem_.samples())) {
+        Trial next = attempt(other, 4);
+        if (next.odds > trial.odds + 1e-9) {
+          trial = std::move(next);
+          moved = true;
+        }
+      }
+      if (!moved) reach /= 2;
+    }
+  }
+
+  bool find_one() {
+    without_.clear();
+    problem_.settle(accepted_, accepted_.empty() ? nullptr : &last_);
+    std::vector<Trial> trials;
+    for (const Effect& effect : shortlist()) trials.push_back(attempt(effect, 6));
+    if (trials.empty()) return false;
+    const auto better = [](const Trial& a, const Trial& b) { return a.odds > b.odds; };
+    std::sort(trials.begin(), trials.end(), better);
+    for (std::size_t i = 0; i < std::min<std::size_t>(4, trials.size()); ++i)
+      if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - 40.0)
+        place_onset(trials[i]);
+    std::sort(trials.begin(), trials.end(), better);
+    if (trials[0].odds < settings_.decisive) return false;
+
+    // Once more with rows weighed as the best explanation's innovations ask for.
+    without_.clear();
+    problem_.settle(accepted_, &trials[0].fit);
+    std::vector<Trial> again;
+    for (std::size_t i = 0; i < std::min<std::size_t>(8, trials.size()); ++i)
+      again.push_back(attempt(trials[i].candidate, 8));
+    std::sort(again.begin(), again.end(), better);
+    if (again[0].odds < settings_.decisive) return false;
+    accept(again);
+    return true;
+  }
+
+  void accept(const std::vector<Trial>& trials) {
+    const Trial& best = trials[0];
+    Named named;
+    named.evidence = best.odds;
+    double total = 1.0 + std::exp(-0.5 * best.odds);
+    for (std::size_t i = 1; i < trials.size(); ++i) {
+      const Subject& subject = trials[i].candidate.subject;
+      if (same_subject(subject, best.candidate.subject)) continue;
+      const bool known = std::any_of(named.rivals.begin(), named.rivals.end(), [&](const Rival& r) {
+        return same_subject(r.subject, subject);
+      });
+      if (known) continue;
+      // Odds are against the same CVs without either, whichever CVs a rival touches.
+      const double worse = best.odds - trials[i].odds;
+      named.rivals.push_back({subject, worse, worse < settings_.decisive});
+      total += std::exp(-0.5 * worse);
+    }
+    named.confidence = 1.0 / total;
+    named_.push_back(named);
+    // The fit moved the accepted effects too.
+    std::vector<Effect> moved = best.fit.effects;
+    for (Effect& effect : accepted_)
+      for (const Effect& other : moved)
+        if (same_variant(effect, other)) effect = other;
+    accepted_.push_back(best.candidate);
+    last_ = best.fit;
+    merge();
+  }
+
+  /// Errors of one channel found one after the other are one finding.
+  void merge() {
+    const auto in_channel = [](Cause cause) {
+      return cause == Cause::kGain || cause == Cause::kDeadTime || cause == Cause::kTimeConstant ||
+             cause == Cause::kDynamics;
+    };
+    Effect& last = accepted_.back();
+    for (std::size_t i = 0; i + 1 < accepted_.size(); ++i) {
+      Effect& other = accepted_[i];
+      if (!in_channel(last.subject.cause) || !in_channel(other.subject.cause) ||
+          other.subject.cv != last.subject.cv || other.subject.input != last.subject.input ||
+          other.onset != last.onset)
+        continue;
+      for (const Coordinate& coordinate : last.coordinates) {
+        const Coordinate* same = other.find(coordinate.name);
+        if (!same) {
+          other.coordinates.push_back(coordinate);
+        } else {
+          auto& own = other.coordinates[static_cast<std::size_t>(same - other.coordinates.data())];
+          own.value = own.name == "gain_ratio" ? own.value * coordinate.value
+                                               : own.value + coordinate.value;
+        }
+      }
+      if (other.coordinates.size() > 1) other.subject.cause = Cause::kDynamics;
+      named_[i].evidence += named_.back().evidence;
+      accepted_.pop_back();
+      named_.pop_back();
+      return;
+    }
+  }
+
+  Fit everything() {
+    std::vector<int> cvs(static_cast<std::size_t>(problem_.model().cv_count));
+    std::iota(cvs.begin(), cvs.end(), 0);
+    return problem_.fit(accepted_, 0, cvs, 10);
+  }
+
+  void drop_superfluous() {
+    bool dropped = accepted_.size() > 1;
+    while (dropped && accepted_.size() > 1) {
+      dropped = false;
+      const Fit all = everything();
+      for (std::size_t i = 0; i < accepted_.size() && !dropped; ++i) {
+        std::vector<Effect> fewer = all.effects;
+        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+        std::vector<int> cvs(static_cast<std::size_t>(problem_.model().cv_count));
+        std::iota(cvs.begin(), cvs.end(), 0);
+        const double odds =
+            problem_.fit(fewer, 0, cvs, 8).cost - all.cost - rarity(all.effects[i].subject.cause);
+        named_[i].evidence = odds;
+        if (odds >= settings_.decisive) continue;
+        accepted_ = std::move(fewer);
+        named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(i));
+        dropped = true;
+      }
+      if (!dropped) accepted_ = all.effects;
+    }
+  }
+
+  Problem& problem_;
+  SearchSettings settings_;
+  std::vector<Effect> accepted_;
+  std::vector<Named> named_;
+  std::map<std::vector<int>, Fit> without_;
+  Fit last_;
+};
+
+}  // namespace
+
+SearchResult search(Problem& problem, const SearchSettings& settings) {
+  return Search(problem, settings).run();
+}
+
+}  // namespace mpm

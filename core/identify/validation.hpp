@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "core/identify/diagnosis.hpp"
+
+namespace mpm {
+
+/// One CV's scores on the rows given: `before` and `after` are free-running simulations; rows with
+/// an unknown measurement take no part. The interval of the gain is a moving-block bootstrap of the
+/// squared errors (Kuensch 1989), blocks of `block` rows, drawn from `seed`.
+[[nodiscard]] CvScore score(const Eigen::Ref<const Eigen::VectorXd>& measured,
+                            const Eigen::Ref<const Eigen::VectorXd>& before,
+                            const Eigen::Ref<const Eigen::VectorXd>& after, Eigen::Index block,
+                            std::uint64_t seed);
+
+}  // namespace mpm
