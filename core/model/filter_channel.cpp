@@ -70,13 +70,13 @@ void set_rest(FilterChannel& filter, const ChannelFacts& facts) {
 
 }  // namespace
 
-DescribedFilter make_filter_channel(const ChannelSpec& channel, const DiscreteFilter& filter,
+DescribedFilter make_filter_channel(int cv, int source, const DiscreteFilter& filter,
                                     Index first_state) {
   check(filter);
   const auto length =
       static_cast<Index>(std::max(filter.numerator.size(), filter.denominator.size()));
-  FilterChannel made{channel.cv,
-                     channel.input,
+  FilterChannel made{cv,
+                     source,
                      filter.delay_samples,
                      VectorXd::Zero(length),
                      VectorXd::Zero(length),

@@ -44,12 +44,12 @@ ChannelFacts facts_of(const std::vector<double>& steps) {
 
 }  // namespace
 
-DescribedFir make_fir_channel(const ChannelSpec& channel, const StepResponse& response) {
+DescribedFir make_fir_channel(int cv, int source, const StepResponse& response) {
   // weights h(1) .. h(L-1), newest input last. A direct part values[0] acts on the input just
   // before the sampling instant, as everywhere: it is within values[1].
   const std::vector<double> steps = essential_steps(response);
   const auto length = static_cast<Index>(steps.size()) - 1;
-  FirChannel fir{channel.cv, channel.input, Eigen::VectorXd::Zero(length)};
+  FirChannel fir{cv, source, Eigen::VectorXd::Zero(length)};
   for (Index lag = 1; lag <= length; ++lag)
     fir.weights(length - lag) =
         steps[static_cast<std::size_t>(lag)] - steps[static_cast<std::size_t>(lag - 1)];

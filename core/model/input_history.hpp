@@ -6,7 +6,8 @@
 
 namespace mpm {
 
-/// Past inputs (deviations after the static blocks), each stored twice so that any window of the
+/// Past inputs (deviations after the static blocks), and what single channels make of them, one row
+/// each. Every value is stored twice so that any window of the
 /// last `capacity` values lies in one piece.
 class InputHistory {
  public:

@@ -2,13 +2,9 @@
 
 namespace mpm {
 
-LagChannel make_lag_channel(const ChannelSpec& channel, const TransferFunction& transfer,
+LagChannel make_lag_channel(int cv, int source, const TransferFunction& transfer,
                             double sample_time_s, Eigen::Index first_state) {
-  LagChannel lag{channel.cv,
-                 channel.input,
-                 sample_transfer_function(transfer, sample_time_s),
-                 {},
-                 first_state};
+  LagChannel lag{cv, source, sample_transfer_function(transfer, sample_time_s), {}, first_state};
   const Eigen::Index order = lag.sampled.output.size();
   lag.rest = Eigen::VectorXd::Ones(order);
   if (transfer.integrating) lag.rest(order - 1) = 0.0;

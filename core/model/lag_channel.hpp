@@ -13,7 +13,7 @@ namespace mpm {
 /// A sampled transfer function: x(k+1) = Phi x(k) + ..., see SampledLag. `states` is the common
 /// state vector of all channels.
 struct LagChannel {
-  int cv, input;
+  int cv, source;  ///< source: row of the input history
   SampledLag sampled;
   Eigen::VectorXd rest;      ///< states per unit of an input held for ever, integrator at 0
   Eigen::Index first_state;  ///< in the common state vector
@@ -24,16 +24,15 @@ struct LagChannel {
   [[nodiscard]] double output(const InputHistory& inputs, const Eigen::VectorXd& states) const;
 };
 
-[[nodiscard]] LagChannel make_lag_channel(const ChannelSpec& channel,
-                                          const TransferFunction& transfer, double sample_time_s,
-                                          Eigen::Index first_state);
+[[nodiscard]] LagChannel make_lag_channel(int cv, int source, const TransferFunction& transfer,
+                                          double sample_time_s, Eigen::Index first_state);
 [[nodiscard]] ChannelFacts facts_of(const LagChannel& lag, const TransferFunction& transfer,
                                     double sample_time_s);
 
 inline void LagChannel::step(const InputHistory& inputs, Eigen::VectorXd& states) const {
   const Eigen::Index order = sampled.output.size();
-  const double newer = inputs.newest(input)[-sampled.delay];
-  const double older = inputs.newest(input)[-sampled.delay - 1];
+  const double newer = inputs.newest(source)[-sampled.delay];
+  const double older = inputs.newest(source)[-sampled.delay - 1];
   double* x = states.data() + first_state;
   // Lower triangular, so the rows are taken from the last one and no copy is needed.
   for (Eigen::Index i = order; i-- > 0;) {
@@ -45,7 +44,7 @@ inline void LagChannel::step(const InputHistory& inputs, Eigen::VectorXd& states
 
 inline double LagChannel::output(const InputHistory& inputs, const Eigen::VectorXd& states) const {
   const Eigen::Index order = sampled.output.size();
-  double value = sampled.feed_through * inputs.newest(input)[-sampled.delay];
+  double value = sampled.feed_through * inputs.newest(source)[-sampled.delay];
   for (Eigen::Index i = std::max<Eigen::Index>(0, order - 2); i < order; ++i)
     value += sampled.output(i) * states(first_state + i);
   return value;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "core/model/disturbance.hpp"
 #include "core/model/input_history.hpp"
 #include "core/model/model_definition.hpp"
 #include "core/model/static_blocks.hpp"
@@ -43,29 +45,57 @@ int settling_of(LinearModel& channel, const ChannelFacts& facts, double toleranc
   return std::min(settled, limit);
 }
 
+/// The channel alone, as 0 to 0, without what is not linear about it.
+ChannelSpec linear_part(const ChannelSpec& channel, const ModelDefinition& definition) {
+  ChannelSpec part = channel;
+  part.cv = 0;
+  part.input = 0;
+  part.input_block.reset();
+  if (const auto* tanks = std::get_if<TankChain>(&channel.dynamics))
+    part.dynamics = linearised(*tanks, definition.input_origin(channel.input),
+                               definition.output_origin(channel.cv));
+  return part;
+}
+
 }  // namespace
 
 struct LinearModel::State {
   explicit State(const ModelSpec& spec)
       : definition(std::make_shared<const ModelDefinition>(spec)),
-        history(definition->spec.input_count, definition->history),
+        history(definition->spec.input_count + static_cast<int>(definition->own_inputs.size()),
+                definition->history),
         states(VectorXd::Zero(definition->state_count)),
         next_states(VectorXd::Zero(definition->state_count)),
         last_input(definition->input_origin),
+        fed_back(VectorXd::Zero(static_cast<Index>(definition->own_inputs.size()))),
+        fed_back_before(fed_back),
         linear_output(VectorXd::Zero(definition->spec.cv_count)),
         output(VectorXd::Zero(definition->spec.cv_count)) {
     for (Index i = 0; i < definition->input_origin.size(); ++i)
       elements.emplace_back(definition->spec.input_blocks[static_cast<std::size_t>(i)],
                             definition->input_origin(i));
+    for (const OwnInput& own : definition->own_inputs)
+      own_elements.emplace_back(own.block, definition->input_origin(own.input));
   }
 
   void compute_output();
+  void add_disturbances();
+  void read_feedback();
+  void rest_own_inputs();
+  void set_own_inputs();
+  [[nodiscard]] double time_s() const {
+    return clock_start_s + static_cast<double>(elapsed) * definition->spec.sample_time_s;
+  }
 
   std::shared_ptr<const ModelDefinition> definition;  ///< shared by copies
   std::vector<InputElement> elements;
+  std::vector<InputElement> own_elements;  ///< one per own input of a channel
   InputHistory history;
   VectorXd states, next_states;
   VectorXd last_input;
+  VectorXd fed_back, fed_back_before;  ///< y(k), y(k-1) of the channels with an own input
+  double clock_start_s = 0.0;
+  std::int64_t elapsed = 0;  ///< samples since then
   VectorXd linear_output, output;
 };
 
@@ -77,14 +107,65 @@ void LinearModel::State::compute_output() {
   for (const FilterChannel& filter : fixed.filters)
     linear_output(filter.cv) += filter.output(states);
   for (const FirChannel& fir : fixed.firs) linear_output(fir.cv) += fir.output(history);
+  for (const TankChannel& tanks : fixed.tanks) linear_output(tanks.cv) += tanks.output(states);
   if (fixed.spec.state_space) {
     linear_output.noalias() += fixed.spec.state_space->c * states;
     for (int input = 0; input < fixed.spec.input_count; ++input)
       linear_output += fixed.spec.state_space->d.col(input) * *history.newest(input);
   }
+  if (!fixed.spec.disturbances.empty()) add_disturbances();
   for (Index cv = 0; cv < output.size(); ++cv)
     output(cv) = apply_output_block(fixed.spec.output_blocks[static_cast<std::size_t>(cv)],
                                     fixed.output_origin(cv), linear_output(cv));
+}
+
+void LinearModel::State::add_disturbances() {
+  // Seconds since 1970 as a double are good to 0.2 us.
+  const double tolerance_s = 1e-6 * definition->spec.sample_time_s;
+  const double now_s = time_s();
+  for (const DisturbanceTerm& disturbance : definition->spec.disturbances)
+    linear_output(disturbance.cv) += disturbance_at(disturbance, now_s, tolerance_s);
+}
+
+/// y(k), before the inputs move on.
+void LinearModel::State::read_feedback() {
+  for (std::size_t i = 0; i < definition->own_inputs.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    fed_back_before(at) = fed_back(at);
+    fed_back(at) = definition->output_of(definition->own_inputs[i], history, states);
+  }
+}
+
+/// u(k) through the input's own element, then the channel's, less what is fed back.
+void LinearModel::State::set_own_inputs() {
+  for (std::size_t i = 0; i < definition->own_inputs.size(); ++i) {
+    const OwnInput& own = definition->own_inputs[i];
+    const auto at = static_cast<Index>(i);
+    double deviation = *history.newest(own.input);
+    if (own.block)
+      deviation = own_elements[i].apply(deviation + definition->input_origin(own.input));
+    if (own.feedback) deviation -= own.feedback->value(fed_back(at), fed_back_before(at));
+    history.set_newest(own.source, deviation);
+  }
+}
+
+void LinearModel::State::rest_own_inputs() {
+  for (std::size_t i = 0; i < definition->own_inputs.size(); ++i) {
+    const OwnInput& own = definition->own_inputs[i];
+    const auto at = static_cast<Index>(i);
+    double deviation = *history.newest(own.input);
+    if (own.block) {
+      const double input = deviation + definition->input_origin(own.input);
+      own_elements[i].reset(input);
+      deviation = own_elements[i].apply(input);
+    }
+    if (own.feedback) {
+      const double rest = own.feedback->rest(deviation);
+      fed_back(at) = rest;
+      deviation -= own.feedback->value(rest, rest);
+    }
+    history.fill(own.source, deviation);
+  }
 }
 
 LinearModel::LinearModel(const ModelSpec& spec) : state_(std::make_unique<State>(spec)) { reset(); }
@@ -124,13 +205,22 @@ void LinearModel::reset_steady(const Eigen::Ref<const VectorXd>& input) {
     state.history.fill(i, deviation);
     if (fixed.state_space) state.states += fixed.state_space->rest.col(i) * deviation;
   }
+  state.rest_own_inputs();
   for (const LagChannel& lag : fixed.lags)
     state.states.segment(lag.first_state, lag.rest.size()) =
-        lag.rest * *state.history.newest(lag.input);
+        lag.rest * *state.history.newest(lag.source);
   for (const FilterChannel& filter : fixed.filters)
     state.states.segment(filter.first_state, filter.rest.size()) =
-        filter.rest * *state.history.newest(filter.input);
+        filter.rest * *state.history.newest(filter.source);
+  for (const TankChannel& tanks : fixed.tanks) tanks.rest(state.history, state.states);
+  state.elapsed = 0;
   state.compute_output();
+}
+
+void LinearModel::set_time_s(double time_s) {
+  state_->clock_start_s = time_s;
+  state_->elapsed = 0;
+  if (!state_->definition->spec.disturbances.empty()) state_->compute_output();
 }
 
 const VectorXd& LinearModel::output() const { return state_->output; }
@@ -138,20 +228,24 @@ const VectorXd& LinearModel::output() const { return state_->output; }
 void LinearModel::advance(const Eigen::Ref<const VectorXd>& input) {
   State& state = *state_;
   const ModelDefinition& fixed = *state.definition;
+  if (!fixed.own_inputs.empty()) state.read_feedback();
   state.history.next();
   for (int i = 0; i < fixed.spec.input_count; ++i) {
     if (std::isfinite(input(i))) state.last_input(i) = input(i);
     const double deviation = state.elements[static_cast<std::size_t>(i)].apply(state.last_input(i));
     state.history.set_newest(i, deviation);
   }
+  if (!fixed.own_inputs.empty()) state.set_own_inputs();
   for (const LagChannel& lag : fixed.lags) lag.step(state.history, state.states);
   for (const FilterChannel& filter : fixed.filters) filter.step(state.history, state.states);
+  for (const TankChannel& tanks : fixed.tanks) tanks.step(state.history, state.states);
   if (fixed.spec.state_space) {
     state.next_states.noalias() = fixed.spec.state_space->a * state.states;
     for (int i = 0; i < fixed.spec.input_count; ++i)
       state.next_states += fixed.spec.state_space->b.col(i) * *state.history.newest(i);
     state.states.swap(state.next_states);
   }
+  ++state.elapsed;
   state.compute_output();
 }
 
@@ -226,7 +320,7 @@ LinearModel LinearModel::single_channel(int cv, int input) const {
                                      {}};
   for (const ChannelSpec& channel : spec.channels)
     if (channel.cv == cv && channel.input == input)
-      one.channels.push_back({0, 0, channel.dynamics});
+      one.channels.push_back(linear_part(channel, *state_->definition));
   return LinearModel(one);
 }
 

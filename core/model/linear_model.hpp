@@ -10,6 +10,9 @@ namespace mpm {
 /// Free-running simulation of a `ModelSpec` on its sample grid: exact zero-order-hold
 /// discretisation (matrix exponential; a fractional dead time splits the hold in two, Astrom and
 /// Wittenmark 1997, section 2.6), driven by measured inputs, no feedback from measured outputs.
+/// Around the linear part: static blocks of the inputs, of single channels and of the CVs; tanks in
+/// series, integrated within the sample; state terms, which see the channel's y(k); disturbances,
+/// which a CV's output block sees as it sees the process (a sensor clips everything).
 ///
 /// One step of the loop: `output()` is y(k), a function of u(k-1), u(k-2), ...; then
 /// `advance(u(k))`. Whatever feeds through (D of a state space, a first step response value, a lead
@@ -32,13 +35,17 @@ class LinearModel {
   /// As if `input` (input_count, own units) had been held for ever; integrating parts at rest.
   void reset_steady(const Eigen::Ref<const Eigen::VectorXd>& input);
 
+  /// Time of the present output on the clock of the disturbances; every `advance` adds a sample
+  /// time, a reset goes back to the time last set. 0 unless set.
+  void set_time_s(double time_s);
+
   /// y(k), cv_count values in CV units, from the inputs given so far.
   [[nodiscard]] const Eigen::VectorXd& output() const;
   /// Takes u(k) (input_count, own units), which acts from k to k+1.
   void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
 
-  /// Response of one channel's linear part to a unit pulse at u(0): h(0) = 0, h(1), ...
-  /// h(length-1). Zero where the channel does not exist.
+  /// Response of one channel's linear part (of tanks: around the operating point) to a unit pulse
+  /// at u(0): h(0) = 0, h(1), ... h(length-1). Zero where the channel does not exist.
   [[nodiscard]] Eigen::VectorXd impulse_response(int cv, int input, int length) const;
   /// Steady-state gains of the linear part, cv_count x input_count; an integrating channel's entry
   /// is its slope per sample.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "core/model/disturbance.hpp"
 #include "core/model/static_blocks.hpp"
 
 namespace mpm {
@@ -37,6 +39,7 @@ ModelDefinition::ModelDefinition(ModelSpec given) : spec(std::move(given)) {
   spec.output_blocks.resize(cvs);
   for (const std::optional<OutputBlock>& block : spec.output_blocks)
     if (block) check_output_block(*block);
+  check_terms();
 
   if (spec.state_space) {
     if (!spec.channels.empty())
@@ -48,25 +51,73 @@ ModelDefinition::ModelDefinition(ModelSpec given) : spec(std::move(given)) {
     return;
   }
   facts.resize(cvs * inputs);
-  for (const ChannelSpec& channel : spec.channels) {
-    if (channel.cv < 0 || channel.cv >= spec.cv_count || channel.input < 0 ||
-        channel.input >= spec.input_count)
-      throw std::invalid_argument("channel: no such CV or input");
-    ChannelFacts& slot =
-        facts[static_cast<std::size_t>(channel.cv * spec.input_count + channel.input)];
-    if (slot.exists) throw std::invalid_argument("channel: given twice");
-    slot =
-        std::visit([&](const auto& dynamics) { return add(channel, dynamics); }, channel.dynamics);
-    slot.exists = true;
+  for (const ChannelSpec& channel : spec.channels) add_channel(channel);
+}
+
+void ModelDefinition::check_terms() const {
+  for (const DisturbanceTerm& disturbance : spec.disturbances) {
+    if (disturbance.cv < 0 || disturbance.cv >= spec.cv_count)
+      throw std::invalid_argument("disturbance: no such CV");
+    check_disturbance(disturbance);
+  }
+  for (const StateTerm& term : spec.state_terms) {
+    const auto is_its = [&term](const auto& other) {
+      return other.cv == term.cv && other.input == term.input;
+    };
+    if (std::count_if(spec.state_terms.begin(), spec.state_terms.end(), is_its) > 1)
+      throw std::invalid_argument("state term: one per channel at most");
+    const auto channel = std::find_if(spec.channels.begin(), spec.channels.end(), is_its);
+    if (channel == spec.channels.end()) throw std::invalid_argument("state term: no such channel");
+    if (std::holds_alternative<TankChain>(channel->dynamics))
+      throw std::invalid_argument("state term: tanks have their own outflow");
   }
 }
 
-ChannelFacts ModelDefinition::add(const ChannelSpec&, const TankChain&) {
-  throw std::invalid_argument("tanks in series cannot be simulated yet");
+void ModelDefinition::add_channel(const ChannelSpec& channel) {
+  if (channel.cv < 0 || channel.cv >= spec.cv_count || channel.input < 0 ||
+      channel.input >= spec.input_count)
+    throw std::invalid_argument("channel: no such CV or input");
+  ChannelFacts& slot =
+      facts[static_cast<std::size_t>(channel.cv * spec.input_count + channel.input)];
+  if (slot.exists) throw std::invalid_argument("channel: given twice");
+  const auto term = std::find_if(spec.state_terms.begin(), spec.state_terms.end(),
+                                 [&channel](const StateTerm& each) {
+                                   return each.cv == channel.cv && each.input == channel.input;
+                                 });
+  const bool plain = !channel.input_block && term == spec.state_terms.end();
+  const int source = plain ? channel.input : spec.input_count + static_cast<int>(own_inputs.size());
+  slot = std::visit([&](const auto& dynamics) { return add(channel, source, dynamics); },
+                    channel.dynamics);
+  slot.exists = true;
+  if (plain) return;
+  const std::size_t sizes[] = {lags.size(), filters.size(), firs.size(), tanks.size()};
+  const std::size_t form = channel.dynamics.index();
+  OwnInput own{channel.input, source, channel.input_block, {}, form, sizes[form] - 1};
+  if (term != spec.state_terms.end())
+    own.feedback.emplace(term->block, slot, output_origin(channel.cv), spec.sample_time_s);
+  own_inputs.push_back(std::move(own));
 }
 
-ChannelFacts ModelDefinition::add(const ChannelSpec& channel, const TransferFunction& transfer) {
-  LagChannel lag = make_lag_channel(channel, transfer, spec.sample_time_s, state_count);
+double ModelDefinition::output_of(const OwnInput& own, const InputHistory& inputs,
+                                  const VectorXd& states) const {
+  static_assert(std::is_same_v<decltype(ChannelSpec::dynamics),
+                               std::variant<TransferFunction, DiscreteFilter, StepResponse,
+                                            TankChain>>);  // `form` counts as this does
+  switch (own.form) {
+    case 0:
+      return lags[own.place].output(inputs, states);
+    case 1:
+      return filters[own.place].output(states);
+    case 2:
+      return firs[own.place].output(inputs);
+    default:
+      return tanks[own.place].output(states);
+  }
+}
+
+ChannelFacts ModelDefinition::add(const ChannelSpec& channel, int source,
+                                  const TransferFunction& transfer) {
+  LagChannel lag = make_lag_channel(channel.cv, source, transfer, spec.sample_time_s, state_count);
   const ChannelFacts result = facts_of(lag, transfer, spec.sample_time_s);
   state_count += lag.rest.size();
   history = std::max(history, lag.history());
@@ -74,18 +125,30 @@ ChannelFacts ModelDefinition::add(const ChannelSpec& channel, const TransferFunc
   return result;
 }
 
-ChannelFacts ModelDefinition::add(const ChannelSpec& channel, const DiscreteFilter& filter) {
-  DescribedFilter made = make_filter_channel(channel, filter, state_count);
+ChannelFacts ModelDefinition::add(const ChannelSpec& channel, int source,
+                                  const DiscreteFilter& filter) {
+  DescribedFilter made = make_filter_channel(channel.cv, source, filter, state_count);
   state_count += made.channel.rest.size();
   history = std::max(history, made.channel.history());
   filters.push_back(std::move(made.channel));
   return made.facts;
 }
 
-ChannelFacts ModelDefinition::add(const ChannelSpec& channel, const StepResponse& response) {
-  DescribedFir made = make_fir_channel(channel, response);
+ChannelFacts ModelDefinition::add(const ChannelSpec& channel, int source,
+                                  const StepResponse& response) {
+  DescribedFir made = make_fir_channel(channel.cv, source, response);
   history = std::max(history, made.channel.history());
   firs.push_back(std::move(made.channel));
+  return made.facts;
+}
+
+ChannelFacts ModelDefinition::add(const ChannelSpec& channel, int source, const TankChain& chain) {
+  DescribedTanks made =
+      make_tank_channel(channel.cv, source, chain, input_origin(channel.input),
+                        output_origin(channel.cv), spec.sample_time_s, state_count);
+  state_count += static_cast<Eigen::Index>(made.channel.tanks.size());
+  history = std::max(history, made.channel.history());
+  tanks.push_back(std::move(made.channel));
   return made.facts;
 }
 

@@ -10,9 +10,21 @@
 #include "core/model/fir_channel.hpp"
 #include "core/model/lag_channel.hpp"
 #include "core/model/model_spec.hpp"
+#include "core/model/state_feedback.hpp"
 #include "core/model/state_space.hpp"
+#include "core/model/tank_channel.hpp"
 
 namespace mpm {
+
+/// What the dynamics of one channel see in place of the input itself: a row of the input history of
+/// their own.
+struct OwnInput {
+  int input;   ///< of the model
+  int source;  ///< row of the input history
+  std::optional<InputBlock> block;
+  std::optional<StateFeedback> feedback;
+  std::size_t form, place;  ///< of the dynamics whose output is fed back: which list, where in it
+};
 
 /// A checked `ModelSpec` with everything that does not change while the model runs.
 struct ModelDefinition {
@@ -24,6 +36,8 @@ struct ModelDefinition {
   std::vector<LagChannel> lags;
   std::vector<FilterChannel> filters;
   std::vector<FirChannel> firs;
+  std::vector<TankChannel> tanks;
+  std::vector<OwnInput> own_inputs;
   std::optional<StateSpaceFacts> state_space;
   std::vector<ChannelFacts> facts;  ///< cv_count x input_count, row by row
   Eigen::Index state_count = 0;
@@ -32,12 +46,17 @@ struct ModelDefinition {
   [[nodiscard]] const ChannelFacts& fact(int cv, int input) const {
     return facts[static_cast<std::size_t>(cv * spec.input_count + input)];
   }
+  /// Deviation of the CV that the one channel behind `own` makes up.
+  [[nodiscard]] double output_of(const OwnInput& own, const InputHistory& inputs,
+                                 const Eigen::VectorXd& states) const;
 
  private:
-  ChannelFacts add(const ChannelSpec& channel, const TransferFunction& transfer);
-  ChannelFacts add(const ChannelSpec& channel, const DiscreteFilter& filter);
-  ChannelFacts add(const ChannelSpec& channel, const StepResponse& response);
-  ChannelFacts add(const ChannelSpec& channel, const TankChain& tanks);
+  void add_channel(const ChannelSpec& channel);
+  void check_terms() const;
+  ChannelFacts add(const ChannelSpec& channel, int source, const TransferFunction& transfer);
+  ChannelFacts add(const ChannelSpec& channel, int source, const DiscreteFilter& filter);
+  ChannelFacts add(const ChannelSpec& channel, int source, const StepResponse& response);
+  ChannelFacts add(const ChannelSpec& channel, int source, const TankChain& tanks);
 };
 
 }  // namespace mpm

@@ -39,6 +39,7 @@ struct StepResponse {
 /// are relative to the operating point (h = 1, flow 1 there):
 ///   (T_n / 2) dh_n/dt = inflow_n - sqrt(h_n),  inflow_1 = 1 + (u - u0) / (u0 - empty_input),
 ///   CV = y0 + (y0 - empty_output) (h_last - 1).
+/// No inflow is negative: a closed valve draws nothing back.
 /// Around the operating point that is gain / prod (T_n s + 1) with
 /// gain = 2 (y0 - empty_output) / (u0 - empty_input). A level never passes its tank's overflow; of
 /// what overflows, `spill` falls into the next tank.
@@ -46,7 +47,8 @@ struct TankChain {
   std::vector<double> time_constants_s;  ///< of the linearised tanks, each > 0
   double empty_input = 0.0;              ///< input without flow, input units
   double empty_output = 0.0;             ///< CV at an empty last tank, CV units
-  std::vector<double> overflow;          ///< relative level, one per tank, > 1; infinity = never
+  std::vector<double> overflow;          ///< relative level, one per tank, > 1; infinity = never;
+                                         ///< none given = no tank does
   double spill = 0.0;                    ///< 0..1
   double dead_time_s = 0.0;              ///< >= 0
 };
@@ -111,7 +113,7 @@ struct StateTerm {
   StateBlock block;
 };
 
-/// What adds itself to a CV at known times, on the clock of the data.
+/// What adds itself to a CV at known times, on the clock of the data, before its output block.
 enum class DisturbanceShape {
   kStep,      ///< `size` from the onset on, through a first-order lag where time_constant_s > 0
   kDrift,     ///< `size` CV units per s from the onset on

@@ -92,12 +92,9 @@ void check(const TransferFunction& channel, double sample_time_s) {
 
 }  // namespace
 
-SampledLag sample_transfer_function(const TransferFunction& channel, double sample_time_s) {
-  check(channel, sample_time_s);
-
-  // A ratio such as 0.6 / 0.1 that misses a whole number by rounding is that number.
+SampledDelay sampled_delay(double dead_time_s, double sample_time_s) {
   constexpr double kWholeTolerance = 1e-9;
-  const double delay = channel.dead_time_s / sample_time_s;
+  const double delay = dead_time_s / sample_time_s;
   double whole = std::floor(delay);
   double fraction = delay - whole;
   if (fraction > 1.0 - kWholeTolerance) {
@@ -106,11 +103,18 @@ SampledLag sample_transfer_function(const TransferFunction& channel, double samp
   } else if (fraction < kWholeTolerance) {
     fraction = 0.0;
   }
+  return {static_cast<int>(whole), fraction};
+}
 
+SampledLag sample_transfer_function(const TransferFunction& channel, double sample_time_s) {
+  check(channel, sample_time_s);
+
+  const SampledDelay delay = sampled_delay(channel.dead_time_s, sample_time_s);
+  const double fraction = delay.fraction;
   const Cascade cascade = make_cascade(channel);
   const Eigen::Index order = cascade.inflow.size() - 1;
   SampledLag sampled;
-  sampled.delay = static_cast<int>(whole);
+  sampled.delay = delay.whole;
   sampled.transition = Eigen::MatrixXd::Zero(order, order);
   sampled.from_newer = Eigen::VectorXd::Zero(order);
   sampled.from_older = Eigen::VectorXd::Zero(order);

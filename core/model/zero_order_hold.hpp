@@ -21,6 +21,14 @@ struct SampledLag {
   int delay = 0;  ///< whole samples
 };
 
+/// A dead time as whole samples and the fraction of one that is left, 0 <= fraction < 1. A ratio
+/// such as 0.6 / 0.1 that misses a whole number by rounding is that number.
+struct SampledDelay {
+  int whole = 0;
+  double fraction = 0.0;
+};
+[[nodiscard]] SampledDelay sampled_delay(double dead_time_s, double sample_time_s);
+
 /// Exact to rounding for any time constants, also equal or very different ones.
 /// Throws std::invalid_argument where the specification is not a proper, causal system.
 [[nodiscard]] SampledLag sample_transfer_function(const TransferFunction& channel,
