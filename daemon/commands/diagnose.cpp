@@ -16,6 +16,8 @@
 #include "daemon/io/read_recording.hpp"
 #include "daemon/report/diagnosis_report.hpp"
 #include "daemon/report/extended_unit.hpp"
+#include "daemon/report/page.hpp"
+#include "daemon/report/page_data.hpp"
 #include "daemon/service/signals.hpp"
 #include "daemon/service/version.hpp"
 
@@ -134,12 +136,13 @@ int diagnose_file(const DiagnoseOptions& options) {
     folder.write("extended.yaml", extended_yaml(run));
     const std::string json = to_json(run).dump(2) + "\n";
     folder.write("report.json", json);
+    folder.write("report.html", page_html(page_data(run)));
     folder.commit();
     if (options.json)
       std::cout << json << std::flush;
     else if (!options.quiet)
       std::cout << to_text(run) << "\n  written to " << options.out
-                << ": report.json, extended.yaml\n"
+                << ": report.html, report.json, extended.yaml\n"
                 << std::flush;
     return options.fail_on_mismatch && !run.diagnosis.findings.empty() ? 1 : 0;
   } catch (const config::InputError& error) {

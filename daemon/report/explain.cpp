@@ -1,6 +1,7 @@
 #include "daemon/report/explain.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string_view>
 
@@ -45,7 +46,7 @@ std::string gains(const DiagnosisRun& run, const Subject& subject, double ratio)
   const SignalNames names(run.unit, run.diagnosis);
   const std::string& over = names.source_unit(subject);
   return "gain " + number_text(ratio * gain) + " instead of " + number_text(gain) +
-         (over.empty() ? "" : " " + names.cv_unit(subject.cv) + "/" + over) + "; ";
+         (over.empty() ? "" : " " + names.cv_unit(subject.cv) + " per " + over) + "; ";
 }
 
 // One function per group of causes; each gives whole sentences.
@@ -161,8 +162,11 @@ std::string unmodelled_input_sentence(const DiagnosisRun& run, const Finding& fi
   const Subject& subject = finding.subject;
   std::string text =
       names.cv(subject.cv) + " follows " + names.source(subject) + ", which the model leaves out";
-  if (const Parameter* gain = find(finding, "gain"))
-    text += ": gain " + number_text(gain->value) + " (" + interval(*gain) + ")";
+  if (const Parameter* gain = find(finding, "gain")) {
+    const std::string per = parameter_unit(run, subject, "gain");
+    text += ": gain " + number_text(gain->value) + (per.empty() ? "" : " " + per) + " (" +
+            interval(*gain) + ")";
+  }
   if (const Parameter* lag = find(finding, "time_constant"))
     text += ", time constant " + number_text(lag->value) + " s";
   if (const Parameter* delay = find(finding, "dead_time"))
@@ -266,7 +270,7 @@ std::string gain_of_extension(const DiagnosisRun& run) {
     best_cv = static_cast<int>(cv);
   }
   if (best == nullptr) return {};
-  return " On samples that the fit has not seen, the extended model's error of " +
+  return "On samples that the fit has not seen, the extended model's error of " +
          names.cv(best_cv) + " is " + names.in_cv(best->rmse_after, best_cv) + " instead of " +
          names.in_cv(best->rmse_before, best_cv) + " RMS.";
 }
@@ -285,26 +289,38 @@ const char* name_of(DiagnosisVerdict verdict) {
   return "";
 }
 
-std::string verdict_sentence(const DiagnosisRun& run) {
-  const Diagnosis& diagnosis = run.diagnosis;
-  const std::string& reason = diagnosis.reason;
-  const std::string also = reason.empty() ? "" : " " + reason + (reason.back() == '.' ? "" : ".");
-  switch (diagnosis.verdict) {
+std::string verdict_headline(const DiagnosisRun& run) {
+  const std::string& unit = run.unit.unit;
+  switch (run.diagnosis.verdict) {
     case DiagnosisVerdict::kMatch:
-      return "The model of " + run.unit.unit +
-             " matches the plant: these data show no difference that matters." + also;
+      return "The model of " + unit +
+             " matches the plant: these data show no difference that matters.";
     case DiagnosisVerdict::kUndetermined:
-      return "These data do not tell whether the model of " + run.unit.unit +
-             " matches the plant." + also;
+      return "These data do not tell whether the model of " + unit + " matches the plant.";
     case DiagnosisVerdict::kMismatch:
       break;
   }
-  const std::size_t count = diagnosis.findings.size();
-  std::string text = "The model of " + run.unit.unit + " does not match the plant: ";
+  const std::size_t count = run.diagnosis.findings.size();
+  std::string text = "The model of " + unit + " does not match the plant: ";
   if (count == 0) text += "a difference is there, but none of the known causes explains it.";
   if (count == 1) text += "one cause was found.";
   if (count > 1) text += std::to_string(count) + " causes were found.";
-  return text + gain_of_extension(run) + also;
+  return text;
+}
+
+std::string verdict_details(const DiagnosisRun& run) {
+  std::string text = run.diagnosis.reason;
+  if (!text.empty()) {
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (text.back() != '.') text += '.';
+  }
+  const std::string gain = gain_of_extension(run);
+  return gain + (gain.empty() || text.empty() ? "" : " ") + text;
+}
+
+std::string verdict_sentence(const DiagnosisRun& run) {
+  const std::string details = verdict_details(run);
+  return verdict_headline(run) + (details.empty() ? "" : " ") + details;
 }
 
 std::string explain(const DiagnosisRun& run, const Finding& finding) {
@@ -346,6 +362,8 @@ std::string parameter_unit(const DiagnosisRun& run, const Subject& subject,
   if (ends_with("dead_time") || ends_with("dead_time_error") || ends_with("time_constant") ||
       parameter == "period" || parameter == "onset" || parameter == "until")
     return "s";
+  if (parameter == "gain" && subject.cv >= 0 && !names.source_unit(subject).empty())
+    return names.cv_unit(subject.cv) + " per " + names.source_unit(subject);
   if (parameter == "size" && subject.cv >= 0)
     return names.cv_unit(subject.cv) + (subject.kind == "drift" ? "/s" : "");
   if (parameter == "empty_output") return subject.cv >= 0 ? names.cv_unit(subject.cv) : "";

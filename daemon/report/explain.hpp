@@ -8,7 +8,10 @@
 /// A diagnosis in plain sentences for operators and engineers.
 namespace mpm::daemon {
 
-/// The whole in one or two sentences.
+/// The verdict in one sentence, and what belongs to it in some more; the latter may be empty.
+[[nodiscard]] std::string verdict_headline(const DiagnosisRun& run);
+[[nodiscard]] std::string verdict_details(const DiagnosisRun& run);
+/// Both.
 [[nodiscard]] std::string verdict_sentence(const DiagnosisRun& run);
 /// What a finding means, with its numbers, tags and units.
 [[nodiscard]] std::string explain(const DiagnosisRun& run, const Finding& finding);
