@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "daemon/commands/detect.hpp"
+#include "daemon/commands/diagnose.hpp"
 #include "daemon/commands/watch.hpp"
 #include "daemon/service/version.hpp"
 
@@ -15,6 +16,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", mpm::daemon::version_text("mpm"));
   app.require_subcommand(1);
   mpm::daemon::add_detect(app, exit_code);
+  mpm::daemon::add_diagnose(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,186 @@
+#include "daemon/commands/diagnose.hpp"
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "config/load_unit.hpp"
+#include "core/identify/diagnosis.hpp"
+#include "daemon/commands/progress_bar.hpp"
+#include "daemon/io/csv_reader.hpp"
+#include "daemon/io/output_folder.hpp"
+#include "daemon/io/read_recording.hpp"
+#include "daemon/report/diagnosis_report.hpp"
+#include "daemon/report/extended_unit.hpp"
+#include "daemon/report/page.hpp"
+#include "daemon/report/page_data.hpp"
+#include "daemon/service/signals.hpp"
+#include "daemon/service/version.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+struct DiagnoseOptions {
+  std::string config;
+  std::string data;
+  std::string validate;
+  std::string out;
+  double fit_share = DiagnosisSettings().fit_share;
+  std::uint64_t seed = DiagnosisSettings().seed;
+  bool json = false;
+  bool quiet = false;
+  bool fail_on_mismatch = false;
+};
+
+[[noreturn]] void refuse(const std::string& file, const std::string& message) {
+  throw config::InputError({file, 0, 0, config::Severity::kError, "", message});
+}
+
+/// As it was typed, quoted where a shell would need it.
+std::string command_line() {
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::string text;
+  for (std::string word; std::getline(in, word, '\0');) {
+    const bool plain =
+        !word.empty() && word.find_first_of(" \t\n\"'\\$&|;<>()*?[]#~`!{}") == std::string::npos;
+    if (!text.empty()) text += ' ';
+    if (plain) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char letter : word)
+      text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    text += '\'';
+  }
+  return text;
+}
+
+/// Nothing where the unit file is wrong, which has then been told.
+std::optional<config::UnitConfig> load(const std::string& file) {
+  const config::LoadResult loaded = config::load_unit(file);
+  for (const config::Finding& finding : loaded.findings)
+    std::cerr << config::format(finding) << '\n';
+  if (!loaded.ok()) return std::nullopt;
+  if (!loaded.config.has_model()) refuse(file, "holds no model, so there is nothing to diagnose");
+  return loaded.config;
+}
+
+Recording read(const std::string& file, const config::UnitConfig& unit,
+               std::vector<std::string>& notices) {
+  io::CsvReader reader(file, unit);
+  const io::RecordingFile data = io::read_recording(reader, unit, file);
+  const std::string problem = io::recording_problem(data.recording, needed_samples(unit.model));
+  if (!problem.empty()) refuse(file, problem);
+  const std::string prefix = file + ": ";
+  for (const std::string& notice : reader.notices()) notices.push_back(prefix + notice);
+  const auto count = [&](std::int64_t number, const char* what) {
+    if (number > 0) notices.push_back(prefix + std::to_string(number) + what);
+  };
+  count(data.missing, " intervals without a row");
+  count(data.out_of_order, " rows left out, for their time does not grow");
+  count(data.bad_values, " values of inputs and CVs missing or bad");
+  return data.recording;
+}
+
+DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
+  DiagnosisRun run;
+  run.unit = std::move(unit);
+  run.recording = read(options.data, run.unit, run.notices);
+  if (!options.validate.empty()) run.validation = read(options.validate, run.unit, run.notices);
+  run.program = version_text("mpm");
+  run.command_line = command_line();
+  run.config_file = options.config;
+  run.data_file = options.data;
+  run.validation_file = options.validate;
+  run.fit_share = run.validation ? 1.0 : options.fit_share;
+  run.seed = options.seed;
+  return run;
+}
+
+/// False where the user stopped it.
+bool diagnose_run(const DiagnoseOptions& options, DiagnosisRun& run) {
+  StopSignal stop;
+  ProgressBar bar(options.quiet);
+  DiagnosisSettings settings;
+  settings.mv_count = run.unit.counts().mv;
+  settings.fit_share = options.fit_share;
+  settings.seed = options.seed;
+  bool stopped = false;
+  settings.progress = [&](double share) {
+    bar.show(share);
+    stopped = stopped || stop.received();
+    return !stopped;
+  };
+  run.diagnosis = diagnose(run.unit.model, run.recording,
+                           run.validation ? &*run.validation : nullptr, settings);
+  return !stopped;
+}
+
+int diagnose_file(const DiagnoseOptions& options) {
+  try {
+    std::optional<config::UnitConfig> unit = load(options.config);
+    if (!unit) return 3;
+    io::OutputFolder folder(options.out);
+    DiagnosisRun run = prepare(options, std::move(*unit));
+    if (!options.quiet)
+      for (const std::string& notice : run.notices) std::cerr << notice << '\n';
+    if (!diagnose_run(options, run)) {
+      std::cerr << "mpm: stopped; nothing was written\n";
+      return 2;
+    }
+    folder.write("extended.yaml", extended_yaml(run));
+    const std::string json = to_json(run).dump(2) + "\n";
+    folder.write("report.json", json);
+    folder.write("report.html", page_html(page_data(run)));
+    folder.commit();
+    if (options.json)
+      std::cout << json << std::flush;
+    else if (!options.quiet)
+      std::cout << to_text(run) << "\n  written to " << options.out
+                << ": report.html, report.json, extended.yaml\n"
+                << std::flush;
+    return options.fail_on_mismatch && !run.diagnosis.findings.empty() ? 1 : 0;
+  } catch (const config::InputError& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DiagnoseOptions>();
+  CLI::App* command = app.add_subcommand(
+      "diagnose",
+      "Show what the simulation gets wrong, name the cause, extend the model, measure the gain");
+  command->add_option("--config", options->config, "unit file")->required();
+  command->add_option("--data", options->data, "data file (CSV, any historian layout)")->required();
+  command->add_option("--validate", options->validate,
+                      "measure the gain on this data file and fit on all of --data");
+  command
+      ->add_option("--out", options->out,
+                   "folder for report.html, report.json and extended.yaml; made if need be")
+      ->required();
+  command
+      ->add_option("--fit-share", options->fit_share,
+                   "first part of the data that is fitted; the gain is measured on the rest")
+      ->capture_default_str()
+      ->check(CLI::Range(0.2, 0.9));
+  command->add_option("--seed", options->seed, "of the resampling behind the intervals")
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "print report.json too");
+  command->add_flag("--quiet", options->quiet, "print nothing but errors");
+  command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
+                    "exit with 1 if anything was found");
+  command->footer(
+      "Example:\n  mpm diagnose --config config/plants/shell3x3.yaml --data last_week.csv --out "
+      "report");
+  command->callback([options, &exit_code] { exit_code = diagnose_file(*options); });
+}
+
+}  // namespace mpm::daemon

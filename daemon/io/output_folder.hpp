@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace mpm::io {
+
+/// Files that appear together or not at all: written under temporary names beside their places,
+/// renamed by commit(). What was not committed goes away, the folder too if it was made for it.
+class OutputFolder {
+ public:
+  /// Touches nothing yet. Throws config::InputError where `path` is no folder, or cannot be one.
+  explicit OutputFolder(const std::string& path);
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder();
+
+  /// Writes `text` for the file `name`; returns where it lies until commit(). Throws
+  /// std::runtime_error where it cannot.
+  std::string write(const std::string& name, const std::string& text);
+  void commit();
+
+ private:
+  void make();
+
+  std::filesystem::path path_;
+  std::vector<std::filesystem::path> made_;  ///< folders, outermost first
+  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> files_;  ///< from, to
+};
+
+}  // namespace mpm::io

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/report/diagnosis_run.hpp"
+
+namespace mpm::daemon {
+
+/// The unit with the extended model: aux signals that the model now takes are DVs, in the order of
+/// the model's inputs.
+[[nodiscard]] config::UnitConfig extended_unit(const config::UnitConfig& unit,
+                                               const Diagnosis& diagnosis);
+
+/// It as a unit file that begins with what was changed and why. Throws std::logic_error where that
+/// would not load back.
+[[nodiscard]] std::string extended_yaml(const DiagnosisRun& run);
+
+}  // namespace mpm::daemon

@@ -1,0 +1,15 @@
+# cmake -D FOLDER=<of the page's files> -D OUTPUT=<.cpp> -P embed.cmake: the files as C++ constants, so
+# that the program finds them wherever it runs.
+set(text "#include <string_view>\n\nnamespace mpm::daemon {\n")
+foreach(entry kPageHtml:page.html kPageCss:page.css kPlotJs:plot.js kPageJs:page.js)
+  string(REPLACE ":" ";" entry ${entry})
+  list(GET entry 0 name)
+  list(GET entry 1 file)
+  file(READ ${FOLDER}/${file} bytes HEX)
+  string(REGEX REPLACE "(..)" "'\\\\x\\1'," bytes "${bytes}")
+  string(APPEND text
+    "static const char ${name}Bytes[] = {${bytes}};\n"
+    "extern const std::string_view ${name};\n"
+    "const std::string_view ${name}(${name}Bytes, sizeof ${name}Bytes);\n")
+endforeach()
+file(WRITE ${OUTPUT} "${text}}  // namespace mpm::daemon\n")
