@@ -210,7 +210,6 @@ class Collector {
       add(saturation, {low}, members);
       add(saturation, {low, high}, members);
     }
-    if (cv >= 0 && cvs_of(input).size() > 1) return;  // play is in the valve, for all CVs alike
     const Subject deadband{Cause::kInputNonlinearity, cv, input, -1, "deadband"};
     for (const double share : {0.02, 0.05, 0.1, 0.2})
       add(deadband,

@@ -174,8 +174,47 @@ void Problem::update(CvFit& state, const VectorXd& simulated, const MatrixXd& nu
   state.residual = (data.measured - simulated - nuisances * state.beta).cwiseProduct(data.known);
   state.noise = fit_whitening(state.residual, data.weights, noise_order_);
   state.innovations = state.noise.apply(state.residual);
-  state.variance =
-      std::max(1e-30, state.innovations.cwiseAbs2().dot(data.weights) / std::max(1.0, data.rows));
+  const double variance =
+      state.innovations.cwiseAbs2().dot(data.weights) / std::max(1.0, data.rows);
+  state.variance = variance < 1e-30 ? 1e-30 : variance;  // stays NaN where the model is none
+}
+
+Index Problem::best_onset(const Fit& fit, Index first, Index last) {
+  // With everything else held: what the rows before an onset cost without the effect, those after
+  // it with the effect, and the few rows whose past lies on both sides.
+  std::vector<Effect> without(fit.effects.begin(), fit.effects.end() - 1);
+  std::vector<Effect> always = fit.effects;
+  always.back().onset = 0;
+  const Index samples = this->samples();
+  VectorXd cost = VectorXd::Zero(last - first + 1);
+  for (const CvFit& state : fit.cvs) {
+    const CvData& data = this->data(state.cv);
+    const VectorXd before = simulate(without, state.cv);
+    const VectorXd change = (simulate(always, state.cv) - before).cwiseProduct(data.known);
+    const VectorXd base =
+        (data.measured - before - nuisances(fit.effects, state.cv) * state.beta)
+            .cwiseProduct(data.known);
+    const VectorXd old = state.noise.apply(base), moved = state.noise.apply(base - change);
+    VectorXd head = VectorXd::Zero(samples + 1), tail = VectorXd::Zero(samples + 1);
+    for (Index k = 0; k < samples; ++k) head(k + 1) = head(k) + data.weights(k) * old(k) * old(k);
+    for (Index k = samples - 1; k >= 0; --k)
+      tail(k) = tail(k + 1) + data.weights(k) * moved(k) * moved(k);
+    for (Index onset = first; onset <= last; ++onset) {
+      const Index mixed_end = std::min<Index>(samples, onset + noise_order_);
+      double sum = head(onset) + tail(mixed_end);
+      for (Index k = onset; k < mixed_end; ++k) {
+        double value = base(k) - change(k);
+        for (Index l = 1; l <= noise_order_ && l <= k; ++l)
+          value -= state.noise.coefficients(l - 1) *
+                   (base(k - l) - (k - l >= onset ? change(k - l) : 0.0));
+        sum += data.weights(k) * value * value;
+      }
+      cost(onset - first) += sum / state.variance;
+    }
+  }
+  Index best = 0;
+  cost.minCoeff(&best);
+  return first + best;
 }
 
 Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std::vector<int>& cvs,
@@ -190,6 +229,7 @@ Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std:
 
   Fit best;
   best.cost = std::numeric_limits<double>::infinity();
+  best.effects = effects;
   double best_misfit = std::numeric_limits<double>::infinity();
   std::vector<CvFit> states;
   std::vector<MatrixXd> small;  // the nuisances of each CV
@@ -219,6 +259,7 @@ Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std:
     }
     for (Index i = 0; i < count; ++i) misfit += std::pow(prior_units(value(effects, i)), 2);
     const double before = best_misfit;
+    if (iteration == 0 && !std::isfinite(misfit)) return best;
     if (!(misfit < before) && iteration > 0) {  // half way back
       if (++halvings > 3 || iteration >= iterations) break;
       for (Index i = 0; i < count; ++i)
@@ -291,6 +332,7 @@ Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std:
                  .solve(shared.col(count).head(count));
     }
 
+    if (!step.allFinite() || !std::isfinite(log_determinant)) break;
     best.effects = effects;
     best.cvs = states;
     best.cost = misfit + log_determinant;
@@ -327,6 +369,7 @@ Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std:
     if (count > 0) movement = std::max(movement, step.cwiseAbs().maxCoeff());
     if (movement < 1e-4 || (iteration > 1 && before - misfit < 0.02)) break;
   }
+  // A start that is no model at all stays at infinite cost.
   for (const Effect& effect : best.effects) best.cost += effect.search_cost;
   return best;
 }

@@ -76,6 +76,9 @@ class Problem {
   [[nodiscard]] Fit fit(std::vector<Effect> effects, std::size_t first_free,
                         const std::vector<int>& cvs, int iterations = 8);
 
+  /// The row in first .. last from which on the last effect of `fit` best acts, all else held.
+  [[nodiscard]] Eigen::Index best_onset(const Fit& fit, Eigen::Index first, Eigen::Index last);
+
   /// CV with the effects, each from its onset on.
   [[nodiscard]] Eigen::VectorXd simulate(const std::vector<Effect>& effects, int cv);
   /// d simulate / d coordinate times the coordinate's prior s.d.

@@ -68,6 +68,7 @@ double Screening::score(const Effect& candidate) {
     if (!touches(candidate, problem_.model(), cv.fit->cv)) continue;
     const CvData& data = problem_.data(cv.fit->cv);
     const VectorXd at = problem_.simulate(with, cv.fit->cv);
+    if (!at.allFinite()) return -1e300;
     const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) -> VectorXd {
       return cv.fit->noise.apply(x.cwiseProduct(data.known)).cwiseProduct(cv.root);
     };
@@ -102,7 +103,7 @@ double Screening::score(const Effect& candidate) {
     gain -= std::pow((c.value - c.prior_mean) / c.prior_sd + step(i), 2);
   }
   gain -= ldlt.vectorD().cwiseAbs().array().max(1e-300).log().sum();
-  return gain - candidate.search_cost;
+  return std::isfinite(gain) ? gain - candidate.search_cost : -1e300;
 }
 
 }  // namespace mpm

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 
@@ -148,8 +150,23 @@ class Search {
 
   /// Moves the onset of a trial about until no other moment is better.
   void place_onset(Trial& trial) {
+    if (trial.candidate.subject.cause != Cause::kOutputDisturbance) {
+      const Index reach = problem_.samples() / 10, margin = problem_.samples() / 50 + 5;
+      for (int i = 0; i < 4; ++i) {
+        const Index first = std::max(margin, trial.candidate.onset - reach);
+        const Index last = std::min(problem_.samples() - margin, trial.candidate.onset + reach);
+        if (first >= last) return;
+        Effect moved = trial.candidate;
+        moved.onset = problem_.best_onset(trial.fit, first, last);
+        if (moved.onset == trial.candidate.onset) return;
+        Trial next = attempt(moved, 5);
+        if (!(next.odds > trial.odds)) return;
+        trial = std::move(next);
+      }
+      return;
+    }
     Index reach = std::max<Index>(2, problem_.samples() / 40);
-    while (reach >= 2) {
+    while (reach >= 1) {
       bool moved = false;
       for (const Effect& other : other_onsets(trial.candidate, reach, problem_.samples())) {
         Trial next = attempt(other, 4);
@@ -162,6 +179,29 @@ class Search {
     }
   }
 
+  /// Play and sticking are not smooth in their widths: look around, ever closer.
+  void polish(Trial& trial) {
+    const Cause cause = trial.candidate.subject.cause;
+    if (cause != Cause::kStiction && trial.candidate.subject.kind != "deadband") return;
+    for (double factor = 1.3; factor > 1.008; factor = 1.0 + 0.5 * (factor - 1.0)) {
+      for (bool moved = true; moved;) {
+        moved = false;
+        for (std::size_t i = 0; i < trial.candidate.coordinates.size(); ++i) {
+          for (const double by : {factor, 1.0 / factor}) {
+            Effect other = trial.candidate;
+            Coordinate& c = other.coordinates[i];
+            c.value = std::clamp(c.value * by, c.low, c.high);
+            Trial next = attempt(other, 2);
+            if (next.odds > trial.odds + 1e-6) {
+              trial = std::move(next);
+              moved = true;
+            }
+          }
+        }
+      }
+    }
+  }
+
   bool find_one() {
     without_.clear();
     problem_.settle(accepted_, accepted_.empty() ? nullptr : &last_);
@@ -170,10 +210,13 @@ class Search {
     if (trials.empty()) return false;
     const auto better = [](const Trial& a, const Trial& b) { return a.odds > b.odds; };
     std::sort(trials.begin(), trials.end(), better);
-    for (std::size_t i = 0; i < std::min<std::size_t>(4, trials.size()); ++i)
-      if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - 40.0)
+    for (std::size_t i = 0; i < std::min<std::size_t>(6, trials.size()); ++i) {
+      if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - 60.0)
         place_onset(trials[i]);
+      if (trials[i].odds > 0.5 * trials[0].odds) polish(trials[i]);
+    }
     std::sort(trials.begin(), trials.end(), better);
+    if (std::getenv("MPM_TRACE")) for (const Trial& t : trials) { std::fprintf(stderr, "  %s %s cv%d in%d aux%d onset %ld odds %.1f cost %.1f search %.1f:", name_of(t.candidate.subject.cause), t.candidate.subject.kind.c_str(), t.candidate.subject.cv, t.candidate.subject.input, t.candidate.subject.aux, (long)t.candidate.onset, t.odds, t.fit.cost, t.candidate.search_cost); for (auto& c : t.candidate.coordinates) std::fprintf(stderr, " %s=%g", c.name.c_str(), c.value); std::fprintf(stderr, "\n"); }
     if (trials[0].odds < settings_.decisive) return false;
 
     // Once more with rows weighed as the best explanation's innovations ask for.

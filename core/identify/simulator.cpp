@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <stdexcept>
 #include <type_traits>
 
+#include "core/model/disturbance.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/model/static_blocks.hpp"
 
@@ -65,23 +68,6 @@ double first_finite(const Eigen::Ref<const VectorXd>& values, double otherwise) 
   for (const double value : values)
     if (std::isfinite(value)) return value;
   return otherwise;
-}
-
-double disturbance_at(const DisturbanceTerm& term, double time_s) {
-  const double since = time_s - term.onset_s;
-  switch (term.shape) {
-    case DisturbanceShape::kPeriodic:
-      return term.size * std::sin(2.0 * M_PI * since / term.period_s);
-    case DisturbanceShape::kDrift:
-      return since < 0.0 ? 0.0 : term.size * std::min(since, term.until_s - term.onset_s);
-    case DisturbanceShape::kStep:
-      break;
-  }
-  const auto step = [&](double age) {
-    if (age < 0.0) return 0.0;
-    return term.time_constant_s > 0.0 ? 1.0 - std::exp(-age / term.time_constant_s) : 1.0;
-  };
-  return term.size * (step(since) - step(time_s - term.until_s));
 }
 
 const StateTerm* state_term(const ModelSpec& model, const ChannelSpec& channel) {
@@ -156,7 +142,13 @@ const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& sp
   const auto found = remembered_.find(key.text());
   if (found != remembered_.end()) return found->second;
   if (remembered_.size() >= capacity_) remembered_.clear();
-  return remembered_.emplace(key.text(), simulate(model, spec)).first->second;
+  VectorXd output;
+  try {
+    output = simulate(model, spec);
+  } catch (const std::invalid_argument&) {  // a fit tried what is no model
+    output = VectorXd::Constant(recording_->samples(), std::numeric_limits<double>::quiet_NaN());
+  }
+  return remembered_.emplace(key.text(), std::move(output)).first->second;
 }
 
 VectorXd Simulator::cv(const ModelSpec& model, int cv) {
@@ -168,7 +160,8 @@ VectorXd Simulator::cv(const ModelSpec& model, int cv) {
     if (term.cv != cv) continue;
     for (Index k = 0; k < samples; ++k)
       sum(k) +=
-          disturbance_at(term, recording_->start_s + static_cast<double>(k) * model.sample_time_s);
+          disturbance_at(term,
+ recording_->start_s + static_cast<double>(k) * model.sample_time_s, 1e-6 * model.sample_time_s);
   }
   const double origin = model.output_origin(cv);
   const std::optional<OutputBlock>& block = model.output_blocks[static_cast<std::size_t>(cv)];
