@@ -45,7 +45,8 @@ ModelSpec repaired(const HiddenCase& hidden) {
   if (effect.cause == Cause::kStiction || effect.cause == Cause::kInputNonlinearity) {
     InputBlock block = Stiction{value("band", 0.0), value("jump", 0.0)};
     if (effect.kind == "deadband") block = Deadband{value("width", 0.0)};
-    if (effect.kind == "polynomial") block = Polynomial{{1.0, value("c2", 0.0), value("c3", 0.0)}};
+    if (effect.kind == "polynomial")
+      block = Polynomial{{1.0, value("quadratic", 0.0), value("cubic", 0.0)}};
     if (effect.kind == "saturation") block = Saturation{value("low", -kFar), value("high", kFar)};
     model.input_blocks.resize(static_cast<std::size_t>(model.input_count));
     model.input_blocks[static_cast<std::size_t>(effect.input)] = block;

@@ -120,7 +120,7 @@ Row class_row(const std::string& name, const Scores& scores) {
 }  // namespace
 
 std::string confusion_table(const std::vector<CaseScore>& scores) {
-  std::vector<std::string> columns = {"none", "undetermined", "unnamed"};
+  std::vector<std::string> columns = {"none", "undetermined", "unnamed", kFailed};
   for (int cause = 0; cause <= static_cast<int>(Cause::kStateNonlinearity); ++cause)
     columns.emplace_back(name_of(static_cast<Cause>(cause)));
   // Causes that nobody named stay out, or the table would be wider than any page.

@@ -220,7 +220,10 @@ CaseScore score_one(const CaseRequest& request) {
   }
   CaseScore result =
       score(hidden, *diagnosis, std::chrono::duration<double>(Clock::now() - begin).count());
-  if (!failure.empty()) result.answer = "FAILED: " + failure;
+  if (!failure.empty()) {
+    result.named = kFailed;
+    result.answer = "FAILED: " + failure;
+  }
   return result;
 }
 

@@ -19,6 +19,7 @@
 namespace mpm::hidden {
 
 inline constexpr double kConfident = 0.8;
+inline constexpr const char* kFailed = "failed";  ///< named where `diagnose` threw
 
 struct ParameterScore {
   std::string name;
