@@ -21,9 +21,10 @@ struct TrueEffect {
   std::optional<Cause> cause;  ///< none = nothing that the contract names
   int cv = -1, input = -1, aux = -1;
   std::string kind;  ///< as in `Subject`; for what has no cause, what it is
-  /// Plant against model, named and measured as the contract does, else as `ModelSpec` does:
-  /// gain_ratio, time_constant_ratio, dead_time_error (s), band, jump, width, low, high (input or
-  /// CV units), c2, c3, gain, time_constant, dead_time (s), size, period (s), variance_ratio.
+  /// Plant against model, with the names and units of the findings: gain_ratio,
+  /// time_constant_ratio, dead_time_error (s), band, jump, width, low, high (input or CV units),
+  /// quadratic, cubic, gain, time_constant, dead_time (s), size (of a drift: by the end of the
+  /// fitted part), rate (CV units per s), period (s), variance_ratio.
   std::map<std::string, double> parameters = {};
   std::optional<double> onset_s = {};  ///< clock of the data
 };

@@ -147,8 +147,8 @@ std::optional<HiddenCase> attempt_case(const Case& all, int attempt) {
   result.truth = std::move(draft.truth);
   result.noise = std::move(around.noise);
   result.noise_model = std::move(draft.noise);
-  result.healthy_plant = std::move(stages.front());
-  result.plant = std::move(stages.back());
+  result.plant = stages.back();
+  result.healthy_plant = stages.front();  // the same one where nothing is hidden
   result.evidence = std::move(seen);
   result.attempts = attempt;
   return result;

@@ -38,7 +38,7 @@ VectorXd step(Draft& draft, TrueEffect& effect, double size, int onset) {
   effect.onset_s = draft.clock(onset);
   effect.parameters["size"] = size;
   const double lag = draft.chance(0.5) ? 0.0 : draft.between(5.0, 40.0);
-  if (lag > 0.0) effect.parameters["time_constant"] = draft.seconds(lag);
+  if (lag > 0.0 && !draft.hard) effect.parameters["time_constant"] = draft.seconds(lag);
   return size * lagged_step(draft, onset, lag, draft.hard ? 0.5 * lag : 0.0);
 }
 
@@ -48,7 +48,8 @@ VectorXd drift(Draft& draft, TrueEffect& effect, double size, int onset) {
   const double slope = size / (draft.samples - onset);
   const bool stops = draft.chance(0.5) && draft.hard;
   const int until = stops ? onset + (draft.samples - onset) / 2 : draft.samples;
-  effect.parameters["size"] = slope / draft.unit.sample_time_s;
+  if (!stops) effect.parameters["rate"] = slope / draft.unit.sample_time_s;
+  effect.parameters["size"] = slope * (std::min(draft.fit_samples, until) - onset);
   VectorXd result = VectorXd::Zero(draft.samples);
   for (int k = onset; k < draft.samples; ++k) result(k) = slope * (std::min(k, until) - onset);
   return result;
@@ -58,7 +59,8 @@ VectorXd drift(Draft& draft, TrueEffect& effect, double size, int onset) {
 VectorXd wave(Draft& draft, TrueEffect& effect, double size, int onset) {
   const double period = draft.between(20.0, 300.0);
   const double phase = draft.between(0.0, period);
-  effect.parameters = {{"size", std::abs(size) / 2}, {"period", draft.seconds(period)}};
+  effect.parameters["period"] = draft.seconds(period);
+  if (!draft.hard) effect.parameters["size"] = std::abs(size) / 2;
   if (draft.hard) effect.onset_s = draft.clock(onset);
   VectorXd result = VectorXd::Zero(draft.samples);
   for (int k = draft.hard ? onset : 0; k < draft.samples; ++k) {
@@ -120,9 +122,11 @@ void hide_unmodelled_input(Draft& draft) {
   channel.gain = draft.size * draft.sign() * draft.between(0.4, 1.2) * draft.noise_of(effect.cv) /
                  deviation_of(unit_effect);
   draft.plant.channels.push_back(channel);
-  effect.parameters = {{"gain", channel.gain},
-                       {"time_constant", draft.seconds(lag)},
-                       {"dead_time", draft.seconds(channel.dead_time)}};
+  effect.parameters["gain"] = channel.gain;
+  if (!draft.hard) {
+    effect.parameters["time_constant"] = draft.seconds(lag);
+    effect.parameters["dead_time"] = draft.seconds(channel.dead_time);
+  }
   draft.truth.push_back(effect);
 }
 

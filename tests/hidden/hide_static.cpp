@@ -33,10 +33,10 @@ Element bend(Draft& draft, TrueEffect& effect) {
   if (draft.hard) {
     const double farthest = std::max(-draft.healthy.mv_low[mv], draft.healthy.mv_high[mv]);
     bent.cubic = change / (3.0 * farthest * farthest);
-    effect.parameters["c3"] = bent.cubic;
+    effect.parameters["cubic"] = bent.cubic;
   } else {
     bent.quadratic = change / (2.0 * draft.range_of(effect.input));
-    effect.parameters["c2"] = bent.quadratic;
+    effect.parameters["quadratic"] = bent.quadratic;
   }
   return bent;
 }
