@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "core/model/model_spec.hpp"
 #include "core/monitor/settings.hpp"
 
 /// Settings that are one of a few, and what the files call each.
@@ -23,6 +24,11 @@ struct Choice {
 [[nodiscard]] constexpr auto choices(ThresholdKind /*which*/) {
   return std::array{Choice<ThresholdKind>{"f_test", ThresholdKind::kFTest},
                     Choice<ThresholdKind>{"mean_line", ThresholdKind::kMeanLine}};
+}
+[[nodiscard]] constexpr auto choices(DisturbanceShape /*which*/) {
+  return std::array{Choice<DisturbanceShape>{"step", DisturbanceShape::kStep},
+                    Choice<DisturbanceShape>{"drift", DisturbanceShape::kDrift},
+                    Choice<DisturbanceShape>{"periodic", DisturbanceShape::kPeriodic}};
 }
 
 template <class Kind>

@@ -4,8 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "config/load_sections.hpp"
-#include "config/suggest.hpp"
+#include "config/load_model_parts.hpp"
 #include "config/yaml_text.hpp"
 
 namespace mpm::config {
@@ -17,11 +16,12 @@ constexpr std::size_t kMostCoefficients = 200;
 constexpr std::size_t kMostSteps = 100000;
 constexpr double kUnitCircle = 1.0 + 1e-6;  // on it is an integrator, within rounding
 
-const std::vector<std::string> kPlace = {"cv", "mv", "dv"};
+const std::vector<std::string> kPlace = {"cv", "mv", "dv", "input"};
 const std::vector<std::string> kContinuous = {"gain", "time_constants", "lead", "dead_time",
                                               "integrating"};
 const std::vector<std::string> kDiscrete = {"numerator", "denominator", "delay_samples"};
 const std::vector<std::string> kStep = {"step_response"};
+const std::vector<std::string> kTanks = {"tanks"};
 
 TransferFunction read_continuous(const Map& map, double sample_time_s) {
   TransferFunction tf;
@@ -105,35 +105,50 @@ const Map::Entry* first_of(const Map& map, const std::vector<std::string>& keys)
   return nullptr;
 }
 
-void read_dynamics(const Map& map, double sample_time_s, ChannelSpec& channel) {
+void read_dynamics(const Map& map, const ModelSignals& signals, ChannelSpec& channel) {
   const Map::Entry* continuous = first_of(map, kContinuous);
   const Map::Entry* discrete = first_of(map, kDiscrete);
   const Map::Entry* step = first_of(map, kStep);
-  const Map::Entry* chosen = step != nullptr ? step : discrete != nullptr ? discrete : continuous;
+  const Map::Entry* tanks = first_of(map, kTanks);
+  const Map::Entry* chosen = nullptr;
+  for (const Map::Entry* form : {continuous, discrete, step, tanks})
+    if (form != nullptr) chosen = form;
   if (chosen == nullptr) {
-    map.place().error("needs `gain`, `numerator` or `step_response`");
+    map.place().error("needs `gain`, `numerator`, `step_response` or `tanks`");
     return;
   }
-  for (const Map::Entry* other : {continuous, discrete})
+  for (const Map::Entry* other : {continuous, discrete, step})
     if (other != nullptr && other != chosen)
       other->key_at.error("does not go with `" + chosen->key + "` in one channel");
-  if (chosen == step) {
+  if (chosen == tanks) {
+    channel.dynamics = read_tanks(tanks->value, signals, channel.cv, channel.input);
+  } else if (chosen == step) {
     channel.dynamics = read_step(map);
   } else if (chosen == discrete) {
     channel.dynamics = read_discrete(map);
   } else {
-    channel.dynamics = read_continuous(map, sample_time_s);
+    channel.dynamics = read_continuous(map, signals.sample_time_s);
   }
 }
 
 }  // namespace
 
-void load_channels(const Value& list, UnitConfig& config) {
+ChannelPlace read_place(const Map& map, const ModelSignals& signals) {
+  const Value* cv = map.require("cv");
+  const Value* mv = map.find("mv");
+  const Value* dv = map.find("dv");
+  if (mv == nullptr && dv == nullptr) map.place().error("`mv` (or `dv`) is missing");
+  if (mv != nullptr && dv != nullptr) dv->error("give either `mv` or `dv`, not both");
+  const Value* input = mv != nullptr ? mv : dv;
+  return {cv != nullptr ? find_tag(*cv, signals.cvs, "cv") : -1,
+          input != nullptr ? find_tag(*input, signals.inputs, signals.input_noun) : -1};
+}
+
+std::vector<ChannelSpec> read_channels(const Value& list, const ModelSignals& signals) {
   std::vector<std::string> known;
-  for (const auto* keys : {&kPlace, &kContinuous, &kDiscrete, &kStep})
+  for (const auto* keys : {&kPlace, &kContinuous, &kDiscrete, &kStep, &kTanks})
     known.insert(known.end(), keys->begin(), keys->end());
-  const std::vector<std::string> inputs = config.input_tags();
-  const std::vector<std::string> cvs = config.cv_tags();
+  std::vector<ChannelSpec> channels;
   std::map<std::pair<int, int>, int> lines;
   for (const Value& item : list.items()) {
     if (!item.is_map()) {
@@ -141,26 +156,24 @@ void load_channels(const Value& list, UnitConfig& config) {
       continue;
     }
     const Map map = item.map(known);
+    const ChannelPlace place = read_place(map, signals);
     ChannelSpec channel;
-    read_dynamics(map, config.sample_time_s, channel);
-    const Value* cv = map.require("cv");
-    const Value* mv = map.find("mv");
-    const Value* dv = map.find("dv");
-    if (mv == nullptr && dv == nullptr) item.error("`mv` (or `dv`) is missing");
-    if (mv != nullptr && dv != nullptr) dv->error("give either `mv` or `dv`, not both");
-    const Value* input = mv != nullptr ? mv : dv;
-    channel.cv = cv != nullptr ? find_tag(*cv, cvs, "cv") : -1;
-    channel.input = input != nullptr ? find_tag(*input, inputs, "mv or dv") : -1;
-    if (channel.cv < 0 || channel.input < 0) continue;
+    channel.cv = place.cv;
+    channel.input = place.input;
+    read_dynamics(map, signals, channel);
+    if (const Value* block = map.find("input")) channel.input_block = read_input_block(*block);
+    if (!place.known()) continue;
     const auto [first, is_new] = lines.try_emplace({channel.cv, channel.input}, item.line());
     if (!is_new) {
-      item.error("a second channel from '" + inputs[static_cast<std::size_t>(channel.input)] +
-                 "' to '" + cvs[static_cast<std::size_t>(channel.cv)] + "'; the first is in line " +
+      item.error("a second channel from '" +
+                 signals.inputs[static_cast<std::size_t>(channel.input)] + "' to '" +
+                 signals.cvs[static_cast<std::size_t>(channel.cv)] + "'; the first is in line " +
                  std::to_string(first->second));
       continue;
     }
-    config.model.channels.push_back(std::move(channel));
+    channels.push_back(std::move(channel));
   }
+  return channels;
 }
 
 }  // namespace mpm::config

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "config/load_sections.hpp"
+#include "config/load_model_parts.hpp"
 
 namespace mpm::config {
 namespace {
@@ -47,7 +47,24 @@ void check_missing_model(const Value* section, const Value& place, const UnitCon
   }
 }
 
+void load_terms(const Map& map, UnitConfig& config) {
+  const ModelSignals signals = signals_of(config);
+  if (const Value* terms = map.find("state"); terms != nullptr && !terms->is_null()) {
+    if (config.model.state_space)
+      terms->error("goes with `channels`, not with `state_space`");
+    else
+      config.model.state_terms = read_state_terms(*terms, signals, config.model.channels);
+  }
+  if (const Value* list = map.find("disturbances"); list != nullptr && !list->is_null())
+    config.model.disturbances = read_disturbances(*list, signals);
+}
+
 }  // namespace
+
+ModelSignals signals_of(const UnitConfig& unit) {
+  return {unit.input_tags(), unit.cv_tags(), unit.model.input_origin, unit.model.output_origin,
+          unit.sample_time_s};
+}
 
 void load_model(const Value& root, const Value* section, const Value* top_level_origin,
                 UnitConfig& config) {
@@ -65,19 +82,25 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
   if (top_level_origin != nullptr) load_origin(*top_level_origin, config);
   bool tried = false;
   if (section != nullptr) {
-    const Map map = section->map({"channels", "state_space", "input", "output", "operating_point"});
+    const Map map = section->map(
+        {"channels", "state_space", "input", "output", "state", "disturbances", "operating_point"});
+    if (const Value* inner = map.find("operating_point")) {
+      if (top_level_origin != nullptr) inner->error("given twice; also at the top level");
+      load_origin(*inner, config);  // first: tanks ask what it is
+    }
     const Value* channels = map.find("channels");
     const Value* state_space = map.find("state_space");
     if (channels != nullptr && state_space != nullptr)
       state_space->error("give either `channels` or `state_space`, not both");
     tried = (channels != nullptr && !channels->is_null()) || state_space != nullptr;
-    if (channels != nullptr && !channels->is_null()) load_channels(*channels, config);
+    if (channels != nullptr && !channels->is_null())
+      model.channels = read_channels(*channels, signals_of(config));
     if (state_space != nullptr) load_state_space(*state_space, config);
-    load_static_blocks(map, config);
-    if (const Value* inner = map.find("operating_point")) {
-      if (top_level_origin != nullptr) inner->error("given twice; also at the top level");
-      load_origin(*inner, config);
-    }
+    if (const Value* blocks = map.find("input"))
+      read_input_blocks(*blocks, config.input_tags(), model.input_blocks);
+    if (const Value* blocks = map.find("output"))
+      read_output_blocks(*blocks, config.cv_tags(), model.output_blocks);
+    load_terms(map, config);
     // Not where a channel could not be read: that has been told, and may be the one.
     if (channels != nullptr && tried && model.channels.size() == channels->items().size())
       warn_of_idle_cvs(*section, config);

@@ -38,10 +38,14 @@ void check_change(const Value& item, const Change& change, const UnitConfig& uni
     if ((change.cv && *change.cv != cv) || (change.mv && *change.mv != input)) continue;
     matched = true;
     const auto* tf = std::get_if<TransferFunction>(&channel.dynamics);
-    if (tf != nullptr && tf->dead_time_s + change.dead_time_error_s < 0.0)
+    const auto* tanks = std::get_if<TankChain>(&channel.dynamics);
+    const double dead_time_s = tf != nullptr      ? tf->dead_time_s
+                               : tanks != nullptr ? tanks->dead_time_s
+                                                  : kForEver;
+    if (dead_time_s + change.dead_time_error_s < 0.0)
       item.error("dead_time_error " + yaml_text(change.dead_time_error_s) +
                  " makes the dead time of " + input + " -> " + cv +
-                 " negative (model: " + yaml_text(tf->dead_time_s) + " s)");
+                 " negative (model: " + yaml_text(dead_time_s) + " s)");
   }
   if (!matched)
     item.error("the model has no channel " + change.mv.value_or("(any)") + " -> " +

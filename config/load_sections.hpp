@@ -24,10 +24,8 @@ void load_alarms(const Value* section, UnitConfig& config);
 void load_dds(const Value* section, UnitConfig& config);
 void load_simulation(const Value* section, UnitConfig& config);
 
-/// Parts of `load_model`.
-void load_channels(const Value& list, UnitConfig& config);
+/// A part of `load_model`; see load_model_parts.hpp for the others.
 void load_state_space(const Value& value, UnitConfig& config);
-void load_static_blocks(const Map& model, UnitConfig& config);
 
 /// Index of the tag that `value` names, or -1 (reported as an unknown `noun`).
 [[nodiscard]] int find_tag(const Value& value, const std::vector<std::string>& tags,

@@ -110,25 +110,28 @@ void load_simulation(const Value* section, UnitConfig& config) {
   simulation.cv_limits.resize(config.cv.size());
   simulation.noise.resize(config.cv.size());
   simulation.dv_movement.resize(config.dv.size());
+  simulation.aux_movement.resize(config.aux.size());
   simulation.setpoints.resize(config.cv.size());
   if (section == nullptr) return;
 
   std::vector<std::string> known = keys(simulation_fields());
-  for (const char* key :
-       {"move_blocks", "cv_weights", "move_weights", "limits", "noise", "dv_movement", "setpoints"})
+  for (const char* key : {"move_blocks", "cv_weights", "move_weights", "limits", "noise",
+                          "dv_movement", "aux_movement", "setpoints"})
     known.emplace_back(key);
   const Map map = section->map(known);
   read_fields(map, simulation_fields(), simulation);
   read_move_blocks(map, simulation);
-  std::vector<std::string> mvs, dvs;
+  std::vector<std::string> mvs, dvs, auxiliaries;
   for (const InputSignal& mv : config.mv) mvs.push_back(mv.tag);
   for (const InputSignal& dv : config.dv) dvs.push_back(dv.tag);
+  for (const InputSignal& aux : config.aux) auxiliaries.push_back(aux.tag);
   const std::vector<std::string> cvs = config.cv_tags();
   read_weights(map, "cv_weights", cvs, simulation.cv_weights);
   read_weights(map, "move_weights", mvs, simulation.move_weights);
   read_limits(map, config, simulation);
   read_each(map, "noise", cvs, noise_fields(), simulation.noise);
   read_each(map, "dv_movement", dvs, noise_fields(), simulation.dv_movement);
+  read_each(map, "aux_movement", auxiliaries, noise_fields(), simulation.aux_movement);
   read_each(map, "setpoints", cvs, setpoint_fields(), simulation.setpoints);
 }
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "config/load_sections.hpp"
+#include "config/load_model_parts.hpp"
 #include "config/yaml_text.hpp"
 
 namespace mpm::config {
@@ -30,7 +30,7 @@ std::optional<Stiction> read_stiction(const Value& value) {
   return Stiction{*width, *slip};
 }
 
-std::optional<InputBlock> read_input_block(const Map::Entry& entry) {
+std::optional<InputBlock> read_input(const Map::Entry& entry) {
   const Value& value = entry.value;
   if (entry.key == "polynomial") {
     const std::vector<double> c = value.numbers();
@@ -50,7 +50,7 @@ std::optional<InputBlock> read_input_block(const Map::Entry& entry) {
   return std::nullopt;
 }
 
-std::optional<OutputBlock> read_output_block(const Map::Entry& entry) {
+std::optional<OutputBlock> read_output(const Map::Entry& entry) {
   const Value& value = entry.value;
   if (entry.key == "saturation") {
     if (const auto block = read_saturation(value)) return *block;
@@ -66,32 +66,46 @@ std::optional<OutputBlock> read_output_block(const Map::Entry& entry) {
   return Scale{*number};
 }
 
+/// The only entry of a block; null where there is none, or several (reported).
+const Map::Entry* only_entry(const Map& block) {
+  if (block.entries().size() > 1) block.place().error("takes one block only");
+  return block.entries().size() == 1 ? &block.entries().front() : nullptr;
+}
+
 template <class Block, class Read>
-void read_blocks(const Map& model, std::string_view key, const std::vector<std::string>& tags,
-                 const std::vector<std::string>& kinds, Read read,
+void read_by_tag(const Value& section, const std::vector<std::string>& tags, Read read,
                  std::vector<std::optional<Block>>& blocks) {
-  const Value* section = model.find(key);
-  if (section == nullptr) return;
-  const Map by_tag = section->map(tags, "tag");
+  const Map by_tag = section.map(tags, "tag");
   for (const Map::Entry& entry : by_tag.entries()) {
-    const Map block = entry.value.map(kinds);
-    if (block.entries().size() != 1) {
-      if (block.entries().size() > 1) entry.value.error("takes one block only");
-      continue;
-    }
     const auto index = std::find(tags.begin(), tags.end(), entry.key) - tags.begin();
-    blocks[static_cast<std::size_t>(index)] = read(block.entries().front());
+    blocks[static_cast<std::size_t>(index)] = read(entry.value);
   }
 }
 
 }  // namespace
 
-void load_static_blocks(const Map& model, UnitConfig& config) {
-  read_blocks(model, "input", config.input_tags(),
-              {"polynomial", "saturation", "deadband", "stiction"}, read_input_block,
-              config.model.input_blocks);
-  read_blocks(model, "output", config.cv_tags(), {"saturation", "offset", "scale"},
-              read_output_block, config.model.output_blocks);
+std::optional<InputBlock> read_input_block(const Value& value) {
+  const Map block = value.map({"polynomial", "saturation", "deadband", "stiction"});
+  const Map::Entry* only = only_entry(block);
+  if (only == nullptr) return std::nullopt;
+  return read_input(*only);
+}
+
+std::optional<OutputBlock> read_output_block(const Value& value) {
+  const Map block = value.map({"saturation", "offset", "scale"});
+  const Map::Entry* only = only_entry(block);
+  if (only == nullptr) return std::nullopt;
+  return read_output(*only);
+}
+
+void read_input_blocks(const Value& section, const std::vector<std::string>& tags,
+                       std::vector<std::optional<InputBlock>>& blocks) {
+  read_by_tag(section, tags, read_input_block, blocks);
+}
+
+void read_output_blocks(const Value& section, const std::vector<std::string>& tags,
+                        std::vector<std::optional<OutputBlock>>& blocks) {
+  read_by_tag(section, tags, read_output_block, blocks);
 }
 
 }  // namespace mpm::config

@@ -5,6 +5,7 @@
 #include "config/choice.hpp"
 #include "config/fields.hpp"
 #include "config/load_unit.hpp"
+#include "config/print_model.hpp"
 #include "config/yaml_text.hpp"
 
 namespace mpm::config {
@@ -60,92 +61,6 @@ void print_signals(std::string_view kind, const std::vector<Signal>& signals, st
   }
 }
 
-std::string dynamics_text(const TransferFunction& tf) {
-  return "gain: " + yaml_text(tf.gain) + ", time_constants: " + yaml_text(tf.time_constants_s) +
-         ", lead: " + yaml_text(tf.lead_s) + ", dead_time: " + yaml_text(tf.dead_time_s) +
-         ", integrating: " + yaml_text(tf.integrating);
-}
-
-std::string dynamics_text(const DiscreteFilter& filter) {
-  return "numerator: " + yaml_text(filter.numerator) +
-         ", denominator: " + yaml_text(filter.denominator) +
-         ", delay_samples: " + yaml_text(filter.delay_samples);
-}
-
-std::string dynamics_text(const StepResponse& step) {
-  return "step_response: " + yaml_text(step.values);
-}
-
-std::string dynamics_text(const TankChain& tanks) {
-  return "tanks: {time_constants: " + yaml_text(tanks.time_constants_s) + "}";
-}
-
-std::string block_text(const Polynomial& block) {
-  return "{polynomial: " + yaml_text(block.coefficients) + "}";
-}
-std::string block_text(const Saturation& block) {
-  return "{saturation: " + yaml_text(std::vector<double>{block.low, block.high}) + "}";
-}
-std::string block_text(const Deadband& block) {
-  return "{deadband: " + yaml_text(block.width) + "}";
-}
-std::string block_text(const Stiction& block) {
-  return "{stiction: {band: " + yaml_text(block.band) + ", jump: " + yaml_text(block.jump) + "}}";
-}
-std::string block_text(const Offset& block) { return "{offset: " + yaml_text(block.bias) + "}"; }
-std::string block_text(const Scale& block) { return "{scale: " + yaml_text(block.factor) + "}"; }
-
-template <class Block>
-void print_blocks(std::string_view key, const std::vector<std::optional<Block>>& blocks,
-                  const std::vector<std::string>& tags, std::ostream& out) {
-  bool first = true;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    if (!blocks[i]) continue;
-    if (first) out << "  " << key << ":\n";
-    first = false;
-    out << "    " << yaml_text(tags[i]) << ": "
-        << std::visit([](const auto& block) { return block_text(block); }, *blocks[i]) << '\n';
-  }
-}
-
-std::string origin_text(const UnitConfig& config) {
-  std::string text = "{";
-  const auto add = [&text](const std::vector<std::string>& tags, const Eigen::VectorXd& values) {
-    for (std::size_t i = 0; i < tags.size(); ++i)
-      text += (text.size() > 1 ? ", " : "") + yaml_text(tags[i]) + ": " +
-              yaml_text(values(static_cast<Eigen::Index>(i)));
-  };
-  add(config.input_tags(), config.model.input_origin);
-  add(config.cv_tags(), config.model.output_origin);
-  return text + "}";
-}
-
-void print_model(const UnitConfig& config, std::ostream& out) {
-  const ModelSpec& model = config.model;
-  out << "model:\n";
-  if (model.state_space) {
-    const StateSpaceSpec& system = *model.state_space;
-    out << "  state_space:\n    A: " << yaml_text(system.a) << "\n    B: " << yaml_text(system.b)
-        << "\n    C: " << yaml_text(system.c) << "\n    D: " << yaml_text(system.d) << '\n';
-    if (system.x0.size() > 0)
-      out << "    x0: "
-          << yaml_text(std::vector<double>(system.x0.data(), system.x0.data() + system.x0.size()))
-          << '\n';
-  } else {
-    out << "  channels:" << (model.channels.empty() ? "\n" : "  # times in s\n");
-    const std::vector<std::string> cvs = config.cv_tags();
-    for (const ChannelSpec& channel : model.channels)
-      out << "    - {cv: " << yaml_text(cvs[static_cast<std::size_t>(channel.cv)])
-          << ", mv: " << yaml_text(config.input_tag(channel.input)) << ", "
-          << std::visit([](const auto& dynamics) { return dynamics_text(dynamics); },
-                        channel.dynamics)
-          << "}\n";
-  }
-  print_blocks("input", model.input_blocks, config.input_tags(), out);
-  print_blocks("output", model.output_blocks, config.cv_tags(), out);
-  out << "  operating_point: " << origin_text(config) << '\n';
-}
-
 template <class Settings, class Text>
 void print_each(std::string_view key, const std::vector<std::string>& tags,
                 const std::vector<Settings>& settings, Text text, std::ostream& out) {
@@ -178,9 +93,10 @@ void print_limits(const UnitConfig& config, std::ostream& out) {
 void print_simulation(const UnitConfig& config, std::ostream& out) {
   const SimulationSettings& simulation = config.simulation;
   const std::vector<std::string> cvs = config.cv_tags();
-  std::vector<std::string> mvs, dvs;
+  std::vector<std::string> mvs, dvs, auxiliaries;
   for (const InputSignal& mv : config.mv) mvs.push_back(mv.tag);
   for (const InputSignal& dv : config.dv) dvs.push_back(dv.tag);
+  for (const InputSignal& aux : config.aux) auxiliaries.push_back(aux.tag);
   const auto number = [](double value) { return yaml_text(value); };
   const auto noise = [](const NoiseSettings& each) { return inline_fields(noise_fields(), each); };
   const auto setpoint = [](const SetpointSettings& each) {
@@ -197,6 +113,7 @@ void print_simulation(const UnitConfig& config, std::ostream& out) {
   print_limits(config, out);
   print_each("noise", cvs, simulation.noise, noise, out);
   print_each("dv_movement", dvs, simulation.dv_movement, noise, out);
+  print_each("aux_movement", auxiliaries, simulation.aux_movement, noise, out);
   print_each("setpoints", cvs, simulation.setpoints, setpoint, out);
 }
 

@@ -66,6 +66,7 @@ struct SimulationSettings {
   std::vector<CvLimits> cv_limits;                   ///< one per CV
   std::vector<NoiseSettings> noise;                  ///< one per CV
   std::vector<NoiseSettings> dv_movement;   ///< one per DV: how measured disturbances wander
+  std::vector<NoiseSettings> aux_movement;  ///< one per aux signal, around 0
   std::vector<SetpointSettings> setpoints;  ///< one per CV
 };
 

@@ -35,6 +35,7 @@ std::string list_text(const Values& values) {
 }  // namespace
 
 std::string yaml_text(double value) {
+  if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
   std::array<char, 40> buffer{};
   char* const end = buffer.data() + buffer.size();
   // The shortest form of 100000 is 1e+05, which nobody writes.

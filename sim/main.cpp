@@ -13,10 +13,10 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
+#include "config/time_text.hpp"
 #include "sim/options.hpp"
 #include "sim/output/bad_data.hpp"
 #include "sim/output/csv_writer.hpp"
-#include "sim/output/start_time.hpp"
 #include "sim/output/truth.hpp"
 #include "sim/publish.hpp"
 #include "sim/scenario/materiality.hpp"
@@ -70,7 +70,7 @@ std::int64_t start_time_ns(const Options& options) {
                                      std::chrono::system_clock::now().time_since_epoch())
                                      .count()
                                : 0;
-  const std::optional<std::int64_t> start = parse_start_time(options.start_time);
+  const std::optional<std::int64_t> start = config::parse_time(options.start_time);
   if (!start)
     throw BadInput("--start-time: neither seconds nor ISO 8601 with a zone: " + options.start_time);
   return *start;

@@ -121,7 +121,7 @@ void LinearModel::State::compute_output() {
 
 void LinearModel::State::add_disturbances() {
   // Seconds since 1970 as a double are good to 0.2 us.
-  const double tolerance_s = 1e-6 * definition->spec.sample_time_s;
+  const double tolerance_s = 1e-4 * definition->spec.sample_time_s;
   const double now_s = time_s();
   for (const DisturbanceTerm& disturbance : definition->spec.disturbances)
     linear_output(disturbance.cv) += disturbance_at(disturbance, now_s, tolerance_s);

@@ -318,6 +318,8 @@ void Monitor::State::take_frame(const Frame& frame) {
   const std::int64_t missing = samples == 0 ? 0 : frame.interval - taken_interval - 1;
   taken_interval = frame.interval;
   if (missing > 0) pass_gap(missing);
+  // Anew with each frame: what disturbs in the model keeps to the clock of the data over gaps.
+  if (simulates) model.set_time_s(1e-9 * static_cast<double>(frame.source_time_ns));
   read_inputs(frame);
   read_residuals(frame);
   simulate();

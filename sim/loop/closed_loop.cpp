@@ -87,6 +87,9 @@ ClosedLoop::ClosedLoop(const LoopSetup& setup)
   const VectorXd input_origin = origin_of(unit.model.input_origin, unit.model.input_count);
   disturbance_origin_ = input_origin.tail(static_cast<Index>(unit.dv.size()));
   input_ = input_origin;
+  const double start_s = 1e-9 * static_cast<double>(start_time_ns_);
+  plant_.set_time_s(start_s);
+  controller_.set_time_s(start_s);
   true_output_ = plant_.output();
 
   std::vector<config::NoiseSettings> movement = unit.simulation.dv_movement;

@@ -5,15 +5,22 @@ namespace mpm::sim {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+namespace {
+
+double slope_of(const std::optional<InputBlock>& block) {
+  const auto* polynomial = block ? std::get_if<Polynomial>(&*block) : nullptr;
+  if (polynomial == nullptr) return 1.0;
+  return polynomial->coefficients.empty() ? 0.0 : polynomial->coefficients[0];
+}
+
+}  // namespace
+
 MatrixXd static_slopes(const ModelSpec& spec) {
   MatrixXd slopes = MatrixXd::Ones(spec.cv_count, spec.input_count);
-  for (std::size_t i = 0; i < spec.input_blocks.size(); ++i) {
-    if (!spec.input_blocks[i]) continue;
-    const auto* polynomial = std::get_if<Polynomial>(&*spec.input_blocks[i]);
-    if (polynomial != nullptr)
-      slopes.col(static_cast<Index>(i)) *=
-          polynomial->coefficients.empty() ? 0.0 : polynomial->coefficients[0];
-  }
+  for (std::size_t i = 0; i < spec.input_blocks.size(); ++i)
+    slopes.col(static_cast<Index>(i)) *= slope_of(spec.input_blocks[i]);
+  for (const ChannelSpec& channel : spec.channels)
+    slopes(channel.cv, channel.input) *= slope_of(channel.input_block);
   for (std::size_t i = 0; i < spec.output_blocks.size(); ++i) {
     if (!spec.output_blocks[i]) continue;
     const auto* scale = std::get_if<Scale>(&*spec.output_blocks[i]);

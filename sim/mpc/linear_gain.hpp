@@ -7,7 +7,8 @@
 namespace mpm::sim {
 
 /// cv_count x input_count: what the static blocks multiply each channel with near the operating
-/// point (first polynomial coefficient of the input, scale of the output; 1 for all others).
+/// point (first polynomial coefficient of the input and of the channel's own block, scale of the
+/// output; 1 for all others).
 [[nodiscard]] Eigen::MatrixXd static_slopes(const ModelSpec& spec);
 
 /// Steady-state gains near the operating point, cv_count x mv_count. In the row of a CV that

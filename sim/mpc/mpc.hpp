@@ -23,6 +23,9 @@ namespace mpm::sim {
 /// closed-form optimum without limits is taken where it keeps all of them; else the quadratic
 /// program decides; where that has no solution the MVs stay where they are.
 ///
+/// What is not linear in the model, and its disturbances, shape the free response; S is that of the
+/// linear part around the operating point.
+///
 /// feedback = 1 is integral action (no steady offset); below 1 the loop keeps an offset.
 /// No allocation after construction.
 class Mpc {
@@ -31,6 +34,9 @@ class Mpc {
   /// define no controller.
   Mpc(const ModelSpec& model, int mv_count, const config::SimulationSettings& settings,
       double disturbance_feedback);
+
+  /// Time of the present prediction on the clock of the data; see `LinearModel::set_time_s`.
+  void set_time_s(double time_s) { model_.set_time_s(time_s); }
 
   /// y_model(k): the internal model, driven by the inputs given so far and never corrected.
   [[nodiscard]] const Eigen::VectorXd& prediction() const { return model_.output(); }

@@ -25,9 +25,12 @@ ChannelSpec* find_channel(ModelSpec& model, int cv, int input) {
   return nullptr;
 }
 
+/// Of the linear part.
 StepResponse step_response_of(const ModelSpec& model, int cv, int input) {
   ModelSpec one = model;
   one.channels.clear();
+  one.state_terms.clear();
+  one.disturbances.clear();
   for (const ChannelSpec& channel : model.channels)
     if (channel.cv == cv && channel.input == input) one.channels.push_back(channel);
   const LinearModel simulator(one);
@@ -77,6 +80,15 @@ void apply(const ChannelChange& change, TransferFunction& transfer) {
     throw std::invalid_argument("the dead time would become negative");
 }
 
+/// A level that answers by so much more has its empty vessel so much further down.
+void apply(const ChannelChange& change, double output_origin, TankChain& tanks) {
+  tanks.empty_output = output_origin - change.gain_ratio * (output_origin - tanks.empty_output);
+  for (double& time_constant_s : tanks.time_constants_s)
+    time_constant_s *= change.time_constant_ratio;
+  tanks.dead_time_s += change.dead_time_error_s;
+  if (tanks.dead_time_s < 0.0) throw std::invalid_argument("the dead time would become negative");
+}
+
 /// Gains of a state space in one whole row, column or cell without leaving that form.
 bool scale_state_space(const ChannelChange& change, ModelSpec& model) {
   StateSpaceSpec& system = *model.state_space;
@@ -115,6 +127,10 @@ void apply(const ChannelChange& change, ModelSpec& model) {
   if (channel == nullptr) throw std::invalid_argument("the model has no such channel");
   if (auto* transfer = std::get_if<TransferFunction>(&channel->dynamics)) {
     apply(change, *transfer);
+    return;
+  }
+  if (auto* tanks = std::get_if<TankChain>(&channel->dynamics)) {
+    apply(change, model.output_origin.size() != 0 ? model.output_origin(change.cv) : 0.0, *tanks);
     return;
   }
   const double shift = change.dead_time_error_s / model.sample_time_s;

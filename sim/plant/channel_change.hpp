@@ -22,11 +22,11 @@ struct ChannelChange {
 [[nodiscard]] std::vector<ChannelChange> resolve_changes(const std::vector<config::Change>& changes,
                                                          const config::UnitConfig& unit);
 
-/// `model` with the changes applied one after the other. A transfer function keeps its form, and
-/// so do a filter, a step response or a state space where the change allows; else the channel
-/// becomes a step response, stretched about its dead time. Throws std::invalid_argument where a
-/// change is impossible (a negative dead time, an integrating channel in a form that cannot be
-/// stretched).
+/// `model` with the changes applied one after the other. A transfer function and tanks keep their
+/// form, and so do a filter, a step response or a state space where the change allows; else the
+/// channel becomes a step response, stretched about its dead time. Throws std::invalid_argument
+/// where a change is impossible (a negative dead time, an integrating channel in a form that cannot
+/// be stretched).
 [[nodiscard]] ModelSpec changed_model(const ModelSpec& model,
                                       const std::vector<ChannelChange>& changes);
 

@@ -48,6 +48,11 @@ Plant::Plant(const ModelSpec& model, std::vector<ChannelChange> changes)
   compute_output();
 }
 
+void Plant::set_time_s(double time_s) {
+  for (Stage& stage : stages_) stage.model.set_time_s(time_s);
+  compute_output();
+}
+
 void Plant::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   for (Stage& stage : stages_) stage.model.advance(input);
   ++interval_;

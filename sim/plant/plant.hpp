@@ -19,6 +19,9 @@ class Plant {
  public:
   Plant(const ModelSpec& model, std::vector<ChannelChange> changes);
 
+  /// Time of the present output on the clock of the data; see `LinearModel::set_time_s`.
+  void set_time_s(double time_s);
+
   /// y(k) without noise.
   [[nodiscard]] const Eigen::VectorXd& output() const { return output_; }
   /// Takes u(k), MVs then DVs.

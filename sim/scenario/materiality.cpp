@@ -56,6 +56,7 @@ double dead_time_s(const ModelSpec& model, int cv, int input) {
       return transfer->dead_time_s;
     if (const auto* filter = std::get_if<DiscreteFilter>(&channel.dynamics))
       return filter->delay_samples * model.sample_time_s;
+    if (const auto* tanks = std::get_if<TankChain>(&channel.dynamics)) return tanks->dead_time_s;
   }
   return 0.0;  // not known: only more of it is looked at
 }

@@ -96,6 +96,12 @@ ModelSpec match_signals(const config::UnitConfig& controller, const config::Unit
     channel.cv = position_of(channel.cv, cvs);
     channel.input = position_of(channel.input, inputs);
   }
+  for (StateTerm& term : model.state_terms) {
+    term.cv = position_of(term.cv, cvs);
+    term.input = position_of(term.input, inputs);
+  }
+  for (DisturbanceTerm& disturbance : model.disturbances)
+    disturbance.cv = position_of(disturbance.cv, cvs);
   if (model.state_space) {
     model.state_space->b = given.state_space->b(Eigen::all, inputs);
     model.state_space->c = given.state_space->c(cvs, Eigen::all);

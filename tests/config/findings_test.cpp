@@ -101,7 +101,8 @@ TEST_CASE("Every mistake in a section is told at its place") {
        "u.yaml:7:54: error: model.channels[0].gain: does not go with `step_response` in one "
        "channel"},
       {"model:\n  channels: [{cv: y1, mv: u1}]\n",
-       "u.yaml:7:14: error: model.channels[0]: needs `gain`, `numerator` or `step_response`"},
+       "u.yaml:7:14: error: model.channels[0]: needs `gain`, `numerator`, `step_response` or "
+       "`tanks`"},
       {"model:\n  channels: [{cv: y1, mv: u1, gain: 2}, wibble]\n",
        "u.yaml:7:41: error: model.channels[1]: a channel is a map such as {cv: y1, mv: u1, gain: "
        "2}"},
@@ -270,7 +271,7 @@ TEST_CASE("All findings come at once, in the order of the file") {
   const std::vector<std::string> expected = {
       "u.yaml:2:14: error: sample_time: must be a number, not 'fast'",
       "u.yaml:3:27: error: signals.xv: unknown key (did you mean 'mv'?)",
-      "u.yaml:6:7: error: model.channels[0]: needs `gain`, `numerator` or `step_response`",
+      "u.yaml:6:7: error: model.channels[0]: needs `gain`, `numerator`, `step_response` or `tanks`",
       "u.yaml:6:20: error: model.channels[0].mv: 'u2' is no mv or dv of this unit (did you mean "
       "'u1'?)",
       "u.yaml:6:24: error: model.channels[0].gian: unknown key (did you mean 'gain'?)",

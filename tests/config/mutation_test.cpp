@@ -7,6 +7,8 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
+#include "core/model/linear_model.hpp"
+#include "tests/config/extended_unit.hpp"
 
 using namespace mpm::config;
 
@@ -62,16 +64,18 @@ void check_findings(const std::vector<Finding>& findings) {
 TEST_CASE("No slip of the pen brings the unit loader down, and what it takes it can print") {
   constexpr std::uint64_t kSeed = 20240501;
   std::mt19937_64 random(kSeed);
-  const std::vector<std::string> originals = {read_file("plants/shell3x3.yaml"),
-                                              read_file("plants/wood_berry.yaml"),
-                                              read_file("units/example.yaml")};
+  const std::vector<std::string> originals = {
+      read_file("plants/shell3x3.yaml"), read_file("plants/wood_berry.yaml"),
+      read_file("units/example.yaml"), mpm::test::kExtendedUnit};
   int sound = 0;
-  for (int i = 0; i < 3000; ++i) {
-    const std::string text = mutated(originals[static_cast<std::size_t>(i) % 3], random);
+  for (int i = 0; i < 4000; ++i) {
+    const std::string text =
+        mutated(originals[static_cast<std::size_t>(i) % originals.size()], random);
     const LoadResult result = load_unit_text(text, "m.yaml");
     check_findings(result.findings);
     if (!result.ok()) continue;
     ++sound;
+    REQUIRE_NOTHROW(mpm::LinearModel(result.config.model));
     std::ostringstream once, twice;
     print_unit(result.config, once);
     const LoadResult again = load_unit_text(once.str(), "m.yaml");

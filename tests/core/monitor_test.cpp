@@ -314,6 +314,40 @@ TEST_CASE("integrating channels: silent when right, found when wrong") {
   }
 }
 
+TEST_CASE("a disturbance that the model knows of leaves no trace, also over gaps") {
+  constexpr double kStart = 1.7e9;  // s since 1970; the experiment's own clock starts at 0
+  Experiment calm, disturbed;
+  calm.predictions = disturbed.predictions = false;
+  disturbed.model.disturbances = {{0, DisturbanceShape::kStep, 1200.0, 5.0, 30.0},
+                                  {1, DisturbanceShape::kDrift, 300.0, 0.01},
+                                  {1, DisturbanceShape::kPeriodic, 0.0, 2.0, 0.0, 77.0}};
+  Experiment told = disturbed;
+  for (DisturbanceTerm& disturbance : told.model.disturbances) disturbance.onset_s += kStart;
+  const auto run = [&](const Experiment& plant, Monitor monitor, double start_s) {
+    plant.run(2400, [&](Frame frame) {
+      if ((frame.interval > 700 && frame.interval < 720) ||
+          (frame.interval > 900 && frame.interval < 1100))
+        return;
+      frame.source_time_ns += std::llround(start_s * 1e9);
+      monitor.push(frame);
+    });
+    return monitor;
+  };
+  const Monitor expected = run(calm, calm.monitor(), 0.0);
+  const Monitor monitor = run(disturbed, told.monitor(), kStart);
+  const Monitor wrong = run(disturbed, told.monitor(), kStart + 40.0);
+  double off = 0.0;
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
+      const double p = expected.channel(j, i).p_value;
+      CHECK(monitor.channel(j, i).p_value == Approx(p).epsilon(1e-3));
+      off = std::max(off, std::abs(wrong.channel(j, i).p_value - p));
+    }
+  }
+  CHECK(off > 0.01);
+}
+
 TEST_CASE("before there is enough data nothing is said") {
   const Experiment experiment;
   Monitor monitor = experiment.monitor();

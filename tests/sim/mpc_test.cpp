@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "sim/mpc/linear_gain.hpp"
 #include "tests/allocation_counter.hpp"
 #include "tests/sim/units.hpp"
 
@@ -205,4 +206,24 @@ TEST_CASE("settings that define no controller are refused") {
   unit.simulation.cv_weights = {0.0};
   unit.simulation.move_weights = {0.0};
   CHECK_THROWS_AS(make_controller(unit), std::invalid_argument);
+}
+
+TEST_CASE("a model that is not linear controls a plant of its own kind without offset") {
+  // A tank with a valve that opens by the square around its middle: 1.2 u + 0.1 u^2; the model and
+  // the plant both know the load that comes at 300 s, which is in sight 100 s before.
+  UnitConfig unit = siso(2.0, 20.0, 0.0);
+  unit.model.input_origin = VectorXd::Constant(1, 10.0);
+  unit.model.output_origin = VectorXd::Constant(1, 30.0);
+  unit.model.channels[0].dynamics = mpm::TankChain{{20.0, 10.0}, 0.0, 10.0, {}, 0.0, 1.5};
+  unit.model.channels[0].input_block = mpm::Polynomial{{1.2, 0.1}};
+  unit.model.disturbances.push_back({0, mpm::DisturbanceShape::kStep, 300.0, -4.0, 10.0});
+  CHECK(mpm::sim::static_slopes(unit.model)(0, 0) == 1.2);
+  CHECK(mpm::sim::operating_gain(unit.model, 1)(0, 0) == Approx(1.2 * 4.0));  // 2 x 20 / 10
+  Mpc controller = make_controller(unit);
+  LinearModel plant(unit.model);
+  for (int k = 0; k < 600; ++k) {
+    CHECK(controller.prediction() == plant.output());
+    plant.advance(controller.control(plant.output(), VectorXd::Constant(1, 34.0), VectorXd(0)));
+    if (k == 190 || k == 599) CHECK(plant.output()(0) == Approx(34.0).margin(1e-3));
+  }
 }

@@ -170,3 +170,20 @@ TEST_CASE("a change that ends leaves the plant as the model") {
     exact.advance(VectorXd::Ones(1));
   }
 }
+
+TEST_CASE("tanks change as their linearisation does") {
+  ModelSpec spec;
+  spec.input_count = 1;
+  spec.cv_count = 1;
+  spec.input_origin = VectorXd::Constant(1, 5.0);
+  spec.output_origin = VectorXd::Constant(1, 50.0);
+  spec.channels.push_back({0, 0, mpm::TankChain{{10.0, 4.0}, 0.0, 20.0, {}, 0.0, 2.0}});
+  const LinearModel before(spec);
+  const ModelSpec changed = changed_model(spec, {ChannelChange{0, 0, 0.8, 1.5, 1.0}});
+  const LinearModel after(changed);
+  CHECK(after.steady_gain()(0, 0) == Approx(0.8 * before.steady_gain()(0, 0)));
+  CHECK(after.slowest_time_constant_samples() == Approx(15.0));
+  CHECK(after.longest_dead_time_samples() == Approx(3.0));
+  CHECK_THROWS_AS(changed_model(spec, {ChannelChange{0, 0, 1.0, 1.0, -2.5}}),
+                  std::invalid_argument);
+}

@@ -1,10 +1,10 @@
-#include "sim/output/start_time.hpp"
+#include "config/time_text.hpp"
 
 #include <charconv>
 #include <chrono>
 #include <cmath>
 
-namespace mpm::sim {
+namespace mpm::config {
 namespace {
 
 /// Takes `digits` digits off the front of `text`.
@@ -76,7 +76,7 @@ std::optional<std::int64_t> parse_iso(std::string_view text) {
 
 }  // namespace
 
-std::optional<std::int64_t> parse_start_time(std::string_view text) {
+std::optional<std::int64_t> parse_time(std::string_view text) {
   double seconds = 0.0;
   const char* end = text.data() + text.size();
   const std::from_chars_result number = std::from_chars(text.data(), end, seconds);
@@ -87,4 +87,4 @@ std::optional<std::int64_t> parse_start_time(std::string_view text) {
   return parse_iso(text);
 }
 
-}  // namespace mpm::sim
+}  // namespace mpm::config
