@@ -114,8 +114,7 @@ def refinery(data, out):
     """One recording of a loop each; the file holds them one below the other."""
     recording = Recording(data / "refinery_loops_A.csv")
     files = recording.column("file")
-    for name, file in (("refinery_sticking", "18"), ("refinery_sticking_2", "19"),
-                       ("refinery_sticking_3", "20"), ("refinery_sound", "3"),
+    for name, file in (("refinery_sticking", "20"), ("refinery_sound", "3"),
                        ("refinery_sound_2", "4")):
         copy(recording, out / f"{name}.csv", ["OP_pct", "PV", "SP"],
              only=[k for k, of in enumerate(files) if of == file])
