@@ -48,7 +48,7 @@ void check_channel(const UnitConfig& config, int cv, int input, const Fopdt& exp
 
 TEST_CASE("Shipped unit files load without a finding and survive printing") {
   int files = 0;
-  for (const char* folder : {"plants", "units"}) {
+  for (const char* folder : {"plants", "units", "cases"}) {
     for (const std::string& path : unit_files(kConfigFolder + folder)) {
       CAPTURE(path);
       ++files;
