@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/identify/channel_edit.hpp"
 #include "core/identify/extension.hpp"
@@ -32,6 +33,13 @@ Recording part(const Recording& recording, Index first, Index count) {
   else
     result.aux.resize(count, 0);
   return result;
+}
+
+double mean_of_finite(const VectorXd& values) {
+  double sum = 0.0, count = 0.0;
+  for (const double value : values)
+    if (std::isfinite(value)) sum += value, ++count;
+  return sum > 0.0 ? sum / count : 1.0;
 }
 
 double slowest_samples(const ModelSpec& model) {
@@ -80,6 +88,94 @@ std::vector<ChannelEstimate> estimate_channels(Problem& problem, const SearchRes
                          parameter("dead_time_error", 2, sample_time, false)});
   }
   return estimates;
+}
+
+/// Which effects carry over to samples that no fit has seen, and what they gain there.
+///
+/// One effect after the other, weakest first, is left out of the extension: on the CVs that it
+/// touches the free run must be the better for having it. If it is the worse for it, the finding
+/// was none; if the difference is within its bootstrap interval, the finding stands but repairs
+/// nothing.
+void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& model,
+                  const ModelSpec& base, const Recording& recording, const Recording* validation,
+                  const DiagnosisSettings& settings, Diagnosis& diagnosis) {
+  const Recording& unseen = validation ? *validation : recording;
+  const Index rows = diagnosis.validation_samples;
+  Simulator simulator(unseen);
+  const auto block = static_cast<Index>(2.0 * slowest_samples(model)) + 10;
+  std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
+  const auto measured = [&](int cv) { return unseen.cvs.col(cv).tail(rows); };
+  const auto simulated = [&](const ModelSpec& spec, int cv) -> VectorXd {
+    return simulator.cv(spec, cv).tail(rows);
+  };
+
+  std::vector<std::size_t> order(found.named.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return found.named[a].evidence < found.named[b].evidence;
+  });
+  std::vector<bool> in(found.named.size(), true);
+  for (const std::size_t i : order) {
+    if (found.named[i].effect.certain) continue;
+    const ModelSpec with = extend(problem, found, in, keep);
+    in[i] = false;
+    const ModelSpec without = extend(problem, found, in, keep);
+    VectorXd old_errors = VectorXd::Zero(rows), new_errors = VectorXd::Zero(rows);
+    for (int cv = 0; cv < model.cv_count; ++cv) {
+      if (!touches(found.named[i].effect, model, cv)) continue;
+      const VectorXd new_error = (measured(cv) - simulated(with, cv)).cwiseAbs2();
+      const VectorXd old_error = (measured(cv) - simulated(without, cv)).cwiseAbs2();
+      const double scale = mean_of_finite(new_error);
+      old_errors += old_error / scale;
+      new_errors += new_error / scale;
+    }
+    const CvScore gain = score_errors(old_errors, new_errors, block, settings.seed + i);
+    in[i] = gain.gain_low > 0.0;
+    if (in[i]) continue;
+    const Subject& subject = found.named[i].effect.subject;
+    const auto same = std::find_if(
+        diagnosis.findings.begin(), diagnosis.findings.end(), [&](const Finding& finding) {
+          const Subject& s = finding.subject;
+          return s.cause == subject.cause && s.cv == subject.cv && s.input == subject.input &&
+                 s.aux == subject.aux && s.kind == subject.kind &&
+                 finding.evidence == found.named[i].evidence;
+        });
+    if (same == diagnosis.findings.end()) continue;
+    same->repaired = false;
+    if (gain.rmse_after < gain.rmse_before) continue;
+    diagnosis.refused.push_back(*same);
+    diagnosis.findings.erase(same);
+  }
+
+  const bool any = std::find(in.begin(), in.end(), true) != in.end();
+  const MatrixXd before = simulator.all(model);
+  ModelSpec extended = any ? extend(problem, found, in, keep) : model;
+  // The small corrections that came with the findings have to carry over too.
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const CvScore gain = score(measured(cv), before.col(cv).tail(rows), simulated(extended, cv),
+                               block, settings.seed);
+    if (gain.rmse_after > gain.rmse_before) keep[static_cast<std::size_t>(cv)] = false;
+  }
+  if (any) extended = extend(problem, found, in, keep);
+  const MatrixXd after = simulator.all(extended);
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    CvScore result = score(measured(cv), before.col(cv).tail(rows), after.col(cv).tail(rows), block,
+                           settings.seed + static_cast<std::uint64_t>(cv));
+    for (std::size_t i = 0; i < in.size(); ++i)
+      if (!in[i] && touches(found.named[i].effect, model, cv)) result.refused = true;
+    diagnosis.scores.push_back(result);
+  }
+  if (any) diagnosis.extended = finish(extended, base, diagnosis.new_inputs);
+  if (validation) {
+    diagnosis.validation_before = before;
+    diagnosis.validation_after = after;
+    Simulator first(recording);
+    diagnosis.before = first.all(model);
+    diagnosis.after = first.all(extended);
+  } else {
+    diagnosis.before = before;
+    diagnosis.after = after;
+  }
 }
 
 }  // namespace
@@ -133,40 +229,7 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
                    [](const Finding& a, const Finding& b) { return a.evidence > b.evidence; });
   diagnosis.channels = estimate_channels(problem, found);
 
-  // The gain, on what no fit has seen.
-  const Recording& unseen = validation ? *validation : recording;
-  const Index first = validation ? 0 : diagnosis.fit_samples;
-  Simulator all(recording), other(unseen);
-  diagnosis.before = all.all(model);
-  if (validation) diagnosis.validation_before = other.all(model);
-  const MatrixXd& before = validation ? diagnosis.validation_before : diagnosis.before;
-  std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
-  const Index block = static_cast<Index>(2.0 * slowest_samples(model)) + 10;
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    const ModelSpec extended = extend(problem, found, keep);
-    diagnosis.after = all.all(extended);
-    if (validation) diagnosis.validation_after = other.all(extended);
-    const MatrixXd& after = validation ? diagnosis.validation_after : diagnosis.after;
-    diagnosis.scores.clear();
-    bool refused = false;
-    for (int cv = 0; cv < model.cv_count; ++cv) {
-      const auto j = static_cast<std::size_t>(cv);
-      CvScore result =
-          score(unseen.cvs.col(cv).tail(unseen.samples() - first),
-                before.col(cv).tail(unseen.samples() - first),
-                after.col(cv).tail(unseen.samples() - first), block, settings.seed + j);
-      result.refused = !keep[j];
-      const bool changed = after.col(cv) != before.col(cv);
-      if (keep[j] && changed && !(result.gain_low > 0.0)) {
-        keep[j] = false;
-        refused = true;
-      }
-      diagnosis.scores.push_back(result);
-    }
-    diagnosis.extended = finish(extended, base, diagnosis.new_inputs);
-    if (!refused) break;
-  }
-  if (found.named.empty()) diagnosis.extended = given;
+  measure_gain(problem, found, model, base, recording, validation, settings, diagnosis);
 
   if (!diagnosis.findings.empty()) {
     diagnosis.verdict = DiagnosisVerdict::kMismatch;

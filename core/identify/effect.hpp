@@ -28,6 +28,8 @@ struct Effect {
   Eigen::Index onset = 0;
   /// 2 ln of how many equal alternatives (rows to begin at, shapes, ...) it was picked from.
   double search_cost = 0.0;
+  /// Seen in the data themselves, whatever the model: not weighed against others.
+  bool certain = false;
 
   [[nodiscard]] const Coordinate* find(const std::string& name) const;
   [[nodiscard]] double value(const std::string& name, double otherwise) const;

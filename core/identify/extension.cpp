@@ -88,17 +88,16 @@ Finding to_finding(const Named& named, const Fit& fit, const Problem& problem) {
   return finding;
 }
 
-ModelSpec extend(const Problem& problem, const SearchResult& found, const std::vector<bool>& keep) {
+ModelSpec extend(const Problem& problem, const SearchResult& found, const std::vector<bool>& in,
+                 const std::vector<bool>& keep) {
   ModelSpec model = problem.model();
   std::vector<bool> touched(keep.size(), false);
-  for (const Effect& effect : found.fit.effects) {
-    bool wanted = false;
-    for (int cv = 0; cv < model.cv_count; ++cv)
-      if (keep[static_cast<std::size_t>(cv)] && touches(effect, model, cv)) wanted = true;
-    if (!wanted) continue;
-    apply(effect, problem.surroundings(), model);
+  for (std::size_t i = 0; i < found.named.size(); ++i) {
+    if (!in[i]) continue;
+    const Effect& effect = found.named[i].effect;
     for (int cv = 0; cv < model.cv_count; ++cv)
       if (touches(effect, model, cv)) touched[static_cast<std::size_t>(cv)] = true;
+    apply(effect, problem.surroundings(), model);
   }
   for (const CvFit& fit : found.fit.cvs) {
     const auto j = static_cast<std::size_t>(fit.cv);

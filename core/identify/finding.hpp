@@ -59,6 +59,7 @@ struct Finding {
   double evidence = 0.0;          ///< 2 ln odds against the same model without it
   std::optional<double> onset_s;  ///< clock of the data; where it began inside the data
   std::vector<Rival> rivals;      ///< closest first
+  bool repaired = true;           ///< the extended model holds it, and is the better for it
 };
 
 }  // namespace mpm

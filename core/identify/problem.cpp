@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/identify/channel_edit.hpp"
+#include "core/identify/plateau.hpp"
 #include "core/identify/row_weights.hpp"
 
 namespace mpm {
@@ -44,9 +45,33 @@ Problem::Problem(const ModelSpec& model, int model_inputs, const Recording& reco
     const auto measured = recording.cvs.col(cv);
     data.known = measured.unaryExpr([](double y) { return std::isfinite(y) ? 1.0 : 0.0; });
     data.measured = measured.unaryExpr([](double y) { return std::isfinite(y) ? y : 0.0; });
+    find_clipping(cv, data);
     data_.push_back(std::move(data));
   }
   settle({}, nullptr);
+}
+
+void Problem::find_clipping(int cv, CvData& data) {
+  if (model_.output_blocks[static_cast<std::size_t>(cv)]) return;
+  const auto measured = recording().cvs.col(cv);
+  const Plateaus plateaus = find_plateaus(measured);
+  if (!plateaus.low && !plateaus.high) return;
+  Effect effect;
+  effect.subject = {Cause::kOutputNonlinearity, cv, -1, -1, "saturation"};
+  effect.certain = true;
+  const double range = spread(data.measured, data.known);
+  const auto level = [&](const char* name, double value) {
+    // The data tell it to the last digit.
+    effect.coordinates.push_back({name, value, value, 1e-6 * range, 1e-4 * range, -1e300, 1e300});
+  };
+  if (plateaus.low) level("low", *plateaus.low);
+  if (plateaus.high) level("high", *plateaus.high);
+  clipping_.push_back(effect);
+  const double tie = 1e-9 * range;
+  for (Index k = 0; k < measured.size(); ++k)
+    if ((plateaus.low && measured(k) <= *plateaus.low + tie) ||
+        (plateaus.high && measured(k) >= *plateaus.high - tie))
+      data.known(k) = data.measured(k) = 0.0;
 }
 
 ModelSpec Problem::with(const std::vector<Effect>& effects) const {
@@ -191,9 +216,8 @@ Index Problem::best_onset(const Fit& fit, Index first, Index last) {
     const CvData& data = this->data(state.cv);
     const VectorXd before = simulate(without, state.cv);
     const VectorXd change = (simulate(always, state.cv) - before).cwiseProduct(data.known);
-    const VectorXd base =
-        (data.measured - before - nuisances(fit.effects, state.cv) * state.beta)
-            .cwiseProduct(data.known);
+    const VectorXd base = (data.measured - before - nuisances(fit.effects, state.cv) * state.beta)
+                              .cwiseProduct(data.known);
     const VectorXd old = state.noise.apply(base), moved = state.noise.apply(base - change);
     VectorXd head = VectorXd::Zero(samples + 1), tail = VectorXd::Zero(samples + 1);
     for (Index k = 0; k < samples; ++k) head(k + 1) = head(k) + data.weights(k) * old(k) * old(k);

@@ -86,6 +86,8 @@ class Problem {
                                             std::size_t coordinate, int cv,
                                             const Eigen::VectorXd& at);
 
+  /// Clipped CVs as effects, with the levels that the data show.
+  [[nodiscard]] const std::vector<Effect>& clipping() const { return clipping_; }
   [[nodiscard]] const ModelSpec& model() const { return model_; }
   [[nodiscard]] const Surroundings& surroundings() const { return surroundings_; }
   [[nodiscard]] const Recording& recording() const { return simulator_.recording(); }
@@ -95,6 +97,8 @@ class Problem {
 
  private:
   [[nodiscard]] ModelSpec with(const std::vector<Effect>& effects) const;
+  /// What a CV's plateau says, and its rows as unknown.
+  void find_clipping(int cv, CvData& data);
   void make_nuisances(const ModelSpec& model, int cv);
   /// The nuisances that no effect makes superfluous; the others are zero.
   [[nodiscard]] Eigen::MatrixXd nuisances(const std::vector<Effect>& effects, int cv) const;
@@ -107,6 +111,7 @@ class Problem {
   Tolerances tolerances_;
   int noise_order_;
   std::vector<CvData> data_;
+  std::vector<Effect> clipping_;
 };
 
 }  // namespace mpm

@@ -17,6 +17,8 @@ using Eigen::Index;
 
 /// Candidates fitted in full in every round, beside the best of each cause.
 constexpr std::size_t kShortlist = 16;
+/// 2 ln odds of what the data themselves show.
+constexpr double kCertain = 1000.0;
 /// 2 ln of the prior odds against any one kind of cause: the everyday ones are half as rare.
 double rarity(Cause cause) {
   switch (cause) {
@@ -65,6 +67,10 @@ class Search {
       : problem_(problem), settings_(settings) {}
 
   SearchResult run() {
+    for (const Effect& effect : problem_.clipping()) {
+      accepted_.push_back(effect);
+      named_.push_back({effect, kCertain, 1.0, {}});
+    }
     for (int round = 0; round < settings_.max_findings; ++round) {
       if (!report(0.1 + 0.8 * round / settings_.max_findings)) break;
       if (!find_one()) break;
@@ -114,7 +120,46 @@ class Search {
     trial.fit = problem_.fit(std::move(effects), first_free, cvs, iterations);
     trial.candidate = trial.fit.effects.back();
     trial.odds = without(cvs).cost - trial.fit.cost - rarity(candidate.subject.cause);
+    if (!material(trial)) trial.odds = std::min(trial.odds, 0.0);
     return trial;
+  }
+
+  /// Whether anyone would care: an error of a channel beyond what a model may be wrong by, and for
+  /// all others a visible share of what the CV does.
+  bool material(const Trial& trial) {
+    const Effect& effect = trial.candidate;
+    const int gain = std::abs(effect.value("gain_ratio", 1.0) - 1.0) >= settings_.materiality.gain;
+    const int time_constant = std::abs(effect.value("log_time_constant_ratio", 0.0)) >=
+                              std::log(1.0 + settings_.materiality.log_time_constant);
+    const int dead_time =
+        std::abs(effect.value("dead_time_samples", 0.0)) >= settings_.materiality.dead_time_samples;
+    switch (effect.subject.cause) {
+      case Cause::kGain:
+      case Cause::kInputScale:
+      case Cause::kOutputScale:
+      case Cause::kTimeConstant:
+      case Cause::kDeadTime:
+        return gain + time_constant + dead_time > 0;
+      case Cause::kDynamics:
+        return gain + time_constant + dead_time > 1;
+      default:
+        break;
+    }
+    std::vector<Effect> without = trial.fit.effects;
+    without.pop_back();
+    for (const CvFit& state : trial.fit.cvs) {
+      const CvData& data = problem_.data(state.cv);
+      const Eigen::VectorXd change =
+          problem_.simulate(trial.fit.effects, state.cv) - problem_.simulate(without, state.cv);
+      const double rows = std::max(1.0, data.known.sum());
+      const double mean = data.measured.dot(data.known) / rows;
+      const double level = change.mean();
+      const double moved = (change.array() - level).square().mean();
+      const double all =
+          ((data.measured.array() - mean).square() * data.known.array()).sum() / rows;
+      if (moved >= settings_.visible * settings_.visible * all) return true;
+    }
+    return false;
   }
 
   std::vector<Effect> shortlist() {
@@ -204,7 +249,7 @@ class Search {
 
   bool find_one() {
     without_.clear();
-    problem_.settle(accepted_, accepted_.empty() ? nullptr : &last_);
+    problem_.settle(accepted_, last_.cvs.empty() ? nullptr : &last_);
     std::vector<Trial> trials;
     for (const Effect& effect : shortlist()) trials.push_back(attempt(effect, 6));
     if (trials.empty()) return false;
@@ -216,7 +261,16 @@ class Search {
       if (trials[i].odds > 0.5 * trials[0].odds) polish(trials[i]);
     }
     std::sort(trials.begin(), trials.end(), better);
-    if (std::getenv("MPM_TRACE")) for (const Trial& t : trials) { std::fprintf(stderr, "  %s %s cv%d in%d aux%d onset %ld odds %.1f cost %.1f search %.1f:", name_of(t.candidate.subject.cause), t.candidate.subject.kind.c_str(), t.candidate.subject.cv, t.candidate.subject.input, t.candidate.subject.aux, (long)t.candidate.onset, t.odds, t.fit.cost, t.candidate.search_cost); for (auto& c : t.candidate.coordinates) std::fprintf(stderr, " %s=%g", c.name.c_str(), c.value); std::fprintf(stderr, "\n"); }
+    if (std::getenv("MPM_TRACE"))
+      for (const Trial& t : trials) {
+        std::fprintf(stderr, "  %s %s cv%d in%d aux%d onset %ld odds %.1f cost %.1f search %.1f:",
+                     name_of(t.candidate.subject.cause), t.candidate.subject.kind.c_str(),
+                     t.candidate.subject.cv, t.candidate.subject.input, t.candidate.subject.aux,
+                     (long)t.candidate.onset, t.odds, t.fit.cost, t.candidate.search_cost);
+        for (auto& c : t.candidate.coordinates)
+          std::fprintf(stderr, " %s=%g", c.name.c_str(), c.value);
+        std::fprintf(stderr, "\n");
+      }
     if (trials[0].odds < settings_.decisive) return false;
 
     // Once more with rows weighed as the best explanation's innovations ask for.
@@ -303,6 +357,7 @@ class Search {
       dropped = false;
       const Fit all = everything();
       for (std::size_t i = 0; i < accepted_.size() && !dropped; ++i) {
+        if (all.effects[i].certain) continue;
         std::vector<Effect> fewer = all.effects;
         fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
         std::vector<int> cvs(static_cast<std::size_t>(problem_.model().cv_count));

@@ -160,8 +160,8 @@ VectorXd Simulator::cv(const ModelSpec& model, int cv) {
     if (term.cv != cv) continue;
     for (Index k = 0; k < samples; ++k)
       sum(k) +=
-          disturbance_at(term,
- recording_->start_s + static_cast<double>(k) * model.sample_time_s, 1e-6 * model.sample_time_s);
+          disturbance_at(term, recording_->start_s + static_cast<double>(k) * model.sample_time_s,
+                         1e-6 * model.sample_time_s);
   }
   const double origin = model.output_origin(cv);
   const std::optional<OutputBlock>& block = model.output_blocks[static_cast<std::size_t>(cv)];

@@ -15,4 +15,9 @@ namespace mpm {
                             const Eigen::Ref<const Eigen::VectorXd>& after, Eigen::Index block,
                             std::uint64_t seed);
 
+/// The same from squared errors; fits stay 0.
+[[nodiscard]] CvScore score_errors(const Eigen::Ref<const Eigen::VectorXd>& before,
+                                   const Eigen::Ref<const Eigen::VectorXd>& after,
+                                   Eigen::Index block, std::uint64_t seed);
+
 }  // namespace mpm
