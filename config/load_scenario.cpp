@@ -107,7 +107,7 @@ void load_root(const Value& document, const ScenarioContext& context, ScenarioCo
     document.error("a scenario is a map of keys such as `scenario:` and `changes:`");
     return;
   }
-  const Map root = document.map({"scenario", "description", "changes", "draw", "noise",
+  const Map root = document.map({"scenario", "description", "changes", "draw", "plant", "noise",
                                  "disturbances", "setpoints", "controller", "bad_data", "monitor"});
   if (const Value* name = root.find("scenario"))
     scenario.name = name->text().value_or(scenario.name);
@@ -115,6 +115,7 @@ void load_root(const Value& document, const ScenarioContext& context, ScenarioCo
     scenario.description = text->free_text().value_or("");
   load_list(root, "changes", [&](const Value& item) { load_change(item, context, scenario); });
   if (const Value* draw = root.find("draw")) load_draw(*draw, context, scenario);
+  if (const Value* plant = root.find("plant")) load_hidden_plant(*plant, context, scenario);
   load_list(root, "noise", [&](const Value& item) { load_noise(item, context, scenario); });
   load_list(root, "disturbances",
             [&](const Value& item) { load_disturbance(item, context, scenario); });

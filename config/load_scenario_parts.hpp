@@ -37,6 +37,8 @@ void read_span(const Map& map, const ScenarioContext& context, double& from_s, d
                                             const std::vector<std::string>& known,
                                             std::string_view noun);
 
+void load_hidden_plant(const Value& section, const ScenarioContext& context,
+                       ScenarioConfig& scenario);
 void load_noise(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario);
 void load_disturbance(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario);
 void load_bad_data(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario);

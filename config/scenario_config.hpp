@@ -35,6 +35,20 @@ struct Change {
   Place place = {};
 };
 
+/// What the plant has from the start on although the model does not. By index: the model's inputs,
+/// behind them the aux signals.
+struct HiddenPlant {
+  std::vector<std::optional<InputBlock>> input_blocks;    ///< none, or one per input of the model
+  std::vector<std::optional<OutputBlock>> output_blocks;  ///< none, or one per CV
+  std::vector<ChannelSpec> channels;                      ///< in place of the model's, or besides
+  std::vector<StateTerm> state_terms;
+  Place place = {};
+
+  [[nodiscard]] bool empty() const;
+  /// The plant's channels where the model has `known`.
+  [[nodiscard]] std::vector<ChannelSpec> over(const std::vector<ChannelSpec>& known) const;
+};
+
 /// Draws `count` different channels, and for each one of the values below, from the seed.
 struct RandomDraw {
   std::vector<double> gain_ratios;
@@ -126,6 +140,7 @@ struct ScenarioConfig {
   std::string description;
   std::vector<Change> changes;
   std::optional<RandomDraw> draw;
+  HiddenPlant plant;
   std::vector<NoiseChange> noise;
   std::vector<Disturbance> disturbances;
   std::optional<double> setpoint_amplitude_ratio;  ///< against the unit file's amplitude

@@ -137,7 +137,7 @@ int run_csv(const LoopSetup& setup, const Options& options, BadDataFilter& filte
 }
 
 int run_limits(const LoopSetup& setup, double percent) {
-  if (!setup.changes.empty())
+  if (!setup.changes.empty() || !setup.scenario.plant.empty())
     throw BadInput("--limits: the scenario '" + setup.scenario.name +
                    "' changes the plant; take one that does not");
   const double rise = percent / 100.0;

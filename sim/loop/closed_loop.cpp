@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/plant/hidden_plant.hpp"
+
 namespace mpm::sim {
 namespace {
 
@@ -73,7 +75,7 @@ double feedback_share(const config::ScenarioConfig& scenario) {
 ClosedLoop::ClosedLoop(const LoopSetup& setup)
     : sample_time_s_(setup.unit.sample_time_s),
       start_time_ns_(setup.start_time_ns),
-      plant_(setup.unit.model, setup.changes),
+      plant_(plant_model(setup.unit, setup.scenario.plant), setup.changes),
       controller_(setup.controller_model, static_cast<int>(setup.unit.mv.size()),
                   limited_settings(setup.unit, setup.scenario), feedback_share(setup.scenario)),
       setpoints_(setpoint_sources(setup.unit, setup.scenario),
@@ -86,7 +88,10 @@ ClosedLoop::ClosedLoop(const LoopSetup& setup)
     throw std::invalid_argument("the controller's model has other signals than the plant");
   const VectorXd input_origin = origin_of(unit.model.input_origin, unit.model.input_count);
   disturbance_origin_ = input_origin.tail(static_cast<Index>(unit.dv.size()));
-  input_ = input_origin;
+  const Index aux_count =
+      plant_.input_count() > unit.model.input_count ? static_cast<Index>(unit.aux.size()) : 0;
+  input_ = VectorXd::Zero(input_origin.size() + aux_count);
+  input_.head(input_origin.size()) = input_origin;
   const double start_s = 1e-9 * static_cast<double>(start_time_ns_);
   plant_.set_time_s(start_s);
   controller_.set_time_s(start_s);
@@ -96,11 +101,15 @@ ClosedLoop::ClosedLoop(const LoopSetup& setup)
   movement.resize(unit.dv.size());
   for (std::size_t i = 0; i < movement.size(); ++i)
     movement_.emplace_back(movement[i], RandomStream(setup.seed, StreamPurpose::kDisturbance, i));
+  std::vector<config::NoiseSettings> aux_movement = unit.simulation.aux_movement;
+  aux_movement.resize(unit.aux.size());
+  for (std::size_t i = 0; i < aux_movement.size(); ++i)
+    aux_movement_.emplace_back(aux_movement[i], RandomStream(setup.seed, StreamPurpose::kAux, i));
   for (const config::TimeSpan& off : setup.scenario.controller_off)
     controller_off_.emplace_back(off.from_s, off.until_s, sample_time_s_);
 
   for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
-                                SignalKind::kPrediction, SignalKind::kSetpoint})
+                                SignalKind::kPrediction, SignalKind::kSetpoint, SignalKind::kAux})
     std::fill(frame_[kind].quality.begin(), frame_[kind].quality.end(), Quality::kGood);
 }
 
@@ -109,6 +118,9 @@ const Frame& ClosedLoop::step() {
   for (std::size_t i = 0; i < movement_.size(); ++i)
     disturbances.values(static_cast<Index>(i)) =
         disturbance_origin_(static_cast<Index>(i)) + movement_[i].next();
+  SignalBlock& aux = frame_[SignalKind::kAux];
+  for (std::size_t i = 0; i < aux_movement_.size(); ++i)
+    aux.values(static_cast<Index>(i)) = aux_movement_[i].next();
   SignalBlock& measured = frame_[SignalKind::kCv];
   true_output_ = plant_.output();
   measured.values = true_output_ + output_disturbance_.next();
@@ -122,7 +134,9 @@ const Frame& ClosedLoop::step() {
                      : controller_.control(measured.values, setpoints.values, disturbances.values);
 
   input_.head(moved.values.size()) = moved.values;
-  input_.tail(disturbances.values.size()) = disturbances.values;
+  input_.segment(moved.values.size(), disturbances.values.size()) = disturbances.values;
+  const Index model_inputs = moved.values.size() + disturbances.values.size();
+  if (input_.size() > model_inputs) input_.tail(aux.values.size()) = aux.values;
   plant_.advance(input_);
   finite_ = finite_ && measured.values.allFinite() && moved.values.allFinite();
 

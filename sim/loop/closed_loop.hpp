@@ -52,10 +52,11 @@ class ClosedLoop {
   Mpc controller_;
   RandomBinarySetpoints setpoints_;
   OutputDisturbance output_disturbance_;
-  std::vector<ColouredNoise> movement_;
+  std::vector<ColouredNoise> movement_, aux_movement_;
   std::vector<IntervalRange> controller_off_;
   Eigen::VectorXd disturbance_origin_;
-  Eigen::VectorXd true_output_, input_;
+  Eigen::VectorXd true_output_;
+  Eigen::VectorXd input_;  ///< of the plant: MVs, DVs, and the aux signals where they act
   Frame frame_;
   bool finite_ = true;
 };

@@ -9,11 +9,11 @@
 
 namespace mpm::sim {
 
-/// Frames as the project's data file: `time`, then set-points, MVs, DVs, CVs and predictions by
-/// tag; what has no tag has no column. A value that is not finite is an empty field. Tags in
-/// `quality_tags` have a column `<tag>.quality` behind theirs: good, uncertain or bad. Numbers are
-/// the shortest text that reads back to the same double; `time` is start_s + interval *
-/// sample_time.
+/// Frames as the project's data file: `time`, then set-points, MVs, DVs, CVs, predictions and the
+/// aux signals that move by tag; what has no tag has no column. A value that is not finite is an
+/// empty field. Tags in `quality_tags` have a column `<tag>.quality` behind theirs: good, uncertain
+/// or bad. Numbers are the shortest text that reads back to the same double; `time` is start_s +
+/// interval * sample_time.
 class CsvWriter {
  public:
   CsvWriter(std::ostream& out, const config::UnitConfig& unit, double start_s,

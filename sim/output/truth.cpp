@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/mpc/linear_gain.hpp"
+#include "sim/output/model_json.hpp"
+#include "sim/plant/hidden_plant.hpp"
 #include "sim/scenario/stability.hpp"
 
 namespace mpm::sim {
@@ -143,6 +145,7 @@ std::string truth_json(const LoopSetup& setup, const std::string& controller_fil
                                 {"dead_time_error", change.dead_time_error_s},
                                 {"from", change.from_s},
                                 {"until", end_of(change.until_s)}});
+  truth["plant"] = hidden_plant_json(setup.scenario.plant, unit);
   truth["noise"] = Json::array();
   for (const config::NoiseChange& change : setup.scenario.noise)
     truth["noise"].push_back(noise_json(change));
@@ -155,10 +158,11 @@ std::string truth_json(const LoopSetup& setup, const std::string& controller_fil
     truth["controller_off"].push_back({{"from", off.from_s}, {"until", end_of(off.until_s)}});
   truth["mv_limits"] = mv_limits_json(setup);
   truth["bad_data"] = bad_data_json(setup, filter);
-  const GainAgreement gains =
-      compare_gains(operating_gain(setup.controller_model, mvs),
-                    operating_gain(plant_stages(unit.model, setup.changes).back().model, mvs),
-                    unit.simulation.cv_weights);
+  const GainAgreement gains = compare_gains(
+      operating_gain(setup.controller_model, mvs),
+      operating_gain(
+          plant_stages(plant_model(unit, setup.scenario.plant), setup.changes).back().model, mvs),
+      unit.simulation.cv_weights);
   truth["determinant"] = {{"model", or_null(gains.model_determinant)},
                           {"plant", or_null(gains.plant_determinant)}};
   return truth.dump(2) + "\n";

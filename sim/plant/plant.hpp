@@ -19,12 +19,14 @@ class Plant {
  public:
   Plant(const ModelSpec& model, std::vector<ChannelChange> changes);
 
+  [[nodiscard]] int input_count() const { return stages_.front().model.input_count(); }
+
   /// Time of the present output on the clock of the data; see `LinearModel::set_time_s`.
   void set_time_s(double time_s);
 
   /// y(k) without noise.
   [[nodiscard]] const Eigen::VectorXd& output() const { return output_; }
-  /// Takes u(k), MVs then DVs.
+  /// Takes u(k), MVs, DVs, and aux signals where its model has them.
   void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
 
  private:

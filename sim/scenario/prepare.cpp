@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim/plant/hidden_plant.hpp"
 #include "sim/scenario/random_change.hpp"
 #include "sim/scenario/stability.hpp"
 
@@ -59,7 +60,8 @@ std::vector<std::string> mv_tags(const config::UnitConfig& unit) {
 std::optional<std::string> why_not(const LoopSetup& setup) {
   const config::UnitConfig& unit = setup.unit;
   try {
-    const std::vector<PlantStage> stages = plant_stages(unit.model, setup.changes);
+    const std::vector<PlantStage> stages =
+        plant_stages(plant_model(unit, setup.scenario.plant), setup.changes);
     if (feedback_share(setup.scenario) != 1.0 || setup.scenario.allow_unstable) return std::nullopt;
     return why_not_stabilisable(setup.controller_model, stages, static_cast<int>(unit.mv.size()),
                                 unit.simulation.cv_weights);
@@ -68,10 +70,11 @@ std::optional<std::string> why_not(const LoopSetup& setup) {
   }
 }
 
-/// Of the first change with which, and with those before it, the plant is too much.
+/// Of what is hidden in the plant, or of the first change with which, and with those before it, the
+/// plant is too much.
 config::Place place_to_blame(LoopSetup setup) {
   setup.changes.clear();
-  if (why_not(setup)) return {};  // already without a change
+  if (why_not(setup)) return setup.scenario.plant.place;  // already without a change
   for (const config::Change& change : setup.scenario.changes) {
     const std::vector<ChannelChange> resolved = resolve_changes({change}, setup.unit);
     setup.changes.insert(setup.changes.end(), resolved.begin(), resolved.end());

@@ -17,6 +17,7 @@ enum class StreamPurpose : std::uint64_t {
   kDrift,
   kSensorNoise,
   kBadData,
+  kAux,
 };
 
 /// Random numbers of one purpose and index under one seed. The same on every platform: the standard

@@ -89,12 +89,14 @@ TEST_CASE("No slip of the pen brings the unit loader down, and what it takes it 
 
 TEST_CASE("No slip of the pen brings the scenario loader down") {
   std::mt19937_64 random(20240502);
-  const UnitConfig unit = load_unit_text(read_file("plants/shell3x3.yaml"), "u.yaml").config;
+  const UnitConfig unit =
+      load_unit_text(read_file("plants/shell3x3_ambient.yaml"), "u.yaml").config;
   const std::vector<std::string> originals = {
       read_file("scenarios/s4_gain40.yaml"),          read_file("scenarios/hidden_gain.yaml"),
       read_file("scenarios/constant_setpoints.yaml"), read_file("scenarios/all_events.yaml"),
       read_file("scenarios/lagged_step.yaml"),        read_file("scenarios/controller_off.yaml"),
-      read_file("scenarios/constrained.yaml"),        read_file("scenarios/bad_data.yaml")};
+      read_file("scenarios/constrained.yaml"),        read_file("scenarios/bad_data.yaml"),
+      read_file("scenarios/sticking_valve.yaml"),     read_file("scenarios/unmodelled_input.yaml")};
   for (int i = 0; i < 6000; ++i) {
     const std::string text =
         mutated(originals[static_cast<std::size_t>(i) % originals.size()], random);

@@ -349,3 +349,65 @@ TEST_CASE("A scenario is found by name or path") {
   CHECK_THROWS_WITH(find_scenario("", "nowhere.yaml"),
                     Catch::Matchers::StartsWith("error: unknown scenario ''; known: "));
 }
+
+TEST_CASE("What is hidden in the plant arrives") {
+  const UnitConfig plant = load_unit_text(
+                               "unit: t\nsample_time: 1\n"
+                               "signals: {mv: [u1, u2], dv: d1, cv: [y1, y2], aux: [a1, a2]}\n"
+                               "operating_point: {u1: 5, y1: 4}\n"
+                               "model: {channels: [{cv: y1, mv: u1, gain: 2}, {cv: y2, mv: u2, "
+                               "gain: 1}]}\n"
+                               "simulation: {aux_movement: {a2: {sigma: 1}}}\n",
+                               "u.yaml")
+                               .config;
+  const auto load_for_plant = [&plant](const std::string& text) {
+    return load_scenario_text(text, "s.yaml", plant);
+  };
+  const ScenarioResult result = load_for_plant(
+      "plant:\n"
+      "  input: {u2: {deadband: 0.5}, d1: {polynomial: [1, 2]}}\n"
+      "  output: {y2: {saturation: [-1, 1]}}\n"
+      "  channels:\n"
+      "    - {cv: y1, mv: u1, tanks: {time_constants: 5, empty_input: 0, empty_output: 0}}\n"
+      "    - {cv: y2, mv: a2, gain: 3, input: {deadband: 0.1}}\n"
+      "    - {cv: y1, dv: d1, gain: 1}\n"
+      "  state:\n"
+      "    - {cv: y2, mv: u2, restoring_force: {cubic: 1}}\n"
+      "    - {cv: y2, mv: a2, restoring_force: {cubic: 2}}\n");
+  for (const Finding& finding : result.findings) FAIL_CHECK(format(finding));
+  const HiddenPlant& hidden = result.scenario.plant;
+  CHECK_FALSE(hidden.empty());
+  REQUIRE(hidden.input_blocks.size() == 3);
+  CHECK(std::get<mpm::Deadband>(hidden.input_blocks[1].value()).width == 0.5);
+  CHECK(std::get<mpm::Polynomial>(hidden.input_blocks[2].value()).coefficients.size() == 2);
+  CHECK(std::get<mpm::Saturation>(hidden.output_blocks.at(1).value()).high == 1);
+  REQUIRE(hidden.channels.size() == 3);
+  CHECK(std::holds_alternative<mpm::TankChain>(hidden.channels[0].dynamics));
+  CHECK(hidden.channels[1].input == 4);  // a2, behind two MVs, a DV and a1
+  CHECK(hidden.channels[1].input_block.has_value());
+  CHECK(hidden.channels[2].input == 2);
+  REQUIRE(hidden.state_terms.size() == 2);
+  CHECK(hidden.state_terms[1].input == 4);
+  CHECK(hidden.over(plant.model.channels).size() == 4);  // the tanks replace u1 -> y1
+  CHECK(load_for_plant("scenario: a\n").scenario.plant.empty());
+  CHECK(load_for_plant("plant: {}\n").scenario.plant.empty());
+
+  const auto only_finding = [&](const std::string& text) {
+    const ScenarioResult bad = load_for_plant(text);
+    REQUIRE(bad.findings.size() == 1);
+    return format(bad.findings[0]);
+  };
+  CHECK(only_finding("plant:\n  channels: [{cv: y1, mv: a1, gain: 1}]\n") ==
+        "s.yaml:2:13: error: plant.channels: 'a1' stands still: give it a sigma in the unit file's "
+        "simulation.aux_movement");
+  CHECK(only_finding("plant:\n  channels: [{cv: y1, mv: a3, gain: 1}]\n") ==
+        "s.yaml:2:27: error: plant.channels[0].mv: 'a3' is no mv, dv or aux of this unit (did you "
+        "mean 'a1'?)");
+  CHECK(only_finding("plant:\n  input: {a2: {deadband: 1}}\n") ==
+        "s.yaml:2:11: error: plant.input.a2: unknown tag (did you mean 'u2'?)");
+  CHECK(only_finding("plant:\n  state: [{cv: y1, mv: u2, restoring_force: {cubic: 1}}]\n") ==
+        "s.yaml:2:11: error: plant.state[0]: there is no channel from 'u2' to 'y1' for it to act "
+        "in");
+  CHECK(only_finding("plant: {inputs: {}}\n") ==
+        "s.yaml:1:9: error: plant.inputs: unknown key (did you mean 'input'?)");
+}
