@@ -21,13 +21,15 @@ std::optional<Saturation> read_saturation(const Value& value) {
 }
 
 std::optional<Stiction> read_stiction(const Value& value) {
-  const Map map = value.map({"band", "jump"});
+  const Map map = value.map({"band", "jump", "slips_once"});
   const Value* band = map.require("band");
   const Value* jump = map.require("jump");
   const auto width = band != nullptr ? band->number(kNotNegative) : std::nullopt;
   const auto slip = jump != nullptr ? jump->number(kNotNegative) : std::nullopt;
-  if (!width || !slip) return std::nullopt;
-  return Stiction{*width, *slip};
+  const Value* once = map.find("slips_once");
+  const auto slips_once = once != nullptr ? once->boolean() : std::optional<bool>(false);
+  if (!width || !slip || !slips_once) return std::nullopt;
+  return Stiction{*width, *slip, *slips_once};
 }
 
 std::optional<InputBlock> read_input(const Map::Entry& entry) {

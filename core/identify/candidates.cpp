@@ -220,14 +220,18 @@ class Collector {
   void frictions(int cv, int input, const Spread& spread, std::size_t members) {
     const Subject stiction{Cause::kStiction, cv < 0 ? -1 : cv, input, -1, ""};
     const double range = spread.high - spread.low;
-    for (const double share : {0.02, 0.04, 0.08, 0.15, 0.25})
+    for (const double share : {0.02, 0.04, 0.08, 0.15, 0.25}) {
       for (const double jump : {0.3, 0.65, 1.0}) {
         const double band = share * range;
-        add(stiction,
-            {{"band", band, 0.0, 0.15 * range, 0.05 * band, 1e-4 * range, range},
-             {"jump", jump * band, 0.0, 0.15 * range, -0.05 * band, 0.0, range}},
-            members);
+        for (const bool slips_once : {false, true}) {
+          add(stiction,
+              {{"band", band, 0.0, 0.15 * range, 0.05 * band, 1e-4 * range, range},
+               {"jump", jump * band, 0.0, 0.15 * range, -0.05 * band, 0.0, range}},
+              2 * members);
+          if (!found_.empty()) found_.back().slips_once = slips_once;
+        }
       }
+    }
   }
 
   void outputs() {
@@ -240,7 +244,8 @@ class Collector {
       const auto level = [&](const char* name, double start) {
         return Coordinate{name, start, spread->median, 0.5 * range, 0.003 * range, -1e9, 1e9};
       };
-      const auto members = static_cast<std::size_t>(2 * model().cv_count);
+      // A clipped sensor would have shown its plateau: what is left is an overflow upstream of it.
+      const auto members = static_cast<std::size_t>(40 * model().cv_count);
       for (const double p : {0.002, 0.05, 0.12}) {
         add(clipping, {level("high", spread->quantile(1.0 - p))}, members);
         add(clipping, {level("low", spread->quantile(p))}, members);
@@ -420,13 +425,18 @@ std::vector<Effect> disturbance_candidates(const Problem& problem, const CvFit& 
   periodic.kind = "periodic";
   const double resolution = 1.0 / (static_cast<double>(samples) * sample_time);
   for (std::size_t i = 0; i < std::min<std::size_t>(3, peaks.size()); ++i) {
-    found.push_back({periodic,
-                     {{"sine", 0.0, 0.0, sd, 0.05 * sd, -1e12, 1e12},
-                      {"cosine", 0.0, 0.0, sd, 0.05 * sd, -1e12, 1e12},
-                      {"frequency", peaks[i].frequency, peaks[i].frequency, resolution,
-                       0.02 * resolution, 0.3 * resolution, 0.5 / sample_time}},
-                     0,
-                     cost_of(cvs) + cost_of(static_cast<std::size_t>(most))});
+    for (const double share : {0.0, 0.15, 0.3, 0.45, 0.6}) {
+      Effect effect;
+      effect.subject = periodic;
+      effect.coordinates = {{"sine", 0.0, 0.0, 2.0 * sd, 0.05 * sd, -1e12, 1e12},
+                            {"cosine", 0.0, 0.0, 2.0 * sd, 0.05 * sd, -1e12, 1e12},
+                            {"frequency", peaks[i].frequency, peaks[i].frequency, resolution,
+                             0.02 * resolution, 0.3 * resolution, 0.5 / sample_time}};
+      effect.onset = static_cast<Index>(share * static_cast<double>(samples));
+      effect.search_cost = cost_of(cvs) + cost_of(static_cast<std::size_t>(most)) +
+                           (effect.onset > 0 ? cost_of(20) : 0.0);
+      found.push_back(std::move(effect));
+    }
   }
   return found;
 }

@@ -25,7 +25,7 @@ void apply_to_channels(const Effect& effect, const Surroundings& s, ModelSpec& m
 
 InputBlock input_block(const Effect& effect) {
   if (effect.subject.cause == Cause::kStiction)
-    return Stiction{effect.value("band", 0.0), effect.value("jump", 0.0)};
+    return Stiction{effect.value("band", 0.0), effect.value("jump", 0.0), effect.slips_once};
   if (effect.subject.kind == "saturation")
     return Saturation{effect.value("low", -1e300), effect.value("high", 1e300)};
   if (effect.subject.kind == "deadband") return Deadband{effect.value("width", 0.0)};
@@ -155,6 +155,10 @@ void apply(const Effect& effect, const Surroundings& surroundings, ModelSpec& mo
     case Cause::kNoise:
       break;
   }
+}
+
+bool knows_onset(const Effect& effect) {
+  return effect.subject.cause == Cause::kOutputDisturbance && effect.subject.kind != "periodic";
 }
 
 bool touches(const Effect& effect, const ModelSpec& model, int cv) {

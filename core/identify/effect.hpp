@@ -28,6 +28,8 @@ struct Effect {
   Eigen::Index onset = 0;
   /// 2 ln of how many equal alternatives (rows to begin at, shapes, ...) it was picked from.
   double search_cost = 0.0;
+  /// Of a valve: it slips once and sticks again.
+  bool slips_once = false;
   /// Seen in the data themselves, whatever the model: not weighed against others.
   bool certain = false;
 
@@ -44,6 +46,9 @@ struct Surroundings {
 
 /// Edits `model` (aux signals are inputs after the model's own).
 void apply(const Effect& effect, const Surroundings& surroundings, ModelSpec& model);
+
+/// Whether the effect's own form knows its onset; all others are mixed from with and without it.
+[[nodiscard]] bool knows_onset(const Effect& effect);
 
 /// Whether it changes what this CV does in `model`.
 [[nodiscard]] bool touches(const Effect& effect, const ModelSpec& model, int cv);

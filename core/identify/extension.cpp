@@ -73,7 +73,6 @@ Finding to_finding(const Named& named, const Fit& fit, const Problem& problem) {
       finding.parameters = {
           {"size", size, size - reach, size + reach},
           {"period", 1.0 / frequency.value, 1.0 / frequency.high, 1.0 / frequency.low}};
-      finding.onset_s.reset();
     } else if (effect.subject.kind == "drift") {
       // What it has come to by the end of the data that were fitted.
       const double length = static_cast<double>(problem.samples() - effect.onset) * sample_time;

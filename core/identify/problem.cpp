@@ -156,12 +156,9 @@ VectorXd Problem::simulate(const std::vector<Effect>& effects, int cv) {
   bool stale = true;
   // Effects with an onset come last: each adds what it changes from its onset on.
   for (const Effect& effect : effects)
-    if (effect.onset == 0 || effect.subject.cause == Cause::kOutputDisturbance)
-      apply(effect, surroundings_, model);
+    if (effect.onset == 0 || knows_onset(effect)) apply(effect, surroundings_, model);
   for (const Effect& effect : effects) {
-    if (effect.onset == 0 || effect.subject.cause == Cause::kOutputDisturbance ||
-        !touches(effect, model, cv))
-      continue;
+    if (effect.onset == 0 || knows_onset(effect) || !touches(effect, model, cv)) continue;
     if (stale) simulated = simulator_.cv(model, cv);
     const VectorXd before = simulator_.cv(model, cv);
     apply(effect, surroundings_, model);
@@ -202,6 +199,27 @@ void Problem::update(CvFit& state, const VectorXd& simulated, const MatrixXd& nu
   const double variance =
       state.innovations.cwiseAbs2().dot(data.weights) / std::max(1.0, data.rows);
   state.variance = variance < 1e-30 ? 1e-30 : variance;  // stays NaN where the model is none
+}
+
+double Problem::cost_with_noise_of(const Fit& fit, const std::vector<Effect>& effects) {
+  double cost = 0.0;
+  for (const CvFit& state : fit.cvs) {
+    const CvData& data = this->data(state.cv);
+    const MatrixXd small = nuisances(effects, state.cv);
+    const Index samples = data.measured.size(), count = small.cols();
+    MatrixXd system = MatrixXd::Zero(samples + count, count + 1);
+    const VectorXd root = (data.weights / state.variance).cwiseSqrt();
+    const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) -> VectorXd {
+      return state.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);
+    };
+    for (Index b = 0; b < count; ++b) system.col(b).head(samples) = whiten(small.col(b));
+    system.col(count).head(samples) = whiten(data.measured - simulate(effects, state.cv));
+    system.bottomLeftCorner(count, count).setIdentity();
+    const MatrixXd r = triangle(system);
+    cost += r(count, count) * r(count, count);
+    for (Index b = 0; b < count; ++b) cost += 2.0 * std::log(std::abs(r(b, b)));
+  }
+  return cost;
 }
 
 Index Problem::best_onset(const Fit& fit, Index first, Index last) {
@@ -360,6 +378,10 @@ Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std:
     best.effects = effects;
     best.cvs = states;
     best.cost = misfit + log_determinant;
+    best.complexity = log_determinant;
+    for (const CvFit& state : states) best.complexity += state.beta.squaredNorm();
+    for (Index i = 0; i < count; ++i)
+      best.complexity += std::pow(prior_units(value(effects, i)), 2);
     if (count > 0) {
       const MatrixXd inverse = shared.topLeftCorner(count, count)
                                    .triangularView<Eigen::Upper>()

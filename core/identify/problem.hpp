@@ -52,6 +52,8 @@ struct Fit {
   /// -2 ln of the marginal likelihood (Laplace): sum n ln variance + penalties + ln det of what the
   /// data add to the prior's information. Comparable between fits of the same CVs only.
   double cost = 0.0;
+  /// The part of `cost` that is no misfit: penalties and ln det.
+  double complexity = 0.0;
   /// Of the free coordinates in order; posterior.
   Eigen::MatrixXd covariance;
 };
@@ -75,6 +77,10 @@ class Problem {
   /// Fits the coordinates of `effects` from `first_free` on; the ones before stay as they are.
   [[nodiscard]] Fit fit(std::vector<Effect> effects, std::size_t first_free,
                         const std::vector<int>& cvs, int iterations = 8);
+
+  /// What the CVs of `fit` would cost with `effects` as they stand and the noise models of `fit`,
+  /// on the scale on which `fit` itself costs `rows + complexity`.
+  [[nodiscard]] double cost_with_noise_of(const Fit& fit, const std::vector<Effect>& effects);
 
   /// The row in first .. last from which on the last effect of `fit` best acts, all else held.
   [[nodiscard]] Eigen::Index best_onset(const Fit& fit, Eigen::Index first, Eigen::Index last);

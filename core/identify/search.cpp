@@ -17,6 +17,10 @@ using Eigen::Index;
 
 /// Candidates fitted in full in every round, beside the best of each cause.
 constexpr std::size_t kShortlist = 16;
+/// A cause that the noise could pass for is taken if noise models speak no more than this against
+/// it, and the one fitted with it speaks for it by this much more than would do otherwise.
+constexpr double kWanderingNoise = -10.0;
+constexpr double kSettledNoise = 12.0;
 /// 2 ln odds of what the data themselves show.
 constexpr double kCertain = 1000.0;
 /// 2 ln of the prior odds against any one kind of cause: the everyday ones are half as rare.
@@ -40,7 +44,7 @@ bool same_subject(const Subject& a, const Subject& b) {
 
 bool same_variant(const Effect& a, const Effect& b) {
   if (!same_subject(a.subject, b.subject) || a.coordinates.size() != b.coordinates.size() ||
-      (a.onset > 0) != (b.onset > 0))
+      (a.onset > 0) != (b.onset > 0) || a.slips_once != b.slips_once)
     return false;
   for (std::size_t i = 0; i < a.coordinates.size(); ++i)
     if (a.coordinates[i].name != b.coordinates[i].name) return false;
@@ -59,6 +63,7 @@ struct Trial {
   Effect candidate;
   Fit fit;            ///< effects: the frozen ones, the accepted free ones, the candidate last
   double odds = 0.0;  ///< 2 ln
+  double settled_odds = 0.0;
 };
 
 class Search {
@@ -120,6 +125,20 @@ class Search {
     trial.fit = problem_.fit(std::move(effects), first_free, cvs, iterations);
     trial.candidate = trial.fit.effects.back();
     trial.odds = without(cvs).cost - trial.fit.cost - rarity(candidate.subject.cause);
+    const Cause cause = candidate.subject.cause;
+    if (cause == Cause::kOutputDisturbance || cause == Cause::kUnmodelledInput) {
+      // What is slow can hide in a noise model that is re-estimated without it: it then takes the
+      // noise for a wandering one. So it also counts how the noise model with the cause judges the
+      // lack of it.
+      double rows = 0.0;
+      for (const int cv : cvs) rows += problem_.data(cv).rows;
+      std::vector<Effect> others = trial.fit.effects;
+      others.pop_back();
+      trial.settled_odds = problem_.cost_with_noise_of(trial.fit, others) - rows -
+                           trial.fit.complexity - candidate.search_cost - rarity(cause);
+      if (trial.odds > kWanderingNoise)
+        trial.odds = std::max(trial.odds, trial.settled_odds - kSettledNoise);
+    }
     if (!material(trial)) trial.odds = std::min(trial.odds, 0.0);
     return trial;
   }
@@ -195,29 +214,28 @@ class Search {
 
   /// Moves the onset of a trial about until no other moment is better.
   void place_onset(Trial& trial) {
-    if (trial.candidate.subject.cause != Cause::kOutputDisturbance) {
-      const Index reach = problem_.samples() / 10, margin = problem_.samples() / 50 + 5;
-      for (int i = 0; i < 4; ++i) {
-        const Index first = std::max(margin, trial.candidate.onset - reach);
-        const Index last = std::min(problem_.samples() - margin, trial.candidate.onset + reach);
-        if (first >= last) return;
-        Effect moved = trial.candidate;
-        moved.onset = problem_.best_onset(trial.fit, first, last);
-        if (moved.onset == trial.candidate.onset) return;
-        Trial next = attempt(moved, 5);
-        if (!(next.odds > trial.odds)) return;
-        trial = std::move(next);
-      }
-      return;
-    }
-    Index reach = std::max<Index>(2, problem_.samples() / 40);
-    while (reach >= 1) {
+    const Index margin = problem_.samples() / 50 + 5;
+    Index reach = std::max<Index>(2, problem_.samples() / 12);
+    while (reach >= 2) {
       bool moved = false;
       for (const Effect& other : other_onsets(trial.candidate, reach, problem_.samples())) {
         Trial next = attempt(other, 4);
         if (next.odds > trial.odds + 1e-9) {
           trial = std::move(next);
           moved = true;
+        }
+      }
+      if (!knows_onset(trial.candidate) && reach > 20) {  // the best row near, all else held
+        const Index first = std::max(margin, trial.candidate.onset - reach);
+        const Index last = std::min(problem_.samples() - margin, trial.candidate.onset + reach);
+        Effect other = trial.candidate;
+        if (first < last) other.onset = problem_.best_onset(trial.fit, first, last);
+        if (other.onset != trial.candidate.onset) {
+          Trial next = attempt(other, 5);
+          if (next.odds > trial.odds + 1e-9) {
+            trial = std::move(next);
+            moved = true;
+          }
         }
       }
       if (!moved) reach /= 2;
@@ -263,19 +281,25 @@ class Search {
     std::sort(trials.begin(), trials.end(), better);
     if (std::getenv("MPM_TRACE"))
       for (const Trial& t : trials) {
-        std::fprintf(stderr, "  %s %s cv%d in%d aux%d onset %ld odds %.1f cost %.1f search %.1f:",
+        std::fprintf(stderr,
+                     "  %s %s cv%d in%d aux%d onset %ld odds %.1f settled %.1f search %.1f:",
                      name_of(t.candidate.subject.cause), t.candidate.subject.kind.c_str(),
                      t.candidate.subject.cv, t.candidate.subject.input, t.candidate.subject.aux,
-                     (long)t.candidate.onset, t.odds, t.fit.cost, t.candidate.search_cost);
+                     (long)t.candidate.onset, t.odds, t.settled_odds, t.candidate.search_cost);
         for (auto& c : t.candidate.coordinates)
           std::fprintf(stderr, " %s=%g", c.name.c_str(), c.value);
         std::fprintf(stderr, "\n");
       }
     if (trials[0].odds < settings_.decisive) return false;
 
-    // Once more with rows weighed as the best explanation's innovations ask for.
+    // Once more with rows weighed as the best explanation's innovations ask for. A shock in the
+    // noise would vanish with a step fitted to it, so a disturbance has to do without that row's
+    // help.
+    const bool disturbance = trials[0].candidate.subject.cause == Cause::kOutputDisturbance;
+    const Fit weighing =
+        disturbance ? without(touched(trials[0].candidate, problem_)) : trials[0].fit;
     without_.clear();
-    problem_.settle(accepted_, &trials[0].fit);
+    problem_.settle(accepted_, &weighing);
     std::vector<Trial> again;
     for (std::size_t i = 0; i < std::min<std::size_t>(8, trials.size()); ++i)
       again.push_back(attempt(trials[i].candidate, 8));

@@ -44,7 +44,7 @@ class Key {
   void add(const Polynomial& v) { add(v.coefficients); }
   void add(const Saturation& v) { add(v.low), add(v.high); }
   void add(const Deadband& v) { add(v.width); }
-  void add(const Stiction& v) { add(v.band), add(v.jump); }
+  void add(const Stiction& v) { add(v.band), add(v.jump), add(v.slips_once); }
   void add(const RestoringForce& v) { add(v.quadratic), add(v.cubic); }
   void add(const SquareRootOutflow& v) { add(v.empty_output); }
   void add(const CoulombFriction& v) { add(v.force), add(v.speed); }

@@ -73,6 +73,9 @@ struct Deadband {
 struct Stiction {
   double band = 0.0;  ///< S: the valve sticks until its command has moved this far
   double jump = 0.0;  ///< J: then it slips by this much (Choudhury 2005)
+  /// It sticks again after every slip, however the command moves on (He, Wang, Pottmann and Qin
+  /// 2007); else it moves on while the command keeps its direction.
+  bool slips_once = false;
 };
 struct Offset {
   double bias = 0.0;

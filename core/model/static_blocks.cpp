@@ -62,6 +62,7 @@ double InputElement::apply_stiction(const Stiction& valve, double input) {
   if (direction_ == 0 && std::abs(input - position_) > static_friction)
     direction_ = sign_of(input - position_);
   if (direction_ != 0) position_ = input - direction_ * moving_friction;
+  if (valve.slips_once) direction_ = 0;
   last_input_ = input;
   return position_;
 }
