@@ -15,11 +15,13 @@ Json tag_or_null(const std::string& tag) { return tag.empty() ? Json(nullptr) : 
 
 /// Keys that say what a finding or a rival is about.
 Json subject_json(const Subject& subject, const SignalNames& names) {
+  // What a model leaves out may be an input of other channels of it: then both keys name it.
+  const bool by_tag = subject.aux >= 0 || subject.cause == Cause::kUnmodelledInput;
   return {
       {"cause", name_of(subject.cause)},
       {"cv", tag_or_null(subject.cv >= 0 ? names.cv(subject.cv) : "")},
       {"mv", tag_or_null(subject.input >= 0 && subject.aux < 0 ? names.input(subject.input) : "")},
-      {"tag", tag_or_null(subject.aux >= 0 ? names.aux(subject.aux) : "")}};
+      {"tag", tag_or_null(by_tag ? names.source(subject) : "")}};
 }
 
 /// What the contract calls the word that goes with a cause.
