@@ -135,5 +135,45 @@ TEST_CASE("gaps and bad values are told, not fatal") {
   CHECK(bench.said().find("1 values of inputs and CVs missing or bad") != std::string::npos);
 }
 
+/// A run of shell3x3 in which a gain is wrong.
+void simulate(const Bench& bench) {
+  REQUIRE(run({"mpmsim", "--config", kUnit, "--scenario", "hidden_gain", "--samples", "1500",
+               "--seed", "3", "--csv", bench.folder.file("run.csv")},
+              bench.folder.file("sim.out"), bench.folder.file("sim.err")) == 0);
+}
+
+TEST_CASE("--scenario compares both models in closed loop") {
+  const Bench bench;
+  simulate(bench);
+  REQUIRE(bench.diagnose(kUnit, bench.folder.file("run.csv"),
+                         {"--scenario", "hidden_gain", "--seed", "3"}) == 0);
+  const auto report = nlohmann::json::parse(read_file(bench.out + "/report.json"));
+  REQUIRE(report["verdict"] == "mismatch");
+  const auto& loop = report["closed_loop"];
+  CHECK(loop["seeds"] == nlohmann::json{3});
+  REQUIRE(loop["cvs"].size() == 3);
+  REQUIRE(loop["mvs"].size() == 3);
+  for (const auto& cv : loop["cvs"]) {
+    CHECK(cv["error_variance_before"] > 0.0);
+    CHECK(cv["error_variance_after"] > 0.0);
+    CHECK(cv["error_variance_after"] != cv["error_variance_before"]);
+  }
+}
+
+TEST_CASE("without mpmsim beside it, --scenario says so before it begins") {
+  const Bench bench;
+  simulate(bench);
+  const std::filesystem::path bin = MPM_BIN_DIR;
+  const std::filesystem::path lonely = bench.folder.file("mpm");
+  std::filesystem::copy_file(bin / "mpm", lonely);
+  const std::string data = bench.folder.file("run.csv");
+  CHECK(run({std::filesystem::relative(lonely, bin).string(), "diagnose", "--config", kUnit,
+             "--data", data, "--out", bench.out, "--scenario", "none"},
+            bench.folder.file("stdout"), bench.folder.file("stderr")) == 2);
+  CHECK(bench.said() == "mpm: error: --scenario needs the simulator, and " +
+                            bench.folder.file("mpmsim") + " is not there\n");
+  CHECK_FALSE(std::filesystem::exists(bench.out));
+}
+
 }  // namespace
 }  // namespace mpm::test
