@@ -10,6 +10,8 @@
 
 #include "config/load_unit.hpp"
 #include "core/identify/diagnosis.hpp"
+#include "daemon/closed_loop/compare_loops.hpp"
+#include "daemon/closed_loop/run_mpmsim.hpp"
 #include "daemon/commands/progress_bar.hpp"
 #include "daemon/io/csv_reader.hpp"
 #include "daemon/io/output_folder.hpp"
@@ -29,8 +31,10 @@ struct DiagnoseOptions {
   std::string data;
   std::string validate;
   std::string out;
+  std::string scenario;
   double fit_share = DiagnosisSettings().fit_share;
   std::uint64_t seed = DiagnosisSettings().seed;
+  bool seed_given = false;
   bool json = false;
   bool quiet = false;
   bool fail_on_mismatch = false;
@@ -63,10 +67,11 @@ std::string command_line() {
 /// Nothing where the unit file is wrong, which has then been told.
 std::optional<config::UnitConfig> load(const std::string& file) {
   const config::LoadResult loaded = config::load_unit(file);
+  if (loaded.ok() && !loaded.config.has_model())
+    refuse(file, "holds no model, so there is nothing to diagnose");
   for (const config::Finding& finding : loaded.findings)
     std::cerr << config::format(finding) << '\n';
   if (!loaded.ok()) return std::nullopt;
-  if (!loaded.config.has_model()) refuse(file, "holds no model, so there is nothing to diagnose");
   return loaded.config;
 }
 
@@ -103,8 +108,7 @@ DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
 }
 
 /// False where the user stopped it.
-bool diagnose_run(const DiagnoseOptions& options, DiagnosisRun& run) {
-  StopSignal stop;
+bool diagnose_run(const DiagnoseOptions& options, StopSignal& stop, DiagnosisRun& run) {
   ProgressBar bar(options.quiet);
   DiagnosisSettings settings;
   settings.mv_count = run.unit.counts().mv;
@@ -121,30 +125,77 @@ bool diagnose_run(const DiagnoseOptions& options, DiagnosisRun& run) {
   return !stopped;
 }
 
+/// Nothing where none is wanted; the flag says whether the scenario is fit to be run.
+std::optional<LoopPlan> plan(const DiagnoseOptions& options, const config::UnitConfig& unit,
+                             bool& fit) {
+  fit = true;
+  if (options.scenario.empty()) return std::nullopt;
+  std::vector<config::Finding> findings;
+  std::optional<LoopPlan> result =
+      plan_loops(unit, options.config, options.scenario,
+                 options.seed_given ? std::optional(options.seed) : std::nullopt, findings);
+  for (const config::Finding& finding : findings) std::cerr << config::format(finding) << '\n';
+  fit = result.has_value();
+  return result;
+}
+
+/// Empty, or why there is no comparison: a reason to fail, but not to lose the diagnosis.
+std::string add_closed_loop(const LoopPlan& loops, const std::string& extended_file,
+                            StopSignal& stop, DiagnosisRun& run) {
+  try {
+    run.closed_loop =
+        compare_loops(loops, run.unit, extended_file, [&stop] { return stop.received(); });
+    return {};
+  } catch (const SimulatorError& error) {
+    return error.what();
+  } catch (const config::InputError& error) {
+    return error.what();
+  }
+}
+
+void print(const DiagnoseOptions& options, const DiagnosisRun& run, const std::string& json) {
+  if (options.json)
+    std::cout << json << std::flush;
+  else if (!options.quiet)
+    std::cout << to_text(run) << "\n  written to " << options.out
+              << ": report.html, report.json, extended.yaml\n"
+              << std::flush;
+}
+
+// 0, 1 if something was found and that was to fail, 2 if it was stopped or the simulator failed.
+int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
+  io::OutputFolder folder(options.out);
+  bool fit = false;
+  const std::optional<LoopPlan> loops = plan(options, unit, fit);
+  if (!fit) return 3;
+  DiagnosisRun run = prepare(options, std::move(unit));
+  if (!options.quiet)
+    for (const std::string& notice : run.notices) std::cerr << notice << '\n';
+  StopSignal stop;
+  if (!diagnose_run(options, stop, run)) {
+    std::cerr << "mpm: stopped; nothing was written\n";
+    return 2;
+  }
+  const std::string extended_file = folder.write("extended.yaml", extended_yaml(run));
+  const bool repaired = !run.diagnosis.findings.empty();
+  const std::string failure =
+      loops && repaired ? add_closed_loop(*loops, extended_file, stop, run) : std::string();
+  const std::string json = to_json(run).dump(2) + "\n";
+  folder.write("report.json", json);
+  folder.write("report.html", page_html(page_data(run)));
+  folder.commit();
+  print(options, run, json);
+  if (!failure.empty()) {
+    std::cerr << "mpm: error: written without the comparison in closed loop: " << failure << '\n';
+    return 2;
+  }
+  return options.fail_on_mismatch && !run.diagnosis.findings.empty() ? 1 : 0;
+}
+
 int diagnose_file(const DiagnoseOptions& options) {
   try {
     std::optional<config::UnitConfig> unit = load(options.config);
-    if (!unit) return 3;
-    io::OutputFolder folder(options.out);
-    DiagnosisRun run = prepare(options, std::move(*unit));
-    if (!options.quiet)
-      for (const std::string& notice : run.notices) std::cerr << notice << '\n';
-    if (!diagnose_run(options, run)) {
-      std::cerr << "mpm: stopped; nothing was written\n";
-      return 2;
-    }
-    folder.write("extended.yaml", extended_yaml(run));
-    const std::string json = to_json(run).dump(2) + "\n";
-    folder.write("report.json", json);
-    folder.write("report.html", page_html(page_data(run)));
-    folder.commit();
-    if (options.json)
-      std::cout << json << std::flush;
-    else if (!options.quiet)
-      std::cout << to_text(run) << "\n  written to " << options.out
-                << ": report.html, report.json, extended.yaml\n"
-                << std::flush;
-    return options.fail_on_mismatch && !run.diagnosis.findings.empty() ? 1 : 0;
+    return unit ? diagnose_unit(options, std::move(*unit)) : 3;
   } catch (const config::InputError& error) {
     std::cerr << error.what() << '\n';
     return 3;
@@ -171,8 +222,15 @@ void add_diagnose(CLI::App& app, int& exit_code) {
                    "first part of the data that is fitted; the gain is measured on the rest")
       ->capture_default_str()
       ->check(CLI::Range(0.2, 0.9));
-  command->add_option("--seed", options->seed, "of the resampling behind the intervals")
-      ->capture_default_str();
+  CLI::Option* seed =
+      command
+          ->add_option("--seed", options->seed,
+                       "of the resampling behind the intervals; with a --scenario that draws what "
+                       "it hides, of the run that made the data")
+          ->capture_default_str();
+  command->add_option("--scenario", options->scenario,
+                      "compare how well the simulator's controller does on this scenario with the "
+                      "unit file's model and with the extended one");
   command->add_flag("--json", options->json, "print report.json too");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
@@ -180,7 +238,10 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   command->footer(
       "Example:\n  mpm diagnose --config config/plants/shell3x3.yaml --data last_week.csv --out "
       "report");
-  command->callback([options, &exit_code] { exit_code = diagnose_file(*options); });
+  command->callback([options, seed, &exit_code] {
+    options->seed_given = seed->count() > 0;
+    exit_code = diagnose_file(*options);
+  });
 }
 
 }  // namespace mpm::daemon

@@ -15,11 +15,13 @@ Json tag_or_null(const std::string& tag) { return tag.empty() ? Json(nullptr) : 
 
 /// Keys that say what a finding or a rival is about.
 Json subject_json(const Subject& subject, const SignalNames& names) {
+  // What a model leaves out may be an input of other channels of it: then both keys name it.
+  const bool by_tag = subject.aux >= 0 || subject.cause == Cause::kUnmodelledInput;
   return {
       {"cause", name_of(subject.cause)},
       {"cv", tag_or_null(subject.cv >= 0 ? names.cv(subject.cv) : "")},
       {"mv", tag_or_null(subject.input >= 0 && subject.aux < 0 ? names.input(subject.input) : "")},
-      {"tag", tag_or_null(subject.aux >= 0 ? names.aux(subject.aux) : "")}};
+      {"tag", tag_or_null(by_tag ? names.source(subject) : "")}};
 }
 
 /// What the contract calls the word that goes with a cause.
@@ -136,7 +138,8 @@ Json closed_loop_json(const DiagnosisRun& run) {
   if (!run.closed_loop) return nullptr;
   const ClosedLoop& loop = *run.closed_loop;
   Json json{{"scenario", loop.scenario}, {"seeds", loop.seeds}, {"samples", loop.samples}};
-  json["cvs"] = json["mvs"] = Json::array();
+  json["cvs"] = Json::array();
+  json["mvs"] = Json::array();
   for (const ClosedLoop::Cv& cv : loop.cvs)
     json["cvs"].push_back({{"cv", run.unit.cv.at(static_cast<std::size_t>(cv.cv)).tag},
                            {"error_variance_before", cv.variance_before},
@@ -183,6 +186,26 @@ std::string score_table(const DiagnosisRun& run) {
   return text;
 }
 
+std::string loop_table(const DiagnosisRun& run) {
+  const ClosedLoop& loop = *run.closed_loop;
+  std::string text = "\n  in closed loop on scenario " + loop.scenario + " (" +
+                     std::to_string(loop.seeds.size()) + " x " + std::to_string(loop.samples) +
+                     " samples):\n";
+  const auto row = [&text](const std::string& tag, const char* what, double before, double after) {
+    char line[160];
+    std::snprintf(line, sizeof line, "    %-12s %-24s %10s -> %s\n", tag.c_str(), what,
+                  number_text(before).c_str(), number_text(after).c_str());
+    text += line;
+  };
+  for (const ClosedLoop::Cv& cv : loop.cvs)
+    row(run.unit.cv.at(static_cast<std::size_t>(cv.cv)).tag, "variance of SP - CV",
+        cv.variance_before, cv.variance_after);
+  for (const ClosedLoop::Mv& mv : loop.mvs)
+    row(run.unit.mv.at(static_cast<std::size_t>(mv.mv)).tag, "% of time at a limit",
+        100.0 * mv.at_limit_before, 100.0 * mv.at_limit_after);
+  return text;
+}
+
 }  // namespace
 
 nlohmann::ordered_json to_json(const DiagnosisRun& run) {
@@ -225,6 +248,7 @@ std::string to_text(const DiagnosisRun& run) {
   for (const Unexplained& left : diagnosis.unexplained)
     text += "\n  " + unexplained_text(run, left) + '\n';
   if (!diagnosis.scores.empty()) text += score_table(run);
+  if (run.closed_loop) text += loop_table(run);
   return text;
 }
 

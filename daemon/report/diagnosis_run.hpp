@@ -13,7 +13,7 @@
 namespace mpm::daemon {
 
 /// How well the MPC controls with the unit file's model and with the extended one, on the same
-/// simulated plant; mean over the seeds.
+/// simulated plant, over all seeds together.
 struct ClosedLoop {
   struct Cv {
     int cv = 0;

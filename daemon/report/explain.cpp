@@ -111,10 +111,16 @@ std::string input_nonlinearity_sentence(const DiagnosisRun& run, const Finding& 
   const std::string source = names.source(subject);
   const std::string target = subject.cv >= 0 ? names.cv(subject.cv) : "the plant";
   if (subject.kind == "saturation") {
-    return source + " acts on " + target + " only between " +
-           names.in_source(value_of(finding, "low", -HUGE_VAL), subject) + " and " +
-           names.in_source(value_of(finding, "high", HUGE_VAL), subject) +
-           "; what it asks for beyond has no effect. ";
+    const Parameter* low = find(finding, "low");
+    const Parameter* high = find(finding, "high");
+    const auto limit = [&](const Parameter& at) {
+      return names.in_source(at.value, subject) + " (" + interval(at) + ")";
+    };
+    std::string text = source + " acts on " + target + " only";
+    if (low != nullptr) text += " above " + limit(*low);
+    if (low != nullptr && high != nullptr) text += " and";
+    if (high != nullptr) text += " below " + limit(*high);
+    return text + "; what it asks for beyond has no effect. ";
   }
   if (subject.kind == "deadband") {
     const Parameter* width = find(finding, "width");
@@ -181,8 +187,8 @@ std::string output_disturbance_sentence(const DiagnosisRun& run, const Finding& 
   const double by = size == nullptr ? NAN : size->value;
   std::string text = names.cv(cv);
   if (finding.subject.kind == "drift") {
-    text += " drifts " + std::string(by < 0.0 ? "down" : "up") + " by " +
-            names.in_cv(std::abs(by) * 3600.0, cv) + " per hour";
+    text += " has drifted " + std::string(by < 0.0 ? "down" : "up") + " by " +
+            names.in_cv(std::abs(by), cv) + ", by the end of the data that were fitted, from what";
   } else if (finding.subject.kind == "periodic") {
     text += " swings by " + names.in_cv(std::abs(by), cv) + " up and down";
     if (const Parameter* period = find(finding, "period"))
@@ -190,10 +196,11 @@ std::string output_disturbance_sentence(const DiagnosisRun& run, const Finding& 
   } else {
     text += " lies " + names.in_cv(std::abs(by), cv) + (by < 0.0 ? " lower" : " higher");
   }
-  text += " than its inputs explain";
-  if (size != nullptr)
-    text += " (size " + interval(*size, names.cv_unit(cv)) +
-            (finding.subject.kind == "drift" ? " per s)" : ")");
+  text += finding.subject.kind.empty() || finding.subject.kind == "step"
+              ? " than its inputs explain"
+          : finding.subject.kind == "drift" ? " its inputs explain"
+                                            : ", which its inputs do not explain";
+  if (size != nullptr) text += " (size " + interval(*size, names.cv_unit(cv)) + ")";
   return text + ". A disturbance or an offset of its sensor: the data cannot tell the two apart. ";
 }
 
@@ -212,7 +219,9 @@ std::string state_nonlinearity_sentence(const DiagnosisRun& run, const Finding& 
   const std::string& cv = names.cv(finding.subject.cv);
   const std::string& kind = finding.subject.kind;
   if (kind == "square_root_outflow")
-    return cv + " drains with the square root of its level, where the model drains in proportion. ";
+    return cv +
+           " drains with the square root of its level, where the model drains in proportion: "
+           "its gain and its time constants depend on the level. ";
   if (kind == "coulomb_friction")
     return "Dry friction holds " + cv + " back" +
            (find(finding, "force") == nullptr
@@ -311,7 +320,11 @@ std::string verdict_headline(const DiagnosisRun& run) {
 std::string verdict_details(const DiagnosisRun& run) {
   std::string text = run.diagnosis.reason;
   if (!text.empty()) {
-    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    const std::string word = text.substr(0, text.find(' '));
+    const bool is_word = std::all_of(word.begin(), word.end(), [](unsigned char letter) {
+      return std::islower(letter) != 0;  // not a tag, whose case matters
+    });
+    if (is_word) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     if (text.back() != '.') text += '.';
   }
   const std::string gain = gain_of_extension(run);
@@ -364,13 +377,13 @@ std::string parameter_unit(const DiagnosisRun& run, const Subject& subject,
     return "s";
   if (parameter == "gain" && subject.cv >= 0 && !names.source_unit(subject).empty())
     return names.cv_unit(subject.cv) + " per " + names.source_unit(subject);
-  if (parameter == "size" && subject.cv >= 0)
-    return names.cv_unit(subject.cv) + (subject.kind == "drift" ? "/s" : "");
+  if (parameter == "size" && subject.cv >= 0) return names.cv_unit(subject.cv);
+  if (parameter == "rate" && subject.cv >= 0) return names.cv_unit(subject.cv) + "/s";
   if (parameter == "empty_output") return subject.cv >= 0 ? names.cv_unit(subject.cv) : "";
   if (subject.cause == Cause::kOutputNonlinearity)
     return subject.cv >= 0 ? names.cv_unit(subject.cv) : "";
   if (parameter == "band" || parameter == "jump" || parameter == "width" || parameter == "low" ||
-      parameter == "high" || parameter == "force")
+      parameter == "high" || parameter == "force" || parameter == "empty_input")
     return names.source_unit(subject);
   return {};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 #include "config/load_unit.hpp"
 #include "daemon/report/explain.hpp"
@@ -55,12 +56,17 @@ config::UnitConfig extended_unit(const config::UnitConfig& unit, const Diagnosis
     throw std::logic_error("the extended model has " + std::to_string(extended.model.input_count) +
                            " inputs, the unit with the new ones " + std::to_string(expected));
   for (const int aux : diagnosis.new_inputs) {
-    extended.dv.push_back(unit.aux.at(static_cast<std::size_t>(aux)));
-    extended.simulation.dv_movement.emplace_back();
+    const auto i = static_cast<std::size_t>(aux);
+    extended.dv.push_back(unit.aux.at(i));
+    extended.simulation.dv_movement.push_back(unit.simulation.aux_movement.at(i));
   }
   std::vector<int> taken = diagnosis.new_inputs;
   std::sort(taken.rbegin(), taken.rend());  // from the end, so that indices stay right
-  for (const int aux : taken) extended.aux.erase(extended.aux.begin() + aux);
+  for (const int aux : taken) {
+    extended.aux.erase(extended.aux.begin() + aux);
+    std::vector<config::NoiseSettings>& movement = extended.simulation.aux_movement;
+    movement.erase(movement.begin() + aux);
+  }
   return extended;
 }
 

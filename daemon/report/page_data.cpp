@@ -24,6 +24,7 @@ using Series = std::vector<double>;
 
 constexpr std::size_t kPoints = 4'000;       // of one series
 constexpr std::size_t kAllPoints = 350'000;  // of all of them; some 8 bytes each
+constexpr double kSettled = 0.02;            // of a step response is still to come
 constexpr std::size_t kBlocks = 60;
 constexpr std::size_t kShortestBlock = 10;
 constexpr std::size_t kLevels = 12;
@@ -87,8 +88,16 @@ struct DataSet {
   const Eigen::MatrixXd* after;
   std::string name;
   double boundary_s;  ///< from here on no fit has seen the data; NaN = all or nothing of it
+  /// Rows until the simulations have forgotten that how the plant was before is not known.
+  std::size_t settled;
   std::size_t every;
 };
+
+std::size_t settling(const DiagnosisRun& run, const Recording& recording) {
+  const int models = std::max(LinearModel(run.unit.model).settling_samples(kSettled),
+                              LinearModel(run.diagnosis.extended).settling_samples(kSettled));
+  return static_cast<std::size_t>(std::min<Eigen::Index>(models, recording.samples() / 4));
+}
 
 std::vector<DataSet> data_sets(const DiagnosisRun& run) {
   const Diagnosis& diagnosis = run.diagnosis;
@@ -98,10 +107,11 @@ std::vector<DataSet> data_sets(const DiagnosisRun& run) {
   const bool cut = !run.validation && diagnosis.fit_samples > 0 &&
                    diagnosis.fit_samples < run.recording.samples();
   sets.push_back({&run.recording, &diagnosis.before, &diagnosis.after, run.data_file,
-                  cut ? run.recording.start_s + split * run.recording.sample_time_s : none, 1});
+                  cut ? run.recording.start_s + split * run.recording.sample_time_s : none,
+                  settling(run, run.recording), 1});
   if (run.validation)
     sets.push_back({&*run.validation, &diagnosis.validation_before, &diagnosis.validation_after,
-                    run.validation_file, none, 1});
+                    run.validation_file, none, settling(run, *run.validation), 1});
   const std::size_t series =
       sets.size() *
       (5 * run.unit.cv.size() + static_cast<std::size_t>(diagnosis.extended.input_count));
@@ -133,12 +143,26 @@ Series input_series(const DiagnosisRun& run, const DataSet& set, int input) {
                 run.diagnosis.new_inputs.at(static_cast<std::size_t>(input - own)));
 }
 
+void drop(Series& values, std::size_t rows) {
+  values.erase(values.begin(),
+               values.begin() + static_cast<std::ptrdiff_t>(std::min(rows, values.size())));
+}
+
+/// Without the rows in which the simulations still settle.
+CvSeries settled(const DataSet& set, CvSeries series) {
+  for (Series* values : {&series.measured, &series.before, &series.after, &series.residual_before,
+                         &series.residual_after})
+    drop(*values, set.settled);
+  return series;
+}
+
 Json set_json(const DataSet& set) {
   return {{"name", set.name},
           {"start", set.recording->start_s},
           {"step", set.recording->sample_time_s},
           {"samples", set.recording->samples()},
           {"every", set.every},
+          {"settled", set.settled},
           {"boundary", std::isfinite(set.boundary_s) ? Json(set.boundary_s) : Json(nullptr)}};
 }
 
@@ -250,7 +274,7 @@ Json cv_json(const DiagnosisRun& run, const std::vector<DataSet>& sets, int cv) 
 
   // The rest is drawn from the data that no fit has seen where they are a recording of their own.
   const DataSet& shown = sets.back();
-  const CvSeries series = cv_series(shown, cv);
+  const CvSeries series = settled(shown, cv_series(shown, cv));
   json["spectrum"] = spectrum_json(series, shown.recording->sample_time_s);
   json["levels"] = Json::array({level_json(signal.tag, signal.unit, series.measured, series)});
   json["correlations"] = Json::array();
@@ -258,7 +282,8 @@ Json cv_json(const DiagnosisRun& run, const std::vector<DataSet>& sets, int cv) 
   for (int input = 0; input < run.diagnosis.extended.input_count; ++input) {
     Subject from;
     from.input = input;
-    const Series values = input_series(run, shown, input);
+    Series values = input_series(run, shown, input);
+    drop(values, shown.settled);
     json["levels"].push_back(
         level_json(names.input(input), names.source_unit(from), values, series));
     json["correlations"].push_back(correlation_json(names.input(input), values, series, lags));

@@ -19,6 +19,7 @@ config::UnitConfig unit() {
   for (config::CvSignal& cv : loaded.config.cv) cv.unit = "degC";
   for (config::InputSignal& mv : loaded.config.mv) mv.unit = "m3/h";
   loaded.config.aux = {{"p_feed", "bar", "feed pressure"}, {"t_amb", "K", "ambient temperature"}};
+  loaded.config.simulation.aux_movement.resize(2);
   return loaded.config;
 }
 

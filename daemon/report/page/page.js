@@ -1,7 +1,8 @@
 // What the report says, from the data in the page (daemon/report/page_data.cpp):
 //   report   report.json itself
 //   dates    the clock of the data tells dates, not seconds of a run
-//   sets     [{name, start, step, samples, every, boundary}]: the recordings, values thinned `every`
+//   sets     [{name, start, step, samples, every, settled, boundary}]: the recordings, values thinned
+//            `every`; the simulations have found their state after `settled` samples
 //   inputs   [{tag, unit, new, sets: [values]}]
 //   cvs      [{tag, unit, description, found, sets: [{measured, before, after, residual_before,
 //            residual_after, block, rms_before, rms_after}], spectrum, levels, correlations, steps}]
@@ -22,7 +23,8 @@ const CAUSES = {
   state_nonlinearity: 'Nonlinear dynamics',
 };
 
-const words = text => String(text).replaceAll('_', ' ');
+const words = text => String(text).replaceAll('->', '→');
+const causeText = cause => (CAUSES[cause] || cause).toLowerCase();
 const percent = share => known(share) ? number(100 * share, 3) + ' %' : '–';
 const unitText = unit => unit ? ', ' + unit : '';
 const some = (list, make) => list.length ? make(list) : null;
@@ -65,9 +67,9 @@ function parameterTable(finding) {
   const rows = Object.entries(finding.parameters).map(([name, value]) => {
     const interval = finding.interval[name];
     const unit = (finding.units[name] || '').replace('x model', '× model');
-    const text = typeof value === 'string' ? words(value)
+    const text = typeof value === 'string' ? value.replaceAll('_', ' ')
       : name === 'onset' ? clock(value) : `${number(value)} ${unit}`;
-    return [words(name), text, interval ? `${number(interval[0])} to ${number(interval[1])}` : ''];
+    return [name.replaceAll('_', ' '), text, interval ? `${number(interval[0])} to ${number(interval[1])}` : ''];
   });
   return rows.length ? table([{label: 'parameter'}, {label: 'plant', number: true}, {label: '95 % interval', number: true}], rows) : null;
 }
@@ -111,6 +113,9 @@ function rangeBar(low, high) {
   return svg;
 }
 
+const fitText = score => score.fit_before === score.fit_after ? `${score.fit_before.toFixed(1)} %`
+  : `${score.fit_before.toFixed(1)} → ${score.fit_after.toFixed(1)} %`;
+
 function gains() {
   if (!report.validation.length) return;
   const columns = [{label: 'CV'}, {label: 'RMSE ' + BEFORE, number: true}, {label: 'RMSE ' + AFTER, number: true},
@@ -118,7 +123,7 @@ function gains() {
   const fit = value => known(value) ? value.toFixed(1) + ' %' : '–';
   const rows = report.validation.map(score => {
     const [low, high] = score.gain_interval;
-    const interval = score.refused ? 'tried, refused' : low === high ? '–' : `${number(100 * low, 3)} to ${number(100 * high, 3)} %`;
+    const interval = score.refused ? 'tried, refused' : low === high ? 'unchanged' : `${number(100 * low, 3)} to ${number(100 * high, 3)} %`;
     const unit = score.unit ? ' ' + score.unit : '';
     return [score.cv, number(score.rmse_before) + unit, number(score.rmse_after) + unit, fit(score.fit_before), fit(score.fit_after), interval,
       score.refused || low === high ? '' : rangeBar(low, high)];
@@ -171,7 +176,7 @@ function unseen(set) {
 function onsets(cv, set) {
   const end = set.start + set.step * set.samples;
   return report.findings.filter(finding => (finding.cv === cv.tag || !finding.cv) && finding.onset !== null && finding.onset >= set.start && finding.onset <= end)
-    .map(finding => ({x: finding.onset, label: words(finding.cause)}));
+    .map(finding => ({x: finding.onset, label: causeText(finding.cause)}));
 }
 
 function pair(x, before, after, more = {}) {
@@ -181,7 +186,7 @@ function pair(x, before, after, more = {}) {
 function timePlots(cv, set, index) {
   const values = cv.sets[index];
   const x = times(set, values.measured.length);
-  const common = {group: 'time' + index, x: timeAxis(set), unseen: unseen(set), marks: onsets(cv, set)};
+  const common = {group: 'time' + index, x: timeAxis(set), unseen: unseen(set), marks: onsets(cv, set), settled: set.start + set.step * set.settled};
   const name = data.sets.length > 1 ? ` (${set.name})` : '';
   const blocks = values.rms_before.map((_, i) => set.start + set.step * Math.min((i + 0.5) * values.block, set.samples));
   const shaded = common.unseen ? 'Shaded: no fit has seen it.' : '';
@@ -199,7 +204,7 @@ function timePlots(cv, set, index) {
 function spectrumPlot(cv) {
   const {frequency, measured, before, after} = cv.spectrum;
   return plot({title: 'Over frequency', note: 'Spectrum of the residual beside the CV’s own.', height: 240,
-    x: {label: 'frequency, 1/s', unit: '1/s', kind: 'log'}, y: {label: `${cv.unit || 'units'}² s`, kind: 'log'},
+    x: {label: 'frequency, 1/s', unit: '1/s', kind: 'log'}, y: {label: `(${cv.unit || cv.tag})² s`, kind: 'log'},
     lines: [{name: cv.tag, role: 'measured', x: frequency, y: measured}, ...pair(frequency, before, after)]});
 }
 
@@ -239,7 +244,8 @@ const small = plots => element('div', {class: 'small'}, ...plots);
 
 function fillCv(cv, body) {
   body.append(...data.sets.flatMap((set, i) => timePlots(cv, set, i)));
-  body.append(element('h3', {}, 'Where it goes wrong: frequency and operating range'), small([spectrumPlot(cv), ...levelPlots(cv)]));
+  body.append(element('h3', {}, 'Where it goes wrong: frequency and operating range'),
+      element('p', {class: 'note'}, `Without the first ${data.sets.at(-1).settled} samples, in which the simulations find their state.`), small([spectrumPlot(cv), ...levelPlots(cv)]));
   const correlations = correlationPlots(cv);
   if (correlations.length) body.append(element('h3', {}, 'What the residual goes with'),
       element('p', {class: 'note'}, 'Correlation of the residual with each input some samples earlier, both filtered so that the input is white: its shape is that of the error’s impulse response. ' +
@@ -256,7 +262,7 @@ function cvPanels() {
     const open = anyFound ? cv.found : i < 3;
     const score = report.validation[i];
     const label = [cv.tag, element('span', {class: 'muted'}, [cv.description && ` ${cv.description}`, !cv.found && ' – nothing found here',
-      score && known(score.fit_before) && ` – fit ${score.fit_before.toFixed(1)} → ${score.fit_after.toFixed(1)} %`].filter(Boolean).join(''))];
+      score && known(score.fit_before) && ' – fit ' + fitText(score)].filter(Boolean).join(''))];
     const body = element('div');
     const panel = element('details', open ? {open: ''} : {}, element('summary', {}, ...label), body);
     const fill = () => { if (panel.open && !body.firstChild) fillCv(cv, body); };

@@ -5,7 +5,7 @@
 //   line: {name, role: 'measured' | 'before' | 'after', x, y, dashed, dots, loop, quiet}
 //     loop: x may go back; quiet: not in the legend
 //   band: {name, x, low, high}; bound: half width around 0; unseen: [from, to] shaded
-//   marks: [{x, label, left}]
+//   marks: [{x, label, left}]; settled: y is scaled for what comes after it
 // Plots of one group share their range of x and their cursor.
 
 const SVG = 'http://www.w3.org/2000/svg';
@@ -142,8 +142,9 @@ class Plot {
 
   // Range of y over what is shown of x, with a margin.
   span(range) {
-    const {lines, band, bound, y} = this.spec;
+    const {lines, band, bound, settled, y} = this.spec;
     const log = y.kind === 'log';
+    if (settled !== undefined && range[0] < settled && range[1] > settled) range = [settled, range[1]];
     let low = y.min ?? Infinity, high = y.max ?? -Infinity;
     const take = (x, values, loop) => {
       const from = loop ? 0 : Math.max(0, lowerBound(x, range[0]) - 1);

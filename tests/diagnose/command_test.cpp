@@ -1,0 +1,179 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "config/load_unit.hpp"
+#include "tests/system/process.hpp"
+
+namespace mpm::test {
+namespace {
+
+const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
+
+/// A unit of one channel, small enough to be diagnosed in no time.
+const std::string kSmall =
+    "unit: small\nsample_time: 1\nsignals: {mv: u, cv: {tag: y, setpoint: sp}, aux: [amb]}\n"
+    "model: {channels: [{cv: y, mv: u, gain: 2, time_constants: [8], dead_time: 1}]}\n";
+
+/// Rows in which y answers u with `gain` instead of 2.
+std::string rows(int count, double gain, bool moving = true, double step_s = 1.0) {
+  std::string text = "time,u,y,sp\n";
+  double y = 0.0, last = 0.0;
+  unsigned state = 1;
+  for (int k = 0; k < count; ++k) {
+    state = state * 1664525U + 1013904223U;
+    const double u = moving && (k / 15) % 2 == 0 ? 1.0 + 0.1 * (k / 30 % 5) : 0.0;
+    y += (1.0 - 0.8825) * (gain * last - y);
+    const double noise = 0.02 * (static_cast<double>(state >> 8) / 16777216.0 - 0.5);
+    text += std::to_string(k * step_s) + ',' + std::to_string(u) + ',' + std::to_string(y + noise) +
+            ",0\n";
+    last = u;
+  }
+  return text;
+}
+
+struct Bench {
+  TemporaryFolder folder;
+  std::string out = folder.file("report");
+
+  Bench() { write_file(folder.file("small.yaml"), kSmall); }
+  /// Exit code of `mpm diagnose` with these and `more` options.
+  std::optional<int> diagnose(const std::string& unit, const std::string& data,
+                              const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"mpm",    "diagnose", "--config", unit,
+                                          "--data", data,       "--out",    out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments, folder.file("stdout"), folder.file("stderr"));
+  }
+  std::string data(const std::string& text) const {
+    write_file(folder.file("data.csv"), text);
+    return folder.file("data.csv");
+  }
+  std::string small() const { return folder.file("small.yaml"); }
+  std::string said() const { return read_file(folder.file("stderr")); }
+};
+
+/// Refused with one line that holds `part`, and nothing left behind.
+void check_refusal(const Bench& bench, std::optional<int> exit_code, const std::string& part) {
+  INFO(bench.said());
+  CHECK(exit_code == 3);
+  CHECK(lines_of(bench.said()).size() == 1);
+  CHECK(bench.said().find(part) != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(bench.out));
+  CHECK(read_file(bench.folder.file("stdout")).empty());
+}
+
+TEST_CASE("bad input is refused in one line and leaves nothing behind") {
+  const Bench bench;
+  const auto refused = [&](const std::string& unit, const std::string& data,
+                           const std::string& part, const std::vector<std::string>& more = {}) {
+    check_refusal(bench, bench.diagnose(unit, data, more), part);
+  };
+  const std::string small = bench.small();
+  refused(small, bench.folder.file("none.csv"), "no such file");
+  refused(small, bench.data("time,u\n0,1\n1,1\n"), "does not hold cv 'y'");
+  refused(small, bench.data(rows(400, 2.0, false)), "no excitation");
+  refused(small, bench.data(rows(20, 2.0)), "too short: 20 usable samples");
+  refused(small, bench.data(rows(400, 2.0, true, 7.0)), "sample_time");
+  refused(small, bench.data("time,u,y\n0,1,2\n1e9,1,2\n1000000001,1,2\n1000000002,1,2\n"),
+          "cut the file");
+  refused(small, bench.data(rows(400, 2.0)), "no such file",
+          {"--validate", bench.folder.file("none.csv")});
+  refused(small, bench.data(rows(400, 2.0)), "unknown scenario", {"--scenario", "nowhere"});
+  refused(kUnit, bench.data(rows(400, 2.0)), "draws what it hides from the seed",
+          {"--scenario", "hidden_gain"});
+
+  write_file(bench.folder.file("bare.yaml"),
+             "unit: bare\nsample_time: 1\nsignals: {mv: u, cv: {tag: y, prediction: p}}\n");
+  refused(bench.folder.file("bare.yaml"), bench.data(rows(400, 2.0)), "holds no model");
+}
+
+TEST_CASE("a file where the folder should be is refused and kept") {
+  const Bench bench;
+  write_file(bench.out, "mine");
+  CHECK(bench.diagnose(bench.small(), bench.data(rows(400, 2.0))) == 3);
+  CHECK(read_file(bench.out) == "mine");
+}
+
+TEST_CASE("mpm diagnose writes its three files, and --json prints the report") {
+  const Bench bench;
+  const std::string data = bench.data(rows(900, 3.0));
+  REQUIRE(bench.diagnose(bench.small(), data, {"--json"}) == 0);
+  CHECK(bench.said().find("aux tags that are not in the file: amb") != std::string::npos);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(bench.out))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  CHECK(names == std::vector<std::string>{"extended.yaml", "report.html", "report.json"});
+  const std::string json = read_file(bench.out + "/report.json");
+  CHECK(read_file(bench.folder.file("stdout")) == json);
+  const auto report = nlohmann::json::parse(json);
+  CHECK(report["unit"] == "small");
+  CHECK(report["samples"] == 900);
+  CHECK(config::load_unit(bench.out + "/extended.yaml").ok());
+
+  // Again, and quietly: the same answer, and not a word.
+  REQUIRE(bench.diagnose(bench.small(), data, {"--quiet"}) == 0);
+  CHECK(bench.said().empty());
+  CHECK(read_file(bench.folder.file("stdout")).empty());
+  CHECK(nlohmann::json::parse(read_file(bench.out + "/report.json"))["findings"] ==
+        report["findings"]);
+}
+
+TEST_CASE("gaps and bad values are told, not fatal") {
+  const Bench bench;
+  std::string text;
+  int number = 0;
+  for (const std::string& line : lines_of(rows(900, 2.0))) {
+    ++number;
+    if (number > 300 && number < 320) continue;
+    text += number == 500 ? "498,Bad,0.1,0\n" : line + "\n";
+  }
+  REQUIRE(bench.diagnose(bench.small(), bench.data(text)) == 0);
+  CHECK(bench.said().find("19 intervals without a row") != std::string::npos);
+  CHECK(bench.said().find("1 values of inputs and CVs missing or bad") != std::string::npos);
+}
+
+/// A run of shell3x3 in which a gain is wrong.
+void simulate(const Bench& bench) {
+  REQUIRE(run({"mpmsim", "--config", kUnit, "--scenario", "hidden_gain", "--samples", "1500",
+               "--seed", "3", "--csv", bench.folder.file("run.csv")},
+              bench.folder.file("sim.out"), bench.folder.file("sim.err")) == 0);
+}
+
+TEST_CASE("--scenario compares both models in closed loop") {
+  const Bench bench;
+  simulate(bench);
+  REQUIRE(bench.diagnose(kUnit, bench.folder.file("run.csv"),
+                         {"--scenario", "hidden_gain", "--seed", "3"}) == 0);
+  const auto report = nlohmann::json::parse(read_file(bench.out + "/report.json"));
+  REQUIRE(report["verdict"] == "mismatch");
+  const auto& loop = report["closed_loop"];
+  CHECK(loop["seeds"] == nlohmann::json{3});
+  REQUIRE(loop["cvs"].size() == 3);
+  REQUIRE(loop["mvs"].size() == 3);
+  for (const auto& cv : loop["cvs"]) {
+    CHECK(cv["error_variance_before"] > 0.0);
+    CHECK(cv["error_variance_after"] > 0.0);
+    CHECK(cv["error_variance_after"] != cv["error_variance_before"]);
+  }
+}
+
+TEST_CASE("without mpmsim beside it, --scenario says so before it begins") {
+  const Bench bench;
+  simulate(bench);
+  const std::filesystem::path bin = MPM_BIN_DIR;
+  const std::filesystem::path lonely = bench.folder.file("mpm");
+  std::filesystem::copy_file(bin / "mpm", lonely);
+  const std::string data = bench.folder.file("run.csv");
+  CHECK(run({std::filesystem::relative(lonely, bin).string(), "diagnose", "--config", kUnit,
+             "--data", data, "--out", bench.out, "--scenario", "none"},
+            bench.folder.file("stdout"), bench.folder.file("stderr")) == 2);
+  CHECK(bench.said() == "mpm: error: --scenario needs the simulator, and " +
+                            bench.folder.file("mpmsim") + " is not there\n");
+  CHECK_FALSE(std::filesystem::exists(bench.out));
+}
+
+}  // namespace
+}  // namespace mpm::test
