@@ -220,17 +220,34 @@ class Collector {
   void frictions(int cv, int input, const Spread& spread, std::size_t members) {
     const Subject stiction{Cause::kStiction, cv < 0 ? -1 : cv, input, -1, ""};
     const double range = spread.high - spread.low;
-    for (const double share : {0.02, 0.04, 0.08, 0.15, 0.25}) {
-      for (const double jump : {0.3, 0.65, 1.0}) {
-        const double band = share * range;
-        for (const bool slips_once : {false, true}) {
-          add(stiction,
-              {{"band", band, 0.0, 0.15 * range, 0.05 * band, 1e-4 * range, range},
-               {"jump", jump * band, 0.0, 0.15 * range, -0.05 * band, 0.0, range}},
-              2 * members);
-          if (!found_.empty()) found_.back().slips_once = slips_once;
-        }
-      }
+    const auto widths = [&](double band, double jump) -> std::vector<Coordinate> {
+      return {{"band", band, 0.0, 0.15 * range, 0.05 * band, 1e-4 * range, 1.5 * range},
+              {"jump", jump * band, 0.0, 0.15 * range, -0.05 * band, 0.0, 1.5 * range}};
+    };
+    const auto add_valve = [&](std::vector<Coordinate> coordinates, bool slips_once) {
+      add(stiction, std::move(coordinates), 2 * members);
+      if (!found_.empty()) found_.back().slips_once = slips_once;
+    };
+    for (const double share : {0.02, 0.04, 0.08, 0.15, 0.25})
+      for (const double jump : {0.3, 0.65, 1.0})
+        for (const bool slips_once : {false, true})
+          add_valve(widths(share * range, jump), slips_once);
+    // A valve that sticks over most of its range hides what the channel is: a model fitted to such
+    // data has taken the sticking for dead time. Then both are to be found together.
+    if (cvs_of(input).size() > 1) return;
+    for (const ChannelSpec& channel : model().channels) {
+      if (channel.input != input) continue;
+      const double removable = removable_dead_time_s(channel, sample_time()) / sample_time();
+      for (const double share : {0.1, 0.2, 0.35, 0.5, 0.7})
+        for (const double jump : {0.1, 0.4, 0.8})
+          for (const double delay : {0.0, -0.6 * removable}) {
+            std::vector<Coordinate> coordinates = widths(share * range, jump);
+            coordinates[0].prior_sd = coordinates[1].prior_sd = 0.5 * range;
+            coordinates.push_back({"gain_ratio", 1.0, 1.0, 0.5, 0.01, 0.02, 20.0});
+            coordinates.push_back(log_time_constant_ratio(0.0));
+            coordinates.push_back(dead_time_samples(delay, removable));
+            add_valve(std::move(coordinates), false);
+          }
     }
   }
 

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "core/identify/channel_edit.hpp"
 #include "core/identify/extension.hpp"
+#include "core/identify/initial_state.hpp"
 #include "core/identify/noise_change.hpp"
 #include "core/identify/problem.hpp"
 #include "core/identify/search.hpp"
@@ -21,6 +23,12 @@ using Eigen::VectorXd;
 constexpr int kNoiseOrder = 8;
 /// s.d. of a relative gain error beyond which the data cannot tell a good model from a bad one.
 constexpr double kVisible = 0.25;
+/// Innovations below this share of the residual's variance: no noise is so smooth.
+constexpr double kSmooth = 0.005;
+/// Of a first-order noise model that leaves structure alone.
+constexpr double kBound = 0.9;
+/// By so much must the log of its free run's mean square error be less.
+constexpr double kClear = 0.3;
 
 Recording part(const Recording& recording, Index first, Index count) {
   Recording result;
@@ -90,6 +98,61 @@ std::vector<ChannelEstimate> estimate_channels(Problem& problem, const SearchRes
   return estimates;
 }
 
+struct Explained {
+  std::unique_ptr<Problem> problem;
+  SearchResult found;
+};
+
+Explained explain_with(const NoiseModel& noise, const ModelSpec& model, int model_inputs,
+                       const Recording& recording, const SearchSettings& settings) {
+  Explained explained;
+  explained.problem =
+      std::make_unique<Problem>(model, model_inputs, recording, Tolerances{}, noise);
+  explained.found = search(*explained.problem, settings);
+  return explained;
+}
+
+/// Sum over the CVs of the log of the free run's error on the rows from `first` on.
+double log_error(const Explained& explained, const Recording& recording, Index first) {
+  const std::vector<bool> all(explained.found.named.size(), true);
+  const std::vector<bool> keep(static_cast<std::size_t>(recording.cvs.cols()), true);
+  const ModelSpec model = extend(*explained.problem, explained.found, all, keep);
+  Simulator simulator(recording);
+  double sum = 0.0;
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const VectorXd simulated =
+        start_on_data(simulator.cv(model, cv), recording.cvs.col(cv), decay_times(model, cv));
+    const VectorXd errors = (recording.cvs.col(cv) - simulated).tail(recording.samples() - first);
+    const double error = mean_of_finite(errors.cwiseAbs2());
+    sum += std::isfinite(error) ? std::log(error) : 1e6;
+  }
+  return sum;
+}
+
+/// Searches with a free noise model. Where what is left is far smoother than noise, structure is
+/// left that such a noise model swallows; then a bounded one is tried too, and the one whose repair
+/// carries over from the first three quarters of the data to the last decides.
+Explained explain(const ModelSpec& model, int model_inputs, const Recording& recording,
+                  const SearchSettings& settings) {
+  const NoiseModel free{kNoiseOrder, 0.0}, bounded{1, kBound};
+  Explained explained = explain_with(free, model, model_inputs, recording, settings);
+  bool smooth = false;
+  for (const CvFit& fit : explained.found.fit.cvs) {
+    const CvData& data = explained.problem->data(fit.cv);
+    const double all = fit.residual.squaredNorm() / std::max(1.0, data.known.sum());
+    if (fit.variance < kSmooth * all) smooth = true;
+  }
+  if (!smooth) return explained;
+  const Index first = 3 * recording.samples() / 4;
+  const Recording train = part(recording, 0, first);
+  const double with_free =
+      log_error(explain_with(free, model, model_inputs, train, settings), recording, first);
+  const double with_bounded =
+      log_error(explain_with(bounded, model, model_inputs, train, settings), recording, first);
+  if (!(with_bounded < with_free - kClear)) return explained;
+  return explain_with(bounded, model, model_inputs, recording, settings);
+}
+
 /// Which effects carry over to samples that no fit has seen, and what they gain there.
 ///
 /// One effect after the other, weakest first, is left out of the extension: on the CVs that it
@@ -105,8 +168,16 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
   const auto block = static_cast<Index>(2.0 * slowest_samples(model)) + 10;
   std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
   const auto measured = [&](int cv) { return unseen.cvs.col(cv).tail(rows); };
+  const auto started = [&](const ModelSpec& spec, int cv) -> VectorXd {
+    return start_on_data(simulator.cv(spec, cv), unseen.cvs.col(cv), decay_times(spec, cv));
+  };
   const auto simulated = [&](const ModelSpec& spec, int cv) -> VectorXd {
-    return simulator.cv(spec, cv).tail(rows);
+    return started(spec, cv).tail(rows);
+  };
+  const auto all = [&](const ModelSpec& spec) {
+    MatrixXd result(unseen.samples(), spec.cv_count);
+    for (int cv = 0; cv < spec.cv_count; ++cv) result.col(cv) = started(spec, cv);
+    return result;
   };
 
   std::vector<std::size_t> order(found.named.size());
@@ -148,7 +219,7 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
   }
 
   const bool any = std::find(in.begin(), in.end(), true) != in.end();
-  const MatrixXd before = simulator.all(model);
+  const MatrixXd before = all(model);
   ModelSpec extended = any ? extend(problem, found, in, keep) : model;
   // The small corrections that came with the findings have to carry over too.
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -157,7 +228,7 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
     if (gain.rmse_after > gain.rmse_before) keep[static_cast<std::size_t>(cv)] = false;
   }
   if (any) extended = extend(problem, found, in, keep);
-  const MatrixXd after = simulator.all(extended);
+  const MatrixXd after = all(extended);
   for (int cv = 0; cv < model.cv_count; ++cv) {
     CvScore result = score(measured(cv), before.col(cv).tail(rows), after.col(cv).tail(rows), block,
                            settings.seed + static_cast<std::uint64_t>(cv));
@@ -206,11 +277,12 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
   const ModelSpec base = in_channels(given);
   const ModelSpec model = with_aux_inputs(base, recording);
   const Recording fitted = part(recording, 0, diagnosis.fit_samples);
-  Problem problem(model, base.input_count, fitted, Tolerances{}, kNoiseOrder);
   SearchSettings search_settings;
   search_settings.max_findings = settings.max_findings;
   search_settings.progress = settings.progress;
-  const SearchResult found = search(problem, search_settings);
+  const Explained explained = explain(model, base.input_count, fitted, search_settings);
+  Problem& problem = *explained.problem;
+  const SearchResult& found = explained.found;
 
   for (const Named& named : found.named)
     diagnosis.findings.push_back(to_finding(named, found.fit, problem));

@@ -82,7 +82,8 @@ void apply_new_channel(const Effect& effect, const Surroundings& s, ModelSpec& m
   model.channels.push_back({effect.subject.cv, input, transfer, {}});
 }
 
-void apply_state(const Effect& effect, ModelSpec& model) {
+void apply_state(const Effect& effect, const Surroundings& s, ModelSpec& model) {
+  if (effect.subject.kind != "square_root_outflow") apply_to_channels(effect, s, model);
   const int cv = effect.subject.cv, input = effect.subject.input;
   if (effect.subject.kind == "cubic_stiffness") {
     model.state_terms.push_back(
@@ -137,6 +138,7 @@ void apply(const Effect& effect, const Surroundings& surroundings, ModelSpec& mo
       break;
     case Cause::kInputNonlinearity:
     case Cause::kStiction:
+      if (effect.find("dead_time_samples")) apply_to_channels(effect, surroundings, model);
       apply_block(effect, model);
       break;
     case Cause::kOutputNonlinearity:
@@ -150,7 +152,7 @@ void apply(const Effect& effect, const Surroundings& surroundings, ModelSpec& mo
       apply_disturbance(effect, surroundings, model);
       break;
     case Cause::kStateNonlinearity:
-      apply_state(effect, model);
+      apply_state(effect, surroundings, model);
       break;
     case Cause::kNoise:
       break;

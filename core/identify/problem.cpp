@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/identify/channel_edit.hpp"
+#include "core/identify/initial_state.hpp"
 #include "core/identify/plateau.hpp"
 #include "core/identify/row_weights.hpp"
 
@@ -34,12 +35,12 @@ double prior_units(const Coordinate& c) { return (c.value - c.prior_mean) / c.pr
 }  // namespace
 
 Problem::Problem(const ModelSpec& model, int model_inputs, const Recording& recording,
-                 const Tolerances& tolerances, int noise_order)
+                 const Tolerances& tolerances, const NoiseModel& noise)
     : model_(model),
       surroundings_{recording.sample_time_s, recording.start_s, model_inputs},
       simulator_(recording),
       tolerances_(tolerances),
-      noise_order_(noise_order) {
+      noise_(noise) {
   for (int cv = 0; cv < model.cv_count; ++cv) {
     CvData data;
     const auto measured = recording.cvs.col(cv);
@@ -90,14 +91,17 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
     columns.push_back(column);
     data.meaning.push_back(meaning);
   };
-  add({}, VectorXd::Constant(samples, 10.0 * scale));
 
-  std::vector<double> time_constants;
   const VectorXd base = simulator_.cv(model, cv);
+  const VectorXd misfit = (data.measured - base).cwiseProduct(data.known);
+  // A level far beyond what the simulation is off by would make any noise look like a wandering
+  // one, and a wandering one leaves the level free.
+  const double off =
+      std::max(1e-6 * scale, misfit.norm() / std::sqrt(std::max(1.0, data.known.sum())));
+  add({}, VectorXd::Constant(samples, off));
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
     const ChannelSpec& channel = model.channels[c];
     if (channel.cv != cv) continue;
-    time_constants.push_back(slowest_time_constant_s(channel, model.sample_time_s));
     const auto difference = [&](const ChannelError& error, double step) -> VectorXd {
       ModelSpec changed = model;
       changed.channels[c] = edited(channel, error, model.sample_time_s);
@@ -114,20 +118,17 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
       small("dead_time_samples", tolerances_.dead_time_samples,
             difference({1.0, 1.0, 0.25 * model.sample_time_s}, 0.25));
   }
-  // What the first state adds dies out with the model's own time constants: the shortest, the
-  // middle and the longest will do.
-  std::sort(time_constants.begin(), time_constants.end());
-  double last = 0.0;
-  for (const std::size_t pick :
-       {std::size_t{0}, time_constants.size() / 2, time_constants.size() - 1}) {
-    if (time_constants.empty()) break;
-    const double decay = time_constants[pick] / model.sample_time_s;
-    if (decay < 1.2 * last) continue;
-    last = decay;
+  // A first state that is off by more than it shows would explain whatever one wants.
+  // Noise alone is off by a few times what it moves by in a row.
+  const double moves =
+      std::sqrt((misfit.tail(samples - 1) - misfit.head(samples - 1)).squaredNorm() /
+                static_cast<double>(samples));
+  const double first =
+      std::max({1e-3 * scale, first_error(base, recording().cvs.col(cv)), 5.0 * moves});
+  for (const double decay : decay_times(model, cv))
     add({}, VectorXd::NullaryExpr(samples, [&](Index k) {
-          return scale * std::exp(-static_cast<double>(k) / decay);
+          return first * std::exp(-static_cast<double>(k) / decay);
         }));
-  }
   data.nuisances.resize(samples, static_cast<Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i)
     data.nuisances.col(static_cast<Index>(i)) = columns[i];
@@ -139,10 +140,10 @@ void Problem::settle(const std::vector<Effect>& effects, const Fit* fit) {
     make_nuisances(model, cv);
     CvData& data = data_[static_cast<std::size_t>(cv)];
     data.weights = data.known;
-    data.weights.head(std::min<Index>(noise_order_, data.weights.size())).setZero();
+    data.weights.head(std::min<Index>(noise_.order, data.weights.size())).setZero();
     for (Index k = 0; k < data.known.size(); ++k)
       if (data.known(k) == 0.0)
-        data.weights.segment(k, std::min<Index>(noise_order_ + 1, data.known.size() - k)).setZero();
+        data.weights.segment(k, std::min<Index>(noise_.order + 1, data.known.size() - k)).setZero();
     if (fit)
       for (const CvFit& state : fit->cvs)
         if (state.cv == cv) reweigh(state.innovations, data.weights);
@@ -194,7 +195,7 @@ MatrixXd Problem::nuisances(const std::vector<Effect>& effects, int cv) const {
 void Problem::update(CvFit& state, const VectorXd& simulated, const MatrixXd& nuisances) const {
   const CvData& data = this->data(state.cv);
   state.residual = (data.measured - simulated - nuisances * state.beta).cwiseProduct(data.known);
-  state.noise = fit_whitening(state.residual, data.weights, noise_order_);
+  state.noise = fit_whitening(state.residual, data.weights, noise_);
   state.innovations = state.noise.apply(state.residual);
   const double variance =
       state.innovations.cwiseAbs2().dot(data.weights) / std::max(1.0, data.rows);
@@ -242,11 +243,11 @@ Index Problem::best_onset(const Fit& fit, Index first, Index last) {
     for (Index k = samples - 1; k >= 0; --k)
       tail(k) = tail(k + 1) + data.weights(k) * moved(k) * moved(k);
     for (Index onset = first; onset <= last; ++onset) {
-      const Index mixed_end = std::min<Index>(samples, onset + noise_order_);
+      const Index mixed_end = std::min<Index>(samples, onset + noise_.order);
       double sum = head(onset) + tail(mixed_end);
       for (Index k = onset; k < mixed_end; ++k) {
         double value = base(k) - change(k);
-        for (Index l = 1; l <= noise_order_ && l <= k; ++l)
+        for (Index l = 1; l <= noise_.order && l <= k; ++l)
           value -= state.noise.coefficients(l - 1) *
                    (base(k - l) - (k - l >= onset ? change(k - l) : 0.0));
         sum += data.weights(k) * value * value;
@@ -378,6 +379,8 @@ Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std:
     best.effects = effects;
     best.cvs = states;
     best.cost = misfit + log_determinant;
+    best.misfit = 0.0;
+    for (const CvFit& state : states) best.misfit += data(state.cv).rows * std::log(state.variance);
     best.complexity = log_determinant;
     for (const CvFit& state : states) best.complexity += state.beta.squaredNorm();
     for (Index i = 0; i < count; ++i)

@@ -52,6 +52,7 @@ struct Fit {
   /// -2 ln of the marginal likelihood (Laplace): sum n ln variance + penalties + ln det of what the
   /// data add to the prior's information. Comparable between fits of the same CVs only.
   double cost = 0.0;
+  double misfit = 0.0;  ///< sum n ln variance
   /// The part of `cost` that is no misfit: penalties and ln det.
   double complexity = 0.0;
   /// Of the free coordinates in order; posterior.
@@ -68,7 +69,7 @@ class Problem {
  public:
   /// `model` in channels and with aux inputs; `recording` must outlive the problem.
   Problem(const ModelSpec& model, int model_inputs, const Recording& recording,
-          const Tolerances& tolerances, int noise_order);
+          const Tolerances& tolerances, const NoiseModel& noise);
 
   /// Makes the tolerances those of the model with `effects`, and the rows' weights those that
   /// `fit`'s innovations ask for: heavy tails and loud stretches count less.
@@ -98,7 +99,7 @@ class Problem {
   [[nodiscard]] const Surroundings& surroundings() const { return surroundings_; }
   [[nodiscard]] const Recording& recording() const { return simulator_.recording(); }
   [[nodiscard]] const CvData& data(int cv) const { return data_[static_cast<std::size_t>(cv)]; }
-  [[nodiscard]] int noise_order() const { return noise_order_; }
+  [[nodiscard]] const NoiseModel& noise() const { return noise_; }
   [[nodiscard]] Eigen::Index samples() const { return recording().samples(); }
 
  private:
@@ -115,7 +116,7 @@ class Problem {
   Surroundings surroundings_;
   Simulator simulator_;
   Tolerances tolerances_;
-  int noise_order_;
+  NoiseModel noise_;
   std::vector<CvData> data_;
   std::vector<Effect> clipping_;
 };

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <numeric>
 
@@ -23,13 +21,16 @@ constexpr double kWanderingNoise = -10.0;
 constexpr double kSettledNoise = 12.0;
 /// 2 ln odds of what the data themselves show.
 constexpr double kCertain = 1000.0;
-/// 2 ln of the prior odds against any one kind of cause: the everyday ones are half as rare.
+/// 2 ln of the prior odds against any one kind of cause: errors of channels are what one expects.
 double rarity(Cause cause) {
   switch (cause) {
     case Cause::kGain:
     case Cause::kDeadTime:
     case Cause::kTimeConstant:
-      return 2.0 * std::log(6.0);
+    case Cause::kDynamics:
+    case Cause::kInputScale:
+    case Cause::kOutputScale:
+      return 0.0;
     case Cause::kStateNonlinearity:
       return 2.0 * std::log(24.0);
     default:
@@ -40,6 +41,25 @@ double rarity(Cause cause) {
 bool same_subject(const Subject& a, const Subject& b) {
   return a.cause == b.cause && a.cv == b.cv && a.input == b.input && a.aux == b.aux &&
          a.kind == b.kind;
+}
+
+/// Slow and without an edge.
+bool may_pass_for_noise(const Subject& subject) {
+  return subject.cause == Cause::kUnmodelledInput || subject.kind == "drift" ||
+         subject.kind == "periodic";
+}
+
+/// Share of the rows that count as independent: innovations that still hang together say less than
+/// their number. 1 where the noise model whitens.
+double independence(const Fit& fit) {
+  double product = 0.0, square = 0.0;
+  for (const CvFit& state : fit.cvs) {
+    const Index rows = state.innovations.size() - 1;
+    product += state.innovations.head(rows).dot(state.innovations.tail(rows)) / state.variance;
+    square += state.innovations.squaredNorm() / state.variance;
+  }
+  const double correlation = square > 0.0 ? std::max(0.0, product / square) : 0.0;
+  return correlation < 0.1 ? 1.0 : (1.0 - correlation) / (1.0 + correlation);
 }
 
 bool same_variant(const Effect& a, const Effect& b) {
@@ -124,9 +144,12 @@ class Search {
     effects.push_back(candidate);
     trial.fit = problem_.fit(std::move(effects), first_free, cvs, iterations);
     trial.candidate = trial.fit.effects.back();
-    trial.odds = without(cvs).cost - trial.fit.cost - rarity(candidate.subject.cause);
+    const Fit& null = without(cvs);
+    trial.odds = independence(trial.fit) * (null.misfit - trial.fit.misfit) + null.complexity -
+                 trial.fit.complexity - candidate.search_cost - rarity(candidate.subject.cause);
+    if (!std::isfinite(trial.fit.cost)) trial.odds = -1e300;
     const Cause cause = candidate.subject.cause;
-    if (cause == Cause::kOutputDisturbance || cause == Cause::kUnmodelledInput) {
+    if (may_pass_for_noise(candidate.subject)) {
       // What is slow can hide in a noise model that is re-estimated without it: it then takes the
       // noise for a wandering one. So it also counts how the noise model with the cause judges the
       // lack of it.
@@ -279,17 +302,6 @@ class Search {
       if (trials[i].odds > 0.5 * trials[0].odds) polish(trials[i]);
     }
     std::sort(trials.begin(), trials.end(), better);
-    if (std::getenv("MPM_TRACE"))
-      for (const Trial& t : trials) {
-        std::fprintf(stderr,
-                     "  %s %s cv%d in%d aux%d onset %ld odds %.1f settled %.1f search %.1f:",
-                     name_of(t.candidate.subject.cause), t.candidate.subject.kind.c_str(),
-                     t.candidate.subject.cv, t.candidate.subject.input, t.candidate.subject.aux,
-                     (long)t.candidate.onset, t.odds, t.settled_odds, t.candidate.search_cost);
-        for (auto& c : t.candidate.coordinates)
-          std::fprintf(stderr, " %s=%g", c.name.c_str(), c.value);
-        std::fprintf(stderr, "\n");
-      }
     if (trials[0].odds < settings_.decisive) return false;
 
     // Once more with rows weighed as the best explanation's innovations ask for. A shock in the
@@ -389,7 +401,8 @@ class Search {
         const double odds =
             problem_.fit(fewer, 0, cvs, 8).cost - all.cost - rarity(all.effects[i].subject.cause);
         named_[i].evidence = odds;
-        if (odds >= settings_.decisive) continue;
+        const bool slow = may_pass_for_noise(all.effects[i].subject);
+        if (odds >= (slow ? kWanderingNoise : settings_.decisive)) continue;
         accepted_ = std::move(fewer);
         named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(i));
         dropped = true;

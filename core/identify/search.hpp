@@ -11,7 +11,7 @@ namespace mpm {
 struct SearchSettings {
   int max_findings = 6;
   /// 2 ln odds that a cause must have against the model without it, and against being one of many.
-  double decisive = 4.0;
+  double decisive = 3.0;
   /// Channel errors below these are no findings.
   Tolerances materiality = {0.05, 0.09, 0.45};
   /// Nor is what moves a CV by less than this share of its own s.d.

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/identify/initial_state.hpp"
 #include "core/model/disturbance.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/model/static_blocks.hpp"
@@ -84,7 +85,8 @@ Simulator::Simulator(const Recording& recording)
           16,
           kRemembered / std::max<std::size_t>(1, static_cast<std::size_t>(recording.samples())))) {}
 
-VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec) const {
+VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
+                             bool from_origin) const {
   ModelSpec one;
   one.sample_time_s = model.sample_time_s;
   one.input_count = one.cv_count = 1;
@@ -105,12 +107,12 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec) co
   const Index samples = given.size();
   // The blocks by hand, so that the linear part sees a plain input.
   VectorXd moved(samples);
-  const double first = first_finite(given, origin);
+  const double first = from_origin ? origin : first_finite(given, origin);
   InputElement own(model.input_blocks[static_cast<std::size_t>(spec.input)], origin);
   InputElement channels(spec.input_block, origin);
   own.reset(first);
   channels.reset(origin + own.apply(first));
-  double last = first;
+  double last = first_finite(given, origin);
   for (Index k = 0; k < samples; ++k) {
     if (std::isfinite(given(k))) last = given(k);
     moved(k) = origin + channels.apply(origin + own.apply(last));
@@ -118,7 +120,7 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec) co
 
   LinearModel simulator(one);
   VectorXd input(1), output(samples);
-  input(0) = moved(0);
+  input(0) = from_origin ? origin : moved(0);
   simulator.reset_steady(input);
   for (Index k = 0; k < samples; ++k) {
     output(k) = simulator.output()(0) - one.output_origin(0);
@@ -128,8 +130,10 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec) co
   return output;
 }
 
-const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& spec) {
+const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& spec,
+                                   bool from_origin) {
   Key key;
+  key.add(from_origin ? 1.0 : 0.0);
   key.add(static_cast<double>(spec.input));
   key.add(model.input_origin(spec.input));
   key.add(model.output_origin(spec.cv));
@@ -144,18 +148,37 @@ const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& sp
   if (remembered_.size() >= capacity_) remembered_.clear();
   VectorXd output;
   try {
-    output = simulate(model, spec);
+    output = simulate(model, spec, from_origin);
   } catch (const std::invalid_argument&) {  // a fit tried what is no model
     output = VectorXd::Constant(recording_->samples(), std::numeric_limits<double>::quiet_NaN());
   }
   return remembered_.emplace(key.text(), std::move(output)).first->second;
 }
 
+VectorXd Simulator::sum_of_channels(const ModelSpec& model, int cv, bool from_origin) {
+  VectorXd sum = VectorXd::Zero(recording_->samples());
+  for (const ChannelSpec& spec : model.channels)
+    if (spec.cv == cv) sum += channel(model, spec, from_origin);
+  return sum;
+}
+
+bool Simulator::starts_at_origin(const ModelSpec& model) {
+  if (from_origin_) return *from_origin_;
+  double votes = 0.0;
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const auto measured = recording_->cvs.col(cv);
+    const VectorXd shift = VectorXd::Constant(measured.size(), model.output_origin(cv));
+    const double at_origin = first_error(shift + sum_of_channels(model, cv, true), measured);
+    const double at_inputs = first_error(shift + sum_of_channels(model, cv, false), measured);
+    if (at_origin + at_inputs > 0.0) votes += (at_inputs - at_origin) / (at_inputs + at_origin);
+  }
+  from_origin_ = votes > 0.0;
+  return *from_origin_;
+}
+
 VectorXd Simulator::cv(const ModelSpec& model, int cv) {
   const Index samples = recording_->samples();
-  VectorXd sum = VectorXd::Zero(samples);
-  for (const ChannelSpec& spec : model.channels)
-    if (spec.cv == cv) sum += channel(model, spec);
+  VectorXd sum = sum_of_channels(model, cv, starts_at_origin(model));
   for (const DisturbanceTerm& term : model.disturbances) {
     if (term.cv != cv) continue;
     for (Index k = 0; k < samples; ++k)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <unordered_map>
 
@@ -17,8 +18,10 @@ class Simulator {
   /// `recording` must outlive the simulator. `origin` of the aux inputs is their mean.
   explicit Simulator(const Recording& recording);
 
-  /// One CV of `model` (channels only, no state space) on all samples, in CV units, from rest at
-  /// the first inputs.
+  /// One CV of `model` (channels only, no state space) on all samples, in CV units, from rest: at
+  /// the operating point or as if the first inputs had been there for ever, whichever is nearer to
+  /// what was first measured. (The first row's inputs may be moves that nothing measured shows
+  /// yet.)
   [[nodiscard]] Eigen::VectorXd cv(const ModelSpec& model, int cv);
   /// All CVs, samples x CVs.
   [[nodiscard]] Eigen::MatrixXd all(const ModelSpec& model);
@@ -26,12 +29,16 @@ class Simulator {
   [[nodiscard]] const Recording& recording() const { return *recording_; }
 
  private:
-  const Eigen::VectorXd& channel(const ModelSpec& model, const ChannelSpec& spec);
-  [[nodiscard]] Eigen::VectorXd simulate(const ModelSpec& model, const ChannelSpec& spec) const;
+  [[nodiscard]] Eigen::VectorXd sum_of_channels(const ModelSpec& model, int cv, bool from_origin);
+  const Eigen::VectorXd& channel(const ModelSpec& model, const ChannelSpec& spec, bool from_origin);
+  [[nodiscard]] Eigen::VectorXd simulate(const ModelSpec& model, const ChannelSpec& spec,
+                                         bool from_origin) const;
+  [[nodiscard]] bool starts_at_origin(const ModelSpec& model);
 
   const Recording* recording_;
   std::unordered_map<std::string, Eigen::VectorXd> remembered_;
   std::size_t capacity_;
+  std::optional<bool> from_origin_;  ///< decided by the first model, kept for all others
 };
 
 /// `model` with the recording's aux signals as further inputs that no channel uses yet.

@@ -19,7 +19,8 @@ VectorXd Whitening::apply(const Eigen::Ref<const VectorXd>& x) const {
 }
 
 Whitening fit_whitening(const Eigen::Ref<const VectorXd>& residual,
-                        const Eigen::Ref<const VectorXd>& weights, int order) {
+                        const Eigen::Ref<const VectorXd>& weights, const NoiseModel& model) {
+  const int order = model.order;
   const Index rows = residual.size() - order;
   Whitening whitening;
   whitening.coefficients.setZero(order);
@@ -31,6 +32,8 @@ Whitening fit_whitening(const Eigen::Ref<const VectorXd>& residual,
     past.col(l - 1) = residual.segment(order - l, rows).cwiseProduct(root);
   const VectorXd now = residual.tail(rows).cwiseProduct(root);
   whitening.coefficients = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(past).solve(now);
+  if (model.bound > 0.0)
+    whitening.coefficients = whitening.coefficients.cwiseMax(0.0).cwiseMin(model.bound);
   return whitening;
 }
 

@@ -12,9 +12,19 @@ struct Whitening {
   [[nodiscard]] Eigen::VectorXd apply(const Eigen::Ref<const Eigen::VectorXd>& x) const;
 };
 
+/// How the noise of a CV is modelled.
+struct NoiseModel {
+  int order = 8;  ///< of the autoregression
+  /// Bound of the coefficient of a first-order one; 0 = none. With a bound the fit is nearly one of
+  /// output errors: for recordings whose residual is structure rather than noise, which a free
+  /// noise model would swallow.
+  double bound = 0.0;
+};
+
 /// Weighted least squares of r on its own past (orthogonal, scaled columns); rows of weight zero
-/// take no part. p = `order`.
+/// take no part.
 [[nodiscard]] Whitening fit_whitening(const Eigen::Ref<const Eigen::VectorXd>& residual,
-                                      const Eigen::Ref<const Eigen::VectorXd>& weights, int order);
+                                      const Eigen::Ref<const Eigen::VectorXd>& weights,
+                                      const NoiseModel& model);
 
 }  // namespace mpm
