@@ -2,10 +2,12 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "daemon/closed_loop/loop_tally.hpp"
 #include "daemon/closed_loop/run_mpmsim.hpp"
 #include "daemon/io/csv_reader.hpp"
+#include "daemon/report/extended_unit.hpp"
 
 namespace mpm::daemon {
 namespace {
@@ -34,11 +36,9 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-void run_once(const LoopPlan& plan, const config::UnitConfig& unit, std::uint64_t seed,
-              const std::string& controller_file, const std::function<bool()>& stopped,
-              LoopTally& tally) {
-  const ScratchFolder folder;
-  const std::string csv = folder.file("run.csv");
+void run_once(const LoopPlan& plan, const config::UnitConfig& unit, const std::string& csv,
+              std::uint64_t seed, const std::string& controller_file,
+              const std::function<bool()>& stopped, LoopTally& tally) {
   std::vector<std::string> arguments = {"--config",   plan.config,
                                         "--scenario", plan.scenario,
                                         "--samples",  std::to_string(kSamples),
@@ -79,17 +79,23 @@ std::optional<LoopPlan> plan_loops(const config::UnitConfig& unit, const std::st
 }
 
 ClosedLoop compare_loops(const LoopPlan& plan, const config::UnitConfig& unit,
-                         const std::string& extended_file, const std::function<bool()>& stopped) {
+                         const Diagnosis& diagnosis, const std::function<bool()>& stopped) {
+  const ScratchFolder folder;
+  const std::string csv = folder.file("run.csv");
+  const std::string controller = folder.file("controller.yaml");
+  std::ofstream(controller, std::ios::binary) << own_inputs_yaml(unit, diagnosis);
   const std::vector<config::MvLimits> limits = limits_in(unit, plan.loaded);
   LoopTally before(unit, limits), after(unit, limits);
   for (const std::uint64_t seed : plan.seeds) {
-    run_once(plan, unit, seed, "", stopped, before);
-    run_once(plan, unit, seed, extended_file, stopped, after);
+    run_once(plan, unit, csv, seed, "", stopped, before);
+    run_once(plan, unit, csv, seed, controller, stopped, after);
   }
   ClosedLoop result;
   result.scenario = plan.scenario;
   result.seeds = plan.seeds;
   result.samples = kSamples;
+  for (const int aux : diagnosis.new_inputs)
+    result.inputs_left_out.push_back(unit.aux.at(static_cast<std::size_t>(aux)).tag);
   for (int cv = 0; cv < unit.counts().cv; ++cv)
     result.cvs.push_back({cv, before.error_variance(cv), after.error_variance(cv)});
   for (int mv = 0; mv < unit.counts().mv; ++mv)

@@ -29,10 +29,11 @@ struct LoopPlan {
                                                  std::optional<std::uint64_t> seed,
                                                  std::vector<config::Finding>& findings);
 
-/// Runs the plan with the unit file's model in the controller and with `extended_file`'s. Throws
+/// Runs the plan with the unit file's model in the controller and with the extended one, which does
+/// without inputs that the unit does not have: the simulated plant does not measure them. Throws
 /// SimulatorError where a run fails or `stopped` says so.
 [[nodiscard]] ClosedLoop compare_loops(const LoopPlan& plan, const config::UnitConfig& unit,
-                                       const std::string& extended_file,
+                                       const Diagnosis& diagnosis,
                                        const std::function<bool()>& stopped);
 
 }  // namespace mpm::daemon

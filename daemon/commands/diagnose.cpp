@@ -140,11 +140,10 @@ std::optional<LoopPlan> plan(const DiagnoseOptions& options, const config::UnitC
 }
 
 /// Empty, or why there is no comparison: a reason to fail, but not to lose the diagnosis.
-std::string add_closed_loop(const LoopPlan& loops, const std::string& extended_file,
-                            StopSignal& stop, DiagnosisRun& run) {
+std::string add_closed_loop(const LoopPlan& loops, StopSignal& stop, DiagnosisRun& run) {
   try {
     run.closed_loop =
-        compare_loops(loops, run.unit, extended_file, [&stop] { return stop.received(); });
+        compare_loops(loops, run.unit, run.diagnosis, [&stop] { return stop.received(); });
     return {};
   } catch (const SimulatorError& error) {
     return error.what();
@@ -176,10 +175,10 @@ int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
     std::cerr << "mpm: stopped; nothing was written\n";
     return 2;
   }
-  const std::string extended_file = folder.write("extended.yaml", extended_yaml(run));
+  folder.write("extended.yaml", extended_yaml(run));
   const bool repaired = !run.diagnosis.findings.empty();
   const std::string failure =
-      loops && repaired ? add_closed_loop(*loops, extended_file, stop, run) : std::string();
+      loops && repaired ? add_closed_loop(*loops, stop, run) : std::string();
   const std::string json = to_json(run).dump(2) + "\n";
   folder.write("report.json", json);
   folder.write("report.html", page_html(page_data(run)));

@@ -39,7 +39,7 @@ void OutputFolder::make() {
     if (fs::create_directory(folder)) made_.push_back(folder);
 }
 
-std::string OutputFolder::write(const std::string& name, const std::string& text) {
+void OutputFolder::write(const std::string& name, const std::string& text) {
   make();
   const fs::path place = path_ / ("." + name + "." + std::to_string(getpid()));
   files_.emplace_back(place, path_ / name);
@@ -47,7 +47,6 @@ std::string OutputFolder::write(const std::string& name, const std::string& text
   out << text;
   out.close();
   if (!out) throw std::runtime_error("cannot write " + (path_ / name).string());
-  return place.string();
 }
 
 void OutputFolder::commit() {

@@ -17,9 +17,8 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
 
-  /// Writes `text` for the file `name`; returns where it lies until commit(). Throws
-  /// std::runtime_error where it cannot.
-  std::string write(const std::string& name, const std::string& text);
+  /// Writes `text` for the file `name`. Throws std::runtime_error where it cannot.
+  void write(const std::string& name, const std::string& text);
   void commit();
 
  private:

@@ -137,7 +137,10 @@ Json unexplained_json(const DiagnosisRun& run) {
 Json closed_loop_json(const DiagnosisRun& run) {
   if (!run.closed_loop) return nullptr;
   const ClosedLoop& loop = *run.closed_loop;
-  Json json{{"scenario", loop.scenario}, {"seeds", loop.seeds}, {"samples", loop.samples}};
+  Json json{{"scenario", loop.scenario},
+            {"seeds", loop.seeds},
+            {"samples", loop.samples},
+            {"inputs_left_out", loop.inputs_left_out}};
   json["cvs"] = Json::array();
   json["mvs"] = Json::array();
   for (const ClosedLoop::Cv& cv : loop.cvs)
@@ -153,8 +156,10 @@ Json closed_loop_json(const DiagnosisRun& run) {
 
 std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
   std::string text = SignalNames(run.unit, run.diagnosis).subject(finding.subject);
-  text += "  (confidence " + number_text(finding.confidence, 2) + ")\n     " +
-          explain(run, finding) + '\n';
+  text +=
+      "  (confidence " +
+      (finding.confidence > 0.999 ? std::string("> 0.999") : number_text(finding.confidence, 2)) +
+      ")\n     " + explain(run, finding) + '\n';
   for (const Parameter& parameter : finding.parameters) {
     const std::string unit = parameter_unit(run, finding.subject, parameter.name);
     text += "     " + parameter.name + " " + number_text(parameter.value) + "  [" +
@@ -178,9 +183,12 @@ std::string score_table(const DiagnosisRun& run) {
                   run.unit.cv.at(cv).tag.c_str(), number_text(score.rmse_before).c_str(),
                   number_text(score.rmse_after).c_str(), score.fit_before, score.fit_after);
     text += line;
-    text += score.refused
-                ? "an extension was tried and did not carry over"
-                : interval_text(100.0 * score.gain_low, 100.0 * score.gain_high, 2) + " %";
+    if (score.refused)
+      text += "an extension was tried and did not carry over";
+    else if (score.gain_low == score.gain_high)
+      text += "unchanged";
+    else
+      text += interval_text(100.0 * score.gain_low, 100.0 * score.gain_high, 2) + " %";
     text += '\n';
   }
   return text;

@@ -26,6 +26,8 @@ struct ClosedLoop {
   std::string scenario;
   std::vector<std::uint64_t> seeds;
   int samples = 0;  ///< of each run
+  /// Tags that the extended model takes and that the simulated controller does without.
+  std::vector<std::string> inputs_left_out;
   std::vector<Cv> cvs;
   std::vector<Mv> mvs;
 };

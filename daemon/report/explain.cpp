@@ -166,8 +166,9 @@ std::string output_nonlinearity_sentence(const DiagnosisRun& run, const Finding&
 std::string unmodelled_input_sentence(const DiagnosisRun& run, const Finding& finding) {
   const SignalNames names(run.unit, run.diagnosis);
   const Subject& subject = finding.subject;
-  std::string text =
-      names.cv(subject.cv) + " follows " + names.source(subject) + ", which the model leaves out";
+  std::string text = names.cv(subject.cv) + " follows " + names.source(subject) +
+                     (subject.aux >= 0 ? ", a signal that the model leaves out"
+                                       : ", to which the model does not connect it");
   if (const Parameter* gain = find(finding, "gain")) {
     const std::string per = parameter_unit(run, subject, "gain");
     text += ": gain " + number_text(gain->value) + (per.empty() ? "" : " " + per) + " (" +
@@ -183,23 +184,22 @@ std::string unmodelled_input_sentence(const DiagnosisRun& run, const Finding& fi
 std::string output_disturbance_sentence(const DiagnosisRun& run, const Finding& finding) {
   const SignalNames names(run.unit, run.diagnosis);
   const int cv = finding.subject.cv;
+  const std::string& kind = finding.subject.kind;
   const Parameter* size = find(finding, "size");
-  const double by = size == nullptr ? NAN : size->value;
+  const bool down = size != nullptr && size->value < 0.0;
+  const std::string by = size == nullptr ? "" : " by " + names.in_cv(std::abs(size->value), cv);
   std::string text = names.cv(cv);
-  if (finding.subject.kind == "drift") {
-    text += " has drifted " + std::string(by < 0.0 ? "down" : "up") + " by " +
-            names.in_cv(std::abs(by), cv) + ", by the end of the data that were fitted, from what";
-  } else if (finding.subject.kind == "periodic") {
-    text += " swings by " + names.in_cv(std::abs(by), cv) + " up and down";
+  if (kind == "drift") {
+    text += std::string(" drifts ") + (down ? "down" : "up") + by +
+            " until the end of the data that were fitted";
+  } else if (kind == "periodic") {
+    text += " swings" + by + " up and down";
     if (const Parameter* period = find(finding, "period"))
       text += " every " + number_text(period->value) + " s";
   } else {
-    text += " lies " + names.in_cv(std::abs(by), cv) + (by < 0.0 ? " lower" : " higher");
+    text += std::string(" is shifted ") + (down ? "down" : "up") + by;
   }
-  text += finding.subject.kind.empty() || finding.subject.kind == "step"
-              ? " than its inputs explain"
-          : finding.subject.kind == "drift" ? " its inputs explain"
-                                            : ", which its inputs do not explain";
+  text += ", which its inputs do not explain";
   if (size != nullptr) text += " (size " + interval(*size, names.cv_unit(cv)) + ")";
   return text + ". A disturbance or an offset of its sensor: the data cannot tell the two apart. ";
 }

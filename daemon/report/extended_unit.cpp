@@ -70,6 +70,21 @@ config::UnitConfig extended_unit(const config::UnitConfig& unit, const Diagnosis
   return extended;
 }
 
+std::string own_inputs_yaml(const config::UnitConfig& unit, const Diagnosis& diagnosis) {
+  config::UnitConfig own = unit;
+  const int inputs = unit.counts().inputs();
+  own.model = diagnosis.extended;
+  own.model.input_count = inputs;
+  own.model.input_blocks.resize(static_cast<std::size_t>(inputs));
+  own.model.input_origin.conservativeResize(inputs);
+  const auto is_new = [inputs](const auto& part) { return part.input >= inputs; };
+  std::erase_if(own.model.channels, is_new);
+  std::erase_if(own.model.state_terms, is_new);
+  std::ostringstream out;
+  config::print_unit(own, out);
+  return out.str();
+}
+
 std::string extended_yaml(const DiagnosisRun& run) {
   const config::UnitConfig unit = extended_unit(run.unit, run.diagnosis);
   std::ostringstream out;

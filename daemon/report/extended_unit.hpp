@@ -11,8 +11,13 @@ namespace mpm::daemon {
 [[nodiscard]] config::UnitConfig extended_unit(const config::UnitConfig& unit,
                                                const Diagnosis& diagnosis);
 
-/// It as a unit file that begins with what was changed and why. Throws std::logic_error where that
-/// would not load back.
+/// The unit with the extended model as far as it uses the unit's own inputs: for a controller that
+/// does not have the new ones. As YAML.
+[[nodiscard]] std::string own_inputs_yaml(const config::UnitConfig& unit,
+                                          const Diagnosis& diagnosis);
+
+/// The extended unit as a unit file that begins with what was changed and why. Throws
+/// std::logic_error where that would not load back.
 [[nodiscard]] std::string extended_yaml(const DiagnosisRun& run);
 
 }  // namespace mpm::daemon

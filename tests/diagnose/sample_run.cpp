@@ -182,6 +182,7 @@ daemon::DiagnosisRun sample_run(int samples) {
   run.closed_loop = daemon::ClosedLoop{"hidden_gain",
                                        {101, 102, 103},
                                        3000,
+                                       {"t_amb"},
                                        {{0, 0.021, 0.02}, {1, 0.03, 0.028}, {2, 0.041, 0.018}},
                                        {{0, 0.0, 0.0}, {1, 0.01, 0.0}, {2, 0.034, 0.002}}};
   run.program = "mpm 0.1.0";

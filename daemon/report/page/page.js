@@ -83,7 +83,7 @@ function rivalList(finding) {
 function findingCard(finding, label, refused) {
   const facts = element('dl');
   const fact = (name, value) => facts.append(element('dt', {}, name), element('dd', {}, value));
-  fact('Confidence', `${percent(finding.confidence)} among the causes considered`);
+  fact('Confidence', `${finding.confidence > 0.999 ? 'more than 99.9 %' : percent(finding.confidence)} among the causes considered`);
   fact('Evidence', `2 ln odds ${number(finding.evidence, 3)} against the same model without it`);
   fact('Since', finding.onset === null ? 'the beginning of the data, or before' : clock(finding.onset));
   fact('Rivals', rivalList(finding));
@@ -137,7 +137,8 @@ function closedLoop() {
   if (!loop) return;
   const change = (before, after) => before > 0 ? `${number(100 * (after / before - 1), 3)} %` : '–';
   section('In closed loop', element('p', {}, `The simulator’s controller on the plant of scenario “${loop.scenario}”, with the unit file’s model and with the extended one: ` +
-      `${loop.seeds.length} × ${loop.samples} samples, seeds ${loop.seeds.join(', ')}, the same for both.`), element('div', {class: 'narrow'},
+      `${loop.seeds.length} × ${loop.samples} samples, seeds ${loop.seeds.join(', ')}, the same for both.` +
+      (loop.inputs_left_out.length ? ` Without ${loop.inputs_left_out.join(', ')}, which the simulated plant does not measure for its controller.` : '')), element('div', {class: 'narrow'},
       table([{label: 'CV'}, {label: 'variance of SP − CV before', number: true}, {label: 'after', number: true}, {label: 'change', number: true}],
         loop.cvs.map(cv => [cv.cv, number(cv.error_variance_before), number(cv.error_variance_after), change(cv.error_variance_before, cv.error_variance_after)])),
       table([{label: 'MV'}, {label: 'time at a limit before', number: true}, {label: 'after', number: true}],
