@@ -6,7 +6,8 @@
 
 // Sizes at full, in noise s.d. of the CV: step and drift 3 .. 10 (a drift by the end of the data),
 // a periodic disturbance as much from crest to trough, an unmodelled input's effect 0.6 .. 1.5
-// (s.d.). Noise: its variance grows 4 .. 12 times.
+// (s.d.). Noise: its variance grows 4 .. 12 times. Where a shape of the hard setting has no such
+// number as the contract asks for (one lag, where there are two), the truth is silent about it.
 namespace mpm::hidden {
 namespace {
 
