@@ -1,5 +1,9 @@
 #include "tests/hidden/case_checks.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
 #include "sim/scenario/stability.hpp"
 
 namespace mpm::hidden {
@@ -60,6 +64,47 @@ MatrixXd measured_by(const TruePlantSpec& spec, const LoopRecord& record,
     plant.advance(record.inputs.row(k), around.aux.row(k));
   }
   return result;
+}
+
+std::vector<double> evidence_of(const Draft& draft, const std::vector<TruePlantSpec>& stages,
+                                const LoopRecord& record, const Surroundings& around) {
+  std::vector<double> result;
+  MatrixXd before = measured_by(stages[0], record, around);
+  for (std::size_t i = 1; i < stages.size(); ++i) {
+    const MatrixXd after = measured_by(stages[i], record, around);
+    double sum = 0.0;
+    for (Index cv = 0; cv < after.cols(); ++cv)
+      sum += evidence(draft.noise[static_cast<std::size_t>(cv)],
+                      (after.col(cv) - before.col(cv)).head(draft.fit_samples));
+    result.push_back(sum);
+    before = after;
+  }
+  return result;
+}
+
+double weakest_part(const Draft& draft, const TruePlantSpec& healthy, const TruePlantSpec& plant,
+                    const LoopRecord& record, const Surroundings& around) {
+  const TrueEffect& effect = draft.truth.front();
+  const CvNoise& noise = draft.noise[static_cast<std::size_t>(effect.cv)];
+  const VectorXd whole = measured_by(plant, record, around).col(effect.cv);
+  std::vector<VectorXd> parts;
+  for (std::size_t i = 0; i < plant.channels.size(); ++i) {
+    for (double TrueChannel::*number :
+         {&TrueChannel::gain, &TrueChannel::time_constant, &TrueChannel::dead_time}) {
+      if (plant.channels[i].*number == healthy.channels[i].*number) continue;
+      TruePlantSpec without = plant;
+      without.channels[i].*number = healthy.channels[i].*number;
+      parts.emplace_back(
+          (whole - measured_by(without, record, around).col(effect.cv)).head(draft.fit_samples));
+    }
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    std::vector<VectorXd> others = parts;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    least = std::min(least, evidence(noise, parts[i], others));
+  }
+  return least;
 }
 
 }  // namespace mpm::hidden

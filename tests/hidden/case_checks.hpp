@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "config/unit_config.hpp"
 #include "tests/hidden/draft.hpp"
@@ -26,5 +27,18 @@ namespace mpm::hidden {
 /// What the instruments would have shown with the recorded inputs and the same noise.
 [[nodiscard]] Eigen::MatrixXd measured_by(const TruePlantSpec& spec, const LoopRecord& record,
                                           const Surroundings& around);
+
+/// What each effect adds to the CVs in the fitted part, in the sense of `evidence`; `stages` are
+/// the plants with none, one, ... of them. 0 for a noise change, which adds nothing that has a
+/// mean: whoever knows its size and onset cannot miss it.
+[[nodiscard]] std::vector<double> evidence_of(const Draft& draft,
+                                              const std::vector<TruePlantSpec>& stages,
+                                              const LoopRecord& record, const Surroundings& around);
+
+/// Of the errors that make up `dynamics` in one channel the least evidence that one has which the
+/// others cannot stand for.
+[[nodiscard]] double weakest_part(const Draft& draft, const TruePlantSpec& healthy,
+                                  const TruePlantSpec& plant, const LoopRecord& record,
+                                  const Surroundings& around);
 
 }  // namespace mpm::hidden

@@ -1,5 +1,6 @@
 #include "tests/hidden/cv_noise.hpp"
 
+#include <Eigen/QR>
 #include <cmath>
 
 #include "sim/signals/random_stream.hpp"
@@ -39,14 +40,24 @@ Eigen::MatrixXd draw_noise(const std::vector<CvNoise>& cvs, Index samples, std::
   return noise;
 }
 
-double evidence(const CvNoise& noise, const Eigen::VectorXd& signal) {
-  double sum = 0.0;
+Eigen::VectorXd whitened(const CvNoise& noise, const Eigen::VectorXd& signal) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(signal.size());
   double e = 0.0;
   for (Index k = 1; k < signal.size(); ++k) {
     e = signal(k) - noise.pole * signal(k - 1) - noise.moving * e;
-    sum += e * e;
+    result(k) = e / noise.sigma;
   }
-  return sum / (noise.sigma * noise.sigma);
+  return result;
+}
+
+double evidence(const CvNoise& noise, const Eigen::VectorXd& signal,
+                const std::vector<Eigen::VectorXd>& others) {
+  Eigen::MatrixXd columns(signal.size(), static_cast<Index>(others.size()) + 1);
+  columns.col(0) = whitened(noise, Eigen::VectorXd::Ones(signal.size()));
+  for (std::size_t i = 0; i < others.size(); ++i)
+    columns.col(static_cast<Index>(i) + 1) = whitened(noise, others[i]);
+  const Eigen::VectorXd wanted = whitened(noise, signal);
+  return (wanted - columns * columns.colPivHouseholderQr().solve(wanted)).squaredNorm();
 }
 
 }  // namespace mpm::hidden

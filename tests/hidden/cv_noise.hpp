@@ -24,8 +24,13 @@ struct CvNoise {
 [[nodiscard]] Eigen::MatrixXd draw_noise(const std::vector<CvNoise>& cvs, Eigen::Index samples,
                                          std::uint64_t seed);
 
-/// Sum of squares of what `noise` would have needed as e to make `signal`, in units of sigma^2: 2
-/// ln of the odds that whoever knows all but the signal's presence gets for it, on average.
-[[nodiscard]] double evidence(const CvNoise& noise, const Eigen::VectorXd& signal);
+/// What `noise` would have needed as e to make `signal`, in units of sigma: its sum of squares is
+/// 2 ln of the odds that whoever knows all but the signal's presence gets for it, on average.
+[[nodiscard]] Eigen::VectorXd whitened(const CvNoise& noise, const Eigen::VectorXd& signal);
+
+/// The same odds for somebody who must also find the CV's level, and how much there is of each of
+/// the other signals: what of `signal` none of these can stand for.
+[[nodiscard]] double evidence(const CvNoise& noise, const Eigen::VectorXd& signal,
+                              const std::vector<Eigen::VectorXd>& others = {});
 
 }  // namespace mpm::hidden

@@ -18,6 +18,8 @@ using Eigen::MatrixXd;
 
 constexpr int kMostAttempts = 300;
 constexpr double kVisibleFull = 100.0, kVisibleHalf = 25.0;
+constexpr double kPartVisibleFull = 60.0, kPartVisibleHalf = 25.0;
+constexpr double kUsualSamples = 3000.0;  ///< that these are for; fewer cannot say as much
 
 /// One number for all of a request but its size, so that half-size cases are full ones made
 /// smaller.
@@ -87,26 +89,7 @@ struct Case {
   }
 };
 
-/// What each effect adds to the measured CVs, as 2 ln odds over the fitted part. A noise change
-/// adds nothing that has a mean; whoever knows its onset and size cannot miss it.
-std::vector<double> evidence_of(const Draft& draft, const std::vector<TruePlantSpec>& stages,
-                                const LoopRecord& record, const Surroundings& around) {
-  std::vector<double> result;
-  MatrixXd before = measured_by(stages[0], record, around);
-  for (std::size_t i = 1; i < stages.size(); ++i) {
-    const MatrixXd after = measured_by(stages[i], record, around);
-    double sum = 0.0;
-    for (Index cv = 0; cv < after.cols(); ++cv)
-      sum += evidence(draft.noise[static_cast<std::size_t>(cv)],
-                      (after.col(cv) - before.col(cv)).head(draft.fit_samples));
-    result.push_back(sum);
-    before = after;
-  }
-  return result;
-}
-
-bool all_visible(const Draft& draft, const std::vector<double>& evidence) {
-  const double least = draft.size == 1.0 ? kVisibleFull : kVisibleHalf;
+bool all_visible(const Draft& draft, const std::vector<double>& evidence, double least) {
   for (std::size_t i = 0; i < evidence.size(); ++i)
     if (draft.truth[i].cause != Cause::kNoise && evidence[i] < least) return false;
   return true;
@@ -135,7 +118,13 @@ std::optional<HiddenCase> attempt_case(const Case& all, int attempt) {
   if (runs_away(record, all.usual, all.exact) || !clips_in_measure(draft, record.cvs))
     return std::nullopt;
   std::vector<double> seen = evidence_of(draft, stages, record, around);
-  if (!all_visible(draft, seen)) return std::nullopt;
+  const double less = std::min(1.0, draft.samples / kUsualSamples);
+  const bool full = all.request.size == Size::kFull;
+  if (!all_visible(draft, seen, less * (full ? kVisibleFull : kVisibleHalf))) return std::nullopt;
+  if (all.request.effect_class == EffectClass::kDynamics &&
+      weakest_part(draft, stages.front(), stages.back(), record, around) <
+          less * (full ? kPartVisibleFull : kPartVisibleHalf))
+    return std::nullopt;
 
   HiddenCase result;
   result.request = all.request;

@@ -45,9 +45,12 @@ struct HiddenCase {
 /// The same request gives the same case. With the hard setting every channel that the effect leaves
 /// alone is wrong by a Gaussian 2 % in gain and 3 % in time constant (cut at two s.d.), each CV has
 /// ARMA noise of its own, in a third of the seeds with heavy tails, and the effect has a shape that
-/// is only near what a fit would take. Draws that the loop cannot stand, or whose effect does not
-/// show (`evidence` below 100 at full, 25 at half size) or clips out of measure, are drawn anew.
-/// Throws std::runtime_error where the unit file cannot be read or no draw was fit.
+/// is only near what a fit would take.
+///
+/// Drawn anew is what the loop cannot stand, what clips out of measure, and what does not show:
+/// `evidence` below 100 at full and 25 at half size, or of a part of dynamics below 60 and 25, in
+/// 3000 samples; in fewer as much less. Throws std::runtime_error where the unit file cannot be
+/// read or no draw was fit.
 [[nodiscard]] HiddenCase draw_case(const CaseRequest& request);
 
 /// The plants that cases are drawn from.

@@ -226,6 +226,8 @@ TEST_CASE("noise has the level and colour that its model says") {
   CHECK(root_mean_square(values.head(100000)) == Approx(noise.deviation()).epsilon(0.03));
   CHECK(root_mean_square(values.tail(99000)) == Approx(3.0 * noise.deviation()).epsilon(0.03));
   CHECK(evidence(noise, values.head(100000)) == Approx(100000.0).epsilon(0.02));
+  CHECK(evidence(noise, VectorXd::Constant(1000, 0.5)) == Approx(0.0).margin(1e-9));
+  CHECK(evidence(noise, values.head(1000), {values.head(1000)}) == Approx(0.0).margin(1e-9));
 }
 
 }  // namespace mpm::hidden

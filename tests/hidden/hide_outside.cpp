@@ -5,8 +5,9 @@
 #include "tests/hidden/draft.hpp"
 
 // Sizes at full, in noise s.d. of the CV: step and drift 3 .. 10 (a drift by the end of the data),
-// a periodic disturbance as much from crest to trough, an unmodelled input's effect 0.4 .. 1.2
-// (s.d.). Noise: its variance grows 4 .. 12 times.
+// a periodic disturbance as much from crest to trough, an unmodelled input's effect 0.6 .. 1.5
+// (s.d.). Noise: its variance grows 4 .. 12 times. Where a shape of the hard setting has no such
+// number as the contract asks for (one lag, where there are two), the truth is silent about it.
 namespace mpm::hidden {
 namespace {
 
@@ -119,7 +120,7 @@ void hide_unmodelled_input(Draft& draft) {
   alone.disturbance.resize(0, 0);
   const Eigen::MatrixXd still = Eigen::MatrixXd::Zero(draft.samples, draft.plant.input_count);
   const VectorXd unit_effect = simulate(alone, still, draft.aux).col(effect.cv);
-  channel.gain = draft.size * draft.sign() * draft.between(0.4, 1.2) * draft.noise_of(effect.cv) /
+  channel.gain = draft.size * draft.sign() * draft.between(0.6, 1.5) * draft.noise_of(effect.cv) /
                  deviation_of(unit_effect);
   draft.plant.channels.push_back(channel);
   effect.parameters["gain"] = channel.gain;
