@@ -29,6 +29,8 @@ constexpr double kSmooth = 0.005;
 constexpr double kBound = 0.9;
 /// By so much must the log of its free run's mean square error be less.
 constexpr double kClear = 0.3;
+/// Share of the work that is done when all causes have been looked for.
+constexpr double kSearched = 0.9;
 
 Recording part(const Recording& recording, Index first, Index count) {
   Recording result;
@@ -57,10 +59,22 @@ double slowest_samples(const ModelSpec& model) {
   return slowest / model.sample_time_s;
 }
 
+/// Thrown where the caller's `progress` says so; ends all loops at once.
+struct GivenUp {};
+
+std::function<bool(double)> or_give_up(const std::function<bool(double)>& progress) {
+  return [&progress](double share) {
+    if (progress && !progress(share)) throw GivenUp();
+    return true;
+  };
+}
+
 /// How far each channel is from the model's, everything else as found.
-std::vector<ChannelEstimate> estimate_channels(Problem& problem, const SearchResult& found) {
+std::vector<ChannelEstimate> estimate_channels(Problem& problem, const SearchResult& found,
+                                               const DiagnosisSettings& settings) {
   std::vector<ChannelEstimate> estimates;
   for (const ChannelSpec& channel : problem.model().channels) {
+    settings.progress(kSearched);
     if (channel.input >= problem.surroundings().model_inputs) continue;
     Effect effect;
     effect.subject = {Cause::kDynamics, channel.cv, channel.input, -1, ""};
@@ -187,6 +201,7 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
   });
   std::vector<bool> in(found.named.size(), true);
   for (const std::size_t i : order) {
+    settings.progress(kSearched);
     if (found.named[i].effect.certain) continue;
     const ModelSpec with = extend(problem, found, in, keep);
     in[i] = false;
@@ -249,21 +264,9 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
   }
 }
 
-}  // namespace
-
-Index needed_samples(const ModelSpec& model) {
-  // Five rows per number that a CV's fit has, in the part that is fitted.
-  Index most = 0;
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    const auto channels = std::count_if(model.channels.begin(), model.channels.end(),
-                                        [cv](const ChannelSpec& c) { return c.cv == cv; });
-    most = std::max<Index>(most, model.state_space ? 3 * model.input_count : 3 * channels);
-  }
-  return 15 * (most + kNoiseOrder + 4) / 2;
-}
-
-Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Recording* validation,
-                   const DiagnosisSettings& settings) {
+/// All of diagnose() but for giving up. `settings.progress` is there and throws.
+Diagnosis run(const ModelSpec& given, const Recording& recording, const Recording* validation,
+              const DiagnosisSettings& settings) {
   Diagnosis diagnosis;
   diagnosis.samples = recording.samples();
   diagnosis.fit_samples =
@@ -299,7 +302,7 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
   }
   std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.evidence > b.evidence; });
-  diagnosis.channels = estimate_channels(problem, found);
+  diagnosis.channels = estimate_channels(problem, found, settings);
 
   measure_gain(problem, found, model, base, recording, validation, settings, diagnosis);
 
@@ -312,6 +315,33 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
     if (estimate.gain_ratio.high - estimate.gain_ratio.low > 2.0 * 1.96 * kVisible)
       diagnosis.verdict = DiagnosisVerdict::kUndetermined;
   return diagnosis;
+}
+
+}  // namespace
+
+Index needed_samples(const ModelSpec& model) {
+  // Five rows per number that a CV's fit has, in the part that is fitted.
+  Index most = 0;
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const auto channels = std::count_if(model.channels.begin(), model.channels.end(),
+                                        [cv](const ChannelSpec& c) { return c.cv == cv; });
+    most = std::max<Index>(most, model.state_space ? 3 * model.input_count : 3 * channels);
+  }
+  return 15 * (most + kNoiseOrder + 4) / 2;
+}
+
+Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Recording* validation,
+                   const DiagnosisSettings& asked) {
+  DiagnosisSettings settings = asked;
+  settings.progress = or_give_up(asked.progress);
+  try {
+    return run(given, recording, validation, settings);
+  } catch (const GivenUp&) {
+    Diagnosis diagnosis;
+    diagnosis.reason = "stopped";
+    diagnosis.extended = given;
+    return diagnosis;
+  }
 }
 
 }  // namespace mpm

@@ -50,6 +50,9 @@ std::string header(const DiagnosisRun& run) {
 config::UnitConfig extended_unit(const config::UnitConfig& unit, const Diagnosis& diagnosis) {
   config::UnitConfig extended = unit;
   extended.model = diagnosis.extended;
+  // The recorded predictions are the old model's: whoever reads this file simulates.
+  if (!diagnosis.findings.empty())
+    for (config::CvSignal& cv : extended.cv) cv.prediction.clear();
   const auto new_count = diagnosis.new_inputs.size();
   const int expected = unit.counts().inputs() + static_cast<int>(new_count);
   if (extended.model.input_count != expected || extended.model.cv_count != unit.counts().cv)
