@@ -142,7 +142,7 @@ void simulate(const Bench& bench) {
               bench.folder.file("sim.out"), bench.folder.file("sim.err")) == 0);
 }
 
-TEST_CASE("--scenario compares both models in closed loop") {
+TEST_CASE("a scenario compares both models in closed loop") {
   const Bench bench;
   simulate(bench);
   REQUIRE(bench.diagnose(kUnit, bench.folder.file("run.csv"),
