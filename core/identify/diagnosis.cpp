@@ -23,6 +23,8 @@ using Eigen::VectorXd;
 constexpr int kNoiseOrder = 8;
 /// s.d. of a relative gain error beyond which the data cannot tell a good model from a bad one.
 constexpr double kVisible = 0.25;
+/// Share of the work that is done when all causes have been looked for.
+constexpr double kSearched = 0.9;
 /// Innovations below this share of the residual's variance: no noise is so smooth.
 constexpr double kSmooth = 0.005;
 /// Of a first-order noise model that leaves structure alone.
@@ -57,10 +59,22 @@ double slowest_samples(const ModelSpec& model) {
   return slowest / model.sample_time_s;
 }
 
+/// Thrown where the caller's `progress` says so; ends all loops at once.
+struct GivenUp {};
+
+std::function<bool(double)> or_give_up(const std::function<bool(double)>& progress) {
+  return [&progress](double share) {
+    if (progress && !progress(share)) throw GivenUp();
+    return true;
+  };
+}
+
 /// How far each channel is from the model's, everything else as found.
-std::vector<ChannelEstimate> estimate_channels(Problem& problem, const SearchResult& found) {
+std::vector<ChannelEstimate> estimate_channels(Problem& problem, const SearchResult& found,
+                                               const DiagnosisSettings& settings) {
   std::vector<ChannelEstimate> estimates;
   for (const ChannelSpec& channel : problem.model().channels) {
+    settings.progress(kSearched);
     if (channel.input >= problem.surroundings().model_inputs) continue;
     Effect effect;
     effect.subject = {Cause::kDynamics, channel.cv, channel.input, -1, ""};
@@ -187,6 +201,7 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
   });
   std::vector<bool> in(found.named.size(), true);
   for (const std::size_t i : order) {
+    settings.progress(kSearched);
     if (found.named[i].effect.certain) continue;
     const ModelSpec with = extend(problem, found, in, keep);
     in[i] = false;
@@ -262,8 +277,11 @@ Index needed_samples(const ModelSpec& model) {
   return 15 * (most + kNoiseOrder + 4) / 2;
 }
 
-Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Recording* validation,
-                   const DiagnosisSettings& settings) {
+namespace {
+
+/// All of diagnose() but for giving up. `settings.progress` is there and throws.
+Diagnosis run(const ModelSpec& given, const Recording& recording, const Recording* validation,
+              const DiagnosisSettings& settings) {
   Diagnosis diagnosis;
   diagnosis.samples = recording.samples();
   diagnosis.fit_samples =
@@ -299,7 +317,7 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
   }
   std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.evidence > b.evidence; });
-  diagnosis.channels = estimate_channels(problem, found);
+  diagnosis.channels = estimate_channels(problem, found, settings);
 
   measure_gain(problem, found, model, base, recording, validation, settings, diagnosis);
 
@@ -312,6 +330,22 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
     if (estimate.gain_ratio.high - estimate.gain_ratio.low > 2.0 * 1.96 * kVisible)
       diagnosis.verdict = DiagnosisVerdict::kUndetermined;
   return diagnosis;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Recording* validation,
+                   const DiagnosisSettings& asked) {
+  DiagnosisSettings settings = asked;
+  settings.progress = or_give_up(asked.progress);
+  try {
+    return run(given, recording, validation, settings);
+  } catch (const GivenUp&) {
+    Diagnosis diagnosis;
+    diagnosis.reason = "stopped";
+    diagnosis.extended = given;
+    return diagnosis;
+  }
 }
 
 }  // namespace mpm

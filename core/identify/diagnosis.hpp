@@ -18,7 +18,8 @@ struct DiagnosisSettings {
   double false_naming_rate = 0.01;
   int max_findings = 6;
   std::uint64_t seed = 1;  ///< of the block bootstrap
-  /// Called now and then with the share done, 0..1; returns false to give up.
+  /// Called after each fit, with the share done, 0..1; returns false to give up, which then takes
+  /// no more than a fit does.
   std::function<bool(double)> progress = {};
 };
 
@@ -69,7 +70,7 @@ struct Diagnosis {
 
 /// Simulates `model` freely on `recording`, names what it gets wrong, extends it and measures the
 /// gain on samples that the fit has not seen: the end of `recording`, or all of `validation`.
-/// Deterministic. Never throws on data.
+/// Deterministic. Never throws on data. Given up: undetermined, and nothing else is filled in.
 [[nodiscard]] Diagnosis diagnose(const ModelSpec& model, const Recording& recording,
                                  const Recording* validation, const DiagnosisSettings& settings);
 

@@ -97,8 +97,8 @@ class Search {
       named_.push_back({effect, kCertain, 1.0, {}});
     }
     for (int round = 0; round < settings_.max_findings; ++round) {
-      if (!report(0.1 + 0.8 * round / settings_.max_findings)) break;
-      if (!find_one()) break;
+      share_ = 0.1 + 0.8 * round / settings_.max_findings;
+      if (!report() || !find_one()) break;
     }
     drop_superfluous();
     SearchResult result;
@@ -111,7 +111,7 @@ class Search {
   }
 
  private:
-  bool report(double share) const { return !settings_.progress || settings_.progress(share); }
+  bool report() const { return !settings_.progress || settings_.progress(share_); }
 
   /// Accepted effects that touch other CVs too come first and stay; returns how many.
   std::size_t arrange(const std::vector<int>& cvs, std::vector<Effect>& effects) const {
@@ -136,6 +136,7 @@ class Search {
   }
 
   Trial attempt(const Effect& candidate, int iterations) {
+    report();  // a round takes seconds
     Trial trial;
     trial.candidate = candidate;
     const std::vector<int> cvs = touched(candidate, problem_);
@@ -214,8 +215,10 @@ class Search {
         all.push_back(std::move(effect));
     Screening screening(problem_, accepted_, nulls);
     std::vector<double> scores;
-    for (const Effect& effect : all)
+    for (const Effect& effect : all) {
+      report();
       scores.push_back(screening.score(effect) - rarity(effect.subject.cause));
+    }
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),
@@ -393,6 +396,7 @@ class Search {
       dropped = false;
       const Fit all = everything();
       for (std::size_t i = 0; i < accepted_.size() && !dropped; ++i) {
+        report();
         if (all.effects[i].certain) continue;
         std::vector<Effect> fewer = all.effects;
         fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
@@ -413,6 +417,7 @@ class Search {
 
   Problem& problem_;
   SearchSettings settings_;
+  double share_ = 0.0;  // of the work done, as last told
   std::vector<Effect> accepted_;
   std::vector<Named> named_;
   std::map<std::vector<int>, Fit> without_;

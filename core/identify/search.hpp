@@ -16,6 +16,7 @@ struct SearchSettings {
   Tolerances materiality = {0.05, 0.09, 0.45};
   /// Nor is what moves a CV by less than this share of its own s.d.
   double visible = 0.015;
+  /// Called at least once per fit; may throw to end the search at once.
   std::function<bool(double)> progress = {};
 };
 
