@@ -17,9 +17,7 @@
 #include "daemon/io/output_folder.hpp"
 #include "daemon/io/read_recording.hpp"
 #include "daemon/report/diagnosis_report.hpp"
-#include "daemon/report/extended_unit.hpp"
-#include "daemon/report/page.hpp"
-#include "daemon/report/page_data.hpp"
+#include "daemon/report/report_files.hpp"
 #include "daemon/service/signals.hpp"
 #include "daemon/service/version.hpp"
 
@@ -175,13 +173,10 @@ int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
     std::cerr << "mpm: stopped; nothing was written\n";
     return 2;
   }
-  folder.write("extended.yaml", extended_yaml(run));
   const bool repaired = !run.diagnosis.findings.empty();
   const std::string failure =
       loops && repaired ? add_closed_loop(*loops, stop, run) : std::string();
-  const std::string json = to_json(run).dump(2) + "\n";
-  folder.write("report.json", json);
-  folder.write("report.html", page_html(page_data(run)));
+  const std::string json = write_reports(run, folder);
   folder.commit();
   print(options, run, json);
   if (!failure.empty()) {

@@ -1,0 +1,18 @@
+#include "daemon/report/report_files.hpp"
+
+#include "daemon/report/diagnosis_report.hpp"
+#include "daemon/report/extended_unit.hpp"
+#include "daemon/report/page.hpp"
+#include "daemon/report/page_data.hpp"
+
+namespace mpm::daemon {
+
+std::string write_reports(const DiagnosisRun& run, io::OutputFolder& folder) {
+  folder.write("extended.yaml", extended_yaml(run));
+  std::string json = to_json(run).dump(2) + "\n";
+  folder.write("report.json", json);
+  folder.write("report.html", page_html(page_data(run)));
+  return json;
+}
+
+}  // namespace mpm::daemon

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/io/output_folder.hpp"
+#include "daemon/report/diagnosis_run.hpp"
+
+namespace mpm::daemon {
+
+/// The files of a diagnosis, whoever asked for it: extended.yaml, report.json and report.html.
+/// Returns the text of report.json. They appear when `folder` is committed.
+std::string write_reports(const DiagnosisRun& run, io::OutputFolder& folder);
+
+}  // namespace mpm::daemon
