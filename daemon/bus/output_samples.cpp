@@ -7,6 +7,17 @@ namespace {
 std::string text(const char* string) { return string == nullptr ? "" : string; }
 
 template <class T>
+NamedCause named_cause(const T& sample) {
+  NamedCause named{text(sample.cause), text(sample.cause_text), sample.cause_confidence, {}};
+  for (std::uint32_t i = 0; i < sample.cause_parameters._length; ++i) {
+    const mpm_CauseParameter& parameter = sample.cause_parameters._buffer[i];
+    named.parameters.push_back(
+        {text(parameter.name), parameter.value, parameter.low, parameter.high});
+  }
+  return named;
+}
+
+template <class T>
 AlarmRecord alarm_record(const T& sample, const char* to) {
   return {text(sample.unit),
           text(sample.mv),
@@ -19,7 +30,8 @@ AlarmRecord alarm_record(const T& sample, const char* to) {
           sample.threshold,
           sample.partial_correlation,
           sample.lag,
-          sample.effect_size};
+          sample.effect_size,
+          named_cause(sample)};
 }
 
 }  // namespace

@@ -1,14 +1,23 @@
 #include "daemon/bus/output_writers.hpp"
 
+#include <vector>
+
 namespace mpm::daemon {
 namespace {
 
 // The C types have no const; writing does not touch what they point to.
 char* borrow(const std::string& text) { return const_cast<char*>(text.c_str()); }
 
+std::vector<mpm_CauseParameter> parameters_of(const NamedCause& named) {
+  std::vector<mpm_CauseParameter> parameters;
+  for (const CauseParameter& parameter : named.parameters)
+    parameters.push_back({borrow(parameter.name), parameter.value, parameter.low, parameter.high});
+  return parameters;
+}
+
 // mpm_Alarm and mpm_AlarmEvent differ in one name.
 template <class T>
-T alarm_sample(const AlarmRecord& record) {
+T alarm_sample(const AlarmRecord& record, std::vector<mpm_CauseParameter>& parameters) {
   T sample{};
   sample.unit = borrow(record.unit);
   sample.mv = borrow(record.mv);
@@ -21,6 +30,11 @@ T alarm_sample(const AlarmRecord& record) {
   sample.partial_correlation = record.partial_correlation;
   sample.lag = record.lag;
   sample.effect_size = record.effect_size;
+  sample.cause = borrow(record.named.cause);
+  sample.cause_text = borrow(record.named.text);
+  sample.cause_confidence = record.named.confidence;
+  const auto count = static_cast<std::uint32_t>(parameters.size());
+  sample.cause_parameters = {count, count, parameters.data(), false};
   return sample;
 }
 
@@ -71,15 +85,22 @@ bool OutputWriters::write(const ChannelRecord& record) const {
 }
 
 bool OutputWriters::write(const AlarmRecord& record) const {
-  auto event = alarm_sample<mpm_AlarmEvent>(record);
-  event.to = borrow(record.to);
-  const bool event_written = alarm_event_.write(event);
+  const bool event_written = write_event(record);
   return write_state(record) && event_written;
 }
 
+bool OutputWriters::write_event(const AlarmRecord& record) const {
+  std::vector<mpm_CauseParameter> parameters = parameters_of(record.named);
+  auto event = alarm_sample<mpm_AlarmEvent>(record, parameters);
+  event.to = borrow(record.to);
+  return alarm_event_.write(event);
+}
+
 bool OutputWriters::write_state(const AlarmRecord& record) const {
-  auto state = alarm_sample<mpm_Alarm>(record);
-  state.state = borrow(record.to);
+  static const std::string active = "active";
+  std::vector<mpm_CauseParameter> parameters = parameters_of(record.named);
+  auto state = alarm_sample<mpm_Alarm>(record, parameters);
+  state.state = borrow(record.to == "diagnosed" ? active : record.to);
   return alarm_.write(state);
 }
 

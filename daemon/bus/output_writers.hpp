@@ -15,8 +15,9 @@ class OutputWriters {
   [[nodiscard]] bool write(const ChannelRecord& record) const;
   /// The change as an event, and as the state that late joiners get.
   [[nodiscard]] bool write(const AlarmRecord& record) const;
-  /// The state only: what holds before the first change.
+  /// The state only: what holds before the first change, and what is learnt of an alarm later.
   [[nodiscard]] bool write_state(const AlarmRecord& record) const;
+  [[nodiscard]] bool write_event(const AlarmRecord& record) const;
   [[nodiscard]] bool write(const HealthRecord& record) const;
 
  private:

@@ -52,19 +52,32 @@ nlohmann::ordered_json to_json(const ChannelRecord& record) {
 }
 
 nlohmann::ordered_json to_json(const AlarmRecord& record) {
-  return {{"record", "alarm"},
-          {"unit", record.unit},
-          {"interval", record.interval},
-          {"time_ns", record.source_time_ns},
-          {"mv", record.mv},
-          {"cv", record.cv},
-          {"to", record.to},
-          {"p_value", record.p_value},
-          {"statistic", record.statistic},
-          {"threshold", record.threshold},
-          {"partial_correlation", record.partial_correlation},
-          {"lag", record.lag},
-          {"effect_size", record.effect_size}};
+  nlohmann::ordered_json json{{"record", record.to == "diagnosed" ? "diagnosis" : "alarm"},
+                              {"unit", record.unit},
+                              {"interval", record.interval},
+                              {"time_ns", record.source_time_ns},
+                              {"mv", record.mv},
+                              {"cv", record.cv},
+                              {"to", record.to},
+                              {"p_value", record.p_value},
+                              {"statistic", record.statistic},
+                              {"threshold", record.threshold},
+                              {"partial_correlation", record.partial_correlation},
+                              {"lag", record.lag},
+                              {"effect_size", record.effect_size}};
+  const NamedCause& named = record.named;
+  if (named.text.empty()) return json;
+  json["cause"] = nullptr;
+  if (!named.cause.empty()) json["cause"] = named.cause;
+  json["cause_text"] = named.text;
+  json["cause_confidence"] = named.confidence;
+  json["cause_parameters"] = nlohmann::ordered_json::object();
+  json["cause_intervals"] = nlohmann::ordered_json::object();
+  for (const CauseParameter& parameter : named.parameters) {
+    json["cause_parameters"][parameter.name] = parameter.value;
+    json["cause_intervals"][parameter.name] = {parameter.low, parameter.high};
+  }
+  return json;
 }
 
 }  // namespace mpm::daemon

@@ -39,21 +39,38 @@ struct ChannelRecord {
   std::vector<double> partial_correlations;  ///< lags first_lag, first_lag + 1, ...
 };
 
+/// A fitted number with its 95 % interval; names and units as in report.json.
+struct CauseParameter {
+  std::string name;
+  double value = 0.0, low = 0.0, high = 0.0;
+};
+
+/// What a diagnosis says of an alarm.
+struct NamedCause {
+  std::string cause;  ///< as in report.json; empty where none is named
+  std::string text;   ///< the same for a person; empty before the first diagnosis
+  double confidence = 0.0;
+  std::vector<CauseParameter> parameters;
+};
+
 /// A channel's alarm changed; topics mpm/alarm (latest) and mpm/alarm_event (each).
 struct AlarmRecord {
   std::string unit, mv, cv;
   std::int64_t interval = 0;
   std::int64_t source_time_ns = 0;
-  std::string to;  ///< active | cleared
+  std::string to;  ///< active | cleared | diagnosed: still active, with a cause
   double p_value = 1.0;
   double statistic = 0.0;
   double threshold = 0.0;
   double partial_correlation = 0.0;
   int lag = 0;
   double effect_size = 0.0;
+  NamedCause named = {};
 };
 
 [[nodiscard]] nlohmann::ordered_json to_json(const ChannelRecord& record);
+/// `record` is "diagnosis" where it was diagnosed, else "alarm": the alarms of a journal and of
+/// `mpm watch` are the same lines, whether or not somebody had time for a diagnosis.
 [[nodiscard]] nlohmann::ordered_json to_json(const AlarmRecord& record);
 
 }  // namespace mpm::daemon

@@ -107,6 +107,21 @@ std::string alarm_text(const AlarmRecord& alarm) {
                      utc(alarm.source_time_ns), alarm.p_value, alarm.effect_size);
 }
 
+/// "gain_ratio 0.7 (0.68 to 0.72)", all of them.
+std::string numbers_text(const NamedCause& named) {
+  std::string text;
+  for (const CauseParameter& parameter : named.parameters)
+    text += fmt::format("{}{} {:.3g} ({:.3g} to {:.3g})", text.empty() ? "" : ", ", parameter.name,
+                        parameter.value, parameter.low, parameter.high);
+  return text;
+}
+
+std::string cause_text(const NamedCause& named) {
+  if (named.cause.empty()) return "cause: not named";
+  return fmt::format("cause: {}, {:.0f} % sure  {}", named.cause, 100.0 * named.confidence,
+                     numbers_text(named));
+}
+
 }  // namespace
 
 std::string render(const Board& board, const RenderOptions& options) {
@@ -117,8 +132,10 @@ std::string render(const Board& board, const RenderOptions& options) {
     text += head(name, unit, paint);
     if (!options.alarms_only && !unit.channels.empty()) text += matrix(unit, paint);
     text += unit.alarms.empty() ? "  no active alarms\n" : "  active alarms:\n";
-    for (const auto& [channel, alarm] : unit.alarms)
+    for (const auto& [channel, alarm] : unit.alarms) {
       text += "  " + paint(kRed, "! " + alarm_text(alarm)) + '\n';
+      if (!alarm.named.text.empty()) text += "      " + cause_text(alarm.named) + '\n';
+    }
     text += '\n';
   }
   return text.empty() ? "waiting for a monitor ...\n" : text;
@@ -135,6 +152,9 @@ std::string change_line(const ChannelRecord* before, const ChannelRecord& after)
 }
 
 std::string change_line(const AlarmRecord& change) {
+  if (change.to == "diagnosed")
+    return fmt::format("{} {} {} -> {}: {}. {}", utc(change.source_time_ns), change.unit, change.mv,
+                       change.cv, cause_text(change.named), change.named.text);
   return fmt::format("{} {} {} -> {}: alarm {} (p {:.1e}, gain error {:.3g})",
                      utc(change.source_time_ns), change.unit, change.mv, change.cv, change.to,
                      change.p_value, change.effect_size);
