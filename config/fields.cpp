@@ -26,6 +26,11 @@ const std::vector<Field<MonitorSettings>>& monitor_fields() {
       {"fir_lags", &S::fir_lags, {.low = 0, .high = 10000}, "samples; 0 = derived"},
       {"residual_order", &S::residual_order, {.low = 0, .high = 1000}, "samples; 0 = derived"},
       {"tail", &S::tail_s, kNotNegative, "s; 0 = derived"},
+      {"diagnosis_samples",
+       &S::diagnosis_samples,
+       {.low = 0, .high = 200000},
+       "kept by mpmd for a diagnosis when an alarm stands; 0 = none is made"},
+      {"diagnosis_period", &S::diagnosis_period_s, kNotNegative, "s, between two at least"},
   };
   return fields;
 }

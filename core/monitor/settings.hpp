@@ -38,9 +38,11 @@ struct MonitorSettings {
   int controlling_lags = 40;  ///< g of (3.15)
   int first_lag = -10;        ///< reported range of lags d of (3.15)
   int last_lag = 20;
-  int fir_lags = 0;        ///< block length of the channel test
-  int residual_order = 0;  ///< lags of all residuals
-  double tail_s = 0.0;     ///< time constant of the tail regressor
+  int fir_lags = 0;              ///< block length of the channel test
+  int residual_order = 0;        ///< lags of all residuals
+  double tail_s = 0.0;           ///< time constant of the tail regressor
+  int diagnosis_samples = 6000;  ///< kept for a diagnosis when an alarm stands; 0 = none is made
+  double diagnosis_period_s = 600.0;  ///< between two diagnoses at least
   MaterialitySettings materiality;
   std::vector<ChannelMateriality> channel_materiality;
 };

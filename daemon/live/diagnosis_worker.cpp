@@ -1,0 +1,117 @@
+#include "daemon/live/diagnosis_worker.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <vector>
+
+#include "daemon/service/low_priority.hpp"
+
+namespace mpm::daemon {
+
+struct DiagnosisWorker::State {
+  Work work;
+  std::atomic<bool> stopped = false;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<DiagnosisJob> waiting;
+  std::vector<DiagnosisOutcome> outcomes;  // at most one per asker
+  bool ended = false;
+};
+
+DiagnosisWorker::DiagnosisWorker(Work work) : state_(std::make_shared<State>()) {
+  state_->work = std::move(work);
+  thread_ = std::thread([state = state_] { run(*state); });
+}
+
+DiagnosisWorker::~DiagnosisWorker() {
+  if (!thread_.joinable()) return;
+  state_->stopped = true;
+  { const std::lock_guard lock(state_->mutex); }  // the thread waits or will look
+  state_->changed.notify_all();
+  thread_.join();
+}
+
+bool DiagnosisWorker::submit(DiagnosisJob& job) {
+  {
+    const std::unique_lock lock(state_->mutex, std::try_to_lock);
+    if (!lock.owns_lock()) return false;
+    auto& waiting = state_->waiting;
+    const auto same = std::find_if(waiting.begin(), waiting.end(), [&](const DiagnosisJob& other) {
+      return other.asker == job.asker;
+    });
+    if (same == waiting.end())
+      waiting.push_back(std::move(job));
+    else
+      *same = std::move(job);
+  }
+  state_->changed.notify_all();
+  return true;
+}
+
+std::optional<DiagnosisOutcome> DiagnosisWorker::take(int asker) {
+  const std::unique_lock lock(state_->mutex, std::try_to_lock);
+  if (!lock.owns_lock()) return std::nullopt;
+  auto& outcomes = state_->outcomes;
+  const auto own =
+      std::find_if(outcomes.begin(), outcomes.end(),
+                   [asker](const DiagnosisOutcome& outcome) { return outcome.asker == asker; });
+  if (own == outcomes.end()) return std::nullopt;
+  std::optional<DiagnosisOutcome> outcome = std::move(*own);
+  outcomes.erase(own);
+  return outcome;
+}
+
+bool DiagnosisWorker::stop(std::chrono::milliseconds patience) {
+  if (!thread_.joinable()) return true;
+  state_->stopped = true;
+  std::unique_lock lock(state_->mutex);
+  state_->changed.notify_all();
+  const bool ended = state_->changed.wait_for(lock, patience, [this] { return state_->ended; });
+  lock.unlock();
+  if (ended)
+    thread_.join();
+  else
+    thread_.detach();
+  return ended;
+}
+
+void DiagnosisWorker::run(State& state) {
+  take_low_priority("mpm-diagnosis");
+  const GoOn go_on = [&state] { return !state.stopped; };
+  std::unique_lock lock(state.mutex);
+  while (true) {
+    state.changed.wait(lock, [&] { return state.stopped || !state.waiting.empty(); });
+    if (state.stopped) break;
+    const DiagnosisJob job = std::move(state.waiting.front());
+    state.waiting.pop_front();
+    lock.unlock();
+    std::optional<DiagnosisOutcome> outcome;
+    try {
+      outcome = state.work(job, go_on);
+    } catch (const std::exception& error) {
+      outcome.emplace();
+      outcome->problem = error.what();
+    }
+    if (outcome) {
+      outcome->asker = job.asker;
+      outcome->interval = job.samples.last_interval;
+      outcome->time_ns = job.samples.last_time_ns;
+    }
+    lock.lock();
+    if (!outcome) continue;
+    auto& outcomes = state.outcomes;
+    outcomes.erase(
+        std::remove_if(outcomes.begin(), outcomes.end(),
+                       [&](const DiagnosisOutcome& older) { return older.asker == job.asker; }),
+        outcomes.end());
+    outcomes.push_back(std::move(*outcome));
+  }
+  state.ended = true;
+  state.changed.notify_all();
+}
+
+}  // namespace mpm::daemon

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/live/diagnosis_schedule.hpp"
+#include "daemon/live/diagnosis_worker.hpp"
+#include "daemon/live/frame_ring.hpp"
+
+namespace mpm::daemon {
+
+/// The diagnoses of one unit: keeps its last samples, has them diagnosed while an alarm stands, and
+/// adds to the alarms what comes of it.
+class LiveDiagnosis {
+ public:
+  /// `asker`: of all units that share `worker`, this one.
+  LiveDiagnosis(std::shared_ptr<const config::UnitConfig> unit, DiagnosisWorker& worker, int asker);
+
+  /// After a frame was judged, and its outputs written: with the alarms that it changed.
+  void push(const Frame& frame, const std::vector<AlarmRecord>& changes);
+  /// Now and then: starts what could not be started, and hands over what has been found.
+  [[nodiscard]] std::optional<DiagnosisOutcome> poll();
+  /// The alarms that stand, with what `outcome` says of them; none that it could not know of.
+  [[nodiscard]] std::vector<AlarmRecord> diagnosed(const DiagnosisOutcome& outcome) const;
+
+ private:
+  struct Standing {
+    AlarmRecord alarm;
+    std::size_t channel = 0;  // inputs outermost
+  };
+
+  void note(const AlarmRecord& change);
+
+  std::shared_ptr<const config::UnitConfig> unit_;
+  DiagnosisWorker& worker_;
+  int asker_;
+  FrameRing ring_;
+  DiagnosisSchedule schedule_;
+  std::map<std::pair<std::string, std::string>, Standing> alarms_;  // by (input, CV)
+  std::int64_t youngest_alarm_ns_ = 0;
+  std::optional<DiagnosisJob> pending_;  // the worker had no time to take it
+};
+
+}  // namespace mpm::daemon

@@ -1,0 +1,59 @@
+#include "daemon/live/make_diagnosis.hpp"
+
+#include <exception>
+
+#include "core/identify/diagnosis.hpp"
+#include "daemon/io/read_recording.hpp"
+#include "daemon/live/named_cause.hpp"
+#include "daemon/report/explain.hpp"
+#include "daemon/service/version.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+DiagnosisRun prepare(const DiagnosisJob& job) {
+  DiagnosisRun run;
+  run.unit = *job.unit;
+  run.recording = job.samples.recording(job.unit->sample_time_s);
+  run.program = version_text("mpmd");
+  run.command_line = "mpmd, because of the alarm of " + time_folder(job.alarm_time_ns);
+  run.config_file = job.unit->unit + " as mpmd runs it";
+  run.data_file = "the last " + std::to_string(job.samples.rows()) + " samples of " +
+                  job.unit->unit + " in mpmd";
+  run.fit_share =
+      1.0 - static_cast<double>(job.unseen_rows) / static_cast<double>(job.samples.rows());
+  return run;
+}
+
+std::string headline_of(const DiagnosisRun& run) {
+  std::string text = verdict_headline(run);
+  for (const Finding& finding : run.diagnosis.findings) text += " " + explain(run, finding);
+  return text;
+}
+
+}  // namespace
+
+std::optional<DiagnosisOutcome> make_diagnosis(const DiagnosisJob& job, const ReportStore& store,
+                                               const DiagnosisWorker::GoOn& go_on) {
+  DiagnosisOutcome outcome;
+  DiagnosisRun run = prepare(job);
+  outcome.problem = io::recording_problem(run.recording, needed_samples(run.unit.model));
+  if (!outcome.problem.empty()) return outcome;
+  DiagnosisSettings settings;
+  settings.mv_count = run.unit.counts().mv;
+  settings.fit_share = run.fit_share;
+  settings.progress = [&go_on](double) { return go_on(); };
+  run.seed = settings.seed;
+  run.diagnosis = diagnose(run.unit.model, run.recording, nullptr, settings);
+  if (!go_on()) return std::nullopt;
+  outcome.headline = headline_of(run);
+  outcome.causes = causes_of_channels(run);
+  try {
+    outcome.folder = store.write(run, job.alarm_time_ns);
+  } catch (const std::exception& error) {
+    outcome.file_problem = error.what();
+  }
+  return outcome;
+}
+
+}  // namespace mpm::daemon

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "daemon/report/diagnosis_run.hpp"
+#include "daemon/report/records.hpp"
+
+namespace mpm::daemon {
+
+/// What `run` says of every channel that may be in alarm, inputs outermost, CVs innermost: the most
+/// important finding that touches the channel's CV and, where it is about an input, that input.
+[[nodiscard]] std::vector<NamedCause> causes_of_channels(const DiagnosisRun& run);
+
+}  // namespace mpm::daemon

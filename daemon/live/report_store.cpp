@@ -1,0 +1,83 @@
+#include "daemon/live/report_store.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <regex>
+#include <vector>
+
+#include "daemon/report/report_files.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// By when they were written: a replay's alarms may be older than all of them.
+void prune(const fs::path& unit, const fs::path& newest, std::size_t kept) {
+  static const std::regex ours("[0-9]{8,}T[0-9]{6}([.][0-9]{3})?Z");
+  std::vector<std::pair<fs::file_time_type, fs::path>> others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(unit))
+    if (entry.is_directory() && entry.path() != newest &&
+        std::regex_match(entry.path().filename().string(), ours))
+      others.emplace_back(entry.last_write_time(), entry.path());
+  if (others.size() < kept) return;
+  std::sort(others.begin(), others.end());
+  const std::size_t too_many = others.size() + 1 - kept;
+  for (std::size_t i = 0; i < too_many; ++i) fs::remove_all(others[i].second);
+}
+
+}  // namespace
+
+std::string time_folder(std::int64_t time_ns) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const auto part = ((time_ns % kSecond) + kSecond) % kSecond;
+  const std::time_t seconds = (time_ns - part) / kSecond;
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  std::array<char, 40> text{};
+  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%S", &parts);
+  std::string name = text.data();
+  const auto milliseconds = static_cast<int>(part / 1'000'000);
+  if (milliseconds > 0) {
+    std::snprintf(text.data(), text.size(), ".%03d", milliseconds);
+    name += text.data();
+  }
+  return name + "Z";
+}
+
+std::string unit_folder(const std::string& unit) {
+  std::string name;
+  for (const char letter : unit) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (std::isalnum(code) != 0 || letter == '-' || letter == '_' ||
+        (letter == '.' && !name.empty())) {
+      name += letter;
+      continue;
+    }
+    std::array<char, 8> text{};
+    std::snprintf(text.data(), text.size(), "%%%02X", static_cast<unsigned>(code));
+    name += text.data();
+  }
+  return name;
+}
+
+ReportStore::ReportStore(std::string folder, std::size_t kept)
+    : folder_(std::move(folder)), kept_(kept) {}
+
+std::string ReportStore::write(const DiagnosisRun& run, std::int64_t alarm_time_ns) const {
+  if (folder_.empty()) return {};
+  const fs::path unit = fs::path(folder_) / unit_folder(run.unit.unit);
+  const fs::path place = unit / time_folder(alarm_time_ns);
+  io::OutputFolder folder(place.string());
+  write_reports(run, folder);
+  folder.commit();
+  fs::last_write_time(place, fs::file_time_type::clock::now());  // renaming within may not tell
+  prune(unit, place, kept_);
+  return place.string();
+}
+
+}  // namespace mpm::daemon

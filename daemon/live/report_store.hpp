@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "daemon/report/diagnosis_run.hpp"
+
+namespace mpm::daemon {
+
+/// The reports of the daemon's diagnoses: STATE/UNIT/20240501T120000Z/report.html and so on. A
+/// later diagnosis of the same alarm takes the place of the earlier one.
+class ReportStore {
+ public:
+  static constexpr std::size_t kKept = 20;
+
+  /// `folder` empty: nothing is kept.
+  explicit ReportStore(std::string folder, std::size_t kept = kKept);
+
+  /// Returns where the report lies; empty if nothing is kept. Throws std::exception where it cannot
+  /// be written.
+  std::string write(const DiagnosisRun& run, std::int64_t alarm_time_ns) const;
+
+ private:
+  std::string folder_;
+  std::size_t kept_;  // of each unit, the last ones written
+};
+
+/// "20240501T120000Z", with milliseconds where there are any.
+[[nodiscard]] std::string time_folder(std::int64_t time_ns);
+/// The unit's name as the name of a folder: whatever a path might misread is %XX.
+[[nodiscard]] std::string unit_folder(const std::string& unit);
+
+}  // namespace mpm::daemon
