@@ -1,6 +1,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -9,6 +10,9 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
+#include "daemon/live/diagnosis_worker.hpp"
+#include "daemon/live/make_diagnosis.hpp"
+#include "daemon/live/report_store.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/monitoring/monitor_service.hpp"
 #include "daemon/service/signals.hpp"
@@ -17,8 +21,16 @@
 namespace mpm::daemon {
 namespace {
 
+constexpr std::chrono::milliseconds kPatience{500};  // with a diagnosis that is to end
 // Exit codes of all programs of the project.
 constexpr int kDone = 0, kFound = 1, kFailed = 2, kBadInput = 3;
+
+/// The one that systemd made for the service; the first if there are several.
+std::string default_state_folder() {
+  const char* folders = std::getenv("STATE_DIRECTORY");
+  const std::string text = folders == nullptr ? "" : folders;
+  return text.substr(0, text.find(':'));
+}
 
 struct Options {
   std::vector<std::string> config;
@@ -27,6 +39,7 @@ struct Options {
   std::optional<int> domain;
   std::optional<std::string> partition;
   ServiceOptions service;
+  std::string state_folder = default_state_folder();
   std::string log_level = "info";
 };
 
@@ -42,6 +55,8 @@ void declare(CLI::App& app, Options& options) {
                  "discovery tag of all units, instead of the unit files'");
   app.add_option("--journal", options.service.journal,
                  "append every record to this file as JSON lines");
+  app.add_option("--state-dir", options.state_folder,
+                 "keep the reports of diagnosed alarms in this folder (default: $STATE_DIRECTORY)");
   app.add_flag("--dds-from-environment", options.service.use_environment,
                "take the DDS settings from CYCLONEDDS_URI instead of the unit files");
   app.add_option("--log-level", options.log_level, "what to log")
@@ -82,9 +97,22 @@ int run(const Options& options) {
   StopSignal stop;  // before any thread
   set_up_logging(options.log_level);
   spdlog::info("{} starts", version_text("mpmd"));
-  MonitorService service(loaded.units, options.service);
-  service.run([&] { return stop.received(); });
+  const ReportStore store(options.state_folder);
+  DiagnosisWorker worker([&store](const DiagnosisJob& job, const DiagnosisWorker::GoOn& go_on) {
+    return make_diagnosis(job, store, go_on);
+  });
+  {
+    MonitorService service(loaded.units, options.service, worker);
+    service.run([&] { return stop.received(); });
+  }
+  const bool idle = worker.stop(kPatience);
   spdlog::info("stopped");
+  if (!idle) {
+    // On a busy machine a thread of low priority may take long to hear of it. Nothing that it does
+    // matters any more, but what it uses must stay.
+    spdlog::default_logger()->flush();
+    std::_Exit(kDone);
+  }
   return kDone;
 }
 

@@ -10,8 +10,10 @@ Bus::Bus(const idl::DomainOptions& options)
       layouts_(participant_, idl::kLayoutTopic, idl::layout_qos()),
       outputs_(participant_) {}
 
-void Bus::add_unit(const config::UnitConfig& unit, Journal* journal, Clock::time_point now) {
-  units_.emplace(unit.unit, std::make_unique<UnitPipeline>(unit, outputs_, journal, now));
+UnitPipeline& Bus::add_unit(const config::UnitConfig& unit, Journal* journal,
+                            Clock::time_point now) {
+  auto pipeline = std::make_unique<UnitPipeline>(unit, outputs_, journal, now);
+  return *(units_[unit.unit] = std::move(pipeline));
 }
 
 void Bus::attach_to(idl::WaitSet& wait_set) const {

@@ -20,7 +20,7 @@ class Bus {
 
   explicit Bus(const idl::DomainOptions& options);
 
-  void add_unit(const config::UnitConfig& unit, Journal* journal, Clock::time_point now);
+  UnitPipeline& add_unit(const config::UnitConfig& unit, Journal* journal, Clock::time_point now);
   void attach_to(idl::WaitSet& wait_set) const;
   /// Takes one batch of each topic.
   void poll(Clock::time_point now);

@@ -15,10 +15,11 @@ constexpr std::chrono::seconds kStatusPeriod{1};
 }  // namespace
 
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
-                               const ServiceOptions& options) {
+                               const ServiceOptions& options, DiagnosisWorker& worker) {
   if (!options.journal.empty()) journal_.emplace(options.journal);
   const Clock::time_point now = Clock::now();
   std::map<std::string, Bus*> bus_of;  // by its settings
+  int asker = 0;
   for (const config::UnitConfig& unit : units) {
     idl::DomainOptions domain = domain_options(unit.dds);
     domain.use_environment = options.use_environment;
@@ -27,7 +28,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       bus = buses_.emplace_back(std::make_unique<Bus>(domain)).get();
       bus->attach_to(wait_set_);
     }
-    bus->add_unit(unit, journal_ ? &*journal_ : nullptr, now);
+    bus->add_unit(unit, journal_ ? &*journal_ : nullptr, now).diagnose_with(worker, asker++);
     spdlog::info("{}: watching {} channels on domain {}{}", unit.unit,
                  unit.counts().inputs() * unit.counts().cv, unit.dds.domain,
                  unit.dds.partition.empty() ? "" : ", partition " + unit.dds.partition);

@@ -17,12 +17,14 @@ struct ServiceOptions {
   bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
 };
 
-/// All units of a daemon and the loop that drives them. Everything happens in the thread that
-/// calls `run`; Cyclone's own threads only fill the readers.
+/// All units of a daemon and the loop that drives them. Everything but the diagnoses happens in the
+/// thread that calls `run`; Cyclone's own threads only fill the readers.
 class MonitorService {
  public:
-  /// Throws if DDS or the journal cannot be set up.
-  MonitorService(const std::vector<config::UnitConfig>& units, const ServiceOptions& options);
+  /// `worker` diagnoses alarms and must outlive the service. Throws if DDS or the journal cannot be
+  /// set up.
+  MonitorService(const std::vector<config::UnitConfig>& units, const ServiceOptions& options,
+                 DiagnosisWorker& worker);
 
   /// Until `stop()` says so, which is asked at least five times a second.
   void run(const std::function<bool()>& stop);

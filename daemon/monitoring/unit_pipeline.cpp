@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
+
+#include "core/identify/diagnosis.hpp"
 
 namespace mpm::daemon {
 namespace {
@@ -68,6 +71,17 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const OutputWriters
   publish_initial_alarms();
 }
 
+void UnitPipeline::diagnose_with(DiagnosisWorker& worker, int asker) {
+  if (config_.monitor.diagnosis_samples == 0 || !config_.has_model()) return;
+  const auto needed = needed_samples(config_.model);
+  if (config_.monitor.diagnosis_samples < needed)
+    spdlog::warn(
+        "{}: no alarm will be diagnosed: that takes {} samples, and diagnosis_samples is {}",
+        config_.unit, needed, config_.monitor.diagnosis_samples);
+  else
+    diagnosis_.emplace(std::make_shared<const config::UnitConfig>(config_), worker, asker);
+}
+
 // Tells "no alarm" from "no monitor", and clears what a daemon before this one left behind.
 void UnitPipeline::publish_initial_alarms() {
   for (const ChannelRecord& channel : monitor_.channels()) {
@@ -126,6 +140,32 @@ void UnitPipeline::on_frame(const Frame& frame) {
   if (journal_ != nullptr && !journal_->write(monitor_.channels(), monitor_.alarms()) &&
       journal_limit_.admit(now_))
     spdlog::error("{}: cannot write the journal: {}", config_.unit, std::strerror(errno));
+  // Last, when everybody has been told: it may copy the unit's samples.
+  if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
+}
+
+// Not into the journal: when a diagnosis is through depends on the machine, not on the data.
+void UnitPipeline::publish_diagnosis() {
+  const std::optional<DiagnosisOutcome> outcome = diagnosis_->poll();
+  if (!outcome) return;
+  if (!outcome->problem.empty()) {
+    spdlog::warn("{}: the alarms could not be diagnosed: {}", config_.unit, outcome->problem);
+    return;
+  }
+  spdlog::warn("{}: diagnosed up to interval {}: {}{}", config_.unit, outcome->interval,
+               outcome->headline,
+               outcome->folder.empty() ? "" : " Report in " + outcome->folder + ".");
+  if (!outcome->file_problem.empty())
+    spdlog::error("{}: the report could not be written: {}", config_.unit, outcome->file_problem);
+  bool written = true;
+  for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
+    written = outputs_.write_state(alarm) && written;  // the alarm is as old as it was
+    alarm.interval = outcome->interval;
+    alarm.source_time_ns = outcome->time_ns;
+    written = outputs_.write_event(alarm) && written;
+  }
+  if (!written && output_limit_.admit(now_))
+    spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
 }
 
 void UnitPipeline::check_layout(const mpm_Layout& layout) {
@@ -145,6 +185,7 @@ void UnitPipeline::check_layout(const mpm_Layout& layout) {
 void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit) {
   now_ = now;
   if (aligner_.pending() && now - last_frame_ > patience_) aligner_.expire();
+  if (diagnosis_) publish_diagnosis();
   if (now < next_health_) return;
   next_health_ = now + kHealthPeriod;
   publish_health(unknown_unit);

@@ -2,11 +2,13 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "config/unit_config.hpp"
 #include "core/signal/aligner.hpp"
 #include "daemon/bus/output_writers.hpp"
+#include "daemon/live/live_diagnosis.hpp"
 #include "daemon/log/rate_limiter.hpp"
 #include "daemon/monitoring/journal.hpp"
 #include "daemon/report/unit_monitor.hpp"
@@ -14,7 +16,8 @@
 
 namespace mpm::daemon {
 
-/// One unit from samples to outputs: aligner -> monitor -> records -> DDS and journal.
+/// One unit from samples to outputs: aligner -> monitor -> records -> DDS and journal; and what its
+/// alarms are diagnosed to come from.
 class UnitPipeline {
  public:
   using Clock = std::chrono::steady_clock;
@@ -22,6 +25,8 @@ class UnitPipeline {
   /// `journal` may be null. The others must outlive the pipeline.
   UnitPipeline(const config::UnitConfig& config, const OutputWriters& outputs, Journal* journal,
                Clock::time_point now);
+  /// From now on alarms are diagnosed, if the unit file wants that. `asker`: no other unit's.
+  void diagnose_with(DiagnosisWorker& worker, int asker);
   UnitPipeline(const UnitPipeline&) = delete;  // the aligner's sink points here
   UnitPipeline& operator=(const UnitPipeline&) = delete;
 
@@ -36,6 +41,7 @@ class UnitPipeline {
  private:
   void on_frame(const Frame& frame);
   void publish_initial_alarms();
+  void publish_diagnosis();
   void publish_health(std::uint64_t unknown_unit);
   void judge_health();
   void report_refused(const idl::SampleView& sample);
@@ -45,6 +51,7 @@ class UnitPipeline {
   Journal* journal_;
   UnitMonitor monitor_;
   Aligner aligner_;
+  std::optional<LiveDiagnosis> diagnosis_;
   Clock::duration patience_;  // without a frame while something waits
   Clock::duration silence_;   // without any sample until that is a failure
   Clock::time_point now_;     // of the event loop
