@@ -173,7 +173,6 @@ int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
     std::cerr << "mpm: stopped; nothing was written\n";
     return 2;
   }
-  write_extended(run, folder);
   const bool repaired = !run.diagnosis.findings.empty();
   const std::string failure =
       loops && repaired ? add_closed_loop(*loops, stop, run) : std::string();

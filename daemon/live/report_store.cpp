@@ -73,7 +73,6 @@ std::string ReportStore::write(const DiagnosisRun& run, std::int64_t alarm_time_
   const fs::path unit = fs::path(folder_) / unit_folder(run.unit.unit);
   const fs::path place = unit / time_folder(alarm_time_ns);
   io::OutputFolder folder(place.string());
-  write_extended(run, folder);
   write_reports(run, folder);
   folder.commit();
   fs::last_write_time(place, fs::file_time_type::clock::now());  // renaming within may not tell

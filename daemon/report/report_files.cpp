@@ -7,11 +7,8 @@
 
 namespace mpm::daemon {
 
-void write_extended(const DiagnosisRun& run, io::OutputFolder& folder) {
-  folder.write("extended.yaml", extended_yaml(run));
-}
-
 std::string write_reports(const DiagnosisRun& run, io::OutputFolder& folder) {
+  folder.write("extended.yaml", extended_yaml(run));
   std::string json = to_json(run).dump(2) + "\n";
   folder.write("report.json", json);
   folder.write("report.html", page_html(page_data(run)));
