@@ -80,7 +80,7 @@ Finding to_finding(const Named& named, const Fit& fit, const Problem& problem) {
       size = {"size", size.value * length, size.low * length, size.high * length};
       finding.parameters.insert(finding.parameters.begin(), size);
       finding.onset_s = onset_s;
-    } else {
+    } else if (effect.onset > 0) {
       finding.onset_s = onset_s;
     }
   }

@@ -19,6 +19,9 @@ constexpr std::size_t kShortlist = 16;
 /// it, and the one fitted with it speaks for it by this much more than would do otherwise.
 constexpr double kWanderingNoise = -10.0;
 constexpr double kSettledNoise = 12.0;
+/// An offset is one beyond so many s.d. of the noise, and of its own estimate.
+constexpr double kOffsetInNoise = 1.5;
+constexpr double kOffsetInSd = 6.0;
 /// 2 ln odds of what the data themselves show.
 constexpr double kCertain = 1000.0;
 /// 2 ln of the prior odds against any one kind of cause: errors of channels are what one expects.
@@ -107,6 +110,7 @@ class Search {
       named_[i].effect = result.fit.effects[i];
       result.named.push_back(named_[i]);
     }
+    name_levels(result);
     return result;
   }
 
@@ -351,6 +355,33 @@ class Search {
     accepted_.push_back(best.candidate);
     last_ = best.fit;
     merge();
+  }
+
+  /// A level that is off from the first row on by far more than the noise moves it is no small
+  /// error any more, but a sensor's offset or a disturbance as old as the data.
+  void name_levels(SearchResult& result) const {
+    for (CvFit& fit : result.fit.cvs) {
+      const CvData& data = problem_.data(fit.cv);
+      const double level = data.nuisances(0, 0) * fit.beta(0);
+      const double noise = std::sqrt(fit.residual.squaredNorm() / std::max(1.0, data.known.sum()));
+      const double memory = std::max(0.02, 1.0 - fit.noise.coefficients.sum());
+      const double sd = std::sqrt(fit.variance / std::max(1.0, data.rows)) / memory;
+      if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd))
+        continue;
+      Named named;
+      named.effect.subject = {Cause::kOutputDisturbance, fit.cv, -1, -1, "step"};
+      named.effect.coordinates = {{"size", level, 0.0, noise, 0.01 * noise, -1e300, 1e300}};
+      named.evidence = level * level / (sd * sd);
+      named.confidence = 0.99;
+      const Index old = result.fit.covariance.rows();
+      result.fit.covariance.conservativeResize(old + 1, old + 1);
+      result.fit.covariance.col(old).setZero();
+      result.fit.covariance.row(old).setZero();
+      result.fit.covariance(old, old) = sd * sd;
+      result.fit.effects.push_back(named.effect);
+      result.named.push_back(std::move(named));
+      fit.beta(0) = 0.0;
+    }
   }
 
   /// Errors of one channel found one after the other are one finding.
