@@ -104,6 +104,7 @@ class Search {
       if (!report() || !find_one()) break;
     }
     drop_superfluous();
+    undo_cancelled_scales();
     SearchResult result;
     result.fit = everything();
     for (std::size_t i = 0; i < accepted_.size(); ++i) {
@@ -355,6 +356,50 @@ class Search {
     accepted_.push_back(best.candidate);
     last_ = best.fit;
     merge();
+  }
+
+  /// A scale of a whole input together with a gain that takes it back in one CV says in two
+  /// findings what gains of the other CVs say too, with fewer channels wrong: those are meant.
+  void undo_cancelled_scales() {
+    for (std::size_t w = 0; w < accepted_.size(); ++w) {
+      if (accepted_[w].subject.cause != Cause::kInputScale) continue;
+      for (std::size_t g = 0; g < accepted_.size(); ++g) {
+        const Subject gain = accepted_[g].subject;
+        if (gain.cause != Cause::kGain || gain.input != accepted_[w].subject.input ||
+            accepted_[g].onset != accepted_[w].onset)
+          continue;
+        const double ratio = accepted_[w].value("gain_ratio", 1.0);
+        const double left = ratio * accepted_[g].value("gain_ratio", 1.0) - 1.0;
+        std::vector<int> others = touched(accepted_[w], problem_);
+        std::erase(others, gain.cv);
+        if (std::abs(left) > settings_.materiality.gain || others.empty() || others.size() > 2)
+          continue;
+        const std::vector<Effect> old_effects = accepted_;
+        const std::vector<Named> old_named = named_;
+        const double old_cost = everything().cost;
+        Effect effect = accepted_[g];
+        Named named = named_[w];
+        for (const std::size_t i : {std::max(w, g), std::min(w, g)}) {
+          accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(i));
+          named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(i));
+        }
+        for (const int cv : others) {
+          effect.subject.cv = cv;
+          effect.coordinates[0].value = ratio;
+          accepted_.push_back(effect);
+          named_.push_back(named);
+        }
+        const double worse = everything().cost - old_cost;
+        if (worse > settings_.decisive) {
+          accepted_ = old_effects;
+          named_ = old_named;
+          continue;
+        }
+        for (std::size_t i = named_.size() - others.size(); i < named_.size(); ++i)
+          named_[i].rivals = {{old_effects[w].subject, std::max(0.0, -worse), true}};
+        return;
+      }
+    }
   }
 
   /// A level that is off from the first row on by far more than the noise moves it is no small
