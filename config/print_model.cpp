@@ -46,7 +46,8 @@ std::string block_text(const Deadband& block) {
   return "{deadband: " + yaml_text(block.width) + "}";
 }
 std::string block_text(const Stiction& block) {
-  return "{stiction: {band: " + yaml_text(block.band) + ", jump: " + yaml_text(block.jump) + "}}";
+  return "{stiction: {band: " + yaml_text(block.band) + ", jump: " + yaml_text(block.jump) +
+         (block.slips_once ? ", slips_once: true}}" : "}}");
 }
 std::string block_text(const Offset& block) { return "{offset: " + yaml_text(block.bias) + "}"; }
 std::string block_text(const Scale& block) { return "{scale: " + yaml_text(block.factor) + "}"; }

@@ -93,6 +93,8 @@ void edit(StepResponse& response, const ChannelError& error, double sample_time_
   }
 }
 
+}  // namespace
+
 ModelSpec alone(const ChannelSpec& channel, double sample_time_s) {
   ModelSpec model;
   model.sample_time_s = sample_time_s;
@@ -105,8 +107,6 @@ ModelSpec alone(const ChannelSpec& channel, double sample_time_s) {
   model.input_origin = model.output_origin = Eigen::VectorXd::Zero(1);
   return model;
 }
-
-}  // namespace
 
 ChannelSpec edited(const ChannelSpec& channel, const ChannelError& error, double sample_time_s) {
   ChannelSpec result = channel;

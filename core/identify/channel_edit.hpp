@@ -23,6 +23,9 @@ struct ChannelError {
 /// Its slowest time constant (s), at least one sample time.
 [[nodiscard]] double slowest_time_constant_s(const ChannelSpec& channel, double sample_time_s);
 
+/// A model of this channel alone, without its input block, in deviations (all origins 0).
+[[nodiscard]] ModelSpec alone(const ChannelSpec& channel, double sample_time_s);
+
 /// `model` with every channel on its own: a state space becomes step responses.
 [[nodiscard]] ModelSpec in_channels(const ModelSpec& model);
 

@@ -126,6 +126,18 @@ Explained explain_with(const NoiseModel& noise, const ModelSpec& model, int mode
   return explained;
 }
 
+/// A CV's free run that begins where the measurements do.
+VectorXd free_run(Simulator& simulator, const ModelSpec& model, int cv) {
+  return start_on_data(simulator.cv(model, cv), simulator.recording().cvs.col(cv),
+                       decay_times(model, cv));
+}
+
+MatrixXd free_runs(Simulator& simulator, const ModelSpec& model) {
+  MatrixXd result(simulator.recording().samples(), model.cv_count);
+  for (int cv = 0; cv < model.cv_count; ++cv) result.col(cv) = free_run(simulator, model, cv);
+  return result;
+}
+
 /// Sum over the CVs of the log of the free run's error on the rows from `first` on.
 double log_error(const Explained& explained, const Recording& recording, Index first) {
   const std::vector<bool> all(explained.found.named.size(), true);
@@ -134,9 +146,8 @@ double log_error(const Explained& explained, const Recording& recording, Index f
   Simulator simulator(recording);
   double sum = 0.0;
   for (int cv = 0; cv < model.cv_count; ++cv) {
-    const VectorXd simulated =
-        start_on_data(simulator.cv(model, cv), recording.cvs.col(cv), decay_times(model, cv));
-    const VectorXd errors = (recording.cvs.col(cv) - simulated).tail(recording.samples() - first);
+    const VectorXd errors =
+        (recording.cvs.col(cv) - free_run(simulator, model, cv)).tail(recording.samples() - first);
     const double error = mean_of_finite(errors.cwiseAbs2());
     sum += std::isfinite(error) ? std::log(error) : 1e6;
   }
@@ -182,16 +193,8 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
   const auto block = static_cast<Index>(2.0 * slowest_samples(model)) + 10;
   std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
   const auto measured = [&](int cv) { return unseen.cvs.col(cv).tail(rows); };
-  const auto started = [&](const ModelSpec& spec, int cv) -> VectorXd {
-    return start_on_data(simulator.cv(spec, cv), unseen.cvs.col(cv), decay_times(spec, cv));
-  };
   const auto simulated = [&](const ModelSpec& spec, int cv) -> VectorXd {
-    return started(spec, cv).tail(rows);
-  };
-  const auto all = [&](const ModelSpec& spec) {
-    MatrixXd result(unseen.samples(), spec.cv_count);
-    for (int cv = 0; cv < spec.cv_count; ++cv) result.col(cv) = started(spec, cv);
-    return result;
+    return free_run(simulator, spec, cv).tail(rows);
   };
 
   std::vector<std::size_t> order(found.named.size());
@@ -218,14 +221,11 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
     const CvScore gain = score_errors(old_errors, new_errors, block, settings.seed + i);
     in[i] = gain.gain_low > 0.0;
     if (in[i]) continue;
-    const Subject& subject = found.named[i].effect.subject;
-    const auto same = std::find_if(
-        diagnosis.findings.begin(), diagnosis.findings.end(), [&](const Finding& finding) {
-          const Subject& s = finding.subject;
-          return s.cause == subject.cause && s.cv == subject.cv && s.input == subject.input &&
-                 s.aux == subject.aux && s.kind == subject.kind &&
-                 finding.evidence == found.named[i].evidence;
-        });
+    const auto same = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                                   [&](const Finding& finding) {
+                                     return finding.subject == found.named[i].effect.subject &&
+                                            finding.evidence == found.named[i].evidence;
+                                   });
     if (same == diagnosis.findings.end()) continue;
     same->repaired = false;
     if (gain.rmse_after < gain.rmse_before) continue;
@@ -234,7 +234,7 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
   }
 
   const bool any = std::find(in.begin(), in.end(), true) != in.end();
-  const MatrixXd before = all(model);
+  const MatrixXd before = free_runs(simulator, model);
   ModelSpec extended = any ? extend(problem, found, in, keep) : model;
   // The small corrections that came with the findings have to carry over too.
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -243,7 +243,7 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
     if (gain.rmse_after > gain.rmse_before) keep[static_cast<std::size_t>(cv)] = false;
   }
   if (any) extended = extend(problem, found, in, keep);
-  const MatrixXd after = all(extended);
+  const MatrixXd after = free_runs(simulator, extended);
   for (int cv = 0; cv < model.cv_count; ++cv) {
     CvScore result = score(measured(cv), before.col(cv).tail(rows), after.col(cv).tail(rows), block,
                            settings.seed + static_cast<std::uint64_t>(cv));
@@ -256,8 +256,8 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
     diagnosis.validation_before = before;
     diagnosis.validation_after = after;
     Simulator first(recording);
-    diagnosis.before = first.all(model);
-    diagnosis.after = first.all(extended);
+    diagnosis.before = free_runs(first, model);
+    diagnosis.after = free_runs(first, extended);
   } else {
     diagnosis.before = before;
     diagnosis.after = after;
@@ -287,8 +287,8 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
   Problem& problem = *explained.problem;
   const SearchResult& found = explained.found;
 
-  for (const Named& named : found.named)
-    diagnosis.findings.push_back(to_finding(named, found.fit, problem));
+  for (std::size_t i = 0; i < found.named.size(); ++i)
+    diagnosis.findings.push_back(to_finding(found, i, problem));
   for (const CvFit& fit : found.fit.cvs) {
     const std::optional<NoiseChange> change = find_noise_change(fit, problem.data(fit.cv));
     if (!change) continue;
@@ -311,9 +311,16 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
     return diagnosis;
   }
   diagnosis.verdict = DiagnosisVerdict::kMatch;
-  for (const ChannelEstimate& estimate : diagnosis.channels)
-    if (estimate.gain_ratio.high - estimate.gain_ratio.low > 2.0 * 1.96 * kVisible)
-      diagnosis.verdict = DiagnosisVerdict::kUndetermined;
+  const auto unseen = std::count_if(
+      diagnosis.channels.begin(), diagnosis.channels.end(), [](const ChannelEstimate& estimate) {
+        return estimate.gain_ratio.high - estimate.gain_ratio.low > 2.0 * 1.96 * kVisible;
+      });
+  if (unseen > 0) {
+    diagnosis.verdict = DiagnosisVerdict::kUndetermined;
+    diagnosis.reason = "the inputs move too little beside the noise: the gains of " +
+                       std::to_string(unseen) + " of " + std::to_string(diagnosis.channels.size()) +
+                       " channels are not known to within 25 %";
+  }
   return diagnosis;
 }
 

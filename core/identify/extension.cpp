@@ -34,7 +34,9 @@ Parameter shown(const Coordinate& c, double sd, double sample_time_s) {
 
 }  // namespace
 
-Finding to_finding(const Named& named, const Fit& fit, const Problem& problem) {
+Finding to_finding(const SearchResult& found, std::size_t index, const Problem& problem) {
+  const Named& named = found.named[index];
+  const Fit& fit = found.fit;
   Finding finding;
   const Effect& effect = named.effect;
   finding.subject = effect.subject;
@@ -42,19 +44,10 @@ Finding to_finding(const Named& named, const Fit& fit, const Problem& problem) {
   finding.confidence = named.confidence;
   finding.rivals = named.rivals;
   const double sample_time = problem.surroundings().sample_time_s;
-  std::size_t place = 0;
-  while (place < fit.effects.size() && &fit.effects[place] != &effect) {
-    const Subject &a = fit.effects[place].subject, &b = effect.subject;
-    if (a.cause == b.cause && a.cv == b.cv && a.input == b.input && a.aux == b.aux &&
-        a.kind == b.kind && fit.effects[place].onset == effect.onset)
-      break;
-    ++place;
-  }
-  const Index first = first_coordinate(fit, place);
+  const Index first = first_coordinate(fit, index);
   for (std::size_t i = 0; i < effect.coordinates.size(); ++i) {
     const Index at = first + static_cast<Index>(i);
-    const double sd =
-        at < fit.covariance.rows() ? std::sqrt(std::max(0.0, fit.covariance(at, at))) : 0.0;
+    const double sd = std::sqrt(std::max(0.0, fit.covariance(at, at)));
     finding.parameters.push_back(shown(effect.coordinates[i], sd, sample_time));
   }
   const double onset_s =

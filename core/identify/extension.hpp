@@ -8,8 +8,9 @@
 
 namespace mpm {
 
-/// What was named, in the terms of the contract.
-[[nodiscard]] Finding to_finding(const Named& named, const Fit& fit, const Problem& problem);
+/// The cause named at `index`, in the terms of the contract.
+[[nodiscard]] Finding to_finding(const SearchResult& found, std::size_t index,
+                                 const Problem& problem);
 
 /// The problem's model with what was found: the effects, and for each CV that they touch the small
 /// channel errors and the level that were fitted beside them. A CV with `keep` false stays as it

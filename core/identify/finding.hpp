@@ -43,6 +43,8 @@ struct Subject {
   int input = -1;    ///< MV or DV
   int aux = -1;      ///< the measured signal that the model leaves out
   std::string kind;  ///< of a nonlinearity, shape of a disturbance, term of a state; else empty
+
+  [[nodiscard]] bool operator==(const Subject&) const = default;
 };
 
 /// Another explanation of the same difference.

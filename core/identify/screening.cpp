@@ -49,11 +49,9 @@ double Screening::score(const Effect& candidate) {
   // columns are in prior units.
   MatrixXd information = MatrixXd::Identity(count, count);
   VectorXd right(count);
-  double prior = 0.0;
   for (Index i = 0; i < count; ++i) {
     const Coordinate& c = candidate.coordinates[static_cast<std::size_t>(i)];
     right(i) = -(c.value - c.prior_mean) / c.prior_sd;
-    prior += right(i) * right(i);
   }
   std::vector<Effect> with = accepted_;
   with.push_back(candidate);

@@ -24,6 +24,7 @@ constexpr double kOffsetInNoise = 1.5;
 constexpr double kOffsetInSd = 6.0;
 /// 2 ln odds of what the data themselves show.
 constexpr double kCertain = 1000.0;
+
 /// 2 ln of the prior odds against any one kind of cause: errors of channels are what one expects.
 double rarity(Cause cause) {
   switch (cause) {
@@ -39,11 +40,6 @@ double rarity(Cause cause) {
     default:
       return 2.0 * std::log(12.0);
   }
-}
-
-bool same_subject(const Subject& a, const Subject& b) {
-  return a.cause == b.cause && a.cv == b.cv && a.input == b.input && a.aux == b.aux &&
-         a.kind == b.kind;
 }
 
 /// Slow and without an edge.
@@ -65,8 +61,15 @@ double independence(const Fit& fit) {
   return correlation < 0.1 ? 1.0 : (1.0 - correlation) / (1.0 + correlation);
 }
 
+/// 2 ln of the odds for an effect: a fit with it against one without it on the same CVs.
+double odds_for(const Effect& effect, const Fit& with, const Fit& without) {
+  if (!std::isfinite(with.cost)) return -1e300;
+  return independence(with) * (without.misfit - with.misfit) + without.complexity -
+         with.complexity - effect.search_cost - rarity(effect.subject.cause);
+}
+
 bool same_variant(const Effect& a, const Effect& b) {
-  if (!same_subject(a.subject, b.subject) || a.coordinates.size() != b.coordinates.size() ||
+  if (!(a.subject == b.subject) || a.coordinates.size() != b.coordinates.size() ||
       (a.onset > 0) != (b.onset > 0) || a.slips_once != b.slips_once)
     return false;
   for (std::size_t i = 0; i < a.coordinates.size(); ++i)
@@ -151,9 +154,7 @@ class Search {
     trial.fit = problem_.fit(std::move(effects), first_free, cvs, iterations);
     trial.candidate = trial.fit.effects.back();
     const Fit& null = without(cvs);
-    trial.odds = independence(trial.fit) * (null.misfit - trial.fit.misfit) + null.complexity -
-                 trial.fit.complexity - candidate.search_cost - rarity(candidate.subject.cause);
-    if (!std::isfinite(trial.fit.cost)) trial.odds = -1e300;
+    trial.odds = odds_for(candidate, trial.fit, null);
     const Cause cause = candidate.subject.cause;
     if (may_pass_for_noise(candidate.subject)) {
       // What is slow can hide in a noise model that is re-estimated without it: it then takes the
@@ -336,10 +337,9 @@ class Search {
     double total = 1.0 + std::exp(-0.5 * best.odds);
     for (std::size_t i = 1; i < trials.size(); ++i) {
       const Subject& subject = trials[i].candidate.subject;
-      if (same_subject(subject, best.candidate.subject)) continue;
-      const bool known = std::any_of(named.rivals.begin(), named.rivals.end(), [&](const Rival& r) {
-        return same_subject(r.subject, subject);
-      });
+      if (subject == best.candidate.subject) continue;
+      const bool known = std::any_of(named.rivals.begin(), named.rivals.end(),
+                                     [&](const Rival& r) { return r.subject == subject; });
       if (known) continue;
       // Odds are against the same CVs without either, whichever CVs a rival touches.
       const double worse = best.odds - trials[i].odds;
@@ -478,8 +478,7 @@ class Search {
         fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
         std::vector<int> cvs(static_cast<std::size_t>(problem_.model().cv_count));
         std::iota(cvs.begin(), cvs.end(), 0);
-        const double odds =
-            problem_.fit(fewer, 0, cvs, 8).cost - all.cost - rarity(all.effects[i].subject.cause);
+        const double odds = odds_for(all.effects[i], all, problem_.fit(fewer, 0, cvs, 8));
         named_[i].evidence = odds;
         const bool slow = may_pass_for_noise(all.effects[i].subject);
         if (odds >= (slow ? kWanderingNoise : settings_.decisive)) continue;

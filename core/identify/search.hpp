@@ -29,7 +29,7 @@ struct Named {
 };
 
 struct SearchResult {
-  std::vector<Named> named;  ///< most evidence first; effects as in `fit`
+  std::vector<Named> named;  ///< in the order of the effects in `fit`, with their fitted numbers
   Fit fit;                   ///< all of them together, all CVs
 };
 

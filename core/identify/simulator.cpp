@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/identify/channel_edit.hpp"
 #include "core/identify/initial_state.hpp"
 #include "core/model/disturbance.hpp"
 #include "core/model/linear_model.hpp"
@@ -87,14 +88,7 @@ Simulator::Simulator(const Recording& recording)
 
 VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
                              bool from_origin) const {
-  ModelSpec one;
-  one.sample_time_s = model.sample_time_s;
-  one.input_count = one.cv_count = 1;
-  one.channels = {spec};
-  one.channels[0].cv = one.channels[0].input = 0;
-  one.channels[0].input_block.reset();
-  one.input_blocks.resize(1);
-  one.output_blocks.resize(1);
+  ModelSpec one = alone(spec, model.sample_time_s);
   one.input_origin = VectorXd::Constant(1, model.input_origin(spec.input));
   one.output_origin = VectorXd::Constant(1, model.output_origin(spec.cv));
   if (const StateTerm* term = state_term(model, spec)) one.state_terms = {{0, 0, term->block}};
@@ -190,12 +184,6 @@ VectorXd Simulator::cv(const ModelSpec& model, int cv) {
   const std::optional<OutputBlock>& block = model.output_blocks[static_cast<std::size_t>(cv)];
   for (Index k = 0; k < samples; ++k) sum(k) = apply_output_block(block, origin, sum(k));
   return sum;
-}
-
-Eigen::MatrixXd Simulator::all(const ModelSpec& model) {
-  Eigen::MatrixXd result(recording_->samples(), model.cv_count);
-  for (int j = 0; j < model.cv_count; ++j) result.col(j) = cv(model, j);
-  return result;
 }
 
 ModelSpec with_aux_inputs(const ModelSpec& model, const Recording& recording) {

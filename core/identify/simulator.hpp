@@ -23,8 +23,6 @@ class Simulator {
   /// what was first measured. (The first row's inputs may be moves that nothing measured shows
   /// yet.)
   [[nodiscard]] Eigen::VectorXd cv(const ModelSpec& model, int cv);
-  /// All CVs, samples x CVs.
-  [[nodiscard]] Eigen::MatrixXd all(const ModelSpec& model);
 
   [[nodiscard]] const Recording& recording() const { return *recording_; }
 

@@ -46,6 +46,7 @@ void check_full(const UnitConfig& config) {
         std::vector<double>{1, 0.25});
   CHECK(std::get<Saturation>(model.channels[2].input_block.value()).high == 60);
   CHECK(std::get<Stiction>(model.channels[3].input_block.value()).jump == 1);
+  CHECK(std::get<Stiction>(model.channels[3].input_block.value()).slips_once);
   CHECK_FALSE(model.channels[4].input_block.has_value());
 
   REQUIRE(model.state_terms.size() == 3);
