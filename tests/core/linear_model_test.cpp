@@ -1,4 +1,5 @@
 #include "core/model/linear_model.hpp"
+#include "core/model/static_blocks.hpp"
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
@@ -358,6 +359,19 @@ TEST_CASE("an input held for ever gives the steady output and keeps it") {
   for (int k = 0; k < 100; ++k) {
     model.advance(input);
     CHECK((model.output() - steady).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+// By hand from the two limits (He et al. 2007): static (S+J)/2 = 1.5, moving (S-J)/2 = 0.5.
+TEST_CASE("a valve that slips once sticks anew after every slip") {
+  mpm::InputElement once(mpm::Stiction{2.0, 1.0, true}, 0.0);
+  mpm::InputElement moves_on(mpm::Stiction{2.0, 1.0, false}, 0.0);
+  const std::vector<double> command = {1.0, 1.6, 2.0, 2.5, 2.7, 1.5};
+  const std::vector<double> slips = {0.0, 1.1, 1.1, 1.1, 2.2, 2.2};
+  const std::vector<double> follows = {0.0, 1.1, 1.5, 2.0, 2.2, 2.2};
+  for (std::size_t k = 0; k < command.size(); ++k) {
+    CHECK(once.apply(command[k]) == Approx(slips[k]));
+    CHECK(moves_on.apply(command[k]) == Approx(follows[k]));
   }
 }
 
