@@ -12,6 +12,7 @@
 #include "core/identify/problem.hpp"
 #include "core/identify/search.hpp"
 #include "core/identify/validation.hpp"
+#include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
 namespace {
@@ -178,6 +179,29 @@ Explained explain(const ModelSpec& model, int model_inputs, const Recording& rec
   return explain_with(bounded, model, model_inputs, recording, settings);
 }
 
+/// What was seen and has no name: how likely by chance, and how much of the residual it makes up.
+Unexplained to_unexplained(const SearchResult& found, std::size_t index, Problem& problem) {
+  const Effect& effect = found.named[index].effect;
+  Unexplained left;
+  left.cv = effect.subject.cv;
+  left.input = effect.subject.input;
+  const auto of_cv = [&](const CvFit& fit) { return fit.cv == left.cv; };
+  const auto fit = std::find_if(found.fit.cvs.begin(), found.fit.cvs.end(), of_cv);
+  std::vector<Effect> others = found.fit.effects;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(index));
+  const VectorXd change =
+      problem.simulate(found.fit.effects, left.cv) - problem.simulate(others, left.cv);
+  const CvData& data = problem.data(left.cv);
+  const double rows = std::max(1.0, data.known.sum());
+  const double mean = change.dot(data.known) / rows;
+  const double made = ((change.array() - mean).square() * data.known.array()).sum();
+  left.share = made / (made + fit->residual.squaredNorm());
+  // Odds on the scale of a log likelihood ratio, with all that it was picked from paid for.
+  const auto numbers = static_cast<double>(effect.coordinates.size());
+  left.p_value = f_upper_tail(std::max(0.0, found.named[index].evidence) / numbers, numbers, rows);
+  return left;
+}
+
 /// Which effects carry over to samples that no fit has seen, and what they gain there.
 ///
 /// One effect after the other, weakest first, is left out of the extension: on the CVs that it
@@ -203,9 +227,11 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
     return found.named[a].evidence < found.named[b].evidence;
   });
   std::vector<bool> in(found.named.size(), true);
+  for (std::size_t i = 0; i < in.size(); ++i)
+    in[i] = found.named[i].effect.subject.cause != Cause::kUnnamed;
   for (const std::size_t i : order) {
     settings.progress(kSearched);
-    if (found.named[i].effect.certain) continue;
+    if (found.named[i].effect.certain || !in[i]) continue;
     const ModelSpec with = extend(problem, found, in, keep);
     in[i] = false;
     const ModelSpec without = extend(problem, found, in, keep);
@@ -248,7 +274,9 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
     CvScore result = score(measured(cv), before.col(cv).tail(rows), after.col(cv).tail(rows), block,
                            settings.seed + static_cast<std::uint64_t>(cv));
     for (std::size_t i = 0; i < in.size(); ++i)
-      if (!in[i] && touches(found.named[i].effect, model, cv)) result.refused = true;
+      if (!in[i] && found.named[i].effect.subject.cause != Cause::kUnnamed &&
+          touches(found.named[i].effect, model, cv))
+        result.refused = true;
     diagnosis.scores.push_back(result);
   }
   if (any) diagnosis.extended = finish(extended, base, diagnosis.new_inputs);
@@ -288,7 +316,10 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
   const SearchResult& found = explained.found;
 
   for (std::size_t i = 0; i < found.named.size(); ++i)
-    diagnosis.findings.push_back(to_finding(found, i, problem));
+    if (found.named[i].effect.subject.cause == Cause::kUnnamed)
+      diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
+    else
+      diagnosis.findings.push_back(to_finding(found, i, problem));
   for (const CvFit& fit : found.fit.cvs) {
     const std::optional<NoiseChange> change = find_noise_change(fit, problem.data(fit.cv));
     if (!change) continue;
@@ -306,8 +337,10 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
 
   measure_gain(problem, found, model, base, recording, validation, settings, diagnosis);
 
-  if (!diagnosis.findings.empty()) {
+  if (!diagnosis.findings.empty() || !diagnosis.unexplained.empty()) {
     diagnosis.verdict = DiagnosisVerdict::kMismatch;
+    if (diagnosis.findings.empty())
+      diagnosis.reason = "what is wrong is none of the causes that have a name here";
     return diagnosis;
   }
   diagnosis.verdict = DiagnosisVerdict::kMatch;

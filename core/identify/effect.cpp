@@ -155,6 +155,7 @@ void apply(const Effect& effect, const Surroundings& surroundings, ModelSpec& mo
       apply_state(effect, surroundings, model);
       break;
     case Cause::kNoise:
+    case Cause::kUnnamed:
       break;
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct Effect {
   bool slips_once = false;
   /// Seen in the data themselves, whatever the model: not weighed against others.
   bool certain = false;
+  /// Of an unnamed one, samples x coordinates: what the CV does per unit of each.
+  std::shared_ptr<const Eigen::MatrixXd> shape = {};
 
   [[nodiscard]] const Coordinate* find(const std::string& name) const;
   [[nodiscard]] double value(const std::string& name, double otherwise) const;

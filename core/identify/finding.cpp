@@ -30,6 +30,8 @@ const char* name_of(Cause cause) {
       return "noise";
     case Cause::kStateNonlinearity:
       return "state_nonlinearity";
+    case Cause::kUnnamed:
+      return "unnamed";
   }
   return "";
 }

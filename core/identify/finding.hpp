@@ -21,6 +21,7 @@ enum class Cause {
   kOutputDisturbance,
   kNoise,
   kStateNonlinearity,
+  kUnnamed,  ///< something no cause above means: never in a finding
 };
 
 /// As the reports say it: `gain`, `dead_time`, ...

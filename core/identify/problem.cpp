@@ -167,7 +167,12 @@ VectorXd Problem::simulate(const std::vector<Effect>& effects, int cv) {
     if (after > 0) simulated.tail(after) += (simulator_.cv(model, cv) - before).tail(after);
     stale = false;
   }
-  return stale ? simulator_.cv(model, cv) : simulated;
+  if (stale) simulated = simulator_.cv(model, cv);
+  for (const Effect& effect : effects)
+    if (effect.shape && effect.subject.cv == cv)
+      for (std::size_t i = 0; i < effect.coordinates.size(); ++i)
+        simulated += effect.coordinates[i].value * effect.shape->col(static_cast<Index>(i));
+  return simulated;
 }
 
 VectorXd Problem::sensitivity(const std::vector<Effect>& effects, std::size_t effect,

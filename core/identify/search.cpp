@@ -7,6 +7,7 @@
 
 #include "core/identify/candidates.hpp"
 #include "core/identify/screening.hpp"
+#include "core/identify/unnamed.hpp"
 
 namespace mpm {
 namespace {
@@ -37,6 +38,8 @@ double rarity(Cause cause) {
       return 0.0;
     case Cause::kStateNonlinearity:
       return 2.0 * std::log(24.0);
+    case Cause::kUnnamed:  // a name is better than none
+      return 2.0 * std::log(1000.0);
     default:
       return 2.0 * std::log(12.0);
   }
@@ -216,9 +219,12 @@ class Search {
     for (int cv = 0; cv < problem_.model().cv_count; ++cv)
       nulls.push_back(without({cv}).cvs.front());
     std::vector<Effect> all = candidates(problem_, accepted_);
-    for (const CvFit& null : nulls)
+    for (const CvFit& null : nulls) {
       for (Effect& effect : disturbance_candidates(problem_, null))
         all.push_back(std::move(effect));
+      for (Effect& effect : unnamed_candidates(problem_, accepted_, null))
+        all.push_back(std::move(effect));
+    }
     Screening screening(problem_, accepted_, nulls);
     std::vector<double> scores;
     for (const Effect& effect : all) {

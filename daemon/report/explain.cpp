@@ -262,6 +262,8 @@ std::string cause_sentence(const DiagnosisRun& run, const Finding& finding) {
       return noise_sentence(run, finding);
     case Cause::kStateNonlinearity:
       return state_nonlinearity_sentence(run, finding);
+    case Cause::kUnnamed:
+      break;
   }
   return {};
 }
