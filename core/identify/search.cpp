@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "core/identify/candidates.hpp"
 #include "core/identify/screening.hpp"
@@ -215,7 +216,8 @@ class Search {
   }
 
   std::vector<Effect> shortlist() {
-    std::vector<CvFit> nulls;
+    std::vector<CvFit>& nulls = nulls_;
+    nulls.clear();
     for (int cv = 0; cv < problem_.model().cv_count; ++cv)
       nulls.push_back(without({cv}).cvs.front());
     std::vector<Effect> all = candidates(problem_, accepted_);
@@ -225,7 +227,7 @@ class Search {
       for (Effect& effect : unnamed_candidates(problem_, accepted_, null))
         all.push_back(std::move(effect));
     }
-    Screening screening(problem_, accepted_, nulls);
+    Screening& screening = screening_.emplace(problem_, accepted_, nulls);
     std::vector<double> scores;
     for (const Effect& effect : all) {
       report();
@@ -280,6 +282,37 @@ class Search {
     }
   }
 
+  /// How far a valve slips shows in few rows: from coarse starts the fit ends in plain play. So
+  /// where one input is best explained by play or sticking, look at all slips near its width.
+  void try_valves(std::vector<Trial>& trials) {
+    const Effect best = trials[0].candidate;
+    const bool play = best.subject.kind == "deadband";
+    if (!play && best.subject.cause != Cause::kStiction) return;
+    const auto valve = std::find_if(trials.begin(), trials.end(), [&](const Trial& trial) {
+      return trial.candidate.subject.cause == Cause::kStiction &&
+             trial.candidate.subject.input == best.subject.input;
+    });
+    if (valve == trials.end()) return;
+    const Effect like = valve->candidate;
+    const double width = best.value(play ? "width" : "band", 0.0);
+    std::vector<std::pair<double, Effect>> scored;
+    for (double factor = 0.8; factor < 1.65; factor += 0.05)
+      for (const double jump : {0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0})
+        for (const bool slips_once : {false, true}) {
+          report();
+          Effect effect = like;
+          effect.slips_once = slips_once;
+          effect.coordinates[0].value = factor * width;
+          effect.coordinates[1].value = jump * factor * width;
+          effect.coordinates[0].step = 0.05 * factor * width;
+          effect.coordinates[1].step = -0.05 * factor * width;
+          scored.emplace_back(screening_->score(effect), std::move(effect));
+        }
+    std::sort(scored.begin(), scored.end(),
+              [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (std::size_t i = 0; i < 6; ++i) trials.push_back(attempt(scored[i].second, 6));
+  }
+
   /// Play and sticking are not smooth in their widths: look around, ever closer.
   void polish(Trial& trial) {
     const Cause cause = trial.candidate.subject.cause;
@@ -311,12 +344,23 @@ class Search {
     if (trials.empty()) return false;
     const auto better = [](const Trial& a, const Trial& b) { return a.odds > b.odds; };
     std::sort(trials.begin(), trials.end(), better);
+    try_valves(trials);
+    std::sort(trials.begin(), trials.end(), better);
     for (std::size_t i = 0; i < std::min<std::size_t>(6, trials.size()); ++i) {
       if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - 60.0)
         place_onset(trials[i]);
       if (trials[i].odds > 0.5 * trials[0].odds) polish(trials[i]);
     }
     std::sort(trials.begin(), trials.end(), better);
+    for (auto& t : trials) {
+      fprintf(stderr,
+              "DBG %s cv%d in%d aux%d %s onset %ld odds %.1f settled %.1f misfit %.1f once %d:",
+              name_of(t.candidate.subject.cause), t.candidate.subject.cv, t.candidate.subject.input,
+              t.candidate.subject.aux, t.candidate.subject.kind.c_str(), (long)t.candidate.onset,
+              t.odds, t.settled_odds, t.fit.misfit, t.candidate.slips_once);
+      for (auto& c : t.candidate.coordinates) fprintf(stderr, " %s=%.4g", c.name.c_str(), c.value);
+      fprintf(stderr, "\n");
+    }
     if (trials[0].odds < settings_.decisive) return false;
 
     // Once more with rows weighed as the best explanation's innovations ask for. A shock in the
@@ -502,6 +546,8 @@ class Search {
   std::vector<Effect> accepted_;
   std::vector<Named> named_;
   std::map<std::vector<int>, Fit> without_;
+  std::vector<CvFit> nulls_;  // of this round, one per CV; what the screening looks at
+  std::optional<Screening> screening_;
   Fit last_;
 };
 
