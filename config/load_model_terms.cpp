@@ -85,7 +85,7 @@ std::vector<std::string> own_keys(DisturbanceShape shape) {
     case DisturbanceShape::kDrift:
       return {"until"};
     case DisturbanceShape::kPeriodic:
-      return {"period"};
+      return {"period", "wave"};
   }
   return {};
 }
@@ -97,7 +97,7 @@ std::optional<DisturbanceShape> read_shape(const Map& map) {
   for (const Choice<DisturbanceShape>& choice : choices(DisturbanceShape{})) {
     if (name != choice.name) continue;
     const std::vector<std::string> own = own_keys(choice.kind);
-    for (const char* key : {"time_constant", "period", "until"})
+    for (const char* key : {"time_constant", "period", "wave", "until"})
       if (map.entry(key) != nullptr && std::find(own.begin(), own.end(), key) == own.end())
         map.entry(key)->key_at.error("does not go with the shape " + name);
     return choice.kind;
@@ -107,7 +107,8 @@ std::optional<DisturbanceShape> read_shape(const Map& map) {
 }
 
 std::optional<DisturbanceTerm> read_disturbance(const Value& item, const ModelSignals& signals) {
-  const Map map = item.map({"cv", "shape", "onset", "size", "time_constant", "period", "until"});
+  const Map map =
+      item.map({"cv", "shape", "onset", "size", "time_constant", "period", "wave", "until"});
   const std::optional<DisturbanceShape> shape = read_shape(map);
   if (!shape) return std::nullopt;
   DisturbanceTerm term;
@@ -119,6 +120,11 @@ std::optional<DisturbanceTerm> read_disturbance(const Value& item, const ModelSi
   if (onset != nullptr) term.onset_s = read_clock(*onset).value_or(0.0);
   term.time_constant_s = read_number(map, "time_constant", kNotNegative, 0.0);
   if (periodic) term.period_s = require_number(map, "period", kPositive, 1.0);
+  if (const Value* wave = map.find("wave")) {
+    const std::string name = wave->is_scalar() ? wave->free_text().value_or("") : "";
+    if (name != "sine" && name != "square") wave->error("must be sine or square");
+    term.square = name == "square";
+  }
   if (const Value* until = map.find("until")) {
     if (const std::optional<double> end = read_clock(*until)) {
       if (*end > term.onset_s)

@@ -69,7 +69,8 @@ std::string disturbance_text(const DisturbanceTerm& term) {
   std::string text = "shape: " + name_of(term.shape) + ", onset: " + yaml_text(term.onset_s) +
                      ", size: " + yaml_text(term.size);
   if (term.shape == DisturbanceShape::kPeriodic)
-    return text + ", period: " + yaml_text(term.period_s);
+    return text + ", period: " + yaml_text(term.period_s) +
+           ", wave: " + (term.square ? "square" : "sine");
   if (term.shape == DisturbanceShape::kStep)
     text += ", time_constant: " + yaml_text(term.time_constant_s);
   if (std::isfinite(term.until_s)) text += ", until: " + yaml_text(term.until_s);

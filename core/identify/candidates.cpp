@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "core/identify/channel_edit.hpp"
+#include "core/identify/square_waves.hpp"
+#include "core/identify/step_moments.hpp"
 
 namespace mpm {
 namespace {
@@ -14,6 +16,8 @@ using Eigen::VectorXd;
 
 /// Moments looked at for a change inside the data.
 constexpr int kOnsets = 15;
+/// Moments of a step that are looked at more closely.
+constexpr std::size_t kStepMoments = 8;
 /// A change can be told only if so much of the data lies on either side.
 constexpr double kOnsetMargin = 0.1;
 
@@ -391,21 +395,17 @@ std::vector<Effect> disturbance_candidates(const Problem& problem, const CvFit& 
     if (channel.cv == without.cv)
       slowest = std::max(slowest, slowest_time_constant_s(channel, sample_time));
 
-  // A step shows in the innovations as a pulse that the noise model forms; the best moments come
-  // out of the screening, so offer enough of them.
-  const Index stride = std::max<Index>(1, samples / 250);
   const double moments = cost_of(static_cast<std::size_t>(samples) / 4);
   const Coordinate size{"size", 0.0, 0.0, 3.0 * sd, 0.05 * sd, -1e12, 1e12};
-  for (Index onset = 5; onset + 5 < samples; onset += stride) {
+  const CvData& data = problem.data(without.cv);
+  for (const Index onset : step_moments(data, without, 0.0, kStepMoments))
     found.push_back({subject, {size}, onset, cost_of(cvs) + moments});
-    if ((onset / stride) % 2 == 0)
-      for (const double share : {0.2, 0.7})
-        found.push_back({subject,
-                         {size,
-                          {"time_constant", share * slowest, share * slowest, 0.5 * slowest,
-                           0.01 * slowest, 0.01 * sample_time, 20.0 * slowest}},
-                         onset,
-                         cost_of(cvs) + moments});
+  for (const double share : {0.2, 0.7}) {
+    const Coordinate lag{"time_constant", share * slowest,    share * slowest, 0.5 * slowest,
+                         0.01 * slowest,  0.01 * sample_time, 20.0 * slowest};
+    for (const Index onset :
+         step_moments(data, without, share * slowest / sample_time, kStepMoments))
+      found.push_back({subject, {size, lag}, onset, cost_of(cvs) + moments});
   }
   Subject drift = subject;
   drift.kind = "drift";
@@ -455,6 +455,8 @@ std::vector<Effect> disturbance_candidates(const Problem& problem, const CvFit& 
       found.push_back(std::move(effect));
     }
   }
+  const std::vector<Effect> squares = square_waves(problem, without);
+  found.insert(found.end(), squares.begin(), squares.end());
   return found;
 }
 

@@ -54,9 +54,17 @@ void apply_disturbance(const Effect& effect, const Surroundings& s, ModelSpec& m
   term.cv = effect.subject.cv;
   term.onset_s = s.start_s + static_cast<double>(effect.onset) * s.sample_time_s;
   if (effect.subject.kind == "periodic") {
+    term.shape = DisturbanceShape::kPeriodic;
+    if (effect.find("period")) {
+      term.square = true;
+      term.size = effect.value("size", 0.0);
+      term.period_s = effect.value("period", 1.0);
+      term.onset_s = s.start_s + effect.value("begin", 0.0);
+      model.disturbances.push_back(term);
+      return;
+    }
     const double sine = effect.value("sine", 0.0), cosine = effect.value("cosine", 0.0);
     const double frequency = effect.value("frequency", 1.0);  // Hz
-    term.shape = DisturbanceShape::kPeriodic;
     term.size = std::hypot(sine, cosine);
     term.period_s = 1.0 / frequency;
     // sine sin(w t) + cosine cos(w t) = size sin(w (t - onset)), t from the first row on

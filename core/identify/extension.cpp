@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/identify/channel_edit.hpp"
+#include "core/identify/square_waves.hpp"
 
 namespace mpm {
 namespace {
@@ -57,7 +58,11 @@ Finding to_finding(const SearchResult& found, std::size_t index, const Problem& 
     for (Parameter& parameter : finding.parameters)
       if (parameter.name == "dead_time_error") parameter.name = "dead_time";
   if (effect.subject.cause == Cause::kOutputDisturbance) {
-    if (effect.subject.kind == "periodic") {
+    if (is_square_wave(effect)) {
+      finding.parameters.erase(finding.parameters.begin() + 1);  // where in its period it begins
+      Parameter& size = finding.parameters[0];
+      if (size.value < 0.0) size = {"size", -size.value, -size.high, -size.low};
+    } else if (effect.subject.kind == "periodic") {
       const double sine = effect.value("sine", 0.0), cosine = effect.value("cosine", 0.0);
       const double size = std::hypot(sine, cosine);
       const double reach =

@@ -8,6 +8,7 @@
 
 #include "core/identify/candidates.hpp"
 #include "core/identify/screening.hpp"
+#include "core/identify/square_waves.hpp"
 #include "core/identify/unnamed.hpp"
 
 namespace mpm {
@@ -313,8 +314,20 @@ class Search {
     for (std::size_t i = 0; i < 6; ++i) trials.push_back(attempt(scored[i].second, 6));
   }
 
-  /// Play and sticking are not smooth in their widths: look around, ever closer.
+  /// Play and sticking are not smooth in their widths, nor is a square wave in its edges: look
+  /// around, ever closer.
   void polish(Trial& trial) {
+    for (double reach = is_square_wave(trial.candidate) ? 16.0 : 0.0; reach >= 0.5; reach *= 0.5)
+      for (bool moved = true; moved;) {
+        moved = false;
+        for (const Effect& other : other_edges(trial.candidate, reach, problem_)) {
+          Trial next = attempt(other, 2);
+          if (next.odds <= trial.odds + 1e-6) continue;
+          trial = std::move(next);
+          moved = true;
+          break;
+        }
+      }
     const Cause cause = trial.candidate.subject.cause;
     if (cause != Cause::kStiction && trial.candidate.subject.kind != "deadband") return;
     for (double factor = 1.3; factor > 1.008; factor = 1.0 + 0.5 * (factor - 1.0)) {
@@ -352,23 +365,12 @@ class Search {
       if (trials[i].odds > 0.5 * trials[0].odds) polish(trials[i]);
     }
     std::sort(trials.begin(), trials.end(), better);
-    for (auto& t : trials) {
-      fprintf(stderr,
-              "DBG %s cv%d in%d aux%d %s onset %ld odds %.1f settled %.1f misfit %.1f once %d:",
-              name_of(t.candidate.subject.cause), t.candidate.subject.cv, t.candidate.subject.input,
-              t.candidate.subject.aux, t.candidate.subject.kind.c_str(), (long)t.candidate.onset,
-              t.odds, t.settled_odds, t.fit.misfit, t.candidate.slips_once);
-      for (auto& c : t.candidate.coordinates) fprintf(stderr, " %s=%.4g", c.name.c_str(), c.value);
-      fprintf(stderr, "\n");
-    }
     if (trials[0].odds < settings_.decisive) return false;
 
     // Once more with rows weighed as the best explanation's innovations ask for. A shock in the
-    // noise would vanish with a step fitted to it, so a disturbance has to do without that row's
-    // help.
-    const bool disturbance = trials[0].candidate.subject.cause == Cause::kOutputDisturbance;
-    const Fit weighing =
-        disturbance ? without(touched(trials[0].candidate, problem_)) : trials[0].fit;
+    // noise would vanish with a step fitted to it, so a step has to do without that row's help.
+    const bool step = trials[0].candidate.subject.kind == "step";
+    const Fit weighing = step ? without(touched(trials[0].candidate, problem_)) : trials[0].fit;
     without_.clear();
     problem_.settle(accepted_, &weighing);
     std::vector<Trial> again;

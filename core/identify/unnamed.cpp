@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/identify/channel_edit.hpp"
+#include "core/identify/misfit_slope.hpp"
 
 namespace mpm {
 namespace {
@@ -145,14 +146,8 @@ class Collector {
   /// Where the innovations and the channel's response beat against each other.
   void swings(const Channel& channel) {
     const Index samples = problem_.samples();
-    const CvData& data = problem_.data(without_.cv);
-    // d misfit / d x of the whitened misfit is the innovations filtered backwards.
-    const VectorXd weighted = without_.innovations.cwiseProduct(data.weights);
-    VectorXd slope = weighted;
-    const VectorXd& a = without_.noise.coefficients;
-    for (Index l = 1; l <= a.size(); ++l)
-      slope.head(samples - l) -= a(l - 1) * weighted.tail(samples - l);
-    const VectorXd beat = slope.cwiseProduct(channel.response()).cwiseProduct(data.known);
+    const VectorXd beat =
+        misfit_slope(problem_.data(without_.cv), without_).cwiseProduct(channel.response());
     struct Swing {
       double power, frequency;  // per sample
     };

@@ -39,6 +39,10 @@ double disturbance_at(const DisturbanceTerm& disturbance, double time_s, double 
       return disturbance.size *
              std::max(0.0, std::min(time_s, disturbance.until_s) - disturbance.onset_s);
     case DisturbanceShape::kPeriodic:
+      if (disturbance.square) {
+        const double phase = std::remainder(since_s + tolerance_s, disturbance.period_s);
+        return phase >= 0.0 ? disturbance.size : -disturbance.size;
+      }
       // The remainder first: far from the onset the angle would lose its digits.
       return disturbance.size *
              std::sin(2.0 * std::numbers::pi * std::remainder(since_s, disturbance.period_s) /

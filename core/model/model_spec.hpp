@@ -120,7 +120,7 @@ struct StateTerm {
 enum class DisturbanceShape {
   kStep,      ///< `size` from the onset on, through a first-order lag where time_constant_s > 0
   kDrift,     ///< `size` CV units per s from the onset on
-  kPeriodic,  ///< size sin(2 pi (t - onset) / period) at all times
+  kPeriodic,  ///< size sin(2 pi (t - onset) / period) at all times, or its sign times size
 };
 struct DisturbanceTerm {
   int cv = 0;
@@ -129,6 +129,7 @@ struct DisturbanceTerm {
   double size = 0.0;
   double time_constant_s = 0.0;
   double period_s = 0.0;
+  bool square = false;  ///< of a periodic one: what a limit cycle switches, not a sine
   double until_s = std::numeric_limits<double>::infinity();  ///< a step goes back, a drift stops
 };
 
