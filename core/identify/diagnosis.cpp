@@ -7,7 +7,9 @@
 
 #include "core/identify/channel_edit.hpp"
 #include "core/identify/extension.hpp"
+#include "core/identify/free_run.hpp"
 #include "core/identify/initial_state.hpp"
+#include "core/identify/measured_gain.hpp"
 #include "core/identify/noise_change.hpp"
 #include "core/identify/problem.hpp"
 #include "core/identify/search.hpp"
@@ -30,6 +32,8 @@ constexpr double kSmooth = 0.005;
 constexpr double kBound = 0.9;
 /// By so much must the log of its free run's mean square error be less.
 constexpr double kClear = 0.3;
+/// By so much where the free one explains nothing.
+constexpr double kSome = 0.1;
 /// Share of the work that is done when all causes have been looked for.
 constexpr double kSearched = 0.9;
 
@@ -51,13 +55,6 @@ double mean_of_finite(const VectorXd& values) {
   for (const double value : values)
     if (std::isfinite(value)) sum += value, ++count;
   return sum > 0.0 ? sum / count : 1.0;
-}
-
-double slowest_samples(const ModelSpec& model) {
-  double slowest = 1.0;
-  for (const ChannelSpec& channel : model.channels)
-    slowest = std::max(slowest, slowest_time_constant_s(channel, model.sample_time_s));
-  return slowest / model.sample_time_s;
 }
 
 /// Thrown where the caller's `progress` says so; ends all loops at once.
@@ -127,18 +124,6 @@ Explained explain_with(const NoiseModel& noise, const ModelSpec& model, int mode
   return explained;
 }
 
-/// A CV's free run that begins where the measurements do.
-VectorXd free_run(Simulator& simulator, const ModelSpec& model, int cv) {
-  return start_on_data(simulator.cv(model, cv), simulator.recording().cvs.col(cv),
-                       decay_times(model, cv));
-}
-
-MatrixXd free_runs(Simulator& simulator, const ModelSpec& model) {
-  MatrixXd result(simulator.recording().samples(), model.cv_count);
-  for (int cv = 0; cv < model.cv_count; ++cv) result.col(cv) = free_run(simulator, model, cv);
-  return result;
-}
-
 /// Sum over the CVs of the log of the free run's error on the rows from `first` on.
 double log_error(const Explained& explained, const Recording& recording, Index first) {
   const std::vector<bool> all(explained.found.named.size(), true);
@@ -155,27 +140,42 @@ double log_error(const Explained& explained, const Recording& recording, Index f
   return sum;
 }
 
-/// Searches with a free noise model. Where what is left is far smoother than noise, structure is
-/// left that such a noise model swallows; then a bounded one is tried too, and the one whose repair
-/// carries over from the first three quarters of the data to the last decides.
+/// Innovations far smaller than what is left: no noise is so smooth.
+bool is_smooth(const Explained& explained) {
+  return std::any_of(
+      explained.found.fit.cvs.begin(), explained.found.fit.cvs.end(), [&](const CvFit& fit) {
+        const CvData& data = explained.problem->data(fit.cv);
+        const double all = fit.residual.squaredNorm() / std::max(1.0, data.known.sum());
+        return fit.variance < kSmooth * all;
+      });
+}
+
+/// How many gains the data do not tell, so that a match would mean nothing.
+std::ptrdiff_t unknown_gains(const std::vector<ChannelEstimate>& estimates) {
+  return std::count_if(estimates.begin(), estimates.end(), [](const ChannelEstimate& estimate) {
+    return estimate.gain_ratio.high - estimate.gain_ratio.low > 2.0 * 1.96 * kVisible;
+  });
+}
+
+/// Searches with a free noise model. Such a model can swallow structure: where what is left is far
+/// smoother than noise, or where nothing is found and the gains are not known either, a bounded one
+/// is tried too, and the one whose repair carries over from the first three quarters of the data to
+/// the last decides.
 Explained explain(const ModelSpec& model, int model_inputs, const Recording& recording,
-                  const SearchSettings& settings) {
+                  const DiagnosisSettings& asked, const SearchSettings& settings) {
   const NoiseModel free{kNoiseOrder, 0.0}, bounded{1, kBound};
   Explained explained = explain_with(free, model, model_inputs, recording, settings);
-  bool smooth = false;
-  for (const CvFit& fit : explained.found.fit.cvs) {
-    const CvData& data = explained.problem->data(fit.cv);
-    const double all = fit.residual.squaredNorm() / std::max(1.0, data.known.sum());
-    if (fit.variance < kSmooth * all) smooth = true;
-  }
-  if (!smooth) return explained;
+  const bool blind =
+      explained.found.named.empty() &&
+      unknown_gains(estimate_channels(*explained.problem, explained.found, asked)) > 0;
+  if (!blind && !is_smooth(explained)) return explained;
   const Index first = 3 * recording.samples() / 4;
   const Recording train = part(recording, 0, first);
   const double with_free =
       log_error(explain_with(free, model, model_inputs, train, settings), recording, first);
   const double with_bounded =
       log_error(explain_with(bounded, model, model_inputs, train, settings), recording, first);
-  if (!(with_bounded < with_free - kClear)) return explained;
+  if (!(with_bounded < with_free - (blind ? kSome : kClear))) return explained;
   return explain_with(bounded, model, model_inputs, recording, settings);
 }
 
@@ -202,96 +202,6 @@ Unexplained to_unexplained(const SearchResult& found, std::size_t index, Problem
   return left;
 }
 
-/// Which effects carry over to samples that no fit has seen, and what they gain there.
-///
-/// One effect after the other, weakest first, is left out of the extension: on the CVs that it
-/// touches the free run must be the better for having it. If it is the worse for it, the finding
-/// was none; if the difference is within its bootstrap interval, the finding stands but repairs
-/// nothing.
-void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& model,
-                  const ModelSpec& base, const Recording& recording, const Recording* validation,
-                  const DiagnosisSettings& settings, Diagnosis& diagnosis) {
-  const Recording& unseen = validation ? *validation : recording;
-  const Index rows = diagnosis.validation_samples;
-  Simulator simulator(unseen);
-  const auto block = static_cast<Index>(2.0 * slowest_samples(model)) + 10;
-  std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
-  const auto measured = [&](int cv) { return unseen.cvs.col(cv).tail(rows); };
-  const auto simulated = [&](const ModelSpec& spec, int cv) -> VectorXd {
-    return free_run(simulator, spec, cv).tail(rows);
-  };
-
-  std::vector<std::size_t> order(found.named.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return found.named[a].evidence < found.named[b].evidence;
-  });
-  std::vector<bool> in(found.named.size(), true);
-  for (std::size_t i = 0; i < in.size(); ++i)
-    in[i] = found.named[i].effect.subject.cause != Cause::kUnnamed;
-  for (const std::size_t i : order) {
-    settings.progress(kSearched);
-    if (found.named[i].effect.certain || !in[i]) continue;
-    const ModelSpec with = extend(problem, found, in, keep);
-    in[i] = false;
-    const ModelSpec without = extend(problem, found, in, keep);
-    VectorXd old_errors = VectorXd::Zero(rows), new_errors = VectorXd::Zero(rows);
-    for (int cv = 0; cv < model.cv_count; ++cv) {
-      if (!touches(found.named[i].effect, model, cv)) continue;
-      const VectorXd new_error = (measured(cv) - simulated(with, cv)).cwiseAbs2();
-      const VectorXd old_error = (measured(cv) - simulated(without, cv)).cwiseAbs2();
-      const double scale = mean_of_finite(new_error);
-      old_errors += old_error / scale;
-      new_errors += new_error / scale;
-    }
-    const CvScore gain = score_errors(old_errors, new_errors, block, settings.seed + i);
-    in[i] = gain.gain_low > 0.0;
-    if (in[i]) continue;
-    const auto same = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
-                                   [&](const Finding& finding) {
-                                     return finding.subject == found.named[i].effect.subject &&
-                                            finding.evidence == found.named[i].evidence;
-                                   });
-    if (same == diagnosis.findings.end()) continue;
-    same->repaired = false;
-    if (gain.rmse_after < gain.rmse_before) continue;
-    diagnosis.refused.push_back(*same);
-    diagnosis.findings.erase(same);
-  }
-
-  const bool any = std::find(in.begin(), in.end(), true) != in.end();
-  const MatrixXd before = free_runs(simulator, model);
-  ModelSpec extended = any ? extend(problem, found, in, keep) : model;
-  // The small corrections that came with the findings have to carry over too.
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    const CvScore gain = score(measured(cv), before.col(cv).tail(rows), simulated(extended, cv),
-                               block, settings.seed);
-    if (gain.rmse_after > gain.rmse_before) keep[static_cast<std::size_t>(cv)] = false;
-  }
-  if (any) extended = extend(problem, found, in, keep);
-  const MatrixXd after = free_runs(simulator, extended);
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    CvScore result = score(measured(cv), before.col(cv).tail(rows), after.col(cv).tail(rows), block,
-                           settings.seed + static_cast<std::uint64_t>(cv));
-    for (std::size_t i = 0; i < in.size(); ++i)
-      if (!in[i] && found.named[i].effect.subject.cause != Cause::kUnnamed &&
-          touches(found.named[i].effect, model, cv))
-        result.refused = true;
-    diagnosis.scores.push_back(result);
-  }
-  if (any) diagnosis.extended = finish(extended, base, diagnosis.new_inputs);
-  if (validation) {
-    diagnosis.validation_before = before;
-    diagnosis.validation_after = after;
-    Simulator first(recording);
-    diagnosis.before = free_runs(first, model);
-    diagnosis.after = free_runs(first, extended);
-  } else {
-    diagnosis.before = before;
-    diagnosis.after = after;
-  }
-}
-
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
 Diagnosis run(const ModelSpec& given, const Recording& recording, const Recording* validation,
               const DiagnosisSettings& settings) {
@@ -311,7 +221,7 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
   SearchSettings search_settings;
   search_settings.max_findings = settings.max_findings;
   search_settings.progress = settings.progress;
-  const Explained explained = explain(model, base.input_count, fitted, search_settings);
+  const Explained explained = explain(model, base.input_count, fitted, settings, search_settings);
   Problem& problem = *explained.problem;
   const SearchResult& found = explained.found;
 
@@ -344,10 +254,7 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
     return diagnosis;
   }
   diagnosis.verdict = DiagnosisVerdict::kMatch;
-  const auto unseen = std::count_if(
-      diagnosis.channels.begin(), diagnosis.channels.end(), [](const ChannelEstimate& estimate) {
-        return estimate.gain_ratio.high - estimate.gain_ratio.low > 2.0 * 1.96 * kVisible;
-      });
+  const std::ptrdiff_t unseen = unknown_gains(diagnosis.channels);
   if (unseen > 0) {
     diagnosis.verdict = DiagnosisVerdict::kUndetermined;
     diagnosis.reason = "the inputs move too little beside the noise: the gains of " +
