@@ -85,6 +85,10 @@ class Collector {
       if (a.cause == subject.cause && a.cv == subject.cv && a.input == subject.input &&
           a.aux == subject.aux && subject.cause != Cause::kOutputDisturbance)
         return true;
+      // What has found the linear part along with its block leaves none for another.
+      if ((a.cause == Cause::kStiction || a.cause == Cause::kStateNonlinearity) &&
+          effect.find("gain_ratio") && a.cv == subject.cv && a.input == subject.input)
+        return true;
       // One block per place.
       const auto is_block = [](Cause cause) {
         return cause == Cause::kInputNonlinearity || cause == Cause::kStiction;
@@ -247,7 +251,7 @@ class Collector {
           for (const double delay : {0.0, -0.6 * removable}) {
             std::vector<Coordinate> coordinates = widths(share * range, jump);
             coordinates[0].prior_sd = coordinates[1].prior_sd = 0.5 * range;
-            coordinates.push_back({"gain_ratio", 1.0, 1.0, 0.5, 0.01, 0.02, 20.0});
+            coordinates.push_back({"gain_ratio", 1.0, 1.0, 1.0, 0.01, 0.02, 20.0});
             coordinates.push_back(log_time_constant_ratio(0.0));
             coordinates.push_back(dead_time_samples(delay, removable));
             add_valve(std::move(coordinates), false);
