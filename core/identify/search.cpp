@@ -119,6 +119,7 @@ class Search {
       named_[i].effect = result.fit.effects[i];
       result.named.push_back(named_[i]);
     }
+    widen_kinked(result);
     name_levels(result);
     return result;
   }
@@ -454,6 +455,49 @@ class Search {
     }
   }
 
+  /// The misfit is no parabola in the widths of play and sticking or in a level of saturation: a
+  /// row slips or does not. So what the curvature says is widened to where the misfit, with all
+  /// else fitted, really has risen by as much as a 95 % interval allows.
+  void widen_kinked(SearchResult& result) {
+    constexpr double kRise = 3.84;  // chi square, 1 degree of freedom
+    Index first = 0;
+    for (std::size_t e = 0; e < result.fit.effects.size(); ++e) {
+      const Effect& effect = result.fit.effects[e];
+      const auto count = static_cast<Index>(effect.coordinates.size());
+      const bool kinked = effect.subject.cause == Cause::kStiction ||
+                          effect.subject.kind == "deadband" ||
+                          (effect.subject.cause == Cause::kInputNonlinearity &&
+                           effect.subject.kind == "saturation");
+      for (Index i = 0; kinked && i < std::min<Index>(2, count); ++i) {
+        double& variance = result.fit.covariance(first + i, first + i);
+        const double sd = std::max(std::sqrt(variance),
+                                   1e-3 * effect.coordinates[static_cast<std::size_t>(i)].prior_sd);
+        const double least = cost_at(result.fit, e, i, 0.0);
+        double reach = 0.0;
+        for (const double side : {-1.0, 1.0})
+          for (const double steps : {1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 15.0, 20.0})
+            if (cost_at(result.fit, e, i, side * steps * sd) < least + kRise)
+              reach = std::max(reach, steps * sd);
+        variance = std::max(variance, reach * reach / kRise);
+      }
+      first += count;
+    }
+  }
+
+  /// Cost of the CVs that an effect touches with one of its coordinates held `off` from its value.
+  double cost_at(const Fit& fit, std::size_t effect, Index coordinate, double off) {
+    report();
+    std::vector<Effect> effects = fit.effects;
+    std::rotate(effects.begin() + static_cast<std::ptrdiff_t>(effect),
+                effects.begin() + static_cast<std::ptrdiff_t>(effect) + 1, effects.end());
+    Coordinate& held = effects.back().coordinates[static_cast<std::size_t>(coordinate)];
+    held.value = std::clamp(held.value + off, held.low, held.high);
+    held.prior_mean = held.value;
+    held.prior_sd *= 1e-6;
+    const std::vector<int> cvs = touched(effects.back(), problem_);
+    return problem_.fit(effects, effects.size() - 1, cvs, 3).cost;
+  }
+
   /// A level that is off from the first row on by far more than the noise moves it is no small
   /// error any more, but a sensor's offset or a disturbance as old as the data.
   void name_levels(SearchResult& result) const {
@@ -462,7 +506,10 @@ class Search {
       const double level = data.nuisances(0, 0) * fit.beta(0);
       const double noise = std::sqrt(fit.residual.squaredNorm() / std::max(1.0, data.known.sum()));
       const double memory = std::max(0.02, 1.0 - fit.noise.coefficients.sum());
-      const double sd = std::sqrt(fit.variance / std::max(1.0, data.rows)) / memory;
+      Fit alone;
+      alone.cvs = {fit};
+      const double rows = std::max(1.0, independence(alone) * data.rows);
+      const double sd = std::sqrt(fit.variance / rows) / memory;
       if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd))
         continue;
       Named named;
