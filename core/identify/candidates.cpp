@@ -332,12 +332,14 @@ class Collector {
                                     std::abs(y->low - model().output_origin(channel.cv)));
       const double force = u->high - u->low;
       const double q = 0.2 * force / (reach * reach), c = 0.2 * force / (reach * reach * reach);
+      std::vector<Coordinate> spring = {gain_ratio(),
+                                        log_time_constant_ratio(0.0),
+                                        {"quadratic", 0.0, 0.0, q, 0.02 * q, -1e12, 1e12},
+                                        {"cubic", 0.0, 0.0, c, 0.02 * c, -1e12, 1e12}};
+      // A linear fit to a stiffening spring has got its damping wrong too.
+      if (rings(channel)) spring.push_back({"log_damping_ratio", 0.0, 0.0, 0.35, 0.01, -2.0, 2.0});
       add({Cause::kStateNonlinearity, channel.cv, channel.input, -1, "cubic_stiffness"},
-          {gain_ratio(),
-           log_time_constant_ratio(0.0),
-           {"quadratic", 0.0, 0.0, q, 0.02 * q, -1e12, 1e12},
-           {"cubic", 0.0, 0.0, c, 0.02 * c, -1e12, 1e12}},
-          members);
+          std::move(spring), members);
       if (transfer && transfer->lead_s == 0.0 && transfer->gain > 0.0)
         tanks(channel, *transfer, *u, *y, members);
     }

@@ -59,10 +59,14 @@ void edit(DiscreteFilter& filter, const ChannelError& error, double sample_time_
   const auto shift = static_cast<int>(std::lround(error.dead_time_error_s / sample_time_s));
   filter.delay_samples = std::max(0, filter.delay_samples + shift);
   double factor = error.gain_ratio;
-  if (error.time_constant_ratio != 1.0) {
+  if (error.time_constant_ratio != 1.0 || error.damping_ratio != 1.0) {
     std::vector<std::complex<double>> poles = poles_of(filter.denominator);
     for (std::complex<double>& pole : poles)
-      if (std::abs(pole) > 0.0) pole = std::pow(pole, 1.0 / error.time_constant_ratio);
+      if (std::abs(pole) > 0.0) {
+        std::complex<double> rate = std::log(pole) / error.time_constant_ratio;
+        if (pole.imag() != 0.0) rate.real(rate.real() * error.damping_ratio);
+        pole = std::exp(rate);
+      }
     std::vector<double> denominator = polynomial_of(poles);
     for (double& value : denominator) value *= filter.denominator[0];
     const double before = sum(filter.denominator);
@@ -112,6 +116,14 @@ ChannelSpec edited(const ChannelSpec& channel, const ChannelError& error, double
   ChannelSpec result = channel;
   std::visit([&](auto& dynamics) { edit(dynamics, error, sample_time_s); }, result.dynamics);
   return result;
+}
+
+bool rings(const ChannelSpec& channel) {
+  const auto* filter = std::get_if<DiscreteFilter>(&channel.dynamics);
+  if (filter == nullptr) return false;
+  const std::vector<std::complex<double>> poles = poles_of(filter->denominator);
+  return std::any_of(poles.begin(), poles.end(),
+                     [](const std::complex<double>& pole) { return pole.imag() != 0.0; });
 }
 
 double removable_dead_time_s(const ChannelSpec& channel, double sample_time_s) {

@@ -9,13 +9,18 @@ struct ChannelError {
   double gain_ratio = 1.0;
   double time_constant_ratio = 1.0;  ///< > 0
   double dead_time_error_s = 0.0;
+  double damping_ratio = 1.0;  ///< > 0; of a filter's complex poles
 };
 
 /// The channel as it is in the plant. Transfer functions and tanks keep their form; a filter's
-/// poles move to p^(1/ratio) at equal steady gain and its dead time by whole samples (the nearest);
-/// a step response is stretched about its dead time. A dead time never becomes negative.
+/// poles move to p^(1/ratio) at equal steady gain, with another damping those of a pair closer or
+/// less close to the unit circle at equal frequency and its dead time by whole samples (the
+/// nearest); a step response is stretched about its dead time. A dead time never becomes negative.
 [[nodiscard]] ChannelSpec edited(const ChannelSpec& channel, const ChannelError& error,
                                  double sample_time_s);
+
+/// Whether it is a filter with complex poles.
+[[nodiscard]] bool rings(const ChannelSpec& channel);
 
 /// Dead time (s) that can be taken from a channel at most.
 [[nodiscard]] double removable_dead_time_s(const ChannelSpec& channel, double sample_time_s);

@@ -11,7 +11,8 @@ namespace {
 
 ChannelError channel_error(const Effect& effect, double sample_time_s) {
   return {effect.value("gain_ratio", 1.0), std::exp(effect.value("log_time_constant_ratio", 0.0)),
-          effect.value("dead_time_samples", 0.0) * sample_time_s};
+          effect.value("dead_time_samples", 0.0) * sample_time_s,
+          std::exp(effect.value("log_damping_ratio", 0.0))};
 }
 
 void apply_to_channels(const Effect& effect, const Surroundings& s, ModelSpec& model) {
