@@ -4,6 +4,8 @@
 
 #include "daemon/commands/detect.hpp"
 #include "daemon/commands/diagnose.hpp"
+#include "daemon/commands/publish.hpp"
+#include "daemon/commands/topics.hpp"
 #include "daemon/commands/watch.hpp"
 #include "daemon/service/version.hpp"
 
@@ -18,6 +20,11 @@ int run(int argc, char** argv) {
   mpm::daemon::add_detect(app, exit_code);
   mpm::daemon::add_diagnose(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
+  mpm::daemon::add_publish(app, exit_code);
+  mpm::daemon::add_topics(app, exit_code);
+  mpm::daemon::add_echo(app, exit_code);
+  mpm::daemon::add_hz(app, exit_code);
+  mpm::daemon::add_delay(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
