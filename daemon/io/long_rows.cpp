@@ -166,6 +166,10 @@ class LongRows : public RowSource {
 
 bool is_long_header(const std::vector<Cell>& header) { return find_columns(header).complete(); }
 
+std::size_t tag_column(const std::vector<Cell>& header) {
+  return find_columns(header).tag.value_or(0);
+}
+
 std::unique_ptr<RowSource> read_long(LineReader& lines, const CsvFormat& format,
                                      const std::vector<Cell>& header, TagTable& tags,
                                      const SignalCounts& counts,

@@ -38,6 +38,9 @@ class RowSource {
 /// True for the header of the long form: a tag, a time and a value column.
 [[nodiscard]] bool is_long_header(const std::vector<Cell>& header);
 
+/// Which column of such a header holds the tags.
+[[nodiscard]] std::size_t tag_column(const std::vector<Cell>& header);
+
 /// Rows `tag,time,value,quality`; reads the whole file once to learn its tags and order.
 [[nodiscard]] std::unique_ptr<RowSource> read_long(LineReader& lines, const CsvFormat& format,
                                                    const std::vector<Cell>& header, TagTable& tags,
