@@ -18,6 +18,12 @@ void refuse_damage(const InputFile& file, const FileLayout& layout) {
     file.fail(layout.damage->offset, layout.damage->what + "; `mpm recover` mends what is cut off");
 }
 
+bool described(const Definitions& definitions, ChannelId id) {
+  const Channel* channel = definitions.channel(id);
+  return channel != nullptr &&
+         (channel->schema_id == 0 || definitions.schema(channel->schema_id) != nullptr);
+}
+
 bool by_time(const ChunkPlace& a, const ChunkPlace& b) {
   return std::tie(a.start_ns, a.offset) < std::tie(b.start_ns, b.offset);
 }
@@ -112,7 +118,7 @@ bool OrderedReader::next(Message& message) {
       spent_.clear();
       spent_.splice(spent_.begin(), open_, entry.chunk);
     }
-    if (layout_.definitions.channel(raw->channel) == nullptr && !gathered_) gather_definitions();
+    if (!gathered_ && !described(layout_.definitions, raw->channel)) gather_definitions();
     std::string problem;
     const bool taken = resolve(*raw, layout_.definitions, range_, message, problem);
     if (!problem.empty()) file_.fail(entry.chunk_offset, problem);
