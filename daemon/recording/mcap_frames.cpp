@@ -18,6 +18,7 @@ namespace {
 
 McapFrames::McapFrames(const std::string& path, const config::UnitConfig& unit, Kinds kinds)
     : unit_(unit),
+      kinds_(kinds),
       aligner_(unit.counts(), look_into(path, kinds),
                [this](const Frame& frame) {
                  last_frame_ns_ = now_ns_;
@@ -109,7 +110,11 @@ bool McapFrames::next(Frame& frame) {
         break;
       case SampleStream::Event::kEnd:
         done_ = true;
-        aligner_.expire();
+        // What the daemon would still wait for at the end is of use to somebody who wants all.
+        if (kinds_ == Kinds::kAllThereAre)
+          aligner_.finish();
+        else
+          aligner_.expire();
         tell_counters();
         break;
     }

@@ -39,6 +39,7 @@ class McapFrames : public io::FrameSource {
   void tell_counters();
 
   config::UnitConfig unit_;
+  Kinds kinds_;
   std::vector<std::string> notices_;
   std::vector<bool> has_prediction_;
   std::deque<Frame> ready_;
