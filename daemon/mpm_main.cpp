@@ -5,6 +5,7 @@
 #include "daemon/commands/detect.hpp"
 #include "daemon/commands/diagnose.hpp"
 #include "daemon/commands/publish.hpp"
+#include "daemon/commands/record.hpp"
 #include "daemon/commands/topics.hpp"
 #include "daemon/commands/watch.hpp"
 #include "daemon/service/version.hpp"
@@ -20,6 +21,7 @@ int run(int argc, char** argv) {
   mpm::daemon::add_detect(app, exit_code);
   mpm::daemon::add_diagnose(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
+  mpm::daemon::add_record(app, exit_code);
   mpm::daemon::add_publish(app, exit_code);
   mpm::daemon::add_topics(app, exit_code);
   mpm::daemon::add_echo(app, exit_code);
