@@ -6,6 +6,7 @@
 #include "daemon/commands/diagnose.hpp"
 #include "daemon/commands/publish.hpp"
 #include "daemon/commands/record.hpp"
+#include "daemon/commands/replay.hpp"
 #include "daemon/commands/topics.hpp"
 #include "daemon/commands/watch.hpp"
 #include "daemon/service/version.hpp"
@@ -22,6 +23,7 @@ int run(int argc, char** argv) {
   mpm::daemon::add_diagnose(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
   mpm::daemon::add_record(app, exit_code);
+  mpm::daemon::add_replay(app, exit_code);
   mpm::daemon::add_publish(app, exit_code);
   mpm::daemon::add_topics(app, exit_code);
   mpm::daemon::add_echo(app, exit_code);
