@@ -2,6 +2,7 @@
 #include <exception>
 #include <iostream>
 
+#include "daemon/commands/convert.hpp"
 #include "daemon/commands/detect.hpp"
 #include "daemon/commands/diagnose.hpp"
 #include "daemon/commands/publish.hpp"
@@ -21,6 +22,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   mpm::daemon::add_detect(app, exit_code);
   mpm::daemon::add_diagnose(app, exit_code);
+  mpm::daemon::add_convert(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
   mpm::daemon::add_record(app, exit_code);
   mpm::daemon::add_replay(app, exit_code);

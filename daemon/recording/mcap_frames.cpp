@@ -16,9 +16,9 @@ namespace {
 
 }  // namespace
 
-McapFrames::McapFrames(const std::string& path, const config::UnitConfig& unit)
+McapFrames::McapFrames(const std::string& path, const config::UnitConfig& unit, Kinds kinds)
     : unit_(unit),
-      aligner_(unit.counts(), look_into(path),
+      aligner_(unit.counts(), look_into(path, kinds),
                [this](const Frame& frame) {
                  last_frame_ns_ = now_ns_;
                  ready_.push_back(frame);
@@ -27,45 +27,50 @@ McapFrames::McapFrames(const std::string& path, const config::UnitConfig& unit)
       patience_ns_(io::frame_patience(unit).count()) {}
 
 // Which kinds to wait for: as the daemon does, but what is nowhere in the file will not come.
-std::array<bool, kSignalKindCount> McapFrames::look_into(const std::string& path) {
-  std::array<bool, kSignalKindCount> needed = io::needed_kinds(unit_);
-  needed[static_cast<std::size_t>(SignalKind::kAux)] = !unit_.aux.empty();
-  const auto all_seen = [&](const RecordedUnit& recorded) {
+std::array<bool, kSignalKindCount> McapFrames::look_into(const std::string& path, Kinds kinds) {
+  std::array<bool, kSignalKindCount> wanted = io::needed_kinds(unit_);
+  wanted[static_cast<std::size_t>(SignalKind::kAux)] = !unit_.aux.empty();
+  if (kinds == Kinds::kAllThereAre)
     for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
-      if (needed[kind] && !recorded.kinds[kind].seen) return false;
-    return true;
-  };
+      wanted[kind] = unit_.counts().of(static_cast<SignalKind>(kind)) > 0;
   const Contents contents = survey(path, [&](const Contents& so_far) {
     const auto found = so_far.find(unit_.unit);
-    return found != so_far.end() && all_seen(found->second);
+    if (found == so_far.end()) return false;
+    for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+      if (wanted[kind] && !found->second.kinds[kind].seen) return false;
+    return true;
   });
   const auto found = contents.find(unit_.unit);
   if (found == contents.end())
     refuse(path, "holds no samples of unit '" + unit_.unit + "'" +
                      (contents.empty() ? "; it holds none of any unit"
                                        : "; its units are " + names_of(contents)));
-  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kDv})
-    if (needed[static_cast<std::size_t>(kind)] && !found->second[kind].seen)
-      refuse(path, std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
+  if (kinds == Kinds::kNeeded) check_needed(path, found->second);
+  const RecordedKind& predictions = found->second[SignalKind::kPrediction];
+  for (std::size_t i = 0; i < unit_.cv.size(); ++i)  // a layout with "" says that a CV has none
+    has_prediction_.push_back(predictions.seen && !unit_.cv[i].prediction.empty() &&
+                              (i >= predictions.tags.size() || !predictions.tags[i].empty()));
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+    wanted[kind] = wanted[kind] && found->second.kinds[kind].seen;
+  return wanted;
+}
 
-  bool& predictions = needed[static_cast<std::size_t>(SignalKind::kPrediction)];
-  if (!found->second[SignalKind::kPrediction].seen) {
+void McapFrames::check_needed(const std::string& path, const RecordedUnit& recorded) {
+  const SignalCounts counts = unit_.counts();
+  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kDv})
+    if (counts.of(kind) > 0 && !recorded[kind].seen)
+      refuse(path, std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
+  const bool predicted = io::needed_kinds(unit_)[static_cast<std::size_t>(SignalKind::kPrediction)];
+  if (!recorded[SignalKind::kPrediction].seen) {
     if (!unit_.has_model())
       refuse(path, "holds no mpm/prediction of unit '" + unit_.unit +
                        "', and its unit file has no model to simulate them");
-    if (predictions)
+    if (predicted)
       notices_.emplace_back(
           "no predictions in the file, so the unit file's model simulates them instead");
-    predictions = false;
   }
-  for (const config::CvSignal& cv : unit_.cv)
-    has_prediction_.push_back(predictions && !cv.prediction.empty());
-  bool& aux = needed[static_cast<std::size_t>(SignalKind::kAux)];
-  if (aux && !found->second[SignalKind::kAux].seen) {
-    aux = false;
+  if (counts.aux > 0 && !recorded[SignalKind::kAux].seen)
     notices_.emplace_back("no aux signals in the file");
-  }
-  return needed;
 }
 
 void McapFrames::check_layout(const mpm_Layout& layout) {

@@ -9,6 +9,7 @@
 #include "config/unit_config.hpp"
 #include "core/signal/aligner.hpp"
 #include "daemon/io/frame_source.hpp"
+#include "daemon/recording/contents.hpp"
 #include "daemon/recording/sample_stream.hpp"
 
 namespace mpm::recording {
@@ -19,16 +20,20 @@ namespace mpm::recording {
 /// Memory stays flat.
 class McapFrames : public io::FrameSource {
  public:
+  /// What a frame waits for: what the daemon needs to judge the unit, or all kinds in the file.
+  enum class Kinds { kNeeded, kAllThereAre };
+
   /// Throws config::InputError where the file is damaged, or holds no samples of the unit or not
   /// those that it needs.
-  McapFrames(const std::string& path, const config::UnitConfig& unit);
+  McapFrames(const std::string& path, const config::UnitConfig& unit, Kinds kinds = Kinds::kNeeded);
 
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] const std::vector<bool>& has_prediction() const override { return has_prediction_; }
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
 
  private:
-  std::array<bool, kSignalKindCount> look_into(const std::string& path);
+  std::array<bool, kSignalKindCount> look_into(const std::string& path, Kinds kinds);
+  void check_needed(const std::string& path, const RecordedUnit& recorded);
   void check_layout(const mpm_Layout& layout);
   void push(const idl::SampleView& sample, std::int64_t now_ns);
   void tell_counters();
