@@ -152,6 +152,31 @@ def latency_figures(build, push_us):
     return figures
 
 
+RECORDER_TARGET = 10_000.0  # samples/s
+WEEK = 604_800  # rows of 1 Hz
+WEEK_PART = 6_048  # measured; the time grows with the rows
+WEEK_TARGET_S = 60.0
+
+
+def recording_figures(build):
+    def measure(*arguments):
+        output = subprocess.run([build / "bin/bench_recording", build / "bin/mpm", *arguments],
+                                check=True, stdout=subprocess.PIPE, text=True, timeout=900).stdout
+        return float(output.split()[1])
+
+    recorded = measure("recorder")
+    seconds = measure("week", str(WEEK_PART)) * WEEK / WEEK_PART
+    return [
+        {"name": "mpm record, ten values each: samples/s without a loss", "unit": "1/s",
+         "value": recorded, "target": f">= {RECORDER_TARGET:g}",
+         "met": recorded >= RECORDER_TARGET},
+        {"name": "mpm replay --rate 0, one reader: samples/s", "unit": "1/s",
+         "value": measure("replay")},
+        {"name": "mpm detect, a week of 1 Hz of 10x10, from 1 % of it: s", "unit": "s",
+         "value": seconds, "target": f"<= {WEEK_TARGET_S:g}", "met": seconds <= WEEK_TARGET_S},
+    ]
+
+
 def number(value):
     return f"{value:.3g}" if value < 1000 else f"{value:.0f}"
 
@@ -191,6 +216,13 @@ def print_table(result):
                        number(rest["median"]), number(rest["p99"]), "", ""))
 
 
+    print()
+    line = "{:<60}{:>10}  {}".format
+    print(line("recordings", "", "target"))
+    for item in result["recording"]:
+        print(line(item["name"], number(item["value"]), verdict(item)))
+
+
 def cpu_name():
     for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
         if line.startswith("model name"):
@@ -221,6 +253,7 @@ def main():
                     "numpy": numpy.__version__, "blas": peers.blas_library()},
         "throughput": throughput,
         "latency": latency_figures(options.build, push_us),
+        "recording": recording_figures(options.build),
     }
     print_table(result)
     if options.json:
