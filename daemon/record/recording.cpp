@@ -1,5 +1,6 @@
 #include "daemon/record/recording.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "daemon/record/lifecycle.hpp"
@@ -10,9 +11,17 @@ namespace {
 // With a quota and no size for one file: so many files share it, and the oldest can go.
 constexpr std::uint64_t kFilesPerQuota = 8;
 
+// A file is split behind a chunk, so its chunks must be small against it.
+constexpr std::uint64_t kChunksPerFile = 4;
+constexpr std::uint64_t kSmallestChunk = 4096;
+
 RecordingOptions with_size(RecordingOptions options) {
   if (options.quota_bytes > 0 && options.max_size_bytes == 0)
     options.max_size_bytes = std::max<std::uint64_t>(options.quota_bytes / kFilesPerQuota, 1);
+  if (options.max_size_bytes > 0)
+    options.file.chunk_bytes =
+        std::min<std::size_t>(options.file.chunk_bytes,
+                              std::max(options.max_size_bytes / kChunksPerFile, kSmallestChunk));
   return options;
 }
 
@@ -35,6 +44,7 @@ std::size_t Recording::add_topic(RecordedTopic topic) {
 }
 
 void Recording::open(std::int64_t now_ns) {
+  files_.make_room(options_.max_size_bytes + options_.file.chunk_bytes);
   path_ = files_.next();
   writer_.emplace(path_, options_.file);
   opened_ns_ = now_ns;
@@ -52,7 +62,7 @@ void Recording::close() {
   const std::uint64_t bytes = writer_->bytes_written();
   writer_.reset();
   totals_.bytes += bytes;
-  files_.finished(path_, bytes, options_.max_size_bytes);
+  files_.finished(path_, bytes);
 }
 
 void Recording::rotate_if_due(std::int64_t now_ns) {

@@ -68,8 +68,11 @@ std::string RecordingFiles::next() {
   return path.string();
 }
 
-void RecordingFiles::finished(const std::string& path, std::uint64_t bytes, std::uint64_t room) {
+void RecordingFiles::finished(const std::string& path, std::uint64_t bytes) {
   files_.push_back({path, bytes});
+}
+
+void RecordingFiles::make_room(std::uint64_t room) {
   if (quota_bytes_ == 0) return;
   std::uint64_t total = room;
   for (const File& file : files_) total += file.bytes;

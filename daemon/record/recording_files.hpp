@@ -22,9 +22,11 @@ class RecordingFiles {
 
   /// The next file's path. Throws std::invalid_argument if there is one already.
   [[nodiscard]] std::string next();
-  /// A file is complete and so long. Deletes the oldest until all that are left and `room` bytes
-  /// fit the quota; the newest one stays in any case.
-  void finished(const std::string& path, std::uint64_t bytes, std::uint64_t room);
+  /// A file is complete and so long.
+  void finished(const std::string& path, std::uint64_t bytes);
+  /// Deletes the oldest until all that are left and `room` bytes fit the quota; the newest one
+  /// stays in any case.
+  void make_room(std::uint64_t room);
 
   [[nodiscard]] std::uint64_t deleted() const { return deleted_; }
 
