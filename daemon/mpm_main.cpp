@@ -9,6 +9,8 @@
 #include "daemon/commands/record.hpp"
 #include "daemon/commands/replay.hpp"
 #include "daemon/commands/topics.hpp"
+#include "daemon/commands/info.hpp"
+#include "daemon/commands/recover.hpp"
 #include "daemon/commands/watch.hpp"
 #include "daemon/service/version.hpp"
 
@@ -22,7 +24,9 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   mpm::daemon::add_detect(app, exit_code);
   mpm::daemon::add_diagnose(app, exit_code);
+  mpm::daemon::add_info(app, exit_code);
   mpm::daemon::add_convert(app, exit_code);
+  mpm::daemon::add_recover(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
   mpm::daemon::add_record(app, exit_code);
   mpm::daemon::add_replay(app, exit_code);

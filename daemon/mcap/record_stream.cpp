@@ -53,6 +53,13 @@ std::optional<RecordHead> RecordStream::next() {
   return head;
 }
 
+void RecordStream::resume(std::uint64_t offset) {
+  next_ = offset;
+  done_ = false;
+  damage_.reset();
+  torn_.reset();
+}
+
 ByteView RecordStream::content(const RecordHead& head) {
   if (head.length > kMostBytes)
     file_.fail(head.offset, "a record of " + std::to_string(head.length) + " bytes");

@@ -36,6 +36,8 @@ class RecordStream {
   [[nodiscard]] const std::optional<Damage>& damage() const { return damage_; }
   /// The record whose end is not there, if that is the damage.
   [[nodiscard]] const std::optional<RecordHead>& torn() const { return torn_; }
+  /// Goes on at `offset` after a damage.
+  void resume(std::uint64_t offset);
   /// Content of a record that must be in memory as a whole; fails on one that is too long for that.
   [[nodiscard]] ByteView content(const RecordHead& head);
 
