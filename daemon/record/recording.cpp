@@ -44,7 +44,9 @@ std::size_t Recording::add_topic(RecordedTopic topic) {
 }
 
 void Recording::open(std::int64_t now_ns) {
-  files_.make_room(options_.max_size_bytes + options_.file.chunk_bytes);
+  // The last chunk may go beyond the size, and the indexes come on top.
+  files_.make_room(options_.max_size_bytes + options_.max_size_bytes / 4 +
+                   options_.file.chunk_bytes);
   path_ = files_.next();
   writer_.emplace(path_, options_.file);
   opened_ns_ = now_ns;

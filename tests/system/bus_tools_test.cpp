@@ -3,7 +3,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
+#include "daemon/mcap/ordered_reader.hpp"
+#include "idl/raw_sample.hpp"
 #include "idl/sample_readers.hpp"
 #include "tests/system/bench.hpp"
 
@@ -249,6 +252,32 @@ TEST_CASE(
   REQUIRE(renamed.size() == 2000);
   CHECK(renamed.front().unit == "copy");
   CHECK(renamed.back().source_time_ns == all.back().source_time_ns);
+}
+
+TEST_CASE("a topic of somebody else is recorded by the type that its writer describes") {
+  const Corner corner("foreign");
+  const std::string file = corner.folder.file("run.mcap");
+  const idl::Writer<mpm_Health> foreign(corner.participant, "site/health", idl::health_qos());
+  Process recorder =
+      corner.start({"mpm", "record", "--output", file, "--topics", "site/health", "site/nothing"});
+  mpm_Health health{};
+  char unit[] = "far";
+  health.unit = unit;
+  REQUIRE(idl::eventually([&] { return foreign.matched_readers() > 0; }, kPatience));
+  REQUIRE(foreign.write(health));
+  REQUIRE(dds_wait_for_acks(foreign.get(), DDS_SECS(5)) == DDS_RETCODE_OK);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // best effort: nobody tells
+  recorder.send(SIGTERM);
+  CHECK(recorder.wait(kPatience) == 0);
+  CHECK(read_file(corner.folder.file("started.err")).find("nobody wrote site/nothing") !=
+        std::string::npos);
+  const auto messages = mcap::open_messages(file);
+  mcap::Message message;
+  REQUIRE(messages->next(message));
+  CHECK(message.channel->topic == "site/health");
+  CHECK(message.schema->name == "mpm::Health");
+  CHECK(idl::unit_of(message.data) == "far");
+  CHECK_FALSE(messages->next(message));
 }
 
 TEST_CASE("a replay in a loop goes on counting") {
