@@ -6,6 +6,8 @@
 #include "daemon/commands/detect.hpp"
 #include "daemon/commands/diagnose.hpp"
 #include "daemon/commands/publish.hpp"
+#include "daemon/commands/record.hpp"
+#include "daemon/commands/replay.hpp"
 #include "daemon/commands/topics.hpp"
 #include "daemon/commands/info.hpp"
 #include "daemon/commands/recover.hpp"
@@ -26,6 +28,8 @@ int run(int argc, char** argv) {
   mpm::daemon::add_convert(app, exit_code);
   mpm::daemon::add_recover(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
+  mpm::daemon::add_record(app, exit_code);
+  mpm::daemon::add_replay(app, exit_code);
   mpm::daemon::add_publish(app, exit_code);
   mpm::daemon::add_topics(app, exit_code);
   mpm::daemon::add_echo(app, exit_code);

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <utility>
 
 namespace mpm::idl {
 namespace {
@@ -60,6 +61,17 @@ class Cursor {
 
 std::string unit_of(std::span<const std::byte> cdr) {
   return Cursor(cdr).text().value_or(std::string());
+}
+
+std::vector<std::string> leading_texts(std::span<const std::byte> cdr, std::size_t count) {
+  Cursor cursor(cdr);
+  std::vector<std::string> texts(count);
+  for (std::string& text : texts) {
+    std::optional<std::string> next = cursor.text();
+    if (!next) break;
+    text = std::move(*next);
+  }
+  return texts;
 }
 
 std::optional<SampleStamp> stamp_of(std::span<const std::byte> cdr) {

@@ -24,6 +24,10 @@ struct RawSample {
 /// The key `unit` of a sample (or of a key) of one of our types: the first string in it. Empty
 /// where the bytes are no such thing.
 [[nodiscard]] std::string unit_of(std::span<const std::byte> cdr);
+/// The first `count` strings of a sample of a type that begins with so many; empty ones where the
+/// bytes are no such thing.
+[[nodiscard]] std::vector<std::string> leading_texts(std::span<const std::byte> cdr,
+                                                     std::size_t count);
 
 /// The source time and interval that a raw mpm::Sample carries.
 struct SampleStamp {

@@ -28,6 +28,7 @@ struct PublishOptions {
   std::optional<int> domain;
   std::optional<std::string> partition;
   double wait_readers_s = 5.0;
+  int readers = 1;
   bool real_time = false;
   bool use_environment = false;
 };
@@ -49,14 +50,15 @@ LineFormat format_of(const std::string& name) {
   return name == "csv" ? LineFormat::kCsv : LineFormat::kAuto;
 }
 
-void wait_for_readers(const idl::UnitPublisher& publisher, double seconds, StopSignal& stop) {
+void wait_for_readers(const idl::UnitPublisher& publisher, const PublishOptions& options,
+                      StopSignal& stop) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(seconds));
+                                      std::chrono::duration<double>(options.wait_readers_s));
   while (Clock::now() < end && !stop.received())
-    if (publisher.wait_for_readers(kLongestWait)) return;
-  if (seconds > 0.0)
-    std::cerr << "mpm publish: not every topic has a reader after " << seconds
+    if (publisher.wait_for_readers(kLongestWait, options.readers)) return;
+  if (options.wait_readers_s > 0.0 && !stop.received())
+    std::cerr << "mpm publish: not every topic has a reader after " << options.wait_readers_s
               << " s; publishing all the same\n";
 }
 
@@ -77,7 +79,7 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
   const idl::UnitPublisher publisher(
       participant, layout,
       options.real_time ? idl::WriterPace::kRealTime : idl::WriterPace::kLossless);
-  wait_for_readers(publisher, options.wait_readers_s, stop);
+  wait_for_readers(publisher, options, stop);
 
   std::uint64_t published = 0, skipped = 0;
   Frame frame;
@@ -136,6 +138,9 @@ void add_publish(CLI::App& app, int& exit_code) {
                    "seconds to wait for a reader of every topic before the first line")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--readers", options->readers, "how many readers of every topic to wait for")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
   command->add_flag("--real-time", options->real_time,
                     "never wait for a slow reader; it loses the oldest samples");
   command->add_option("--domain", options->domain, "DDS domain, instead of the unit file's")
