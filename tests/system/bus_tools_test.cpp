@@ -61,13 +61,17 @@ struct Corner {
     return std::nullopt;
   }
   /// A recording of `frames` frames, split if `options` say so.
-  void record(const std::string& output, int frames, std::vector<std::string> options = {}) const {
+  void record(const std::string& output, int frames, std::vector<std::string> options = {},
+              std::chrono::milliseconds apart = {}) const {
     options.insert(options.begin(), {"mpm", "record", "--output", output});
     Process recorder = start(options);
     const idl::UnitPublisher publisher = this->publisher();
     REQUIRE(publisher.wait_for_readers(kPatience));
     Plant plant(2.0);
-    for (int i = 0; i < frames; ++i) REQUIRE(publisher.publish(plant.next()));
+    for (int i = 0; i < frames; ++i) {
+      REQUIRE(publisher.publish(plant.next()));
+      std::this_thread::sleep_for(apart);
+    }
     REQUIRE(publisher.flush(kPatience));
     recorder.send(SIGTERM);
     INFO(read_file(folder.file("started.err")));
@@ -355,8 +359,8 @@ TEST_CASE("a replay in a loop goes on counting") {
 TEST_CASE("keys steer a replay on a terminal") {
   const Corner corner("keys");
   const std::string file = corner.folder.file("run.mcap");
-  corner.record(file, 100);
-  // The recording is some ms long.
+  corner.record(file, 100, {},
+                std::chrono::milliseconds(1));  // samples that come together replay so
   OnTerminal replay(corner.on_bus(
       {"mpm", "replay", file, "--wait-readers", "0", "--rate", "0.0001", "--start-paused"}));
   CHECK(replay.shows(" 0 samples  0.0001 x  paused"));
