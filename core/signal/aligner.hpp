@@ -47,9 +47,10 @@ struct AlignerCounters {
 ///   - every needed kind has gone on to an interval more than `max_lateness` newer, or
 ///   - some kind is `capacity` intervals ahead, or
 ///   - `expire()` says that a kind has fallen silent.
-/// Absent blocks of an emitted frame are bad and have no value; an interval of which nothing came is left out. So as
-/// long as blocks come no more than `max_lateness` intervals late, the frames depend on what came
-/// and not on its order. The first frame after a start waits for the lateness to pass.
+/// Absent blocks of an emitted frame are bad and have no value; an interval of which nothing came
+/// is left out. So as long as blocks come no more than `max_lateness` intervals late, the frames
+/// depend on what came and not on its order. The first frame after a start waits for the lateness
+/// to pass.
 ///
 /// Blocks far from the current window are gathered in a second one. When that one has a complete
 /// frame, it takes over: the controller restarted or was away. A single stray number changes
