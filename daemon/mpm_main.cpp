@@ -2,8 +2,15 @@
 #include <exception>
 #include <iostream>
 
+#include "daemon/commands/convert.hpp"
 #include "daemon/commands/detect.hpp"
 #include "daemon/commands/diagnose.hpp"
+#include "daemon/commands/info.hpp"
+#include "daemon/commands/publish.hpp"
+#include "daemon/commands/record.hpp"
+#include "daemon/commands/recover.hpp"
+#include "daemon/commands/replay.hpp"
+#include "daemon/commands/topics.hpp"
 #include "daemon/commands/watch.hpp"
 #include "daemon/service/version.hpp"
 
@@ -17,7 +24,17 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   mpm::daemon::add_detect(app, exit_code);
   mpm::daemon::add_diagnose(app, exit_code);
+  mpm::daemon::add_info(app, exit_code);
+  mpm::daemon::add_convert(app, exit_code);
+  mpm::daemon::add_recover(app, exit_code);
   mpm::daemon::add_watch(app, exit_code);
+  mpm::daemon::add_record(app, exit_code);
+  mpm::daemon::add_replay(app, exit_code);
+  mpm::daemon::add_publish(app, exit_code);
+  mpm::daemon::add_topics(app, exit_code);
+  mpm::daemon::add_echo(app, exit_code);
+  mpm::daemon::add_hz(app, exit_code);
+  mpm::daemon::add_delay(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

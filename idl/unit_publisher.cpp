@@ -50,10 +50,10 @@ void UnitPublisher::write_layout() const {
   }
 }
 
-bool UnitPublisher::wait_for_readers(std::chrono::milliseconds timeout) const {
+bool UnitPublisher::wait_for_readers(std::chrono::milliseconds timeout, int readers) const {
   const Clock::time_point deadline = Clock::now() + timeout;
   for (const auto& writer : writers_) {
-    while (writer && writer->matched_readers() == 0) {
+    while (writer && writer->matched_readers() < readers) {
       if (Clock::now() >= deadline) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

@@ -38,9 +38,9 @@ class UnitPublisher {
  public:
   UnitPublisher(const Participant& participant, UnitLayout layout, WriterPace pace);
 
-  /// Waits until every topic has a reader that knows its writer, so that the first frame is not
-  /// lost to discovery. False after `timeout`.
-  [[nodiscard]] bool wait_for_readers(std::chrono::milliseconds timeout) const;
+  /// Waits until every topic has so many readers that know its writer, so that the first frame is
+  /// not lost to discovery. False after `timeout`.
+  [[nodiscard]] bool wait_for_readers(std::chrono::milliseconds timeout, int readers = 1) const;
 
   /// False if readers did not take it in time (kLossless: 10 s).
   [[nodiscard]] bool publish(const Frame& frame) const;

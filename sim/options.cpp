@@ -41,6 +41,9 @@ void declare(CLI::App& app, Options& options) {
                  "seconds to wait for a reader of every topic before the first sample")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--readers", options.readers, "how many readers of every topic to wait for")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
   app.add_option("--domain", options.domain, "DDS domain, instead of the unit file's")
       ->check(CLI::Range(0, 230));
   app.add_option("--partition", options.partition, "discovery tag, instead of the unit file's");

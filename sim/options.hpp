@@ -25,6 +25,7 @@ struct Options {
   std::string start_time;
   double speed = 1.0;
   double wait_readers_s = 0.0;
+  int readers = 1;
   std::optional<int> domain;
   std::optional<std::string> partition;
 };

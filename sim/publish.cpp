@@ -77,14 +77,16 @@ idl::UnitLayout layout_of(const config::UnitConfig& unit) {
 }
 
 /// False if told to stop.
-bool wait_for_readers(const idl::UnitPublisher& publisher, double seconds) {
+bool wait_for_readers(const idl::UnitPublisher& publisher, double seconds, int readers) {
   const auto end =
       Clock::now() + duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   while (Clock::now() < end) {
-    if (publisher.wait_for_readers(std::chrono::milliseconds(200))) return true;
+    if (publisher.wait_for_readers(std::chrono::milliseconds(200), readers)) return true;
     if (stopped_before(Clock::now())) return false;
   }
-  if (seconds > 0.0) spdlog::warn("not every topic has a reader after {} s", seconds);
+  if (seconds > 0.0)
+    spdlog::warn("not every topic has {} after {} s",
+                 readers == 1 ? "a reader" : fmt::format("{} readers", readers), seconds);
   return true;
 }
 
@@ -104,7 +106,7 @@ int run_dds(const LoopSetup& setup, const Options& options, BadDataFilter& filte
       paced ? idl::WriterPace::kRealTime : idl::WriterPace::kLossless);
   spdlog::info("unit {} publishes on domain {}", setup.unit.unit,
                options.domain.value_or(setup.unit.dds.domain));
-  if (!wait_for_readers(publisher, options.wait_readers_s)) return kDone;
+  if (!wait_for_readers(publisher, options.wait_readers_s, options.readers)) return kDone;
 
   const std::int64_t samples = options.samples.value_or(std::numeric_limits<std::int64_t>::max());
   const double interval_s = paced ? setup.unit.sample_time_s / options.speed : 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace mpm {
@@ -21,7 +22,7 @@ Quality quality_of(std::uint8_t code) {
 }
 
 void make_bad(SignalBlock& block) {
-  block.values.setZero();
+  block.values.setConstant(std::numeric_limits<double>::quiet_NaN());
   std::fill(block.quality.begin(), block.quality.end(), Quality::kBad);
 }
 
@@ -66,6 +67,10 @@ void Aligner::expire() {
     if ((needed_ & bit) != 0 && behind) silent_ |= bit;
   }
   advance();
+}
+
+void Aligner::finish() {
+  while (pending()) settle_next(current_);
 }
 
 void Aligner::start(Window& window, std::int64_t interval) {

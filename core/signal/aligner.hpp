@@ -47,9 +47,10 @@ struct AlignerCounters {
 ///   - every needed kind has gone on to an interval more than `max_lateness` newer, or
 ///   - some kind is `capacity` intervals ahead, or
 ///   - `expire()` says that a kind has fallen silent.
-/// Absent blocks of an emitted frame are bad; an interval of which nothing came is left out. So as
-/// long as blocks come no more than `max_lateness` intervals late, the frames depend on what came
-/// and not on its order. The first frame after a start waits for the lateness to pass.
+/// Absent blocks of an emitted frame are bad and have no value; an interval of which nothing came
+/// is left out. So as long as blocks come no more than `max_lateness` intervals late, the frames
+/// depend on what came and not on its order. The first frame after a start waits for the lateness
+/// to pass.
 ///
 /// Blocks far from the current window are gathered in a second one. When that one has a complete
 /// frame, it takes over: the controller restarted or was away. A single stray number changes
@@ -68,6 +69,9 @@ class Aligner {
   /// For the caller that has a clock, when nothing was emitted for too long: from now on does not
   /// wait for kinds that are behind by more than the lateness, until they come again.
   void expire();
+
+  /// Emits all that is there, for the caller that knows that nothing more will come.
+  void finish();
 
   /// True while something waits for its frame to be complete.
   [[nodiscard]] bool pending() const {

@@ -7,8 +7,8 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
-#include "daemon/io/csv_reader.hpp"
 #include "daemon/monitoring/journal.hpp"
+#include "daemon/recording/open_recording.hpp"
 #include "daemon/report/detect_report.hpp"
 #include "daemon/report/unit_monitor.hpp"
 
@@ -65,11 +65,12 @@ int detect(const DetectOptions& options) {
       if (!report(scenario.findings)) return 3;
       loaded.config.monitor = scenario.scenario.monitor;
     }
-    io::CsvReader reader(options.data, loaded.config);
+    const std::unique_ptr<io::FrameSource> frames =
+        recording::open_recording(options.data, loaded.config);
     std::optional<Journal> journal;
     if (!options.journal.empty()) journal.emplace(options.journal);
-    const DetectReport report = run(loaded.config, reader, journal ? &*journal : nullptr);
-    for (const std::string& notice : reader.notices()) std::cerr << notice << '\n';
+    const DetectReport report = run(loaded.config, *frames, journal ? &*journal : nullptr);
+    for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
     std::cout << (options.json ? to_json(report).dump() + "\n" : to_text(report)) << std::flush;
     return options.fail_on_mismatch && report.mismatch() ? 1 : 0;
   } catch (const config::InputError& error) {
@@ -85,7 +86,10 @@ void add_detect(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "detect", "Judge every channel on recorded data, exactly as the daemon would");
   command->add_option("--config", options->config, "unit file")->required();
-  command->add_option("--data", options->data, "data file (CSV, any historian layout)")->required();
+  command
+      ->add_option("--data", options->data,
+                   "data file (MCAP recording, or CSV in any historian layout)")
+      ->required();
   command->add_option("--scenario", options->scenario,
                       "scenario (name or file) whose `monitor` settings replace the unit file's");
   command->add_flag("--json", options->json, "print one JSON object");

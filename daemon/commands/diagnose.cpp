@@ -13,9 +13,9 @@
 #include "daemon/closed_loop/compare_loops.hpp"
 #include "daemon/closed_loop/run_mpmsim.hpp"
 #include "daemon/commands/progress_bar.hpp"
-#include "daemon/io/csv_reader.hpp"
 #include "daemon/io/output_folder.hpp"
 #include "daemon/io/read_recording.hpp"
+#include "daemon/recording/open_recording.hpp"
 #include "daemon/report/diagnosis_report.hpp"
 #include "daemon/report/report_files.hpp"
 #include "daemon/service/signals.hpp"
@@ -75,12 +75,12 @@ std::optional<config::UnitConfig> load(const std::string& file) {
 
 Recording read(const std::string& file, const config::UnitConfig& unit,
                std::vector<std::string>& notices) {
-  io::CsvReader reader(file, unit);
-  const io::RecordingFile data = io::read_recording(reader, unit, file);
+  const std::unique_ptr<io::FrameSource> frames = recording::open_recording(file, unit);
+  const io::RecordingFile data = io::read_recording(*frames, unit, file);
   const std::string problem = io::recording_problem(data.recording, needed_samples(unit.model));
   if (!problem.empty()) refuse(file, problem);
   const std::string prefix = file + ": ";
-  for (const std::string& notice : reader.notices()) notices.push_back(prefix + notice);
+  for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
   const auto count = [&](std::int64_t number, const char* what) {
     if (number > 0) notices.push_back(prefix + std::to_string(number) + what);
   };

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "daemon/bus/output_readers.hpp"
+#include "daemon/commands/domain_flags.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/service/signals.hpp"
 #include "daemon/watch/viewer.hpp"
@@ -75,16 +76,7 @@ void add_watch(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("watch", "show what the monitors say, live");
   const auto options = std::make_shared<WatchOptions>();
   command->add_option("--unit", options->unit, "only this unit");
-  command->add_option("--domain", options->domain.domain, "DDS domain")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 230));
-  command->add_option("--partition", options->domain.partition, "discovery tag");
-  command->add_option("--interface", options->domain.interface, "network interface")
-      ->capture_default_str();
-  command->add_option("--peer", options->domain.peers, "host to look for monitors on; repeatable");
-  command->add_flag("--multicast", options->domain.multicast, "look for monitors by multicast");
-  command->add_flag("--dds-from-environment", options->domain.use_environment,
-                    "take the DDS settings from CYCLONEDDS_URI");
+  add_domain_flags(*command, options->domain);
   command->add_flag("--json", options->json, "print each record as a JSON line");
   command->add_flag("--no-color", options->no_color, "words only; also with NO_COLOR set");
   command->add_flag("--alarms-only", options->alarms_only, "leave out what is not an alarm");

@@ -1,5 +1,7 @@
 #include "daemon/io/csv_line.hpp"
 
+#include <filesystem>
+#include <fstream>
 #include <utility>
 
 namespace mpm::io {
@@ -10,6 +12,19 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 }  // namespace
+
+std::unique_ptr<std::istream> open_file(const std::string& path) {
+  const auto fail = [&path](const char* message) {
+    throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
+  };
+  std::error_code failure;
+  const auto status = std::filesystem::status(path, failure);
+  if (!std::filesystem::exists(status)) fail("no such file");
+  if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
+  auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
+  if (!*file) fail("cannot be read");
+  return file;
+}
 
 LineReader::LineReader(std::unique_ptr<std::istream> input, std::string name)
     : input_(std::move(input)), name_(std::move(name)) {}

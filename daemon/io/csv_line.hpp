@@ -44,6 +44,9 @@ class LineReader {
   bool complete_ = true;
 };
 
+/// A file to read lines from. Throws config::InputError where it cannot be read.
+[[nodiscard]] std::unique_ptr<std::istream> open_file(const std::string& path);
+
 /// Of `;`, tab and comma the one that the header uses most; comma if none.
 [[nodiscard]] char find_delimiter(std::string_view header);
 

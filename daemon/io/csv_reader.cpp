@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include "config/finding.hpp"
@@ -23,19 +21,6 @@ constexpr std::size_t kRowsToBelieve = 3;
 // Part of a time stamp's deviation that is taken for the clock's own drift.
 constexpr double kFollow = 0.02;
 
-std::unique_ptr<std::istream> open_file(const std::string& path) {
-  const auto fail = [&path](const char* message) {
-    throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
-  };
-  std::error_code failure;
-  const auto status = std::filesystem::status(path, failure);
-  if (!std::filesystem::exists(status)) fail("no such file");
-  if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
-  auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
-  if (!*file) fail("cannot be read");
-  return file;
-}
-
 std::string seconds(double value) {
   std::string text = std::to_string(value);
   text.erase(text.find_last_not_of('0') + 1);
@@ -45,19 +30,20 @@ std::string seconds(double value) {
 
 }  // namespace
 
-CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit)
-    : CsvReader(open_file(path), path, unit) {}
+CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit,
+                     std::shared_ptr<const TimeZone> zone)
+    : CsvReader(open_file(path), path, unit, std::move(zone)) {}
 
 CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
-                     const config::UnitConfig& unit)
+                     const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone)
     : sample_time_s_(unit.sample_time_s), lines_(std::move(input), name), tags_(unit) {
-  open(unit.counts());
+  open(unit.counts(), std::move(zone));
 }
 
-void CsvReader::open(const SignalCounts& counts) {
+void CsvReader::open(const SignalCounts& counts, std::shared_ptr<const TimeZone> zone) {
   if (!lines_.next()) lines_.fail(1, 1, "the file is empty");
   const int header_line = lines_.number();
-  const CsvFormat format{find_delimiter(lines_.text())};
+  const CsvFormat format{find_delimiter(lines_.text()), std::move(zone)};
   std::vector<Cell> header;
   lines_.split(format.delimiter, header);
   rows_ = is_long_header(header) ? read_long(lines_, format, header, tags_, counts, row_notices_)

@@ -22,17 +22,21 @@ class CsvReader : public FrameSource {
  public:
   /// Reads the header and the first rows. Throws config::InputError (`file:line:col: message`) if
   /// the file cannot be opened, a tag is missing or the rows are not sample_time apart.
-  CsvReader(const std::string& path, const config::UnitConfig& unit);
+  /// Local times are read as those of `zone`; refused without one.
+  CsvReader(const std::string& path, const config::UnitConfig& unit,
+            std::shared_ptr<const TimeZone> zone = nullptr);
   /// The same from a stream that can seek; `name` stands for the file in messages.
   CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
-            const config::UnitConfig& unit);
+            const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone = nullptr);
 
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] const std::vector<bool>& has_prediction() const override { return has_prediction_; }
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
+  /// True if the file has the tag.
+  [[nodiscard]] bool holds(const std::string& tag) const { return tags_.seen(tag); }
 
  private:
-  void open(const SignalCounts& counts);
+  void open(const SignalCounts& counts, std::shared_ptr<const TimeZone> zone);
   void check_sample_time(int first_line) const;
   [[nodiscard]] bool read(Frame& frame);
   void number(Frame& frame);

@@ -52,6 +52,7 @@ class LongRows : public RowSource {
            TagTable& tags, const SignalCounts& counts, std::vector<std::string>& notices)
       : lines_(lines),
         format_(format),
+        times_(format.zone),
         columns_(find_columns(header)),
         width_(header.back().text.empty() ? header.size() - 1 : header.size()),
         tags_(tags),
@@ -92,12 +93,14 @@ class LongRows : public RowSource {
     bool first = true;
     while (next_line()) {
       tags_.see(cells_[*columns_.tag].text);
-      const std::int64_t time_ns = read_time(lines_, cells_[*columns_.time]);
+      const std::int64_t time_ns =
+          read_time(lines_, cells_[*columns_.time], times_, cells_[*columns_.tag].text);
       sorted = sorted && (first || time_ns >= last_ns);
       last_ns = time_ns;
       first = false;
     }
     notices_.clear();  // a cut-off line is told when it is read again
+    times_.restart();
     return sorted;
   }
 
@@ -127,13 +130,16 @@ class LongRows : public RowSource {
       if (slot == nullptr) continue;
       Sample sample;
       sample.slot = *slot;
-      sample.time_ns = read_time(lines_, cells_[*columns_.time]);
+      sample.time_ns =
+          read_time(lines_, cells_[*columns_.time], times_, cells_[*columns_.tag].text);
       sample.value = read_value(lines_, format_, cells_[*columns_.value]);
       sample.quality = Quality::kGood;
       if (columns_.quality) sample.quality = read_quality(lines_, cells_[*columns_.quality]);
       if (!std::isfinite(sample.value)) sample.quality = Quality::kBad;
       return sample;
     }
+    if (const std::string notice = times_.notice(); !notice.empty()) notices_.push_back(notice);
+    times_.restart();
     return std::nullopt;
   }
 
@@ -145,6 +151,7 @@ class LongRows : public RowSource {
 
   LineReader& lines_;
   CsvFormat format_;
+  LocalTimes times_;
   LongColumns columns_;
   std::size_t width_;
   TagTable& tags_;
@@ -158,6 +165,10 @@ class LongRows : public RowSource {
 }  // namespace
 
 bool is_long_header(const std::vector<Cell>& header) { return find_columns(header).complete(); }
+
+std::size_t tag_column(const std::vector<Cell>& header) {
+  return find_columns(header).tag.value_or(0);
+}
 
 std::unique_ptr<RowSource> read_long(LineReader& lines, const CsvFormat& format,
                                      const std::vector<Cell>& header, TagTable& tags,

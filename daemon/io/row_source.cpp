@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "daemon/io/cell.hpp"
-#include "daemon/io/time_text.hpp"
 
 namespace mpm::io {
 
@@ -17,9 +16,10 @@ double read_value(const LineReader& lines, const CsvFormat& format, const Cell& 
   return *value;
 }
 
-std::int64_t read_time(const LineReader& lines, const Cell& cell) {
+std::int64_t read_time(const LineReader& lines, const Cell& cell, LocalTimes& times,
+                       std::string_view series) {
   std::string problem;
-  const std::optional<std::int64_t> time_ns = parse_time(cell.text, problem);
+  const std::optional<std::int64_t> time_ns = times.read(cell.text, series, problem);
   if (!time_ns) lines.fail(cell.column, "'" + std::string(cell.text) + "' " + problem);
   return *time_ns;
 }

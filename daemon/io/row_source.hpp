@@ -6,6 +6,7 @@
 
 #include "core/signal/frame.hpp"
 #include "daemon/io/csv_line.hpp"
+#include "daemon/io/local_times.hpp"
 #include "daemon/io/tag_table.hpp"
 
 namespace mpm::io {
@@ -13,6 +14,7 @@ namespace mpm::io {
 /// The layout of a data file, found from its header.
 struct CsvFormat {
   char delimiter = ',';
+  std::shared_ptr<const TimeZone> zone = nullptr;  ///< of local times; null = there may be none
   [[nodiscard]] bool decimal_comma() const { return delimiter != ','; }
 };
 
@@ -36,6 +38,9 @@ class RowSource {
 /// True for the header of the long form: a tag, a time and a value column.
 [[nodiscard]] bool is_long_header(const std::vector<Cell>& header);
 
+/// Which column of such a header holds the tags.
+[[nodiscard]] std::size_t tag_column(const std::vector<Cell>& header);
+
 /// Rows `tag,time,value,quality`; reads the whole file once to learn its tags and order.
 [[nodiscard]] std::unique_ptr<RowSource> read_long(LineReader& lines, const CsvFormat& format,
                                                    const std::vector<Cell>& header, TagTable& tags,
@@ -44,7 +49,8 @@ class RowSource {
 
 /// Shared by both: a cell's value, time and quality, or InputError at its place.
 [[nodiscard]] double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell);
-[[nodiscard]] std::int64_t read_time(const LineReader& lines, const Cell& cell);
+[[nodiscard]] std::int64_t read_time(const LineReader& lines, const Cell& cell, LocalTimes& times,
+                                     std::string_view series = {});
 [[nodiscard]] Quality read_quality(const LineReader& lines, const Cell& cell);
 /// True for what a time column may be called.
 [[nodiscard]] bool is_time_name(std::string_view name);

@@ -1,7 +1,9 @@
 #include "daemon/io/time_text.hpp"
 
+#include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 
@@ -120,15 +122,8 @@ std::optional<int> parse_zone(Cursor& cursor) {
   return west ? -seconds : seconds;
 }
 
-std::optional<std::int64_t> parse_iso(std::string_view text, std::string& problem) {
-  Cursor cursor(text);
-  problem = "is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z";
-  const int year = cursor.take_number(4);
-  if (!cursor.take('-')) return std::nullopt;
-  const int month = cursor.take_number(2);
-  if (!cursor.take('-')) return std::nullopt;
-  const int day = cursor.take_number(2);
-  if (!cursor.take('T') && !cursor.take(' ') && !cursor.take('t')) return std::nullopt;
+/// hh:mm[:ss[.fraction]] of a day.
+std::optional<LocalTime> parse_clock(Cursor& cursor, const std::chrono::year_month_day& date) {
   const int hour = cursor.take_number(2);
   if (!cursor.take(':')) return std::nullopt;
   const int minute = cursor.take_number(2);
@@ -142,26 +137,71 @@ std::optional<std::int64_t> parse_iso(std::string_view text, std::string& proble
       fraction_ns = scaled(digits, 9 - static_cast<int>(digits.size())).value_or(0);
     }
   }
-  const std::chrono::year_month_day date{std::chrono::year(year),
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
-  if (year < 0 || month < 0 || day < 0 || !date.ok() || hour < 0 || hour > 23 || minute < 0 ||
-      minute > 59 || second < 0 || second > 60)  // 60 = leap second
+  if (!date.ok() || hour < 0 || hour > 23 || minute < 0 || minute > 59 || second < 0 ||
+      second > 60)  // 60 = leap second
     return std::nullopt;
+  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
+  return LocalTime{86400 * days + 3600 * hour + 60 * minute + second, fraction_ns};
+}
+
+std::optional<std::chrono::year_month_day> make_date(int year, int month, int day) {
+  if (year < 0 || month < 0 || day < 0) return std::nullopt;
+  return std::chrono::year_month_day{std::chrono::year(year),
+                                     std::chrono::month(static_cast<unsigned>(month)),
+                                     std::chrono::day(static_cast<unsigned>(day))};
+}
+
+/// 2024-05-01T12:00:00, without a zone.
+std::optional<LocalTime> parse_iso_clock(Cursor& cursor) {
+  const int year = cursor.take_number(4);
+  if (!cursor.take('-')) return std::nullopt;
+  const int month = cursor.take_number(2);
+  if (!cursor.take('-')) return std::nullopt;
+  const int day = cursor.take_number(2);
+  if (!cursor.take('T') && !cursor.take(' ') && !cursor.take('t')) return std::nullopt;
+  const auto date = make_date(year, month, day);
+  return date ? parse_clock(cursor, *date) : std::nullopt;
+}
+
+/// 01.05.2024 12:00:00
+std::optional<LocalTime> parse_dotted_clock(Cursor& cursor) {
+  const int day = cursor.take_number(2);
+  if (!cursor.take('.')) return std::nullopt;
+  const int month = cursor.take_number(2);
+  if (!cursor.take('.')) return std::nullopt;
+  const int year = cursor.take_number(4);
+  if (!cursor.take(' ')) return std::nullopt;
+  const auto date = make_date(year, month, day);
+  return date ? parse_clock(cursor, *date) : std::nullopt;
+}
+
+std::optional<std::int64_t> parse_iso(std::string_view text, std::string& problem) {
+  Cursor cursor(text);
+  problem = "is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z";
+  const std::optional<LocalTime> local = parse_iso_clock(cursor);
+  if (!local) return std::nullopt;
   if (cursor.done()) {
     problem = "is a local time: add its zone, Z or +hh:mm";
     return std::nullopt;
   }
   const std::optional<int> zone_s = parse_zone(cursor);
   if (!zone_s) return std::nullopt;
-  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  const std::int64_t seconds = 86400 * days + 3600 * hour + 60 * minute + second - *zone_s;
+  const std::int64_t seconds = local->seconds - *zone_s;
   if (std::abs(seconds) >= kLatestNs / kNsPerSecond) {
     problem = "is out of range";
     return std::nullopt;
   }
   problem.clear();
-  return seconds * kNsPerSecond + fraction_ns;
+  return seconds * kNsPerSecond + local->fraction_ns;
+}
+
+/// Three, six or nine digits with their point; empty for none.
+std::string fraction_text(std::int64_t fraction_ns) {
+  if (fraction_ns == 0) return {};
+  std::string digits = std::to_string(kNsPerSecond + fraction_ns);
+  digits[0] = '.';
+  while (digits.size() > 4 && digits.ends_with("000")) digits.resize(digits.size() - 3);
+  return digits;
 }
 
 }  // namespace
@@ -169,6 +209,45 @@ std::optional<std::int64_t> parse_iso(std::string_view text, std::string& proble
 std::optional<std::int64_t> parse_time(std::string_view text, std::string& problem) {
   const bool iso = text.size() > 5 && text[4] == '-' && is_digit(text[0]);
   return iso ? parse_iso(text, problem) : parse_seconds(text, problem);
+}
+
+std::optional<LocalTime> parse_local_time(std::string_view text) {
+  const bool dotted = text.size() > 2 && text[2] == '.';
+  Cursor cursor(text);
+  const std::optional<LocalTime> local =
+      dotted ? parse_dotted_clock(cursor) : parse_iso_clock(cursor);
+  if (!local || !cursor.done()) return std::nullopt;
+  if (std::abs(local->seconds) >= kLatestNs / kNsPerSecond - 2 * 86400) return std::nullopt;
+  return local;
+}
+
+std::string utc_text(std::int64_t time_ns, int offset_s) {
+  const std::chrono::sys_time<std::chrono::nanoseconds> time{std::chrono::nanoseconds(time_ns)};
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
+  const auto local = seconds + std::chrono::seconds(offset_s);
+  const auto day = std::chrono::floor<std::chrono::days>(local);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(local - day);
+  std::array<char, 80> text{};
+  int size = std::snprintf(
+      text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d", static_cast<int>(date.year()),
+      static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+      static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+      static_cast<int>(clock.seconds().count()));
+  std::string result(text.data(), static_cast<std::size_t>(size));
+  result += fraction_text((time - seconds).count());
+  if (offset_s == 0) return result + 'Z';
+  const int minutes = std::abs(offset_s) / 60;
+  size = std::snprintf(text.data(), text.size(), "%c%02d:%02d", offset_s < 0 ? '-' : '+',
+                       minutes / 60, minutes % 60);
+  return result.append(text.data(), static_cast<std::size_t>(size));
+}
+
+std::string seconds_text(std::int64_t time_ns) {
+  const std::int64_t whole = time_ns / kNsPerSecond;
+  const std::int64_t fraction = std::abs(time_ns % kNsPerSecond);
+  const char* sign = time_ns < 0 && whole == 0 ? "-" : "";
+  return sign + std::to_string(whole) + fraction_text(fraction);
 }
 
 }  // namespace mpm::io

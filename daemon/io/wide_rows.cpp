@@ -6,7 +6,6 @@
 
 #include "daemon/io/cell.hpp"
 #include "daemon/io/row_source.hpp"
-#include "daemon/io/time_text.hpp"
 
 namespace mpm::io {
 namespace {
@@ -30,7 +29,12 @@ class WideRows : public RowSource {
  public:
   WideRows(LineReader& lines, const CsvFormat& format, const std::vector<Cell>& header,
            TagTable& tags, const SignalCounts& counts, std::vector<std::string>& notices)
-      : lines_(lines), format_(format), width_(header.size()), counts_(counts), notices_(notices) {
+      : lines_(lines),
+        format_(format),
+        times_(format.zone),
+        width_(header.size()),
+        counts_(counts),
+        notices_(notices) {
     find_time(header);
     find_columns(header, tags);
     const std::string problem = tags.problem();
@@ -39,12 +43,12 @@ class WideRows : public RowSource {
 
   [[nodiscard]] bool next(Frame& frame) override {
     do {
-      if (!lines_.next()) return false;
+      if (!lines_.next()) return end();
       lines_.split(format_.delimiter, cells_);
     } while (is_units_row());
-    if (!check_width(lines_, cells_, width_, notices_)) return false;
+    if (!check_width(lines_, cells_, width_, notices_)) return end();
     clear(frame, counts_);
-    frame.source_time_ns = read_time(lines_, cells_[time_]);
+    frame.source_time_ns = read_time(lines_, cells_[time_], times_);
     for (const Column& column : values_) {
       const double value = read_value(lines_, format_, cells_[column.cell]);
       SignalBlock& block = frame[column.slot.kind];
@@ -62,6 +66,12 @@ class WideRows : public RowSource {
   }
 
  private:
+  bool end() {
+    if (const std::string notice = times_.notice(); !notice.empty()) notices_.push_back(notice);
+    times_.restart();
+    return false;
+  }
+
   void find_time(const std::vector<Cell>& header) {
     const auto found = std::find_if(header.begin(), header.end(),
                                     [](const Cell& cell) { return same_word(cell.text, "time"); });
@@ -114,6 +124,7 @@ class WideRows : public RowSource {
 
   LineReader& lines_;
   CsvFormat format_;
+  LocalTimes times_;
   std::size_t width_;
   SignalCounts counts_;
   std::vector<std::string>& notices_;

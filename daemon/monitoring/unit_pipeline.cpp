@@ -7,27 +7,13 @@
 #include <memory>
 
 #include "core/identify/diagnosis.hpp"
+#include "daemon/io/aligning.hpp"
 
 namespace mpm::daemon {
 namespace {
 
 constexpr std::chrono::seconds kHealthPeriod{1};
 constexpr int kSilentSamples = 10;
-
-std::array<bool, kSignalKindCount> needed_kinds(const config::UnitConfig& config) {
-  std::array<bool, kSignalKindCount> needed{};
-  const auto need = [&](SignalKind kind, bool yes) {
-    needed[static_cast<std::size_t>(kind)] = yes;
-  };
-  need(SignalKind::kMv, true);
-  need(SignalKind::kCv, true);
-  need(SignalKind::kDv, !config.dv.empty());
-  // Set-points are not waited for: no statistic uses them.
-  need(SignalKind::kPrediction,
-       std::any_of(config.cv.begin(), config.cv.end(),
-                   [](const config::CvSignal& cv) { return !cv.prediction.empty(); }));
-  return needed;
-}
 
 RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
                                         std::chrono::seconds at_least) {
@@ -58,10 +44,9 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const OutputWriters
       outputs_(outputs),
       journal_(journal),
       monitor_(config),
-      aligner_(config.counts(), needed_kinds(config),
+      aligner_(config.counts(), io::needed_kinds(config),
                [this](const Frame& frame) { on_frame(frame); }),
-      patience_(samples_or(config.sample_time_s, AlignerSettings{}.max_lateness,
-                           std::chrono::seconds(2))),
+      patience_(io::frame_patience(config)),
       silence_(samples_or(config.sample_time_s, kSilentSamples, std::chrono::seconds(5))),
       now_(now),
       last_frame_(now),

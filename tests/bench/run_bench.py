@@ -9,6 +9,8 @@ import os
 import statistics
 import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before numpy
@@ -152,6 +154,75 @@ def latency_figures(build, push_us):
     return figures
 
 
+RECORDER_TARGET = 10_000.0  # samples/s
+WEEK = 604_800  # rows of 1 Hz
+WEEK_PART = 6_048  # measured; the time grows with the rows
+WEEK_TARGET_S = 60.0
+
+
+def recording_figures(build):
+    def measure(*arguments):
+        output = subprocess.run([build / "bin/bench_recording", build / "bin/mpm", *arguments],
+                                check=True, stdout=subprocess.PIPE, text=True, timeout=900).stdout
+        return float(output.split()[1])
+
+    recorded = measure("recorder")
+    seconds = measure("week", str(WEEK_PART)) * WEEK / WEEK_PART
+    return [
+        {"name": "mpm record, ten values each: samples/s without a loss", "unit": "1/s",
+         "value": recorded, "target": f">= {RECORDER_TARGET:g}",
+         "met": recorded >= RECORDER_TARGET},
+        {"name": "mpm replay --rate 0, one reader: samples/s", "unit": "1/s",
+         "value": measure("replay")},
+        {"name": "mpm detect, a week of 1 Hz of 10x10, from 1 % of it: s", "unit": "s",
+         "value": seconds, "target": f"<= {WEEK_TARGET_S:g}", "met": seconds <= WEEK_TARGET_S},
+    ]
+
+
+DETECT_ROWS = 40_000  # of Shell 3x3, 12 signals
+FLAT = 1.2  # memory for ten times the rows, at most so much more
+
+
+def run_measured(*command):
+    """Seconds and peak resident kB of one program."""
+    begin = time.monotonic()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        sys.exit(f"{command[0]} ended with {process.returncode}")
+    return time.monotonic() - begin, usage.ru_maxrss
+
+
+def file_figures(build):
+    """Detect on either kind of file; size and memory of recordings."""
+    unit = str(ROOT / "config/plants/shell3x3.yaml")
+    mpm = build / "bin/mpm"
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        peaks = {}
+        for rows in (DETECT_ROWS // 10, DETECT_ROWS):
+            csv, mcap = folder / f"{rows}.csv", folder / f"{rows}.mcap"
+            run_measured(build / "bin/mpmsim", "--config", unit, "--scenario", "none", "--seed", "1",
+                         "--samples", str(rows), "--csv", csv)
+            run_measured(mpm, "convert", csv, mcap, "--config", unit)
+            for file in (csv, mcap):
+                peaks[file.suffix, rows] = [
+                    run_measured(mpm, "detect", "--config", unit, "--data", file) for _ in range(3)]
+        bytes_per_value = mcap.stat().st_size / (rows * 12)
+    figures = [{"name": "MCAP, bytes per value (Shell 3x3, converted)", "unit": "byte",
+                "value": bytes_per_value}]
+    for suffix, what in ((".csv", "CSV"), (".mcap", "MCAP")):
+        fast = min(seconds for seconds, _ in peaks[suffix, DETECT_ROWS])
+        figures.append({"name": f"mpm detect from {what}, Shell 3x3: samples/s", "unit": "1/s",
+                        "value": DETECT_ROWS / fast})
+    growth = (max(kb for _, kb in peaks[".mcap", DETECT_ROWS]) /
+              max(kb for _, kb in peaks[".mcap", DETECT_ROWS // 10]))
+    figures.append({"name": "mpm detect from MCAP, memory for ten times the rows", "unit": "ratio",
+                    "value": growth, "target": f"<= {FLAT:g}", "met": growth <= FLAT})
+    return figures
+
+
 def number(value):
     return f"{value:.3g}" if value < 1000 else f"{value:.0f}"
 
@@ -191,6 +262,13 @@ def print_table(result):
                        number(rest["median"]), number(rest["p99"]), "", ""))
 
 
+    print()
+    line = "{:<60}{:>10}  {}".format
+    print(line("recordings", "", "target"))
+    for item in result["recording"]:
+        print(line(item["name"], number(item["value"]), verdict(item)))
+
+
 def cpu_name():
     for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
         if line.startswith("model name"):
@@ -221,6 +299,7 @@ def main():
                     "numpy": numpy.__version__, "blas": peers.blas_library()},
         "throughput": throughput,
         "latency": latency_figures(options.build, push_us),
+        "recording": recording_figures(options.build) + file_figures(options.build),
     }
     print_table(result)
     if options.json:

@@ -44,7 +44,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 Process::Process(const std::vector<std::string>& arguments, const std::string& output,
-                 const std::string& errors, const std::vector<std::string>& environment) {
+                 const std::string& errors, const std::vector<std::string>& environment,
+                 const std::string& input) {
   const std::string program = std::string(MPM_BIN_DIR) + "/" + arguments.at(0);
   std::vector<char*> argv, envp;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -56,7 +57,7 @@ Process::Process(const std::vector<std::string>& arguments, const std::string& o
 
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, 0, input.c_str(), O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&files, 1, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawn_file_actions_addopen(&files, 2, errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   const int error = posix_spawn(&pid_, program.c_str(), &files, nullptr, argv.data(), envp.data());
@@ -95,8 +96,8 @@ long Process::resident_kb() const {
 }
 
 std::optional<int> run(const std::vector<std::string>& arguments, const std::string& output,
-                       const std::string& errors) {
-  return Process(arguments, output, errors).wait(std::chrono::seconds(60));
+                       const std::string& errors, const std::string& input) {
+  return Process(arguments, output, errors, {}, input).wait(std::chrono::seconds(60));
 }
 
 }  // namespace mpm::test

@@ -31,9 +31,10 @@ void write_file(const std::string& path, const std::string& text);
 class Process {
  public:
   /// `arguments[0]`: mpmd, mpm ... Output goes to `output` and `errors`. `environment`: additional
-  /// "NAME=value".
+  /// "NAME=value". `input`: file for standard input.
   Process(const std::vector<std::string>& arguments, const std::string& output,
-          const std::string& errors, const std::vector<std::string>& environment = {});
+          const std::string& errors, const std::vector<std::string>& environment = {},
+          const std::string& input = "/dev/null");
   Process(Process&& other) noexcept : pid_(other.pid_) { other.pid_ = 0; }
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -51,6 +52,7 @@ class Process {
 
 /// Runs to the end (60 s at most); returns the exit code.
 [[nodiscard]] std::optional<int> run(const std::vector<std::string>& arguments,
-                                     const std::string& output, const std::string& errors);
+                                     const std::string& output, const std::string& errors,
+                                     const std::string& input = "/dev/null");
 
 }  // namespace mpm::test

@@ -1,0 +1,45 @@
+#include "daemon/commands/info.hpp"
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "config/finding.hpp"
+#include "daemon/recording/info_text.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+// 0, or 3 on bad input. A torn file is no bad input here: that it is torn is the information.
+int run_info(const std::string& path, bool json) {
+  try {
+    const recording::FileInfo info = recording::inspect(path);
+    for (const std::string& notice : info.notices) std::cerr << path << ": " << notice << '\n';
+    std::cout << (json ? to_json(info).dump(-1, ' ', false,
+                                            nlohmann::ordered_json::error_handler_t::replace) +
+                             "\n"
+                       : to_text(info))
+              << std::flush;
+    return 0;
+  } catch (const config::InputError& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& exit_code) {
+  auto path = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  CLI::App* command =
+      app.add_subcommand("info",
+                         "Tell what a recording (MCAP) or a CSV file holds: topics, units, "
+                         "span, gaps, qualities, and whether it is whole");
+  command->add_option("file", *path, "MCAP recording, or CSV in any historian layout")->required();
+  command->add_flag("--json", *json, "print one JSON object");
+  command->footer("Example:\n  mpm info night.mcap");
+  command->callback([path, json, &exit_code] { exit_code = run_info(*path, *json); });
+}
+
+}  // namespace mpm::daemon

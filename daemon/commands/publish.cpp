@@ -1,0 +1,160 @@
+#include "daemon/commands/publish.hpp"
+
+#include <unistd.h>
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "config/load_unit.hpp"
+#include "daemon/bus/domain_options.hpp"
+#include "daemon/bus/unit_layout.hpp"
+#include "daemon/log/logging.hpp"
+#include "daemon/publish/interruptible_input.hpp"
+#include "daemon/publish/line_frames.hpp"
+#include "daemon/service/signals.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{200};
+constexpr std::chrono::seconds kFlushTime{10};
+
+struct PublishOptions {
+  std::string config;
+  std::string format = "auto";
+  std::string on_error = "stop";
+  std::optional<int> domain;
+  std::optional<std::string> partition;
+  double wait_readers_s = 5.0;
+  int readers = 1;
+  bool real_time = false;
+  bool use_environment = false;
+};
+
+/// A stream that owns its buffer.
+class StandardInput : public std::istream {
+ public:
+  explicit StandardInput(StopSignal& stop)
+      : std::istream(nullptr), buffer_(STDIN_FILENO, [&stop] { return stop.received(); }) {
+    rdbuf(&buffer_);
+  }
+
+ private:
+  InterruptibleInput buffer_;
+};
+
+LineFormat format_of(const std::string& name) {
+  if (name == "json") return LineFormat::kJson;
+  return name == "csv" ? LineFormat::kCsv : LineFormat::kAuto;
+}
+
+void wait_for_readers(const idl::UnitPublisher& publisher, const PublishOptions& options,
+                      StopSignal& stop) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(options.wait_readers_s));
+  while (Clock::now() < end && !stop.received())
+    if (publisher.wait_for_readers(kLongestWait, options.readers)) return;
+  if (options.wait_readers_s > 0.0 && !stop.received())
+    std::cerr << "mpm publish: not every topic has a reader after " << options.wait_readers_s
+              << " s; publishing all the same\n";
+}
+
+void tell_notices(LineFrames& lines) {
+  for (const std::string& notice : lines.take_notices()) std::cerr << notice << '\n';
+}
+
+int publish_lines(const PublishOptions& options, const config::UnitConfig& unit, StopSignal& stop) {
+  LineFrames lines(std::make_unique<StandardInput>(stop), "stdin", format_of(options.format), unit);
+  idl::DomainOptions domain = domain_options(unit.dds);
+  domain.domain = options.domain.value_or(domain.domain);
+  domain.partition = options.partition.value_or(domain.partition);
+  domain.use_environment = options.use_environment;
+  const idl::Participant participant(domain);
+  idl::UnitLayout layout = unit_layout(unit);
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+    if (lines.absent()[kind]) layout.signals[kind] = {};
+  const idl::UnitPublisher publisher(
+      participant, layout,
+      options.real_time ? idl::WriterPace::kRealTime : idl::WriterPace::kLossless);
+  wait_for_readers(publisher, options, stop);
+
+  std::uint64_t published = 0, skipped = 0;
+  Frame frame;
+  while (!stop.received()) {
+    try {
+      if (!lines.next(frame)) break;
+    } catch (const config::InputError& error) {
+      if (options.on_error == "stop") throw;
+      std::cerr << error.what() << '\n';
+      ++skipped;
+      continue;
+    }
+    tell_notices(lines);
+    if (!publisher.publish(frame) && !options.real_time)
+      throw std::runtime_error("interval " + std::to_string(frame.interval) +
+                               ": a reader does not take samples");
+    ++published;
+  }
+  tell_notices(lines);
+  if (!publisher.flush(kFlushTime)) std::cerr << "some readers do not have all samples\n";
+  std::cerr << "mpm publish: " << published << " lines published";
+  if (skipped > 0) std::cerr << ", " << skipped << " skipped";
+  std::cerr << '\n';
+  return 0;
+}
+
+int publish(const PublishOptions& options) {
+  const config::LoadResult loaded = config::load_unit(options.config);
+  for (const config::Finding& finding : loaded.findings) std::cerr << format(finding) << '\n';
+  if (!loaded.ok()) return 3;
+  StopSignal stop;  // before any thread
+  set_up_logging("warning");
+  try {
+    return publish_lines(options, loaded.config, stop);
+  } catch (const config::InputError& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_publish(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("publish", "publish lines from standard input as a unit's samples");
+  const auto options = std::make_shared<PublishOptions>();
+  command->add_option("-c,--config", options->config, "unit file")->required();
+  command->add_option("--format", options->format, "of the lines; auto looks at the first one")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "json", "csv"}));
+  command->add_option("--on-error", options->on_error, "what to do about a line that is wrong")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"stop", "skip"}));
+  command
+      ->add_option("--wait-readers", options->wait_readers_s,
+                   "seconds to wait for a reader of every topic before the first line")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--readers", options->readers, "how many readers of every topic to wait for")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--real-time", options->real_time,
+                    "never wait for a slow reader; it loses the oldest samples");
+  command->add_option("--domain", options->domain, "DDS domain, instead of the unit file's")
+      ->check(CLI::Range(0, 230));
+  command->add_option("--partition", options->partition,
+                      "discovery tag, instead of the unit file's");
+  command->add_flag("--dds-from-environment", options->use_environment,
+                    "take the DDS settings from CYCLONEDDS_URI");
+  command->footer(
+      "Lines: CSV with a header time,<tag>,... or JSON objects such as\n"
+      "  {\"time\": 12.0, \"u1\": 0.5, \"y1\": 1.25, \"y1.quality\": \"uncertain\"}\n"
+      "Example:\n  my_gateway | mpm publish --config shell.yaml --on-error skip\n"
+      "Exit codes: 0 done, 2 failed, 3 bad usage or a wrong line");
+  command->callback([options, &exit_code] { exit_code = publish(*options); });
+}
+
+}  // namespace mpm::daemon

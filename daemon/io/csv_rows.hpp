@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "daemon/io/column.hpp"
+#include "daemon/io/frame_source.hpp"
+#include "daemon/io/row_source.hpp"
+
+namespace mpm::io {
+
+/// The rows of a data file as they stand there: no unit has to know its tags and no sample time
+/// its rows. The frames have no interval numbers.
+class CsvRows : public FrameSource {
+ public:
+  /// All tags of the file, as aux signals. Throws config::InputError where it cannot be read.
+  explicit CsvRows(const std::string& path, std::shared_ptr<const TimeZone> zone = nullptr);
+
+  [[nodiscard]] bool next(Frame& frame) override;
+  [[nodiscard]] const std::vector<bool>& has_prediction() const override { return no_flags_; }
+  [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
+  /// In the order of the file.
+  [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  [[nodiscard]] bool is_long() const { return is_long_; }
+  [[nodiscard]] char delimiter() const { return format_.delimiter; }
+
+ private:
+  LineReader lines_;
+  CsvFormat format_;
+  bool is_long_ = false;
+  std::vector<Column> columns_;
+  std::unique_ptr<TagTable> tags_;
+  std::unique_ptr<RowSource> rows_;
+  std::vector<std::string> notices_;
+  std::vector<bool> no_flags_;
+};
+
+}  // namespace mpm::io

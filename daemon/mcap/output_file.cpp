@@ -1,0 +1,100 @@
+#include "daemon/mcap/output_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+
+namespace mpm::mcap {
+namespace {
+
+constexpr std::size_t kSpillBytes = 256U << 10U;
+
+/// False with errno where not all could be written.
+bool write_all(int descriptor, ByteView bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::string& path)
+    : path_(path),
+      descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) fail("cannot be written to");
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void OutputFile::write(ByteView bytes) {
+  if (!write_all(descriptor_, bytes)) {
+    const int reason = errno;
+    // Best effort: where even this fails, `mpm recover` cuts the rest off.
+    if (::ftruncate(descriptor_, static_cast<off_t>(size_)) == 0)
+      ::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET);
+    errno = reason;
+    fail("cannot be written to");
+  }
+  size_ += bytes.size();
+  crc_.add(bytes);
+}
+
+void OutputFile::close() {
+  const int result = ::close(descriptor_);
+  descriptor_ = -1;
+  if (result != 0) fail("could not be closed");
+}
+
+void OutputFile::fail(const char* what) const {
+  throw std::runtime_error(path_ + ": " + what + ": " + std::strerror(errno));
+}
+
+SpillFile::~SpillFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void SpillFile::add(ByteView bytes) {
+  buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+  if (buffer_.size() >= kSpillBytes) spill();
+}
+
+void SpillFile::spill() {
+  if (descriptor_ < 0) {
+    std::string name = path_ + ".index.XXXXXX";
+    descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
+    if (descriptor_ < 0) fail();
+    ::unlink(name.c_str());
+  }
+  if (!write_all(descriptor_, buffer_)) fail();
+  spilled_ += buffer_.size();
+  buffer_.clear();
+}
+
+void SpillFile::copy_to(OutputFile& out) {
+  Bytes piece;
+  for (std::uint64_t at = 0; at < spilled_; at += piece.size()) {
+    piece.resize(std::min<std::uint64_t>(kSpillBytes, spilled_ - at));
+    const ssize_t count = ::pread(descriptor_, piece.data(), piece.size(), static_cast<off_t>(at));
+    if (count <= 0) fail();
+    piece.resize(static_cast<std::size_t>(count));
+    out.write(piece);
+  }
+  out.write(buffer_);
+}
+
+void SpillFile::fail() const {
+  throw std::runtime_error(path_ + ": the index cannot be kept: " + std::strerror(errno));
+}
+
+}  // namespace mpm::mcap

@@ -1,0 +1,189 @@
+#include "daemon/publish/line_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "config/finding.hpp"
+#include "daemon/io/cell.hpp"
+#include "daemon/io/row_source.hpp"
+#include "daemon/io/time_text.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+constexpr double kNsPerSecond = 1e9;
+constexpr double kLargestInterval = 9e15;  // exact in a double
+constexpr std::string_view kQualitySuffix = ".quality";
+
+std::string quoted(const std::string& text) { return "'" + text + "'"; }
+
+}  // namespace
+
+class LineFrames::Rows {
+ public:
+  Rows() = default;
+  Rows(const Rows&) = delete;
+  Rows& operator=(const Rows&) = delete;
+  virtual ~Rows() = default;
+
+  /// `interval`: where the line gives it.
+  [[nodiscard]] virtual bool next(Frame& frame, std::optional<std::int64_t>& interval) = 0;
+  std::vector<std::string> notices;
+};
+
+namespace {
+
+class CsvRows : public LineFrames::Rows {
+ public:
+  /// `lines` stands on the header.
+  CsvRows(io::LineReader lines, const config::UnitConfig& unit,
+          std::array<bool, kSignalKindCount>& absent)
+      : lines_(std::move(lines)), tags_(unit) {
+    const io::CsvFormat format{io::find_delimiter(lines_.text())};
+    std::vector<io::Cell> header;
+    lines_.split(format.delimiter, header);
+    if (io::is_long_header(header))
+      lines_.fail(1,
+                  "rows `tag,time,value` cannot be published as they come: convert them to "
+                  "`time,<tag>,...` first");
+    rows_ = io::read_wide(lines_, format, header, tags_, unit.counts(), notices);
+    const auto seen = [this](const std::string& tag) { return !tag.empty() && tags_.seen(tag); };
+    for (const config::CvSignal& cv : unit.cv)
+      if (!cv.prediction.empty() && !seen(cv.prediction))
+        lines_.fail(1, "no column " + quoted(cv.prediction) + ", the prediction of " + cv.tag +
+                           "; take it out of the unit file and the monitor simulates it");
+    absent[static_cast<std::size_t>(SignalKind::kSetpoint)] =
+        std::none_of(unit.cv.begin(), unit.cv.end(),
+                     [&](const config::CvSignal& cv) { return seen(cv.setpoint); });
+    const std::vector<std::string> told = tags_.notices();
+    notices.insert(notices.end(), told.begin(), told.end());
+  }
+
+  [[nodiscard]] bool next(Frame& frame, std::optional<std::int64_t>&) override {
+    return rows_->next(frame);
+  }
+
+ private:
+  io::LineReader lines_;
+  io::TagTable tags_;
+  std::unique_ptr<io::RowSource> rows_;
+};
+
+class JsonRows : public LineFrames::Rows {
+ public:
+  /// `lines` stands on the first object.
+  JsonRows(io::LineReader lines, const config::UnitConfig& unit)
+      : lines_(std::move(lines)), tags_(unit), counts_(unit.counts()) {}
+
+  [[nodiscard]] bool next(Frame& frame, std::optional<std::int64_t>& interval) override {
+    if (!std::exchange(on_line_, false) && !lines_.next()) return false;
+    const nlohmann::json line = parse();
+    if (!line.is_object()) lines_.fail(1, "is no JSON object");
+    io::clear(frame, counts_);
+    const auto time = line.find("time");
+    if (time == line.end()) lines_.fail(1, "has no \"time\"");
+    std::string problem;
+    const std::optional<std::int64_t> time_ns = io::parse_time(text_of(*time), problem);
+    if (!time_ns) lines_.fail(1, "\"time\": " + quoted(text_of(*time)) + " " + problem);
+    frame.source_time_ns = *time_ns;
+    for (const auto& [name, value] : line.items()) {
+      if (name == "interval")
+        interval = read_interval(value);
+      else if (name != "time")
+        read_member(name, value, frame);
+    }
+    return true;
+  }
+
+ private:
+  nlohmann::json parse() const {
+    try {
+      return nlohmann::json::parse(lines_.text());
+    } catch (const nlohmann::json::parse_error& error) {
+      lines_.fail(static_cast<int>(error.byte), "is no JSON");
+    }
+  }
+
+  static std::string text_of(const nlohmann::json& value) {
+    return value.is_string() ? value.get<std::string>() : value.dump();
+  }
+
+  std::int64_t read_interval(const nlohmann::json& value) const {
+    if (!value.is_number_integer() || std::abs(value.get<double>()) > kLargestInterval)
+      lines_.fail(1, "\"interval\": " + value.dump() + " is no interval number");
+    return value.get<std::int64_t>();
+  }
+
+  void read_member(const std::string& name, const nlohmann::json& value, Frame& frame) {
+    if (const io::Slot* slot = tags_.find(name)) {
+      const std::optional<double> number =
+          value.is_null() ? io::parse_value("", false) : io::parse_value(text_of(value), false);
+      if (!number) lines_.fail(1, quoted(name) + ": " + value.dump() + " is no number");
+      frame[slot->kind].values(slot->index) = *number;
+      Quality& quality = quality_of(frame, *slot);
+      if (std::isfinite(*number)) quality = Quality::kGood;
+      return;
+    }
+    const std::size_t suffix = name.size() - std::min(name.size(), kQualitySuffix.size());
+    if (name.substr(suffix) == kQualitySuffix) return read_quality(name, value, suffix, frame);
+    if (told_.insert(name).second)
+      notices.push_back("ignored, since the unit file does not name it: " + name);
+  }
+
+  // Members come in the order of their names, so a quality follows its value; no value stays bad.
+  void read_quality(const std::string& name, const nlohmann::json& value, std::size_t suffix,
+                    Frame& frame) {
+    const io::Slot* slot = tags_.find(name.substr(0, suffix));
+    if (slot == nullptr) return;
+    const std::optional<Quality> said = io::parse_quality(text_of(value));
+    if (!said)
+      lines_.fail(1, quoted(name) + ": " + value.dump() +
+                         " is no quality: good, uncertain, bad or an OPC code");
+    Quality& quality = quality_of(frame, *slot);
+    quality = std::max(quality, *said);
+  }
+
+  static Quality& quality_of(Frame& frame, const io::Slot& slot) {
+    return frame[slot.kind].quality[static_cast<std::size_t>(slot.index)];
+  }
+
+  io::LineReader lines_;
+  io::TagTable tags_;
+  SignalCounts counts_;
+  std::set<std::string> told_;
+  bool on_line_ = true;
+};
+
+}  // namespace
+
+LineFrames::LineFrames(std::unique_ptr<std::istream> input, const std::string& name,
+                       LineFormat format, const config::UnitConfig& unit)
+    : sample_time_s_(unit.sample_time_s) {
+  io::LineReader lines(std::move(input), name);
+  if (!lines.next()) lines.fail(1, 1, "nothing came");
+  const std::size_t first = lines.text().find_first_not_of(" \t");
+  if (format == LineFormat::kAuto)
+    format = lines.text()[first] == '{' ? LineFormat::kJson : LineFormat::kCsv;
+  if (format == LineFormat::kJson)
+    rows_ = std::make_unique<JsonRows>(std::move(lines), unit);
+  else
+    rows_ = std::make_unique<CsvRows>(std::move(lines), unit, absent_);
+}
+
+LineFrames::~LineFrames() = default;
+
+bool LineFrames::next(Frame& frame) {
+  std::optional<std::int64_t> interval;
+  if (!rows_->next(frame, interval)) return false;
+  if (!std::exchange(started_, true)) first_ns_ = frame.source_time_ns;
+  const auto elapsed_ns = static_cast<double>(frame.source_time_ns - first_ns_);
+  frame.interval = interval.value_or(std::llround(elapsed_ns / (sample_time_s_ * kNsPerSecond)));
+  return true;
+}
+
+std::vector<std::string> LineFrames::take_notices() { return std::exchange(rows_->notices, {}); }
+
+}  // namespace mpm::daemon

@@ -1,0 +1,354 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "config/finding.hpp"
+#include "config/load_unit.hpp"
+#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/writer.hpp"
+#include "daemon/recording/convert.hpp"
+#include "daemon/recording/info_text.hpp"
+#include "daemon/recording/mcap_recording.hpp"
+#include "daemon/recording/open_recording.hpp"
+#include "tests/mcap/files.hpp"
+#include "tests/system/process.hpp"
+
+namespace mpm::test {
+namespace {
+
+const std::string kShell = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
+
+const std::string kSmall =
+    "unit: small\nsample_time: 60\n"
+    "signals: {mv: u, dv: 'd,1', cv: [{tag: y, prediction: yhat, setpoint: sp}, z], aux: "
+    "['#amb']}\n"
+    "model: {channels: [{cv: y, mv: u, gain: 2, time_constants: [480]}]}\n";
+
+struct Bench {
+  TemporaryFolder folder;
+  config::UnitConfig unit;
+
+  Bench() {
+    write_file(folder.file("small.yaml"), kSmall);
+    unit = config::load_unit(folder.file("small.yaml")).config;
+  }
+  recording::ConvertReport convert(const std::string& from, const std::string& to,
+                                   recording::ConvertOptions options = {}) {
+    return recording::convert(folder.file(from), folder.file(to), options);
+  }
+  recording::ConvertOptions with_unit() const {
+    recording::ConvertOptions options;
+    options.unit = unit;
+    return options;
+  }
+  std::string text(const std::string& name) const { return read_file(folder.file(name)); }
+  std::string error(const std::string& from, const std::string& to,
+                    recording::ConvertOptions options) {
+    try {
+      static_cast<void>(convert(from, to, std::move(options)));
+    } catch (const config::InputError& error) {
+      CHECK_FALSE(std::filesystem::exists(folder.file(to)));
+      return error.what();
+    }
+    return {};
+  }
+};
+
+/// Any bits that are a finite double.
+double any_double(std::mt19937_64& random) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  while (!std::isfinite(value)) {
+    const std::uint64_t bits = random();
+    std::memcpy(&value, &bits, sizeof value);
+  }
+  return value;
+}
+
+/// Every kind of value and quality; times to the nanosecond.
+std::vector<Frame> any_frames(const config::UnitConfig& unit, int count) {
+  std::mt19937_64 random(11);
+  std::vector<Frame> frames;
+  for (int k = 0; k < count; ++k) {
+    Frame frame(unit.counts());
+    frame.interval = k + (k > count / 2 ? 5 : 0);  // a gap
+    frame.source_time_ns = 1'714'564'800'000'000'000 + frame.interval * 60'000'000'000 +
+                           static_cast<std::int64_t>(random() % 1'000'000'000);
+    for (SignalBlock& block : frame.blocks) {
+      for (int i = 0; i < block.size(); ++i) {
+        const std::uint64_t pick = random() % 10;
+        const bool missing = pick == 0;
+        block.values(i) = missing ? std::numeric_limits<double>::quiet_NaN() : any_double(random);
+        block.quality[static_cast<std::size_t>(i)] =
+            missing || pick == 1 ? Quality::kBad
+                                 : (pick == 2 ? Quality::kUncertain : Quality::kGood);
+      }
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+std::vector<io::Column> all_columns() {
+  return {{"u", SignalKind::kMv, 0},
+          {"d,1", SignalKind::kDv, 0},
+          {"y", SignalKind::kCv, 0},
+          {"z", SignalKind::kCv, 1},
+          {"yhat", SignalKind::kPrediction, 0},
+          {"sp", SignalKind::kSetpoint, 0},
+          {"#amb", SignalKind::kAux, 0}};
+}
+
+TEST_CASE("MCAP, CSV, MCAP, CSV: not a bit is lost, in either layout and any zone") {
+  Bench bench;
+  {
+    recording::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
+    for (const Frame& frame : any_frames(bench.unit, 700)) writer.write(frame);
+    writer.finish();
+  }
+  recording::ConvertOptions options;
+  options.layout = GENERATE(io::CsvLayout::kWide, io::CsvLayout::kLong);
+  const auto times = GENERATE(as<std::string>{}, "utc", "seconds", "America/St_Johns");
+  options.seconds = times == "seconds";
+  if (times.find('/') != std::string::npos)
+    options.output_zone = std::make_shared<io::TimeZone>(times);
+  const recording::ConvertReport first = bench.convert("a.mcap", "a.csv", options);
+  CHECK(first.rows == 700);
+  CHECK(first.signals == 7);
+  CHECK(first.values + first.missing == 7U * 700U);
+  CHECK(first.missing > 0);
+  CHECK(first.uncertain > 0);
+  CHECK(first.bad > 0);
+  const recording::ConvertReport back = bench.convert("a.csv", "b.mcap", bench.with_unit());
+  CHECK(back.values == first.values);
+  CHECK(back.bad == first.bad);
+  static_cast<void>(bench.convert("b.mcap", "b.csv", options));
+  CHECK(bench.text("a.csv") == bench.text("b.csv"));
+
+  // The values themselves, bit by bit.
+  const auto frames = recording::open_recording(bench.folder.file("b.mcap"), bench.unit);
+  Frame read;
+  for (const Frame& frame : any_frames(bench.unit, 700)) {
+    REQUIRE(frames->next(read));
+    REQUIRE(read.source_time_ns == frame.source_time_ns);
+    for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv}) {
+      for (int i = 0; i < frame[kind].size(); ++i) {
+        const double a = frame[kind].values(i), b = read[kind].values(i);
+        const bool same = std::isnan(a) ? std::isnan(b) : std::memcmp(&a, &b, sizeof a) == 0;
+        REQUIRE(same);
+        REQUIRE(frame[kind].quality[static_cast<std::size_t>(i)] ==
+                read[kind].quality[static_cast<std::size_t>(i)]);
+      }
+    }
+  }
+  CHECK_FALSE(frames->next(read));
+}
+
+TEST_CASE("A historian's export becomes a recording and says what was left out") {
+  Bench bench;
+  write_file(bench.folder.file("h.csv"),
+             "\xEF\xBB\xBF"
+             "Time;u;d,1;y;z;other\r\n;%;;degC;;\r\n"
+             "2024-10-27 02:58:00;1,5;2;3;Bad;9\r\n"
+             "2024-10-27 02:59:00;1,5;No Data;3;4;9\r\n"
+             "2024-10-27 02:00:00;1,25;2;3;4;9\r\n"  // the clock went back
+             "27.10.2024 02:01:00;1;2;3;I/O Timeout;9\r\n"
+             "2024-10-27 02:02:00;1");
+  recording::ConvertOptions options = bench.with_unit();
+  CHECK(bench.error("h.csv", "h.mcap", options)
+            .find("h.csv:3:1: error: '2024-10-27 02:58:00' is a "
+                  "local time") != std::string::npos);
+  options.input_zone = std::make_shared<io::TimeZone>("Europe/Berlin");
+  const recording::ConvertReport report = bench.convert("h.csv", "h.mcap", options);
+  CHECK(report.rows == 4);
+  CHECK(report.signals == 4);
+  CHECK(report.missing == 3);
+  std::string notices;
+  for (const std::string& notice : report.notices) notices += notice + '\n';
+  CHECK(notices.find("other") != std::string::npos);
+  CHECK(notices.find("line 7 is cut off") != std::string::npos);
+  CHECK(notices.find("4 times lie in an hour that Europe/Berlin has twice") != std::string::npos);
+  recording::ConvertOptions out;
+  static_cast<void>(bench.convert("h.mcap", "back.csv", out));
+  CHECK(bench.text("back.csv") ==
+        "time,u,\"d,1\",y,z\n"
+        "2024-10-27T00:58:00Z,1.5,2,3,\n"
+        "2024-10-27T00:59:00Z,1.5,,3,4\n"
+        "2024-10-27T01:00:00Z,1.25,2,3,4\n"
+        "2024-10-27T01:01:00Z,1,2,3,\n");
+  out.output_zone = std::make_shared<io::TimeZone>("Europe/Berlin");
+  static_cast<void>(bench.convert("h.mcap", "back.csv", out));
+  CHECK(bench.text("back.csv").find("2024-10-27T02:59:00+02:00") != std::string::npos);
+  CHECK(bench.text("back.csv").find("2024-10-27T02:00:00+01:00") != std::string::npos);
+}
+
+TEST_CASE("What cannot be converted is refused in one line and leaves no file") {
+  Bench bench;
+  write_file(bench.folder.file("a.csv"), "time,u,d,1,y,z\n");
+  write_file(bench.folder.file("old.csv"), "time,u\n-60,1\n0,2\n");
+  write_file(bench.folder.file("gap.csv"),
+             "time,u\n2024-03-31 01:59:00,1\n2024-03-31 02:30:00,2\n");
+  CHECK(bench.error("none.csv", "x.csv", {}).find("no such file") != std::string::npos);
+  CHECK(bench.error("old.csv", "x.mcap", {}).find("--config") != std::string::npos);
+  recording::ConvertOptions options;
+  options.input_zone = std::make_shared<io::TimeZone>("Europe/Berlin");
+  CHECK(bench.error("gap.csv", "x.csv", options)
+            .find("gap.csv:3:1: error: '2024-03-31 02:30:00' "
+                  "does not exist in Europe/Berlin") != std::string::npos);
+  CHECK(bench.error("old.csv", "no/folder.csv", {}).find("there is no folder") !=
+        std::string::npos);
+  CHECK_THROWS_AS(io::TimeZone("Europe/Atlantis"), config::InputError);
+  CHECK_THROWS_AS(io::TimeZone("../../etc/passwd"), config::InputError);
+  write_file(bench.folder.file("before.csv"), "time,u,\"d,1\",y,z\n-60,1,1,1,1\n0,2,2,2,2\n");
+  CHECK(bench.error("before.csv", "x.mcap", bench.with_unit()).find("before 1970") !=
+        std::string::npos);
+}
+
+TEST_CASE("Detect gives the same from MCAP as from CSV") {
+  TemporaryFolder folder;
+  const std::string csv = folder.file("run.csv"), mcap = folder.file("run.mcap");
+  const auto scenario = GENERATE(as<std::string>{}, "hidden_gain", "none");
+  REQUIRE(run({"mpmsim", "--config", kShell, "--scenario", scenario, "--samples", "1500", "--seed",
+               "5", "--start-time", "0", "--csv", csv},
+              folder.file("o"), folder.file("e")) == 0);
+  REQUIRE(run({"mpm", "convert", csv, mcap, "--config", kShell}, folder.file("o"),
+              folder.file("e")) == 0);
+  for (const std::string& data : {csv, mcap})
+    REQUIRE(run({"mpm", "detect", "--config", kShell, "--data", data, "--json", "--journal",
+                 data + ".jsonl"},
+                data + ".json", folder.file("e")) == 0);
+  CHECK(read_file(csv + ".json") == read_file(mcap + ".json"));
+  const bool identical = read_file(csv + ".jsonl") == read_file(mcap + ".jsonl");
+  CHECK(identical);
+  CHECK(read_file(csv + ".jsonl").size() > 100'000);
+}
+
+TEST_CASE("Of several units the one of the unit file is taken") {
+  Bench bench;
+  // Two recordings in one: the second unit has other values.
+  config::UnitConfig other = bench.unit;
+  other.unit = "other";
+  recording::McapRecording a(bench.folder.file("a.mcap"), bench.unit, all_columns());
+  recording::McapRecording b(bench.folder.file("b.mcap"), other, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 30)) {
+    a.write(frame);
+    b.write(frame);
+  }
+  a.finish();
+  b.finish();
+  mcap::Writer both(bench.folder.file("both.mcap"));
+  for (const char* name : {"a.mcap", "b.mcap"}) {
+    const auto schema = both.add_schema("mpm::Sample", "omgidl", "");
+    const auto layout = both.add_schema("mpm::Layout", "omgidl", "");
+    std::map<std::string, mcap::ChannelId> channels;
+    const auto source = mcap::open_messages(bench.folder.file(name));
+    mcap::Message message;
+    while (source->next(message)) {
+      auto& id = channels[message.channel->topic];
+      if (id == 0)
+        id = both.add_channel(message.schema->name == "mpm::Sample" ? schema : layout,
+                              message.channel->topic, "cdr");
+      both.write(id, message.log_time_ns, message.publish_time_ns, message.data);
+    }
+  }
+  both.finish();
+  CHECK(bench.error("both.mcap", "x.csv", {})
+            .find("holds several units; pick one with --unit: 'other', 'small'") !=
+        std::string::npos);
+  recording::ConvertOptions options;
+  options.unit_name = "other";
+  CHECK(bench.convert("both.mcap", "other.csv", options).rows == 30);
+  CHECK(bench.convert("both.mcap", "small.csv", bench.with_unit()).rows == 30);
+  CHECK(bench.text("other.csv") == bench.text("small.csv"));
+  other.unit = "third";
+  try {
+    static_cast<void>(recording::open_recording(bench.folder.file("both.mcap"), other));
+    FAIL("taken");
+  } catch (const config::InputError& error) {
+    CHECK(std::string(error.what())
+              .find("no samples of unit 'third'; its units are 'other', "
+                    "'small'") != std::string::npos);
+  }
+  const recording::FileInfo info = recording::inspect(bench.folder.file("both.mcap"));
+  CHECK(info.units.size() == 2);
+  CHECK(info.index_problem.empty());
+  CHECK(info.times.count == 2 * (6 + 6 * 30));
+  const recording::SampleTally& mv = info.units.at("small").samples.at(SignalKind::kMv);
+  CHECK(mv.times.gaps == 1);
+  CHECK(mv.times.missing == 5);
+  CHECK(mv.times.longest_gap_ns > 359'000'000'000);
+  CHECK(mv.signals.at(0).tag == "u");
+  const recording::SignalTally& u = mv.signals.at(0);
+  CHECK(u.good + u.uncertain + u.bad + u.missing == 30);
+}
+
+TEST_CASE("Info tells a CSV's step, gaps and qualities, and a torn recording's tear") {
+  Bench bench;
+  write_file(bench.folder.file("a.csv"),
+             "time,u,u.quality,y\n0,1,good,2\n10,1,uncertain,\n20,1,bad,3\n50,1,good,4\n");
+  const recording::FileInfo info = recording::inspect(bench.folder.file("a.csv"));
+  CHECK(info.step_s == 10.0);
+  CHECK(info.times.count == 4);
+  CHECK(info.times.gaps == 1);
+  CHECK(info.times.missing == 2);
+  CHECK(info.times.longest_gap_at_ns == 20'000'000'000);
+  REQUIRE(info.signals.size() == 2);
+  CHECK(info.signals[0].good == 2);
+  CHECK(info.signals[0].uncertain == 1);
+  CHECK(info.signals[0].bad == 1);
+  CHECK(info.signals[1].missing == 1);
+  CHECK(to_json(info)["gaps"]["longest_at"] == "1970-01-01T00:00:20Z");
+
+  recording::McapRecording a(bench.folder.file("a.mcap"), bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
+  a.finish();
+  const std::string bytes = bench.text("a.mcap");
+  write_file(bench.folder.file("torn.mcap"), bytes.substr(0, bytes.size() - 50));
+  const recording::FileInfo torn = recording::inspect(bench.folder.file("torn.mcap"));
+  CHECK(torn.times.count == 6 + 6 * 30);
+  CHECK(torn.index_problem == "the file has no end");
+  CHECK(to_text(torn).find("mpm recover") != std::string::npos);
+  std::string wrong = bytes;
+  wrong[bytes.size() - 200] = static_cast<char>(wrong[bytes.size() - 200] ^ 4);  // in the summary
+  write_file(bench.folder.file("wrong.mcap"), wrong);
+  CHECK(recording::inspect(bench.folder.file("wrong.mcap")).index_problem.find("CRC") !=
+        std::string::npos);
+}
+
+TEST_CASE("The programs: exit codes, files, messages") {
+  Bench bench;
+  const auto mpm = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "mpm");
+    return run(arguments, bench.folder.file("out"), bench.folder.file("err")).value_or(-1);
+  };
+  const auto path = [&](const char* name) { return bench.folder.file(name); };
+  recording::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 300)) a.write(frame);
+  a.finish();
+  CHECK(mpm({"info", path("a.mcap"), "--json"}) == 0);
+  const auto json = nlohmann::json::parse(bench.text("out"));
+  CHECK(json["index"] == "intact");
+  CHECK(json["units"][0]["unit"] == "small");
+  CHECK(mpm({"convert", path("a.mcap"), path("a.csv"), "--time-zone", "Europe/Berlin"}) == 0);
+  CHECK(bench.text("out").find("300 rows of 7 signals") != std::string::npos);
+  CHECK(mpm({"convert", path("a.csv"), path("b.mcap"), "--config", path("small.yaml")}) == 0);
+  CHECK(mpm({"convert", path("a.mcap"), path("b.csv"), "--time-zone", "Mars/Base"}) == 3);
+  CHECK(mpm({"convert", path("a.mcap"), path("b.csv"), "--layout", "tall"}) == 3);
+  CHECK_FALSE(std::filesystem::exists(path("b.csv")));
+  const std::string bytes = bench.text("a.mcap");
+  write_file(path("torn.mcap"), bytes.substr(0, bytes.size() / 2));
+  CHECK(mpm({"detect", "--config", path("small.yaml"), "--data", path("torn.mcap")}) == 3);
+  CHECK(lines_of(bench.text("err")).back().find("torn.mcap: error: byte ") != std::string::npos);
+  CHECK(bench.text("err").find("mpm recover") != std::string::npos);
+  CHECK(mpm({"recover", path("torn.mcap")}) == 0);
+  CHECK(std::filesystem::exists(path("torn.recovered.mcap")));
+  CHECK(mpm({"info", path("torn.recovered.mcap")}) == 0);
+  CHECK(mpm({"recover", path("a.csv")}) == 3);
+  CHECK(mpm({"info", path("none.mcap")}) == 3);
+}
+
+}  // namespace
+}  // namespace mpm::test

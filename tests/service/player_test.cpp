@@ -1,0 +1,222 @@
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "daemon/replay/player.hpp"
+
+namespace mpm::daemon {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+class FakeClock : public Clock {
+ public:
+  [[nodiscard]] std::int64_t now() const override { return now_; }
+  void sleep_until(std::int64_t time) override { now_ = std::max(now_, time); }
+
+ private:
+  std::int64_t now_ = 1000 * kSecond;
+};
+
+// mpm::Sample as plain little-endian CDR, without values.
+std::vector<std::byte> sample_bytes(const std::string& unit, std::int64_t interval,
+                                    std::int64_t time_ns) {
+  std::vector<std::byte> bytes = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  const auto add = [&](const void* data, std::size_t size) {
+    while (size == 8 && (bytes.size() - 4) % 8 != 0) bytes.push_back(std::byte{0});
+    const auto* begin = static_cast<const std::byte*>(data);
+    bytes.insert(bytes.end(), begin, begin + size);
+  };
+  const auto length = static_cast<std::uint32_t>(unit.size() + 1);
+  add(&length, sizeof length);
+  for (const char c : unit) bytes.push_back(static_cast<std::byte>(c));
+  bytes.push_back(std::byte{0});
+  add(&interval, sizeof interval);
+  add(&time_ns, sizeof time_ns);
+  return bytes;
+}
+
+// One sample of mpm/mv per second of unit a, with one of unit b half a second later.
+class FakeSource : public ReplaySource {
+ public:
+  explicit FakeSource(int seconds) : seconds_(seconds) {}
+  [[nodiscard]] bool next(ReplaySample& sample) override {
+    if (at_ == 2 * seconds_) return false;
+    const int k = at_ / 2;
+    const bool second = at_++ % 2 == 1;
+    bytes_ = sample_bytes(second ? "b" : "a", k, k * kSecond);
+    sample.topic = "mpm/mv";
+    sample.log_time_ns = 50 * kSecond + k * kSecond + (second ? kSecond / 2 : 0);
+    sample.source_time_ns = sample.log_time_ns - 1000;
+    sample.cdr = bytes_;
+    return true;
+  }
+  void rewind() override { at_ = 0; }
+
+ private:
+  int seconds_;
+  int at_ = 0;
+  std::vector<std::byte> bytes_;
+};
+
+using Times = std::vector<std::int64_t>;
+
+struct Sent {
+  std::int64_t at_ms;  // since the start, by the clock
+  std::string unit;
+  std::int64_t interval;
+  std::int64_t source_time_ns;
+};
+
+// Plays with keys that are pressed when so many samples have been sent.
+struct Stage {
+  FakeClock clock;
+  std::int64_t start = clock.now();
+  std::vector<Sent> sent;
+  std::deque<std::pair<std::uint64_t, Key>> keys;
+  std::uint64_t most = 1000;
+  PlayerState last;
+
+  void play(ReplaySource& source, const PlayerOptions& options) {
+    Player player(
+        source, clock, options,
+        [this](const ReplaySample& sample, std::int64_t time_ns, const idl::SampleChange& change) {
+          const std::string unit = change.unit.empty() ? idl::unit_of(sample.cdr) : change.unit;
+          sent.push_back({(clock.now() - start) / 1'000'000, unit,
+                          idl::stamp_of(sample.cdr)->interval + change.add_intervals, time_ns});
+          return true;
+        },
+        [this](const PlayerState& state) {
+          if (state.samples >= most) return Key::kQuit;
+          if (keys.empty() || state.samples < keys.front().first) return Key::kNone;
+          const Key key = keys.front().second;
+          keys.pop_front();
+          return key;
+        });
+    CHECK(player.play());
+    last = player.state();
+  }
+  /// ms since the start, by the clock.
+  [[nodiscard]] Times times() const {
+    Times list;
+    for (const Sent& sample : sent) list.push_back(sample.at_ms);
+    return list;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a replay keeps the recorded distances, times the rate") {
+  FakeSource source(3);
+  Stage real, fast, none;
+  real.play(source, {});
+  CHECK(real.times() == Times{0, 500, 1000, 1500, 2000, 2500});
+  CHECK(real.sent[3].source_time_ns == 51'500'000'000 - 1000);  // as recorded
+  source.rewind();
+  PlayerOptions options;
+  options.rate = 100.0;
+  fast.play(source, options);
+  CHECK(fast.times() == Times{0, 5, 10, 15, 20, 25});
+  source.rewind();
+  options.rate = 0.0;
+  none.play(source, options);
+  CHECK(none.times() == Times(6, 0));
+}
+
+TEST_CASE("a replay starts and ends where it is told and keeps to one unit") {
+  FakeSource source(10);
+  Stage stage;
+  PlayerOptions options;
+  options.start_offset_ns = 2 * kSecond;
+  options.duration_ns = 3 * kSecond;
+  options.unit = "b";
+  options.remap = {{"b", "copy"}};
+  stage.play(source, options);
+  REQUIRE(stage.sent.size() == 3);
+  CHECK(stage.times() == Times{0, 1000, 2000});
+  CHECK(stage.sent[0].interval == 2);
+  CHECK(stage.sent[0].unit == "copy");
+}
+
+TEST_CASE("keys pause, step, change the speed and quit") {
+  FakeSource source(10);
+  Stage stage;
+  stage.keys = {{2, Key::kPause}, {2, Key::kStep},   {3, Key::kStep},
+                {4, Key::kPause}, {4, Key::kFaster}, {6, Key::kSlower}};
+  stage.most = 8;
+  stage.play(source, {});
+  // 0 and 1 in time, 2 and 3 by hand at once, then twice the speed, then real time again.
+  CHECK(stage.times() == Times{0, 500, 500, 500, 750, 1000, 1500, 2000});
+  CHECK(stage.last.samples == 8);
+}
+
+TEST_CASE("a paused start waits for a key") {
+  FakeSource source(2);
+  Stage stage;
+  PlayerOptions options;
+  options.start_paused = true;
+  int asked = 0;
+  std::uint64_t sent = 0;
+  Player player(
+      source, stage.clock, options,
+      [&](const ReplaySample&, std::int64_t, const idl::SampleChange&) {
+        ++sent;
+        return true;
+      },
+      [&](const PlayerState& state) {
+        if (asked++ < 20) {
+          CHECK(state.paused);
+          CHECK(sent == 0);
+          return Key::kNone;
+        }
+        return asked == 21 ? Key::kPause : Key::kNone;
+      });
+  CHECK(player.play());
+  CHECK(sent == 4);
+}
+
+TEST_CASE("passes of a loop follow each other with one interval left out") {
+  FakeSource source(3);
+  Stage stage;
+  PlayerOptions options;
+  options.loop = true;
+  options.rate = 0.0;
+  options.unit = "a";
+  stage.most = 9;
+  stage.play(source, options);
+  std::vector<std::int64_t> intervals;
+  for (const Sent& sample : stage.sent) intervals.push_back(sample.interval);
+  CHECK(intervals == std::vector<std::int64_t>{0, 1, 2, 4, 5, 6, 8, 9, 10});
+  for (std::size_t i = 1; i < stage.sent.size(); ++i)
+    CHECK(stage.sent[i].source_time_ns > stage.sent[i - 1].source_time_ns);
+  CHECK(stage.last.passes == 3);
+}
+
+TEST_CASE("a loop over nothing ends") {
+  FakeSource source(3);
+  Stage stage;
+  PlayerOptions options;
+  options.loop = true;
+  options.unit = "nobody";
+  stage.play(source, options);
+  CHECK(stage.sent.empty());
+}
+
+TEST_CASE("the pacer stays exact over years and at odd rates") {
+  constexpr std::int64_t kYear = 31'557'600 * kSecond;
+  const Pacer years(1.0, 0, 0);
+  CHECK(std::abs(years.due(20 * kYear) - 20 * kYear) < 100);  // a double has 53 bits
+  const Pacer slow(1e-6, 0, 0);
+  CHECK(slow.due(kYear) > 0);  // no overflow
+  Pacer pacer(2.0, 100, 1000);
+  pacer.pause(1010);  // recorded 120
+  pacer.resume(5000);
+  CHECK(pacer.due(140) == 5010);
+  pacer.set_rate(1.0, 5005);  // recorded 130
+  CHECK(pacer.due(140) == 5015);
+}
+
+}  // namespace mpm::daemon

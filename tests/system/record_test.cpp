@@ -1,0 +1,219 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "daemon/mcap/ordered_reader.hpp"
+#include "idl/raw_sample.hpp"
+#include "tests/system/bench.hpp"
+
+namespace mpm::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
+constexpr std::chrono::seconds kPatience{20};
+
+// More by hand: `./run rehearse`.
+int runs(int by_default) {
+  const char* text = std::getenv("MPM_RUNS");
+  return text == nullptr ? by_default : std::max(1, std::atoi(text));
+}
+
+/// One run on a corner of the network of its own.
+struct Stage {
+  explicit Stage(const std::string& test) : domain(idl::test_domain(test)) {}
+
+  [[nodiscard]] std::vector<std::string> on_bus(std::vector<std::string> arguments) const {
+    const std::vector<std::string> where = {"--domain", std::to_string(domain.domain),
+                                            "--partition", domain.partition};
+    arguments.insert(arguments.end(), where.begin(), where.end());
+    return arguments;
+  }
+  [[nodiscard]] Process start(const std::string& name, const std::vector<std::string>& arguments) {
+    return {on_bus(arguments), folder.file(name + ".out"), folder.file(name + ".err")};
+  }
+  void run_to_end(const std::string& name, const std::vector<std::string>& arguments) {
+    run_alone(name, on_bus(arguments));
+  }
+  /// Without the network.
+  void run_alone(const std::string& name, const std::vector<std::string>& arguments) {
+    const auto code = run(arguments, folder.file(name + ".out"), folder.file(name + ".err"));
+    INFO(read_file(folder.file(name + ".err")));
+    REQUIRE(code == 0);
+  }
+  [[nodiscard]] Process monitor(const std::string& journal) {
+    return start("mpmd", {"mpmd", "--config", kUnit, "--journal", folder.file(journal)});
+  }
+  /// The journal, once it is as long as it will be.
+  [[nodiscard]] std::string journal(const std::string& name, std::size_t bytes) {
+    CHECK(idl::eventually([&] { return read_file(folder.file(name)).size() >= bytes; }, kPatience));
+    return read_file(folder.file(name));
+  }
+  void stop(Process& process, int signal = SIGTERM) {
+    process.send(signal);
+    CHECK(process.wait(std::chrono::seconds(10)) == 0);
+  }
+
+  TemporaryFolder folder;
+  idl::DomainOptions domain;
+};
+
+void check_three_ways(const std::string& scenario, int seed) {
+  constexpr int kSamples = 900;
+  CAPTURE(scenario, seed);
+  Stage stage("three_ways" + std::to_string(seed));
+  const std::vector<std::string> simulate = {"mpmsim",
+                                             "--config",
+                                             kUnit,
+                                             "--scenario",
+                                             scenario,
+                                             "--seed",
+                                             std::to_string(seed),
+                                             "--samples",
+                                             std::to_string(kSamples),
+                                             "--start-time",
+                                             "0"};
+
+  // What the journal will be in the end: it tells when everything has arrived.
+  std::vector<std::string> to_file = simulate;
+  to_file.insert(to_file.end(), {"--csv", stage.folder.file("run.csv")});
+  stage.run_alone("sim", to_file);
+  stage.run_alone("detect",
+                  {"mpm", "detect", "--config", kUnit, "--data", stage.folder.file("run.csv"),
+                   "--journal", stage.folder.file("expected.jsonl")});
+  const std::string expected = read_file(stage.folder.file("expected.jsonl"));
+
+  const std::string recording = stage.folder.file("run.mcap");
+  {
+    Process monitor = stage.monitor("live.jsonl");
+    Process recorder =
+        stage.start("record", {"mpm", "record", "--unit", "shell", "--output", recording});
+    std::vector<std::string> to_bus = simulate;
+    to_bus.insert(to_bus.end(), {"--speed", "0", "--wait-readers", "20", "--readers", "2"});
+    stage.run_to_end("bus", to_bus);
+    const bool live_same = stage.journal("live.jsonl", expected.size()) == expected;
+    CHECK(live_same);  // not printed: megabytes
+    stage.stop(recorder, SIGINT);
+    stage.stop(monitor);
+    INFO(read_file(stage.folder.file("record.err")));
+    CHECK(read_file(stage.folder.file("record.err")).find(" 0 dropped") != std::string::npos);
+  }
+  stage.run_alone("detect", {"mpm", "detect", "--config", kUnit, "--data", recording, "--journal",
+                             stage.folder.file("detect.jsonl")});
+  const bool detect_same = read_file(stage.folder.file("detect.jsonl")) == expected;
+  CHECK(detect_same);
+  for (const std::string rate : {"1", "100", "0"}) {
+    CAPTURE(rate);
+    const std::string name = "replay" + rate + ".jsonl";
+    Process monitor = stage.monitor(name);
+    stage.run_to_end("replay", {"mpm", "replay", recording, "--rate", rate});
+    const bool replay_same = stage.journal(name, expected.size()) == expected;
+    CHECK(replay_same);
+    stage.stop(monitor);
+  }
+}
+
+/// When each frame was handed to DDS.
+using Published = std::map<std::int64_t, Clock::time_point>;
+
+// Publishes a frame every millisecond until `end`.
+Published publish_until(const idl::UnitPublisher& publisher, Clock::time_point end) {
+  Plant plant(2.0);
+  Published published;
+  for (Clock::time_point next = Clock::now(); next < end; next += std::chrono::milliseconds(1)) {
+    std::this_thread::sleep_until(next);
+    const Frame& frame = plant.next();
+    published[frame.interval] = Clock::now();
+    REQUIRE(publisher.publish(frame));
+  }
+  return published;
+}
+
+std::vector<std::int64_t> mv_intervals_in(const std::string& path) {
+  std::vector<std::int64_t> intervals;
+  const auto messages = mcap::open_messages(path);
+  mcap::Message message;
+  while (messages->next(message))
+    if (message.channel->topic == "mpm/mv")
+      intervals.push_back(idl::stamp_of(message.data).value().interval);
+  return intervals;
+}
+
+idl::UnitPublisher toy_publisher(const idl::Participant& participant) {
+  idl::UnitLayout layout;
+  layout.unit = "toy";
+  layout[SignalKind::kMv].tags = {"u1", "u2"};
+  layout[SignalKind::kCv].tags = {"y1"};
+  return {participant, layout, idl::WriterPace::kRealTime};
+}
+
+void check_killed_recorder(std::mt19937& random) {
+  Stage stage("killed" + std::to_string(random()));
+  const std::string recording = stage.folder.file("run.mcap");
+  Process recorder = stage.start("record", {"mpm", "record", "--output", recording});
+  const idl::Participant participant(stage.domain);
+  const idl::UnitPublisher publisher = toy_publisher(participant);
+  REQUIRE(publisher.wait_for_readers(kPatience));
+  const std::chrono::milliseconds life(1200 + random() % 1500);
+  CAPTURE(life.count());
+  const Published published = publish_until(publisher, Clock::now() + life);
+  const Clock::time_point killed = Clock::now();
+  recorder.send(SIGKILL);
+  CHECK(recorder.wait(std::chrono::seconds(5)) == 128 + SIGKILL);
+
+  const std::string mended = stage.folder.file("mended.mcap");
+  stage.run_alone("recover", {"mpm", "recover", recording, "--output", mended});
+  const std::vector<std::int64_t> intervals = mv_intervals_in(mended);
+  REQUIRE(!intervals.empty());
+  for (std::size_t i = 0; i < intervals.size(); ++i)
+    REQUIRE(intervals[i] == published.begin()->first + static_cast<std::int64_t>(i));
+  const auto first_lost = published.upper_bound(intervals.back());
+  if (first_lost == published.end()) return;
+  // The open chunk is a second long; what a busy machine delays comes on top.
+  const auto lost =
+      std::chrono::duration_cast<std::chrono::milliseconds>(killed - first_lost->second);
+  CHECK(lost.count() <= 1100);
+}
+
+}  // namespace
+
+TEST_CASE("a recorder loses none of 10 000 samples a second from a writer that waits for nobody") {
+  constexpr int kFrames = 10'000, kLayouts = 2;  // two samples per frame, for two seconds
+  Stage stage("fast");
+  const std::string recording = stage.folder.file("run.mcap");
+  Process recorder = stage.start("record", {"mpm", "record", "--output", recording});
+  const idl::Participant participant(stage.domain);
+  const idl::UnitPublisher publisher = toy_publisher(participant);
+  REQUIRE(publisher.wait_for_readers(kPatience));
+  Plant plant(2.0);
+  Clock::time_point next = Clock::now();
+  for (int k = 0; k < kFrames; ++k) {
+    REQUIRE(publisher.publish(plant.next()));
+    if (k % 5 != 4) continue;
+    next += std::chrono::milliseconds(1);
+    std::this_thread::sleep_until(next);
+  }
+  REQUIRE(publisher.flush(kPatience));
+  stage.stop(recorder);
+  const std::string said = read_file(stage.folder.file("record.err"));
+  INFO(said);
+  CHECK(said.find(" " + std::to_string(2 * kFrames + kLayouts) + " samples ") != std::string::npos);
+  CHECK(said.find(" 0 dropped") != std::string::npos);
+  CHECK(mv_intervals_in(recording).size() == kFrames);
+}
+
+TEST_CASE("a recording gives the same bytes live, replayed at any speed, and in mpm detect",
+          "[rehearse]") {
+  for (int i = 0; i < runs(2); ++i) check_three_ways(i % 2 == 0 ? "hidden_gain" : "none", 5 + i);
+}
+
+TEST_CASE("a recorder that is killed loses no more than its open chunk", "[rehearse]") {
+  std::mt19937 random(1);
+  for (int i = 0; i < runs(2); ++i) check_killed_recorder(random);
+}
+
+}  // namespace mpm::test
