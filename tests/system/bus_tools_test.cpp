@@ -1,9 +1,16 @@
+#include <fcntl.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include "daemon/mcap/ordered_reader.hpp"
 #include "idl/raw_sample.hpp"
@@ -54,13 +61,17 @@ struct Corner {
     return std::nullopt;
   }
   /// A recording of `frames` frames, split if `options` say so.
-  void record(const std::string& output, int frames, std::vector<std::string> options = {}) const {
+  void record(const std::string& output, int frames, std::vector<std::string> options = {},
+              std::chrono::milliseconds apart = {}) const {
     options.insert(options.begin(), {"mpm", "record", "--output", output});
     Process recorder = start(options);
     const idl::UnitPublisher publisher = this->publisher();
     REQUIRE(publisher.wait_for_readers(kPatience));
     Plant plant(2.0);
-    for (int i = 0; i < frames; ++i) REQUIRE(publisher.publish(plant.next()));
+    for (int i = 0; i < frames; ++i) {
+      REQUIRE(publisher.publish(plant.next()));
+      std::this_thread::sleep_for(apart);
+    }
     REQUIRE(publisher.flush(kPatience));
     recorder.send(SIGTERM);
     INFO(read_file(folder.file("started.err")));
@@ -105,6 +116,59 @@ struct Corner {
   TemporaryFolder folder;
   idl::DomainOptions domain;
   idl::Participant participant;
+};
+
+/// A program of ours with a terminal of its own; killed if the test leaves it behind.
+class OnTerminal {
+ public:
+  explicit OnTerminal(const std::vector<std::string>& arguments) {
+    const std::string program = std::string(MPM_BIN_DIR) + "/" + arguments.at(0);
+    std::vector<char*> argv;
+    for (const std::string& argument : arguments)
+      argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (pid_ == 0) {
+      execv(program.c_str(), argv.data());
+      _exit(127);
+    }
+    REQUIRE(pid_ > 0);
+    fcntl(terminal_, F_SETFL, O_NONBLOCK);
+  }
+  OnTerminal(const OnTerminal&) = delete;
+  OnTerminal& operator=(const OnTerminal&) = delete;
+  ~OnTerminal() {
+    if (pid_ > 0) kill(pid_, SIGKILL);
+    if (pid_ > 0) waitpid(pid_, nullptr, 0);
+    close(terminal_);
+  }
+  void press(const std::string& keys) const {
+    REQUIRE(write(terminal_, keys.data(), keys.size()) == static_cast<ssize_t>(keys.size()));
+  }
+  /// True once `text` has been shown, from where the last one was found.
+  [[nodiscard]] bool shows(const std::string& text) {
+    return idl::eventually(
+        [&] {
+          std::array<char, 4096> bytes;
+          for (ssize_t count; (count = read(terminal_, bytes.data(), bytes.size())) > 0;)
+            shown_.append(bytes.data(), static_cast<std::size_t>(count));
+          const std::size_t found = shown_.find(text);
+          if (found == std::string::npos) return false;
+          shown_.erase(0, found + text.size());
+          return true;
+        },
+        kPatience);
+  }
+  [[nodiscard]] int exit_code() {
+    int status = 0;
+    waitpid(std::exchange(pid_, 0), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+ private:
+  pid_t pid_ = 0;
+  int terminal_ = -1;
+  std::string shown_;
 };
 
 TEST_CASE("mpm topics lists who is on the bus, with types and units") {
@@ -290,6 +354,27 @@ TEST_CASE("a replay in a loop goes on counting") {
     REQUIRE(seen[i].interval - seen[i - 1].interval == (i % 100 == 0 ? 2 : 1));
     REQUIRE(seen[i].source_time_ns > seen[i - 1].source_time_ns);
   }
+}
+
+TEST_CASE("keys steer a replay on a terminal") {
+  const Corner corner("keys");
+  const std::string file = corner.folder.file("run.mcap");
+  corner.record(file, 100, {},
+                std::chrono::milliseconds(1));  // samples that come together replay so
+  OnTerminal replay(corner.on_bus(
+      {"mpm", "replay", file, "--wait-readers", "0", "--rate", "0.0001", "--start-paused"}));
+  CHECK(replay.shows(" 0 samples  0.0001 x  paused"));
+  replay.press("s");
+  CHECK(replay.shows(" 1 samples"));
+  replay.press("\x1b[C\x1b[C");
+  CHECK(replay.shows(" 3 samples  0.0001 x  paused"));
+  replay.press(" ");
+  CHECK(replay.shows("0.0001 x\x1b"));
+  replay.press(" +");
+  CHECK(replay.shows("0.01 x  paused"));
+  replay.press("q");
+  CHECK(replay.shows("samples published"));
+  CHECK(replay.exit_code() == 0);
 }
 
 TEST_CASE("a recorder keeps to its quota and never touches other files") {

@@ -143,16 +143,20 @@ std::vector<std::int64_t> mv_intervals_in(const std::string& path) {
   return intervals;
 }
 
+idl::UnitPublisher toy_publisher(const idl::Participant& participant) {
+  idl::UnitLayout layout;
+  layout.unit = "toy";
+  layout[SignalKind::kMv].tags = {"u1", "u2"};
+  layout[SignalKind::kCv].tags = {"y1"};
+  return {participant, layout, idl::WriterPace::kRealTime};
+}
+
 void check_killed_recorder(std::mt19937& random) {
   Stage stage("killed" + std::to_string(random()));
   const std::string recording = stage.folder.file("run.mcap");
   Process recorder = stage.start("record", {"mpm", "record", "--output", recording});
   const idl::Participant participant(stage.domain);
-  idl::UnitLayout layout;
-  layout.unit = "toy";
-  layout[SignalKind::kMv].tags = {"u1", "u2"};
-  layout[SignalKind::kCv].tags = {"y1"};
-  const idl::UnitPublisher publisher(participant, layout, idl::WriterPace::kRealTime);
+  const idl::UnitPublisher publisher = toy_publisher(participant);
   REQUIRE(publisher.wait_for_readers(kPatience));
   const std::chrono::milliseconds life(1200 + random() % 1500);
   CAPTURE(life.count());
@@ -176,6 +180,31 @@ void check_killed_recorder(std::mt19937& random) {
 }
 
 }  // namespace
+
+TEST_CASE("a recorder loses none of 10 000 samples a second from a writer that waits for nobody") {
+  constexpr int kFrames = 10'000, kLayouts = 2;  // two samples per frame, for two seconds
+  Stage stage("fast");
+  const std::string recording = stage.folder.file("run.mcap");
+  Process recorder = stage.start("record", {"mpm", "record", "--output", recording});
+  const idl::Participant participant(stage.domain);
+  const idl::UnitPublisher publisher = toy_publisher(participant);
+  REQUIRE(publisher.wait_for_readers(kPatience));
+  Plant plant(2.0);
+  Clock::time_point next = Clock::now();
+  for (int k = 0; k < kFrames; ++k) {
+    REQUIRE(publisher.publish(plant.next()));
+    if (k % 5 != 4) continue;
+    next += std::chrono::milliseconds(1);
+    std::this_thread::sleep_until(next);
+  }
+  REQUIRE(publisher.flush(kPatience));
+  stage.stop(recorder);
+  const std::string said = read_file(stage.folder.file("record.err"));
+  INFO(said);
+  CHECK(said.find(" " + std::to_string(2 * kFrames + kLayouts) + " samples ") != std::string::npos);
+  CHECK(said.find(" 0 dropped") != std::string::npos);
+  CHECK(mv_intervals_in(recording).size() == kFrames);
+}
 
 TEST_CASE("a recording gives the same bytes live, replayed at any speed, and in mpm detect",
           "[rehearse]") {
