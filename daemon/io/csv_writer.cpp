@@ -1,5 +1,6 @@
 #include "daemon/io/csv_writer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -16,8 +17,9 @@ constexpr std::size_t kBufferBytes = 1U << 20U;
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 std::string cell_of(const std::string& tag) {
-  if (tag.find_first_of(std::string("\n\r\0", 3)) != std::string::npos)
-    throw std::invalid_argument("the tag '" + tag + "' cannot stand in a CSV file");
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; };
+  if (tag.empty() || std::any_of(tag.begin(), tag.end(), control))
+    throw std::invalid_argument("a tag with control characters cannot stand in a CSV file");
   const bool blank_ends =
       tag.front() == ' ' || tag.back() == ' ' || tag.front() == '\t' || tag.back() == '\t';
   if (!blank_ends && tag.find_first_of(",;\t\"#") == std::string::npos) return tag;
@@ -58,9 +60,9 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<Column> columns, CsvOp
   options_.quality.resize(columns_.size());
   std::set<std::string> seen;
   for (const Column& column : columns_) {
+    cells_.push_back(cell_of(column.tag));
     if (!seen.insert(column.tag).second)
       throw std::invalid_argument("there are two signals '" + column.tag + "'");
-    cells_.push_back(cell_of(column.tag));
   }
   if (options_.layout == CsvLayout::kLong) {
     buffer_ = "tag,time,value,quality\n";

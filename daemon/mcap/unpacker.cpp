@@ -1,4 +1,5 @@
 #include "daemon/mcap/unpacker.hpp"
+#include "daemon/mcap/printable.hpp"
 
 #include <lz4frame.h>
 #include <zstd.h>
@@ -102,7 +103,7 @@ std::string Unpacker::unpack(std::string_view compression, ByteView packed, std:
         },
         packed, size, out);
   }
-  return "is packed with '" + std::string(compression.substr(0, 32)) +
+  return "is packed with '" + printable(compression) +
          "', which is not known here (zstd and lz4 are)";
 }
 

@@ -1,6 +1,7 @@
 #include "daemon/recording/contents.hpp"
 
 #include "config/finding.hpp"
+#include "daemon/mcap/printable.hpp"
 #include "daemon/recording/sample_stream.hpp"
 
 namespace mpm::recording {
@@ -56,7 +57,8 @@ Contents survey(const std::string& path, const std::function<bool(const Contents
 
 std::string names_of(const Contents& contents) {
   std::string text;
-  for (const auto& [name, unit] : contents) text += (text.empty() ? "'" : ", '") + name + "'";
+  for (const auto& [name, unit] : contents)
+    text += (text.empty() ? "'" : ", '") + mcap::printable(name) + "'";
   return text;
 }
 

@@ -4,6 +4,7 @@
 
 #include "config/finding.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/printable.hpp"
 
 namespace mpm::recording {
 namespace {
@@ -36,10 +37,11 @@ SampleStream::SampleStream(const std::string& path, const mcap::TimeRange& range
     : path_(path), messages_(mcap::open_messages(path, range)) {}
 
 void SampleStream::refuse(const char* type) const {
-  throw config::InputError(
-      {path_, 0, 0, config::Severity::kError, "",
-       "message " + std::to_string(message_.sequence) + " on " + message_.channel->topic + " (" +
-           message_.channel->message_encoding + ") is no " + type + " in CDR"});
+  throw config::InputError({path_, 0, 0, config::Severity::kError, "",
+                            "message " + std::to_string(message_.sequence) + " on " +
+                                mcap::printable(message_.channel->topic) + " (" +
+                                mcap::printable(message_.channel->message_encoding) + ") is no " +
+                                type + " in CDR"});
 }
 
 SampleStream::Event SampleStream::next() {

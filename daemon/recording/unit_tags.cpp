@@ -8,6 +8,7 @@ namespace {
 template <class Signals, class Field>
 std::vector<std::string> each(const Signals& signals, Field field) {
   std::vector<std::string> texts;
+  texts.reserve(signals.size());
   for (const auto& signal : signals) texts.push_back(signal.*field);
   return texts;
 }

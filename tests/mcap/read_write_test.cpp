@@ -285,6 +285,13 @@ TEST_CASE("What is wrong with a file is told with its byte") {
     file.end();
     expect(file, "'brotli', which is not known here");
   }
+  SECTION("a packing with a line break, which a fuzzer found") {
+    HandMade file;
+    file.begin_chunk();
+    file.end_chunk("\n\x1B[31m", 0, 0);
+    file.end();
+    expect(file, "'??[31m', which is not known here");
+  }
   SECTION("a chunk that lies about its times") {
     HandMade file;
     file.begin_chunk();
