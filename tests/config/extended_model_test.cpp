@@ -74,6 +74,7 @@ void check_full(const UnitConfig& config) {
   CHECK(model.disturbances[2].shape == DisturbanceShape::kPeriodic);
   CHECK(model.disturbances[2].period_s == 70);
   CHECK(model.disturbances[2].onset_s == 7);
+  CHECK(model.disturbances[2].square);
   CHECK(std::isinf(model.disturbances[3].until_s));
   REQUIRE(config.simulation.aux_movement.size() == 2);
   CHECK(config.simulation.aux_movement[0].sigma == 0);
@@ -212,9 +213,13 @@ TEST_CASE("every mistake in an extended model is told at its place") {
        "2024-05-01T12:00:00Z, not '2024-03-01T12:00'"},
       {disturbed("{cv: y1, shape: step, onset: @soon, size: 2}"),
        "model.disturbances[0].onset: must be a number, not 'soon'"},
+      {disturbed("{cv: y1, shape: periodic, size: 2, period: 9, wave: @saw}"),
+       "model.disturbances[0].wave: must be sine or square"},
+      {disturbed("{cv: y1, shape: step, onset: 1, size: 2, @wave: square}"),
+       "model.disturbances[0].wave: does not go with the shape step"},
       {disturbed("{cv: y1, shape: step, onset: 1, size: 2, @foo: 3}"),
        "model.disturbances[0].foo: unknown key (known: cv, shape, onset, size, time_constant, "
-       "period, until)"},
+       "period, wave, until)"},
       {channels + "simulation: {aux_movement: {@t_am: {sigma: 1}}}\n",
        "simulation.aux_movement.t_am: unknown tag or key (did you mean 't_amb'?)"},
   };

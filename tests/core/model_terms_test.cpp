@@ -145,6 +145,12 @@ TEST_CASE("disturbances follow the clock of the data") {
       for (std::size_t k = 0; k < 5; ++k) CHECK(result[k] == Approx(expected[k]).margin(1e-12));
     }
   }
+  SECTION("a square wave, whose first half is up") {
+    term.shape = DisturbanceShape::kPeriodic;
+    term.period_s = 8.0;
+    term.square = true;
+    CHECK(values(term, 0.0, 7) == Values{-3, -3, 3, 3, -3, -3, 3});
+  }
 }
 
 TEST_CASE("a step at a sampling instant that rounding misses is not a sample late") {
