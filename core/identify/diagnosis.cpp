@@ -249,8 +249,11 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
 
   if (!diagnosis.findings.empty() || !diagnosis.unexplained.empty()) {
     diagnosis.verdict = DiagnosisVerdict::kMismatch;
-    if (diagnosis.findings.empty())
-      diagnosis.reason = "what is wrong is none of the causes that have a name here";
+    return diagnosis;
+  }
+  if (!diagnosis.refused.empty()) {
+    diagnosis.verdict = DiagnosisVerdict::kUndetermined;
+    diagnosis.reason = "what explains the samples that were fitted does not hold on the others";
     return diagnosis;
   }
   diagnosis.verdict = DiagnosisVerdict::kMatch;
