@@ -34,6 +34,8 @@ constexpr double kBound = 0.9;
 constexpr double kClear = 0.3;
 /// By so much where the free one explains nothing.
 constexpr double kSome = 0.1;
+/// 2 ln odds of a finding that leaves the verdict open even if it does not carry over.
+constexpr double kStrong = 30.0;
 /// Share of the work that is done when all causes have been looked for.
 constexpr double kSearched = 0.9;
 
@@ -251,7 +253,10 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
     diagnosis.verdict = DiagnosisVerdict::kMismatch;
     return diagnosis;
   }
-  if (!diagnosis.refused.empty()) {
+  const bool strong =
+      std::any_of(diagnosis.refused.begin(), diagnosis.refused.end(),
+                  [](const Finding& finding) { return finding.evidence > kStrong; });
+  if (strong) {
     diagnosis.verdict = DiagnosisVerdict::kUndetermined;
     diagnosis.reason = "what explains the samples that were fitted does not hold on the others";
     return diagnosis;

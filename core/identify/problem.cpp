@@ -134,6 +134,23 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
     data.nuisances.col(static_cast<Index>(i)) = columns[i];
 }
 
+VectorXd Problem::with_shocks(const CvFit& state, const std::vector<Effect>& effects) {
+  constexpr Index kRows = 3;
+  VectorXd innovations = state.innovations;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const Effect& effect = effects[i];
+    if (effect.subject.kind != "step" || effect.subject.cv != state.cv || effect.onset == 0)
+      continue;
+    std::vector<Effect> others = effects;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const VectorXd step =
+        state.noise.apply(simulate(effects, state.cv) - simulate(others, state.cv));
+    const Index rows = std::min(kRows, samples() - effect.onset);
+    innovations.segment(effect.onset, rows) += step.segment(effect.onset, rows);
+  }
+  return innovations;
+}
+
 void Problem::settle(const std::vector<Effect>& effects, const Fit* fit) {
   const ModelSpec model = with(effects);
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -146,7 +163,7 @@ void Problem::settle(const std::vector<Effect>& effects, const Fit* fit) {
         data.weights.segment(k, std::min<Index>(noise_.order + 1, data.known.size() - k)).setZero();
     if (fit)
       for (const CvFit& state : fit->cvs)
-        if (state.cv == cv) reweigh(state.innovations, data.weights);
+        if (state.cv == cv) reweigh(with_shocks(state, effects), data.weights);
     data.rows = static_cast<double>((data.weights.array() > 0.0).count());
   }
 }

@@ -106,6 +106,9 @@ class Problem {
   [[nodiscard]] ModelSpec with(const std::vector<Effect>& effects) const;
   /// What a CV's plateau says, and its rows as unknown.
   void find_clipping(int cv, CvData& data);
+  /// Innovations as they would be without the steps in `effects`, at their onsets: a shock in the
+  /// noise looks like a step there, and must not lose what makes it one by being fitted.
+  [[nodiscard]] Eigen::VectorXd with_shocks(const CvFit& state, const std::vector<Effect>& effects);
   void make_nuisances(const ModelSpec& model, int cv);
   /// The nuisances that no effect makes superfluous; the others are zero.
   [[nodiscard]] Eigen::MatrixXd nuisances(const std::vector<Effect>& effects, int cv) const;
