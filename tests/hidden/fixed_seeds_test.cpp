@@ -32,14 +32,14 @@ constexpr std::array kBounds = {
     FixedBound{EffectClass::kStiction, Setting::kHard, 2},
     FixedBound{EffectClass::kOutputNonlinearity, Setting::kHard, 2},
     FixedBound{EffectClass::kUnmodelledInput, Setting::kHard, 2},
-    FixedBound{EffectClass::kStep, Setting::kHard, 1},
+    FixedBound{EffectClass::kStep, Setting::kHard, 2},
     FixedBound{EffectClass::kDrift, Setting::kHard, 2},
-    FixedBound{EffectClass::kPeriodic, Setting::kHard, 0},
+    FixedBound{EffectClass::kPeriodic, Setting::kHard, 2},
     FixedBound{EffectClass::kNoise, Setting::kHard, 2},
     FixedBound{EffectClass::kTwoCauses, Setting::kHard, 1},
-    FixedBound{EffectClass::kOnsetGain, Setting::kHard, 1},
+    FixedBound{EffectClass::kOnsetGain, Setting::kHard, 2},
     FixedBound{EffectClass::kOnsetDeadTime, Setting::kHard, 2},
-    FixedBound{EffectClass::kUnnamed, Setting::kHard, 0},
+    FixedBound{EffectClass::kUnnamed, Setting::kHard, 2},
 };
 static_assert(kBounds.size() == kAllClasses.size());
 
