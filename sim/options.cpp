@@ -38,8 +38,8 @@ void declare(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   app.add_option("--wait-readers", options.wait_readers_s,
-                 "seconds to wait for a reader of every topic before the first sample")
-      ->capture_default_str()
+                 "seconds to wait for readers of every topic before the first sample "
+                 "(10 with --speed 0 or --readers, else none)")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--readers", options.readers, "how many readers of every topic to wait for")
       ->capture_default_str()

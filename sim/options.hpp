@@ -24,7 +24,7 @@ struct Options {
   std::optional<double> limits_percent;  ///< print materiality limits instead of running
   std::string start_time;
   double speed = 1.0;
-  double wait_readers_s = 0.0;
+  std::optional<double> wait_readers_s;  ///< as the options say where it is left out
   int readers = 1;
   std::optional<int> domain;
   std::optional<std::string> partition;

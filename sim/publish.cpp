@@ -106,7 +106,11 @@ int run_dds(const LoopSetup& setup, const Options& options, BadDataFilter& filte
       paced ? idl::WriterPace::kRealTime : idl::WriterPace::kLossless);
   spdlog::info("unit {} publishes on domain {}", setup.unit.unit,
                options.domain.value_or(setup.unit.dds.domain));
-  if (!wait_for_readers(publisher, options.wait_readers_s, options.readers)) return kDone;
+  // Who asks for all that readers can take, or for so many readers, wants none to miss the first.
+  constexpr double kPatience = 10.0;
+  const bool counts = !paced || options.readers > 1;
+  const double patience_s = options.wait_readers_s.value_or(counts ? kPatience : 0.0);
+  if (!wait_for_readers(publisher, patience_s, options.readers)) return kDone;
 
   const std::int64_t samples = options.samples.value_or(std::numeric_limits<std::int64_t>::max());
   const double interval_s = paced ? setup.unit.sample_time_s / options.speed : 0.0;
