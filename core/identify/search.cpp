@@ -502,6 +502,13 @@ class Search {
   /// error any more, but a sensor's offset or a disturbance as old as the data.
   void name_levels(SearchResult& result) const {
     for (CvFit& fit : result.fit.cvs) {
+      // An input that the model left out has an operating point that nobody knows.
+      const bool new_input =
+          std::any_of(result.named.begin(), result.named.end(), [&](const Named& named) {
+            return named.effect.subject.cause == Cause::kUnmodelledInput &&
+                   named.effect.subject.cv == fit.cv;
+          });
+      if (new_input) continue;
       const CvData& data = problem_.data(fit.cv);
       const double level = data.nuisances(0, 0) * fit.beta(0);
       const double noise = std::sqrt(fit.residual.squaredNorm() / std::max(1.0, data.known.sum()));
