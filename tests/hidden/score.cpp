@@ -109,6 +109,16 @@ void score_unnamed(const HiddenCase& hidden, const Diagnosis& diagnosis, CaseSco
                   [&](const Finding& finding) { return finding.subject.cv == cv; });
 }
 
+/// Whether something was hidden in this CV, or nothing anywhere.
+bool is_affected(const HiddenCase& hidden, Index cv) {
+  const auto acts = [&](const TrueEffect& truth) {
+    if (truth.cv >= 0) return truth.cv == cv;
+    return std::any_of(hidden.model.channels.begin(), hidden.model.channels.end(),
+                       [&](const ChannelSpec& c) { return c.cv == cv && c.input == truth.input; });
+  };
+  return hidden.truth.empty() || std::any_of(hidden.truth.begin(), hidden.truth.end(), acts);
+}
+
 void score_rmse(const HiddenCase& hidden, const Diagnosis& diagnosis, CaseScore& result) {
   result.rmse_before = result.rmse_after = kNaN;
   if (static_cast<Index>(diagnosis.scores.size()) != hidden.data.cvs.cols()) return;
@@ -116,7 +126,10 @@ void score_rmse(const HiddenCase& hidden, const Diagnosis& diagnosis, CaseScore&
   const Index count = hidden.data.samples() - from;
   double before = 0.0;
   double after = 0.0;
+  double cvs = 0.0;
   for (Index cv = 0; cv < hidden.data.cvs.cols(); ++cv) {
+    if (!is_affected(hidden, cv)) continue;
+    ++cvs;
     const double best =
         std::sqrt((hidden.data.cvs.col(cv) - hidden.noise_free.col(cv)).tail(count).squaredNorm() /
                   static_cast<double>(count));
@@ -124,7 +137,6 @@ void score_rmse(const HiddenCase& hidden, const Diagnosis& diagnosis, CaseScore&
     before += std::pow(score.rmse_before / best, 2);
     after += std::pow(score.rmse_after / best, 2);
   }
-  const auto cvs = static_cast<double>(hidden.data.cvs.cols());
   result.rmse_before = std::sqrt(before / cvs);
   result.rmse_after = std::sqrt(after / cvs);
 }

@@ -38,7 +38,8 @@ struct CaseScore {
   std::vector<ParameterScore> parameters;  ///< that were stated, where the place is right
   bool has_onset = false;
   std::optional<double> onset_error;  ///< samples; where one was stated at the right place
-  /// Root of the CVs' mean of (rmse / the true plant's rmse)^2 on the samples not fitted; NaN =
+  /// Root of the mean of (rmse / the true plant's rmse)^2 on the samples not fitted, of the CVs in
+  /// which something is hidden (all where nothing is); NaN =
   /// the diagnosis says nothing.
   double rmse_before = 0.0, rmse_after = 0.0;
   double seconds = 0.0;
