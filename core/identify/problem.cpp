@@ -23,16 +23,18 @@ double spread(const VectorXd& values, const VectorXd& known) {
       std::max(1e-30, ((values.array() - mean).square() * known.array()).sum() / count));
 }
 
-/// Upper triangle of a QR without Q, last column = right-hand side.
+}  // namespace
+
 MatrixXd triangle(const MatrixXd& matrix) {
   const Index columns = matrix.cols();
   const Eigen::HouseholderQR<MatrixXd> qr(matrix);
   return qr.matrixQR().topRows(std::min(columns, matrix.rows())).triangularView<Eigen::Upper>();
 }
 
-double prior_units(const Coordinate& c) { return (c.value - c.prior_mean) / c.prior_sd; }
-
-}  // namespace
+VectorXd rows_of(const CvData& data, const CvFit& fit, const Eigen::Ref<const VectorXd>& x) {
+  const VectorXd root = (data.weights / fit.variance).cwiseSqrt();
+  return fit.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);
+}
 
 Problem::Problem(const ModelSpec& model, int model_inputs, const Recording& recording,
                  const Tolerances& tolerances, const NoiseModel& noise)
@@ -231,12 +233,10 @@ double Problem::cost_with_noise_of(const Fit& fit, const std::vector<Effect>& ef
     const MatrixXd small = nuisances(effects, state.cv);
     const Index samples = data.measured.size(), count = small.cols();
     MatrixXd system = MatrixXd::Zero(samples + count, count + 1);
-    const VectorXd root = (data.weights / state.variance).cwiseSqrt();
-    const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) -> VectorXd {
-      return state.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);
-    };
-    for (Index b = 0; b < count; ++b) system.col(b).head(samples) = whiten(small.col(b));
-    system.col(count).head(samples) = whiten(data.measured - simulate(effects, state.cv));
+    for (Index b = 0; b < count; ++b)
+      system.col(b).head(samples) = rows_of(data, state, small.col(b));
+    system.col(count).head(samples) =
+        rows_of(data, state, data.measured - simulate(effects, state.cv));
     system.bottomLeftCorner(count, count).setIdentity();
     const MatrixXd r = triangle(system);
     cost += r(count, count) * r(count, count);
@@ -280,169 +280,6 @@ Index Problem::best_onset(const Fit& fit, Index first, Index last) {
   Index best = 0;
   cost.minCoeff(&best);
   return first + best;
-}
-
-Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std::vector<int>& cvs,
-                 int iterations) {
-  struct Free {
-    std::size_t effect, coordinate;
-  };
-  std::vector<Free> free;
-  for (std::size_t e = first_free; e < effects.size(); ++e)
-    for (std::size_t c = 0; c < effects[e].coordinates.size(); ++c) free.push_back({e, c});
-  const auto count = static_cast<Index>(free.size());
-
-  Fit best;
-  best.cost = std::numeric_limits<double>::infinity();
-  best.effects = effects;
-  double best_misfit = std::numeric_limits<double>::infinity();
-  std::vector<CvFit> states;
-  std::vector<MatrixXd> small;  // the nuisances of each CV
-  for (const int cv : cvs) {
-    CvFit state;
-    state.cv = cv;
-    state.beta.setZero(data(cv).nuisances.cols());
-    states.push_back(std::move(state));
-    small.push_back(nuisances(effects, cv));
-  }
-  const auto value = [&](std::vector<Effect>& list, Index i) -> Coordinate& {
-    return list[free[static_cast<std::size_t>(i)].effect]
-        .coordinates[free[static_cast<std::size_t>(i)].coordinate];
-  };
-
-  std::vector<Effect> origin = effects;  // of the step that is being tried
-  std::vector<CvFit> origin_states = states;
-  int halvings = 0;
-  for (int iteration = 0;; ++iteration) {
-    double misfit = 0.0;
-    std::vector<VectorXd> simulated;
-    for (std::size_t s = 0; s < states.size(); ++s) {
-      CvFit& state = states[s];
-      simulated.push_back(simulate(effects, state.cv));
-      update(state, simulated.back(), small[s]);
-      misfit += data(state.cv).rows * std::log(state.variance) + state.beta.squaredNorm();
-    }
-    for (Index i = 0; i < count; ++i) misfit += std::pow(prior_units(value(effects, i)), 2);
-    const double before = best_misfit;
-    if (iteration == 0 && !std::isfinite(misfit)) return best;
-    if (!(misfit < before) && iteration > 0) {  // half way back
-      if (++halvings > 3 || iteration >= iterations) break;
-      for (Index i = 0; i < count; ++i)
-        value(effects, i).value = 0.5 * (value(effects, i).value + value(origin, i).value);
-      for (std::size_t s = 0; s < states.size(); ++s)
-        states[s].beta = 0.5 * (states[s].beta + origin_states[s].beta);
-      continue;
-    }
-    halvings = 0;
-    best_misfit = misfit;
-
-    // Square-root information of each CV on the free coordinates.
-    double log_determinant = 0.0;
-    MatrixXd stacked(0, count + 1);
-    std::vector<MatrixXd> triangles;
-    std::vector<std::vector<Index>> columns;
-    for (std::size_t s = 0; s < states.size(); ++s) {
-      const CvFit& state = states[s];
-      const CvData& data = this->data(state.cv);
-      std::vector<Index> mine;
-      for (Index i = 0; i < count; ++i)
-        if (touches(effects[free[static_cast<std::size_t>(i)].effect], model_, state.cv))
-          mine.push_back(i);
-      const Index nuisances = small[s].cols(), m = static_cast<Index>(mine.size());
-      const Index samples = data.measured.size();
-      MatrixXd system = MatrixXd::Zero(samples + nuisances, nuisances + m + 1);
-      const VectorXd root = (data.weights / state.variance).cwiseSqrt();
-      const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) -> VectorXd {
-        return state.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);
-      };
-      for (Index b = 0; b < nuisances; ++b) {
-        system.col(b).head(samples) = whiten(small[s].col(b));
-        system(samples + b, b) = 1.0;
-      }
-      for (Index c = 0; c < m; ++c) {
-        const Free& f = free[static_cast<std::size_t>(mine[static_cast<std::size_t>(c)])];
-        system.col(nuisances + c).head(samples) =
-            whiten(sensitivity(effects, f.effect, f.coordinate, state.cv, simulated[s]));
-      }
-      system.col(nuisances + m).head(samples) = whiten(data.measured - simulated[s]);
-      const MatrixXd r = triangle(system);
-      for (Index b = 0; b < nuisances; ++b)
-        log_determinant += 2.0 * std::log(std::max(1e-300, std::abs(r(b, b))));
-      const Index old = stacked.rows();
-      stacked.conservativeResize(old + m, Eigen::NoChange);
-      stacked.bottomRows(m).setZero();
-      for (Index row = 0; row < m; ++row) {
-        for (Index c = 0; c < m; ++c)
-          stacked(old + row, mine[static_cast<std::size_t>(c)]) = r(nuisances + row, nuisances + c);
-        stacked(old + row, count) = r(nuisances + row, nuisances + m);
-      }
-      triangles.push_back(r);
-      columns.push_back(mine);
-    }
-    const Index data_rows = stacked.rows();
-    stacked.conservativeResize(data_rows + count, Eigen::NoChange);
-    stacked.bottomRows(count).setZero();
-    for (Index i = 0; i < count; ++i) {
-      stacked(data_rows + i, i) = 1.0;
-      stacked(data_rows + i, count) = -prior_units(value(effects, i));
-    }
-    VectorXd step = VectorXd::Zero(count);
-    MatrixXd shared;
-    if (count > 0) {
-      shared = triangle(stacked);
-      for (Index i = 0; i < count; ++i)
-        log_determinant += 2.0 * std::log(std::max(1e-300, std::abs(shared(i, i))));
-      step = shared.topLeftCorner(count, count)
-                 .triangularView<Eigen::Upper>()
-                 .solve(shared.col(count).head(count));
-    }
-
-    if (!step.allFinite() || !std::isfinite(log_determinant)) break;
-    best.effects = effects;
-    best.cvs = states;
-    best.cost = misfit + log_determinant;
-    best.misfit = 0.0;
-    for (const CvFit& state : states) best.misfit += data(state.cv).rows * std::log(state.variance);
-    best.complexity = log_determinant;
-    for (const CvFit& state : states) best.complexity += state.beta.squaredNorm();
-    for (Index i = 0; i < count; ++i)
-      best.complexity += std::pow(prior_units(value(effects, i)), 2);
-    if (count > 0) {
-      const MatrixXd inverse = shared.topLeftCorner(count, count)
-                                   .triangularView<Eigen::Upper>()
-                                   .solve(MatrixXd::Identity(count, count));
-      VectorXd scales(count);
-      for (Index i = 0; i < count; ++i) scales(i) = value(effects, i).prior_sd;
-      best.covariance = scales.asDiagonal() * (inverse * inverse.transpose()) * scales.asDiagonal();
-    }
-    if (iteration >= iterations) break;
-
-    origin = effects;
-    origin_states = states;
-    double movement = 0.0;
-    for (Index i = 0; i < count; ++i) {
-      Coordinate& c = value(effects, i);
-      c.value = std::clamp(c.value + step(i) * c.prior_sd, c.low, c.high);
-    }
-    for (std::size_t s = 0; s < states.size(); ++s) {
-      const MatrixXd& r = triangles[s];
-      const Index m = static_cast<Index>(columns[s].size());
-      const Index nuisances = states[s].beta.size();
-      VectorXd mine(m);
-      for (Index c = 0; c < m; ++c) mine(c) = step(columns[s][static_cast<std::size_t>(c)]);
-      const VectorXd right =
-          r.col(nuisances + m).head(nuisances) - r.block(0, nuisances, nuisances, m) * mine;
-      const VectorXd beta =
-          r.topLeftCorner(nuisances, nuisances).triangularView<Eigen::Upper>().solve(right);
-      movement = std::max(movement, (beta - states[s].beta).norm());
-      states[s].beta = beta;
-    }
-    if (count > 0) movement = std::max(movement, step.cwiseAbs().maxCoeff());
-    if (movement < 1e-4 || (iteration > 1 && before - misfit < 0.02)) break;
-  }
-  // A start that is no model at all stays at infinite cost.
-  for (const Effect& effect : best.effects) best.cost += effect.search_cost;
-  return best;
 }
 
 }  // namespace mpm

@@ -45,6 +45,14 @@ struct CvFit {
   double variance = 1.0;        ///< of the innovations, weighted
 };
 
+/// Upper triangle of a QR without Q; the last column is a right-hand side.
+[[nodiscard]] Eigen::MatrixXd triangle(const Eigen::MatrixXd& matrix);
+
+/// Whitened and weighted, in s.d. of the innovations; 0 where the CV is unknown: as the rows of a
+/// fit's least squares are.
+[[nodiscard]] Eigen::VectorXd rows_of(const CvData& data, const CvFit& fit,
+                                      const Eigen::Ref<const Eigen::VectorXd>& x);
+
 /// Effects with fitted numbers, and how well they explain the CVs they touch.
 struct Fit {
   std::vector<Effect> effects;
@@ -103,6 +111,7 @@ class Problem {
   [[nodiscard]] Eigen::Index samples() const { return recording().samples(); }
 
  private:
+  class Fitting;  // one call of fit(), in fitting.cpp
   [[nodiscard]] ModelSpec with(const std::vector<Effect>& effects) const;
   /// What a CV's plateau says, and its rows as unknown.
   void find_clipping(int cv, CvData& data);

@@ -18,7 +18,6 @@ Screening::Screening(Problem& problem, const std::vector<Effect>& accepted,
     Cv cv;
     cv.fit = &fit;
     cv.simulated = problem.simulate(accepted, fit.cv);
-    cv.root = (data.weights / fit.variance).cwiseSqrt();
     const Index samples = data.measured.size(), nuisances = data.nuisances.cols();
     std::vector<std::pair<std::size_t, std::size_t>> own;  // numbers of what was accepted
     for (std::size_t e = 0; e < accepted.size(); ++e)
@@ -26,9 +25,7 @@ Screening::Screening(Problem& problem, const std::vector<Effect>& accepted,
         for (std::size_t c = 0; c < accepted[e].coordinates.size(); ++c) own.emplace_back(e, c);
     const Index columns = nuisances + static_cast<Index>(own.size());
     MatrixXd system = MatrixXd::Zero(samples + columns, columns);
-    const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) -> VectorXd {
-      return fit.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(cv.root);
-    };
+    const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) { return rows_of(data, fit, x); };
     for (Index b = 0; b < nuisances; ++b)
       system.col(b).head(samples) = whiten(data.nuisances.col(b));
     for (std::size_t i = 0; i < own.size(); ++i)
@@ -67,8 +64,8 @@ double Screening::score(const Effect& candidate) {
     const CvData& data = problem_.data(cv.fit->cv);
     const VectorXd at = problem_.simulate(with, cv.fit->cv);
     if (!at.allFinite()) return -1e300;
-    const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) -> VectorXd {
-      return cv.fit->noise.apply(x.cwiseProduct(data.known)).cwiseProduct(cv.root);
+    const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) {
+      return rows_of(data, *cv.fit, x);
     };
     MatrixXd columns(at.size(), count);
     for (Index i = 0; i < count; ++i)

@@ -22,7 +22,6 @@ class Screening {
   struct Cv {
     const CvFit* fit;
     Eigen::VectorXd simulated;
-    Eigen::VectorXd root;      ///< of the rows' weights over the variance
     Eigen::MatrixXd basis;     ///< orthonormal, of the whitened nuisances beside their prior
     Eigen::VectorXd residual;  ///< whitened
   };
