@@ -210,7 +210,7 @@ class Problem::Fitting {
     }
     for (std::size_t s = 0; s < states_.size(); ++s) {
       const MatrixXd& r = reduced_[s].triangle;
-      const Index m = static_cast<Index>(reduced_[s].where.size());
+      const auto m = static_cast<Index>(reduced_[s].where.size());
       const Index nuisances = states_[s].beta.size();
       VectorXd mine(m);
       for (Index c = 0; c < m; ++c) mine(c) = step_(reduced_[s].where[static_cast<std::size_t>(c)]);

@@ -1,6 +1,7 @@
 #include "core/identify/search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -109,7 +110,8 @@ class Search {
     }
     for (int round = 0; round < settings_.max_findings; ++round) {
       share_ = 0.1 + 0.8 * round / settings_.max_findings;
-      if (!report() || !find_one()) break;
+      report();
+      if (!find_one()) break;
     }
     drop_superfluous();
     undo_cancelled_scales();
@@ -125,7 +127,10 @@ class Search {
   }
 
  private:
-  bool report() const { return !settings_.progress || settings_.progress(share_); }
+  /// May throw, to end it all.
+  void report() const {
+    if (settings_.progress) settings_.progress(share_);
+  }
 
   /// Accepted effects that touch other CVs too come first and stay; returns how many.
   std::size_t arrange(const std::vector<int>& cvs, std::vector<Effect>& effects) const {
@@ -298,7 +303,8 @@ class Search {
     const Effect like = valve->candidate;
     const double width = best.value(play ? "width" : "band", 0.0);
     std::vector<std::pair<double, Effect>> scored;
-    for (double factor = 0.8; factor < 1.65; factor += 0.05)
+    for (int percent = 80; percent < 165; percent += 5) {
+      const double factor = 0.01 * percent;
       for (const double jump : {0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0})
         for (const bool slips_once : {false, true}) {
           report();
@@ -310,6 +316,7 @@ class Search {
           effect.coordinates[1].step = -0.05 * factor * width;
           scored.emplace_back(screening_->score(effect), std::move(effect));
         }
+    }
     std::sort(scored.begin(), scored.end(),
               [](const auto& a, const auto& b) { return a.first > b.first; });
     for (std::size_t i = 0; i < 6; ++i) trials.push_back(attempt(scored[i].second, 6));
@@ -318,8 +325,9 @@ class Search {
   /// Play and sticking are not smooth in their widths, nor is a square wave in its edges: look
   /// around, ever closer.
   void polish(Trial& trial) {
-    for (double reach = is_square_wave(trial.candidate) ? 16.0 : 0.0; reach >= 0.5; reach *= 0.5)
-      for (bool moved = true; moved;) {
+    constexpr std::array<double, 6> kReach = {16.0, 8.0, 4.0, 2.0, 1.0, 0.5};  // rows
+    for (const double reach : kReach)
+      for (bool moved = is_square_wave(trial.candidate); moved;) {
         moved = false;
         for (const Effect& other : other_edges(trial.candidate, reach, problem_)) {
           Trial next = attempt(other, 2);
@@ -331,7 +339,9 @@ class Search {
       }
     const Cause cause = trial.candidate.subject.cause;
     if (cause != Cause::kStiction && trial.candidate.subject.kind != "deadband") return;
-    for (double factor = 1.3; factor > 1.008; factor = 1.0 + 0.5 * (factor - 1.0)) {
+    constexpr std::array<double, 6> kSteps = {0.3, 0.15, 0.075, 0.0375, 0.01875, 0.009375};
+    for (const double step : kSteps) {
+      const double factor = 1.0 + step;
       for (bool moved = true; moved;) {
         moved = false;
         for (std::size_t i = 0; i < trial.candidate.coordinates.size(); ++i) {

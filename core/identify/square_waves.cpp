@@ -77,11 +77,13 @@ std::vector<Wave> best_waves(const MatchedFilter& filter, Index samples, Index o
   double period = kShortestPeriod * stride;
   while (period <= length / kFewestCycles) {
     Wave wave{0.0, 0.0, period, onset};
-    for (double begin = 0.0; begin < 0.5 * period; begin += stride) {
-      const double gain = filter.gain(static_cast<double>(onset) + begin, period, onset);
-      if (gain > wave.gain) wave.gain = gain, wave.begin = static_cast<double>(onset) + begin;
-      looked_at += 1.0;
+    const auto phases = static_cast<int>(std::ceil(0.5 * period / stride));
+    for (int phase = 0; phase < phases; ++phase) {
+      const double begin = static_cast<double>(onset) + phase * stride;
+      const double gain = filter.gain(begin, period, onset);
+      if (gain > wave.gain) wave.gain = gain, wave.begin = begin;
     }
+    looked_at += phases;
     const auto near = std::find_if(best.begin(), best.end(), [&](const Wave& other) {
       return std::abs(other.period / period - 1.0) < 0.02;
     });

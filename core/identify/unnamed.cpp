@@ -160,7 +160,7 @@ class Collector {
         sine(k) = std::sin(angle), cosine(k) = std::cos(angle);
       }
     };
-    const int most = static_cast<int>(2.0 * length / kShortestSwing);
+    const auto most = static_cast<int>(2.0 * length / kShortestSwing);
     for (int half = 2 * kFewestSwings; half <= most; ++half) {
       const double frequency = 0.5 * half / length;
       const double c = 2.0 * std::cos(2.0 * std::numbers::pi * frequency);
