@@ -187,6 +187,7 @@ Unexplained to_unexplained(const SearchResult& found, std::size_t index, Problem
   Unexplained left;
   left.cv = effect.subject.cv;
   left.input = effect.subject.input;
+  left.manner = effect.subject.kind;
   const auto of_cv = [&](const CvFit& fit) { return fit.cv == left.cv; };
   const auto fit = std::find_if(found.fit.cvs.begin(), found.fit.cvs.end(), of_cv);
   std::vector<Effect> others = found.fit.effects;

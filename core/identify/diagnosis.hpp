@@ -29,6 +29,7 @@ enum class DiagnosisVerdict { kMatch, kMismatch, kUndetermined };
 struct Unexplained {
   int cv = 0;
   int input = -1;        ///< the input it goes with; -1 = none
+  std::string manner;    ///< how: `product`, `swing`, `direction` (unnamed.hpp); empty = unknown
   double p_value = 1.0;  ///< of what is left having nothing to do with it
   double share = 0.0;    ///< of the residual's variance that it makes up
 };

@@ -128,6 +128,7 @@ Json unexplained_json(const DiagnosisRun& run) {
   for (const Unexplained& left : run.diagnosis.unexplained)
     json.push_back({{"cv", names.cv(left.cv)},
                     {"mv", tag_or_null(left.input >= 0 ? names.input(left.input) : "")},
+                    {"manner", left.manner.empty() ? Json(nullptr) : Json(left.manner)},
                     {"p_value", left.p_value},
                     {"share", left.share},
                     {"text", unexplained_text(run, left)}});

@@ -363,6 +363,9 @@ std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left) {
   std::string text = percent(left.share) + " of the residual's variance of " + names.cv(left.cv) +
                      " has no named cause";
   if (left.input >= 0) text += "; it goes with " + names.input(left.input);
+  if (left.manner == "product") text += ", whose effect seems to change with another input";
+  if (left.manner == "swing") text += ", whose effect seems to swing with time";
+  if (left.manner == "direction") text += ", whose effect seems slower one way than the other";
   return text + " (p " + number_text(left.p_value, 2) + ")";
 }
 

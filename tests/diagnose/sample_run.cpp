@@ -163,7 +163,7 @@ daemon::DiagnosisRun sample_run(int samples) {
   refused.confidence = 0.61;
   refused.evidence = 9.5;
   diagnosis.refused = {refused};
-  diagnosis.unexplained = {{1, 0, 0.003, 0.08}};
+  diagnosis.unexplained = {{1, 0, "swing", 0.003, 0.08}};
   for (int cv = 0; cv < 3; ++cv)
     for (int input = 0; input < 3; ++input) {
       const double gain = cv == 2 && input == 2 ? 1.4 : 1.0;

@@ -96,7 +96,7 @@ function findingCard(finding, label, refused) {
 function findings() {
   const cards = report.findings.map((finding, i) => findingCard(finding, `${i + 1}. `, false));
   const refused = report.refused.map(finding => findingCard(finding, '', true));
-  if (!cards.length) cards.push(element('p', {}, report.reason || 'Nothing was found.'));
+  if (!cards.length) cards.push(element('p', {}, report.reason || 'No cause was found.'));
   section('Findings', ...cards, ...refused, some(report.unexplained, list => element('div', {},
       element('h3', {}, 'There, but without a name'),
       element('ul', {}, ...list.map(left => element('li', {}, left.text))))));
