@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "config/unit_layout.hpp"
 #include "idl/participant.hpp"
 #include "idl/unit_publisher.hpp"
 
@@ -53,29 +54,6 @@ idl::DomainOptions domain_options(const config::DdsSettings& settings, const Opt
   return domain;
 }
 
-idl::UnitLayout layout_of(const config::UnitConfig& unit) {
-  idl::UnitLayout layout;
-  layout.unit = unit.unit;
-  layout.sample_time_s = unit.sample_time_s;
-  const auto add = [&](SignalKind kind, const std::string& tag, const std::string& measure) {
-    layout[kind].tags.push_back(tag);
-    layout[kind].engineering_units.push_back(measure);
-  };
-  for (const config::InputSignal& mv : unit.mv) add(SignalKind::kMv, mv.tag, mv.unit);
-  for (const config::InputSignal& dv : unit.dv) add(SignalKind::kDv, dv.tag, dv.unit);
-  for (const config::CvSignal& cv : unit.cv) {
-    add(SignalKind::kCv, cv.tag, cv.unit);
-    add(SignalKind::kPrediction, cv.prediction, cv.unit);
-    add(SignalKind::kSetpoint, cv.setpoint, cv.unit);
-  }
-  for (const SignalKind kind : {SignalKind::kPrediction, SignalKind::kSetpoint}) {
-    const std::vector<std::string>& tags = layout[kind].tags;
-    if (std::all_of(tags.begin(), tags.end(), [](const std::string& tag) { return tag.empty(); }))
-      layout[kind] = {};
-  }
-  return layout;
-}
-
 /// False if told to stop.
 bool wait_for_readers(const idl::UnitPublisher& publisher, double seconds, int readers) {
   const auto end =
@@ -102,7 +80,7 @@ int run_dds(const LoopSetup& setup, const Options& options, BadDataFilter& filte
   const bool paced = options.speed > 0.0;
   const idl::Participant participant(domain_options(setup.unit.dds, options));
   const idl::UnitPublisher publisher(
-      participant, layout_of(setup.unit),
+      participant, config::unit_layout(setup.unit),
       paced ? idl::WriterPace::kRealTime : idl::WriterPace::kLossless);
   spdlog::info("unit {} publishes on domain {}", setup.unit.unit,
                options.domain.value_or(setup.unit.dds.domain));

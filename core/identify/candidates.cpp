@@ -21,10 +21,6 @@ constexpr std::size_t kStepMoments = 8;
 /// A change can be told only if so much of the data lies on either side.
 constexpr double kOnsetMargin = 0.1;
 
-double cost_of(std::size_t alternatives) {
-  return 2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, alternatives)));
-}
-
 Coordinate gain_ratio() { return {"gain_ratio", 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}; }
 Coordinate log_time_constant_ratio(double start) {
   return {"log_time_constant_ratio", start, 0.0, 0.35, 0.01, -2.5, 2.5};

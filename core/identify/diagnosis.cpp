@@ -36,8 +36,6 @@ constexpr double kClear = 0.3;
 constexpr double kSome = 0.1;
 /// 2 ln odds of a finding that leaves the verdict open even if it does not carry over.
 constexpr double kStrong = 30.0;
-/// Share of the work that is done when all causes have been looked for.
-constexpr double kSearched = 0.9;
 
 Recording part(const Recording& recording, Index first, Index count) {
   Recording result;
@@ -50,13 +48,6 @@ Recording part(const Recording& recording, Index first, Index count) {
   else
     result.aux.resize(count, 0);
   return result;
-}
-
-double mean_of_finite(const VectorXd& values) {
-  double sum = 0.0, count = 0.0;
-  for (const double value : values)
-    if (std::isfinite(value)) sum += value, ++count;
-  return sum > 0.0 ? sum / count : 1.0;
 }
 
 /// Thrown where the caller's `progress` says so; ends all loops at once.

@@ -12,10 +12,12 @@
 
 namespace mpm {
 
+/// Share of the work that is done when all causes have been looked for.
+constexpr double kSearched = 0.9;
+
 struct DiagnosisSettings {
   int mv_count = 0;            ///< of the model's inputs; the rest are DVs
   double fit_share = 2.0 / 3;  ///< first part of the recording that is fitted
-  double false_naming_rate = 0.01;
   int max_findings = 6;
   std::uint64_t seed = 1;  ///< of the block bootstrap
   /// Called after each fit, with the share done, 0..1; returns false to give up, which then takes

@@ -124,6 +124,10 @@ void apply_state(const Effect& effect, const Surroundings& s, ModelSpec& model) 
 
 }  // namespace
 
+double cost_of(std::size_t alternatives) {
+  return 2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, alternatives)));
+}
+
 const Coordinate* Effect::find(const std::string& name) const {
   for (const Coordinate& coordinate : coordinates)
     if (coordinate.name == name) return &coordinate;

@@ -40,6 +40,9 @@ struct Effect {
   [[nodiscard]] double value(const std::string& name, double otherwise) const;
 };
 
+/// 2 ln of so many equal alternatives; 0 counts as 1.
+[[nodiscard]] double cost_of(std::size_t alternatives);
+
 /// What an effect may touch.
 struct Surroundings {
   double sample_time_s = 1.0;

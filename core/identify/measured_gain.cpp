@@ -16,16 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Share of the work that is done when all causes have been looked for.
-constexpr double kFitted = 0.9;
-
-double mean_of_finite(const VectorXd& values) {
-  double sum = 0.0, count = 0.0;
-  for (const double value : values)
-    if (std::isfinite(value)) sum += value, ++count;
-  return sum > 0.0 ? sum / count : 1.0;
-}
-
 double slowest_samples(const ModelSpec& model) {
   double slowest = 1.0;
   for (const ChannelSpec& channel : model.channels)
@@ -57,7 +47,7 @@ void measure_gain(const Problem& problem, SearchResult found, const ModelSpec& m
   for (std::size_t i = 0; i < in.size(); ++i)
     in[i] = found.named[i].effect.subject.cause != Cause::kUnnamed;
   for (const std::size_t i : order) {
-    settings.progress(kFitted);
+    settings.progress(kSearched);
     if (found.named[i].effect.certain || !in[i]) continue;
     const ModelSpec with = extend(problem, found, in, keep);
     in[i] = false;

@@ -18,8 +18,6 @@ constexpr double kFineRows = 3000.0;      ///< more rows than these are looked a
 constexpr std::size_t kWaves = 4;         ///< of each onset
 constexpr std::array<double, 3> kOnsets = {0.0, 0.25, 0.5};
 
-double count_cost(double alternatives) { return 2.0 * std::log(std::max(1.0, alternatives)); }
-
 struct Wave {
   double gain = 0.0;                 ///< fall of the misfit over the noise's variance
   double begin = 0.0, period = 0.0;  ///< rows
@@ -70,7 +68,7 @@ class MatchedFilter {
 
 /// The best few, no two of nearly one period, and how many were looked at.
 std::vector<Wave> best_waves(const MatchedFilter& filter, Index samples, Index onset,
-                             double& looked_at) {
+                             std::size_t& looked_at) {
   const auto length = static_cast<double>(samples - onset);
   const double stride = std::max(1.0, static_cast<double>(samples) / kFineRows);
   std::vector<Wave> best;
@@ -83,7 +81,7 @@ std::vector<Wave> best_waves(const MatchedFilter& filter, Index samples, Index o
       const double gain = filter.gain(begin, period, onset);
       if (gain > wave.gain) wave.gain = gain, wave.begin = begin;
     }
-    looked_at += phases;
+    looked_at += static_cast<std::size_t>(phases);
     const auto near = std::find_if(best.begin(), best.end(), [&](const Wave& other) {
       return std::abs(other.period / period - 1.0) < 0.02;
     });
@@ -106,7 +104,7 @@ std::vector<Effect> square_waves(const Problem& problem, const CvFit& without) {
   const Index samples = problem.samples();
   const double sample_time = problem.surroundings().sample_time_s;
   const MatchedFilter filter(problem.data(without.cv), without);
-  double looked_at = 0.0;
+  std::size_t looked_at = 0;
   std::vector<Wave> waves;
   for (const double share : kOnsets) {
     const std::vector<Wave> some = best_waves(
@@ -126,7 +124,8 @@ std::vector<Effect> square_waves(const Problem& problem, const CvFit& without) {
                            0.25 * period, sample_time, -1e12, 1e12},
                           {"period", period, period, 2.0 * slip, slip, 0.5 * period, 2.0 * period}};
     effect.onset = wave.onset;
-    effect.search_cost = count_cost(problem.model().cv_count) + count_cost(looked_at);
+    effect.search_cost =
+        cost_of(static_cast<std::size_t>(problem.model().cv_count)) + cost_of(looked_at);
     found.push_back(std::move(effect));
   }
   return found;

@@ -24,8 +24,6 @@ constexpr double kShortestSwing = 60.0;
 /// Frequencies fitted for each channel.
 constexpr std::size_t kSwings = 2;
 
-double count_cost(double alternatives) { return 2.0 * std::log(std::max(1.0, alternatives)); }
-
 /// Last known value where one is missing; mean 0, half the way from the 1st to the 99th percentile
 /// 1. Empty where it does not move.
 VectorXd normalised(const Eigen::Ref<const VectorXd>& values) {
@@ -109,14 +107,14 @@ class Collector {
       if (!channel.response().allFinite()) continue;
       products(channel);
       swings(channel);
-      add(channel, "direction", {channel.slower_up()}, kAsymmetry, 1.0);
+      add(channel, "direction", {channel.slower_up()}, kAsymmetry, 1);
     }
     return std::move(found_);
   }
 
  private:
   void add(const Channel& channel, const char* kind, const std::vector<VectorXd>& columns,
-           double sd, double alternatives) {
+           double sd, std::size_t alternatives) {
     const Subject subject{Cause::kUnnamed, channel.spec().cv, channel.spec().input, -1, kind};
     const auto same = [&](const Effect& effect) { return effect.subject == subject; };
     if (std::any_of(accepted_.begin(), accepted_.end(), same)) return;
@@ -129,8 +127,7 @@ class Collector {
           {"part_" + std::to_string(i + 1), 0.0, 0.0, sd, 0.1 * sd, -1e3, 1e3});
     }
     effect.shape = std::move(shape);
-    effect.search_cost =
-        count_cost(alternatives) + count_cost(static_cast<double>(model_.channels.size()));
+    effect.search_cost = cost_of(alternatives) + cost_of(model_.channels.size());
     found_.push_back(std::move(effect));
   }
 
@@ -139,7 +136,9 @@ class Collector {
     for (int other = 0; other < inputs; ++other) {
       if (other == channel.spec().input) continue;
       const VectorXd by = normalised(problem_.recording().inputs.col(other));
-      if (by.size() > 0) add(channel, "product", {channel.modulated(by)}, kModulation, inputs);
+      if (by.size() > 0)
+        add(channel, "product", {channel.modulated(by)}, kModulation,
+            static_cast<std::size_t>(inputs));
     }
   }
 
@@ -178,7 +177,7 @@ class Collector {
       cycle(all[i].frequency, sine, cosine);
       add(channel, "swing",
           {channel.response().cwiseProduct(sine), channel.response().cwiseProduct(cosine)},
-          kModulation, static_cast<double>(all.size()));
+          kModulation, all.size());
     }
   }
 

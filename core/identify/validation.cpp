@@ -10,6 +10,13 @@ namespace mpm {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+double mean_of_finite(const Eigen::Ref<const VectorXd>& values) {
+  double sum = 0.0, count = 0.0;
+  for (const double value : values)
+    if (std::isfinite(value)) sum += value, ++count;
+  return sum > 0.0 ? sum / count : 1.0;
+}
+
 CvScore score_errors(const Eigen::Ref<const VectorXd>& before,
                      const Eigen::Ref<const VectorXd>& after, Index block, std::uint64_t seed) {
   constexpr int kResamples = 500;

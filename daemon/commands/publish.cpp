@@ -8,12 +8,13 @@
 #include <string>
 
 #include "config/load_unit.hpp"
+#include "config/unit_layout.hpp"
 #include "daemon/bus/domain_options.hpp"
-#include "daemon/bus/unit_layout.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/publish/interruptible_input.hpp"
 #include "daemon/publish/line_frames.hpp"
 #include "daemon/service/signals.hpp"
+#include "idl/unit_publisher.hpp"
 
 namespace mpm::daemon {
 namespace {
@@ -73,7 +74,7 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
   domain.partition = options.partition.value_or(domain.partition);
   domain.use_environment = options.use_environment;
   const idl::Participant participant(domain);
-  idl::UnitLayout layout = unit_layout(unit);
+  UnitLayout layout = config::unit_layout(unit);
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
     if (lines.absent()[kind]) layout.signals[kind] = {};
   const idl::UnitPublisher publisher(

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
+#include "config/unit_layout.hpp"
 #include "core/signal/aligner.hpp"
 #include "idl/reader.hpp"
 #include "idl/unit_publisher.hpp"
@@ -163,19 +164,6 @@ class DdsEnd {
   mpm_Sample sample_{};
 };
 
-idl::UnitLayout layout_of(const config::UnitConfig& unit) {
-  idl::UnitLayout layout;
-  layout.unit = unit.unit;
-  layout.sample_time_s = unit.sample_time_s;
-  for (const auto& signal : unit.mv) layout[SignalKind::kMv].tags.push_back(signal.tag);
-  for (const auto& signal : unit.cv) {
-    layout[SignalKind::kCv].tags.push_back(signal.tag);
-    layout[SignalKind::kPrediction].tags.push_back(signal.prediction);
-    layout[SignalKind::kSetpoint].tags.push_back(signal.setpoint);
-  }
-  return layout;
-}
-
 /// The control system's side of a unit under mpmd.
 class MonitoredUnit {
  public:
@@ -183,7 +171,7 @@ class MonitoredUnit {
       : loop_(setup),
         channels_(setup.unit.counts().inputs() * setup.unit.counts().cv),
         participant_(domain_of(partition)),
-        publisher_(participant_, layout_of(setup.unit), idl::WriterPace::kRealTime),
+        publisher_(participant_, config::unit_layout(setup.unit), idl::WriterPace::kRealTime),
         reader_(participant_, idl::kChannelStatusTopic, idl::channel_status_reader_qos()) {
     wait_set_.attach(reader_.readable());
     if (!publisher_.wait_for_readers(kPatience)) throw std::runtime_error("mpmd does not read");

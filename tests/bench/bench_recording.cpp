@@ -116,8 +116,8 @@ class Corner {
   idl::DomainOptions options_;
 };
 
-idl::UnitLayout layout() {
-  idl::UnitLayout layout;
+UnitLayout layout() {
+  UnitLayout layout;
   layout.unit = "bench";
   for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv})
     for (int i = 0; i < kSignals; ++i) layout[kind].tags.push_back("x" + std::to_string(i));

@@ -64,7 +64,7 @@ std::vector<std::string> Bench::daemon_arguments(const std::vector<std::string>&
 }
 
 idl::UnitPublisher Bench::publisher(idl::WriterPace pace, const std::string& unit) {
-  idl::UnitLayout layout;
+  UnitLayout layout;
   layout.unit = unit;
   layout[SignalKind::kMv].tags = {"u1", "u2"};
   layout[SignalKind::kCv].tags = {"y1"};

@@ -45,7 +45,7 @@ struct Corner {
   [[nodiscard]] std::string out() const { return read_file(folder.file("out")); }
   [[nodiscard]] std::string err() const { return read_file(folder.file("err")); }
   [[nodiscard]] idl::UnitPublisher publisher() const {
-    idl::UnitLayout layout;
+    UnitLayout layout;
     layout.unit = "toy";
     layout[SignalKind::kMv].tags = {"u1", "u2"};
     layout[SignalKind::kCv].tags = {"y1"};

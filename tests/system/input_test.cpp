@@ -113,7 +113,7 @@ TEST_CASE("the daemon writes outputs only: never an input topic, never a layout"
 
 TEST_CASE("a layout that differs from the unit file is noticed") {
   Bench bench("layout");
-  idl::UnitLayout layout;
+  UnitLayout layout;
   layout.unit = "toy";
   layout[SignalKind::kMv].tags = {"u2", "u1"};
   layout[SignalKind::kCv].tags = {"y1"};
@@ -130,7 +130,7 @@ TEST_CASE("partitions do not see each other") {
   other.partition += "-other";
   const idl::Participant outsider(other);
   daemon::OutputReaders readers(outsider);
-  idl::UnitLayout layout;
+  UnitLayout layout;
   layout.unit = "toy";
   layout[SignalKind::kMv].tags = {"u1", "u2"};
   layout[SignalKind::kCv].tags = {"y1"};

@@ -144,7 +144,7 @@ std::vector<std::int64_t> mv_intervals_in(const std::string& path) {
 }
 
 idl::UnitPublisher toy_publisher(const idl::Participant& participant) {
-  idl::UnitLayout layout;
+  UnitLayout layout;
   layout.unit = "toy";
   layout[SignalKind::kMv].tags = {"u1", "u2"};
   layout[SignalKind::kCv].tags = {"y1"};

@@ -1,20 +1,20 @@
-#include "daemon/bus/unit_layout.hpp"
+#include "config/unit_layout.hpp"
 
 #include <algorithm>
 
-namespace mpm::daemon {
+namespace mpm::config {
 
-idl::UnitLayout unit_layout(const config::UnitConfig& unit) {
-  idl::UnitLayout layout;
+UnitLayout unit_layout(const UnitConfig& unit) {
+  UnitLayout layout;
   layout.unit = unit.unit;
   layout.sample_time_s = unit.sample_time_s;
   const auto add = [&](SignalKind kind, const std::string& tag, const std::string& measure) {
     layout[kind].tags.push_back(tag);
     layout[kind].engineering_units.push_back(measure);
   };
-  for (const config::InputSignal& mv : unit.mv) add(SignalKind::kMv, mv.tag, mv.unit);
-  for (const config::InputSignal& dv : unit.dv) add(SignalKind::kDv, dv.tag, dv.unit);
-  for (const config::CvSignal& cv : unit.cv) {
+  for (const InputSignal& mv : unit.mv) add(SignalKind::kMv, mv.tag, mv.unit);
+  for (const InputSignal& dv : unit.dv) add(SignalKind::kDv, dv.tag, dv.unit);
+  for (const CvSignal& cv : unit.cv) {
     add(SignalKind::kCv, cv.tag, cv.unit);
     add(SignalKind::kPrediction, cv.prediction, cv.unit);
     add(SignalKind::kSetpoint, cv.setpoint, cv.unit);
@@ -27,4 +27,4 @@ idl::UnitLayout unit_layout(const config::UnitConfig& unit) {
   return layout;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::config
