@@ -12,16 +12,23 @@ namespace {
 // Moments looked at.
 constexpr int kMoments = 100;
 
+// Rows that a factor takes together.
+constexpr int kBatchRows = 32;
+
 // By how many sigma^2 a change must beat no change: chance gives a few.
 constexpr double kMargin = 20.0;
 
 // What `inputs` more parameters gain by chance is chi-square; this many s.d. above its mean.
 constexpr double kDeviations = 6.0;
 
+// Above this p-value no input explains anything since a change.
+constexpr double kNothing = 1e-3;
+
 }  // namespace
 
 ChangeScan::ChangeScan(const RegressionShape& shape)
     : shape_(shape),
+      batch_(shape.columns() + 1, kBatchRows),
       whole_(shape.columns(), 1),
       lead_in_(shape.lead_in(), 1),
       one_input_(shape.lead_in() + shape.block(), 1),
@@ -53,30 +60,38 @@ std::optional<ChangePoint> ChangeScan::scan(const ChannelTest& test, int cv) {
   const double inputs = shape_.inputs * shape_.block();
   const double chance = inputs + kDeviations * std::sqrt(2.0 * inputs);
   const double per_square = freedom / constant;
-  const auto gain_of = [&](const Part& after, const Part& before) {
+  // The gain, where it can exceed `least` at all: joining the parts only leaves more.
+  const auto gain_of = [&](const Part& after, const Part& before, double least) {
     // Where one side is noisier than all rows together, so is what it gains by chance.
     const double noise =
         std::max({1.0, variance_of(after) * per_square, variance_of(before) * per_square});
-    return (constant - joined(after, before)) * per_square / noise;
+    const double scale = per_square / noise;
+    if ((constant - after.square - before.square) * scale <= least) return least;
+    return (constant - joined(after, before)) * scale;
   };
   ChangePoint best{ChangeKind::kBegan, 0, kMargin};
+  ChangePoint end{ChangeKind::kEnded, 0, kMargin};
   for (std::size_t m = 0; m < moments_.size(); ++m) {
-    const double began = gain_of(after_with_[m], before_without_[m]);
+    const double began = gain_of(after_with_[m], before_without_[m], best.gain);
     if (began > best.gain) best = {ChangeKind::kBegan, moments_[m], began};
-    const double ended = gain_of(after_without_[m], before_with_[m]);
-    if (ended > best.gain) best = {ChangeKind::kEnded, moments_[m], ended};
+    const double ended = gain_of(after_without_[m], before_with_[m], end.gain);
+    if (ended > end.gain) end = {ChangeKind::kEnded, moments_[m], ended};
   }
+  if (end.gain > best.gain) best = end;
   double bar = best.gain + chance;
   for (std::size_t m = 0; m < moments_.size(); ++m) {
     if (moments_[m] < 2 * shape_.columns()) continue;
-    const double other = gain_of(after_with_[m], before_with_[m]);
+    const double other = gain_of(after_with_[m], before_with_[m], bar);
     if (other <= bar) continue;
     best = {ChangeKind::kOther, moments_[m], other};
     bar = other;
   }
   if (best.samples == 0) return std::nullopt;
   if (best.kind != ChangeKind::kEnded) name_input(test, cv, best);
-  return best;
+  // The rows between the change and the nearest moment looked at fit neither side of an end; twice
+  // as many parameters hide them, and then find nothing in all that came since.
+  const bool over = best.kind == ChangeKind::kOther && end.samples > 0 && best.p_value > kNothing;
+  return over ? end : best;
 }
 
 // The input that alone explains the rows since the change best, and its F on these rows alone: with
@@ -104,7 +119,7 @@ ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int
     for (int age = samples - 1; age >= 0; --age) {
       const double weight = strict ? test.row_weight(cv, age) : test.lenient_weight(cv, age);
       if (!(weight > 0.0)) continue;
-      double* row = factor.row();
+      double* row = next_row(factor);
       history.fill_lead_in(age, row);
       if (input >= 0) {
         history.fill_inputs(age, inputs_.data());
@@ -112,9 +127,9 @@ ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int
       }
       row[factor.columns()] = history.residual(cv, age);
       for (int c = 0; c <= factor.columns(); ++c) row[c] *= weight;
-      factor.update(1.0);
       ++rows;
     }
+    flush(factor);
     if (input < 0) nothing = factor.residual_square(0);
     if (input < 0 || factor.residual_square(0) >= least) continue;
     least = factor.residual_square(0);
@@ -136,29 +151,37 @@ void ChangeScan::pass(const ChannelTest& test, int cv, bool newest_first, bool w
   const int first = with_inputs ? shape_.inputs * shape_.block() : 0;
   const int span = test.span(cv);
   int rows = 0;
+  const auto store_at = [&](int age) {
+    const auto found = std::find(moments_.begin(), moments_.end(), age);
+    if (found == moments_.end()) return;
+    flush(factor);
+    store(factor, first, rows, parts[static_cast<std::size_t>(found - moments_.begin())]);
+  };
   for (int step = 0; step < span; ++step) {
     const int age = newest_first ? step : span - 1 - step;
-    if (newest_first) {
-      const auto found = std::find(moments_.begin(), moments_.end(), age);
-      if (found != moments_.end())
-        store(factor, first, rows, parts[static_cast<std::size_t>(found - moments_.begin())]);
-    }
+    if (newest_first) store_at(age);
     const double weight = test.lenient_weight(cv, age);
     if (weight > 0.0) {
-      double* row = factor.row();
+      double* row = next_row(factor);
       if (with_inputs) history.fill_inputs(age, row);
       history.fill_lead_in(age, row + first);
       row[first + shape_.lead_in()] = history.residual(cv, age);
       for (int c = 0; c <= first + shape_.lead_in(); ++c) row[c] *= weight;
-      factor.update(1.0);
       ++rows;
     }
-    if (!newest_first) {
-      const auto found = std::find(moments_.begin(), moments_.end(), age);
-      if (found != moments_.end())
-        store(factor, first, rows, parts[static_cast<std::size_t>(found - moments_.begin())]);
-    }
+    if (!newest_first) store_at(age);
   }
+  flush(factor);
+}
+
+double* ChangeScan::next_row(GivensQr& factor) {
+  if (waiting_ == kBatchRows) flush(factor);
+  return batch_.row(waiting_++);
+}
+
+void ChangeScan::flush(GivensQr& factor) {
+  if (waiting_ > 0) factor.update_batch(batch_, waiting_, 1.0);
+  waiting_ = 0;
 }
 
 void ChangeScan::store(const GivensQr& factor, int first, int rows, Part& part) const {
@@ -177,11 +200,10 @@ double ChangeScan::joined(const Part& a, const Part& b) {
   const int columns = shape_.lead_in();
   for (const Part* part : {&a, &b}) {
     const double* from = part->triangle.data();
-    for (int i = 0; i < columns; ++i, from += columns + 1) {
-      std::copy_n(from, columns + 1, lead_in_.row());
-      lead_in_.update(1.0);
-    }
+    for (int i = 0; i < columns; ++i, from += columns + 1)
+      std::copy_n(from, columns + 1, next_row(lead_in_));
   }
+  flush(lead_in_);
   return a.square + b.square + lead_in_.residual_square(0);
 }
 

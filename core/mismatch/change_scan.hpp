@@ -25,7 +25,9 @@ struct ChangePoint {
 ///
 /// the constant and the residuals' own lags in common. The first two have as many parameters as "no
 /// change" and must beat it by kMargin; the last has all blocks once more and must beat these by
-/// what that many could gain by chance (Andrews 1993, on the likelihood ratio over all moments).
+/// what that many could gain by chance (Andrews 1993, on the likelihood ratio over all moments);
+/// where it wins but no input explains anything since then, it is an end, if that too beats "no
+/// change".
 /// One pass over the rows in each direction gives the residual squares for all moments at once.
 class ChangeScan {
  public:
@@ -58,7 +60,13 @@ class ChangeScan {
   void store(const GivensQr& factor, int first, int rows, Part& part) const;
   [[nodiscard]] double joined(const Part& a, const Part& b);
 
+  /// The next free row of the batch, and taking it; `flush` gives the factor all that wait.
+  [[nodiscard]] double* next_row(GivensQr& factor);
+  void flush(GivensQr& factor);
+
   RegressionShape shape_;
+  RowBatch batch_;
+  int waiting_ = 0;
   std::vector<int> moments_;  // ages
   GivensQr whole_;            // [inputs | lead-in]
   GivensQr lead_in_;

@@ -42,6 +42,9 @@ constexpr double kConfident = 1.645;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// Rows of the inverse that are found together; whole granules.
+constexpr int kTogether = 8;
+
 // Columns of `generators_`.
 enum Generator : int { kGain, kTime, kLater, kEarlier, kGenerators };
 
@@ -124,9 +127,11 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
   constexpr int kGranule = static_cast<int>(kRowGranule);
   padded_ = (all + kGranule - 1) / kGranule * kGranule;
   triangle_.setZero(padded_, padded_);
-  inverse_.setZero(padded_, padded_);
+  const auto width = static_cast<std::size_t>(padded_);
+  inverse_ = make_aligned(width * width);
+  behind_ = make_aligned(static_cast<std::size_t>(block_) * width);
+  shares_.assign(static_cast<std::size_t>(block_), 0.0);
   covariance_.setZero(block_, block_);
-  behind_.setZero(block_, all);
   norms_.setZero(all);
   scales_.setZero(all);
   rotated_.setZero(all);
@@ -182,7 +187,8 @@ void ChannelEvaluator::read_factor(int cv, const GivensQr& factor) {
   }
   invert_triangle();
   for (int i = 0; i < all; ++i)
-    estimate_(i) = inverse_.row(i).segment(i, all - i).dot(rotated_.tail(all - i));
+    estimate_(i) =
+        Eigen::Map<const Eigen::VectorXd>(inverse_row(i) + i, all - i).dot(rotated_.tail(all - i));
 
   // A_j of the regression on everything, where everything can be told apart; otherwise of the one
   // on the residual lags alone: a loop without excitation makes inputs a function of residuals.
@@ -398,47 +404,66 @@ double ChannelEvaluator::reference_gain(int cv, int input) const {
   return largest / norms_(input * block_);
 }
 
+// Some rows at a time, the last ones first; what is behind these rows is subtracted from all of
+// them in one go.
 void ChannelEvaluator::invert_triangle() {
   constexpr int kGranule = static_cast<int>(kRowGranule);
   std::array<const double*, kRowGranule> rows{};
-  for (int i = shape_.inputs * block_ - 1; i >= 0; --i) {
-    double* out = inverse_.row(i).data();
-    std::fill(out + i + 1, out + padded_, 0.0);
-    int c = i + 1;
-    for (; c % kGranule != 0; ++c) {
-      const double* row = inverse_.row(c).data();
-      project_row(row + c, out + c, static_cast<std::size_t>(padded_ - c), triangle_(i, c));
+  std::array<double, kTogether * kRowGranule> entries{};
+  for (int first = (padded_ - 1) / kTogether * kTogether; first >= 0; first -= kTogether) {
+    const int end = std::min(first + kTogether, padded_);
+    const int count = end - first;
+    for (int i = first; i < end; ++i)
+      std::fill(inverse_row(i) + first, inverse_row(i) + padded_, 0.0);
+    for (int c = end; c < padded_; c += kGranule) {  // row c has zeros before column c
+      for (int a = 0; a < kGranule; ++a) rows[static_cast<std::size_t>(a)] = inverse_row(c + a) + c;
+      for (int k = 0; k < count; ++k)
+        std::copy_n(triangle_.row(first + k).data() + c, kGranule, entries.data() + k * kGranule);
+      project_block(rows.data(), {inverse_row(first) + c, static_cast<std::size_t>(padded_), count},
+                    static_cast<std::size_t>(padded_ - c), entries.data());
     }
-    for (; c < padded_; c += kGranule) {  // row c has zeros before column c
-      for (int a = 0; a < kGranule; ++a)
-        rows[static_cast<std::size_t>(a)] = inverse_.row(c + a).data() + c;
-      project_rows(rows.data(), out + c, static_cast<std::size_t>(padded_ - c),
-                   triangle_.row(i).data() + c);
+    for (int i = end - 1; i >= first; --i) {
+      double* out = inverse_row(i);
+      for (int c = i + 1; c < end; ++c)
+        project_row(inverse_row(c) + c, out + c, static_cast<std::size_t>(padded_ - c),
+                    triangle_(i, c));
+      const double inverse =
+          1.0 / (i < norms_.size() && norms_(i) > 0.0 ? std::max(triangle_(i, i), kOwnShare) : 1.0);
+      for (int k = i + 1; k < padded_; ++k) out[k] *= inverse;
+      out[i] = i < norms_.size() ? inverse : 0.0;
     }
-    const double inverse = 1.0 / (norms_(i) > 0.0 ? std::max(triangle_(i, i), kOwnShare) : 1.0);
-    for (int k = i + 1; k < padded_; ++k) out[k] *= inverse;
-    out[i] = inverse;
   }
 }
 
 void ChannelEvaluator::factor_covariance(int input) {
   const int at = input * block_;
   const int behind = (shape_.inputs - 1 - input) * block_;
-  covariance_ = inverse_.block(at, at, block_, block_);
+  for (int r = 0; r < block_; ++r)
+    covariance_.row(r) = Eigen::Map<const Eigen::RowVectorXd>(inverse_row(at + r) + at, block_);
   if (behind == 0) return;
-  behind_.leftCols(behind) = inverse_.block(at, at + block_, block_, behind);
+  const std::size_t stride =
+      (static_cast<std::size_t>(behind) + kRowGranule - 1) / kRowGranule * kRowGranule;
+  const auto behind_row = [&](int r) {
+    return behind_.get() + static_cast<std::size_t>(r) * stride;
+  };
+  for (int r = 0; r < block_; ++r)
+    std::fill(std::copy_n(inverse_row(at + r) + at + block_, behind, behind_row(r)),
+              behind_row(r + 1), 0.0);
   // Last row first: the rows above have nothing in the triangle's columns that are done.
   for (int r = block_ - 1; r >= 0; --r) {
-    auto row = behind_.row(r).head(behind);
+    double* row = behind_row(r);
+    double square = 0.0;
+    inner_products(row, {row, stride, 1}, stride, &square);
     const double own = covariance_(r, r);
-    const double norm = std::sqrt(own * own + row.squaredNorm());
+    const double norm = std::sqrt(own * own + square);
     const double first = own + norm;  // own > 0; the reflector is [first, row]
     const double scale = 1.0 / (norm * first);
+    inner_products(row, {behind_.get(), stride, r}, stride, shares_.data());
     for (int c = 0; c < r; ++c) {
-      auto other = behind_.row(c).head(behind);
-      const double share = (covariance_(c, r) * first + other.dot(row)) * scale;
+      const double share =
+          (covariance_(c, r) * first + shares_[static_cast<std::size_t>(c)]) * scale;
       covariance_(c, r) -= share * first;
-      other -= share * row;
+      project_row(row, behind_row(c), stride, share);
     }
     covariance_(r, r) = -norm;
   }
@@ -462,8 +487,11 @@ void ChannelEvaluator::whiten_transposed(Eigen::Ref<Eigen::VectorXd> x) const {
 void ChannelEvaluator::gain_functional(int input, Eigen::Ref<Eigen::VectorXd> functional) const {
   const int at = input * block_;
   functional.head(at).setZero();
-  functional.tail(functional.size() - at).noalias() =
-      inverse_.block(at, at, block_, functional.size() - at).transpose() * direction_.col(input);
+  const Eigen::Index rest = functional.size() - at;
+  functional.tail(rest).setZero();
+  for (int r = 0; r < block_; ++r)
+    functional.tail(rest) +=
+        direction_(r, input) * Eigen::Map<const Eigen::VectorXd>(inverse_row(at + r) + at, rest);
 }
 
 void ChannelEvaluator::find_confounder(int input, ChannelEvidence& evidence) {

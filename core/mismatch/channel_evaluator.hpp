@@ -21,11 +21,14 @@ struct RegressionMemory {
   double weight_square = 0.0;  ///< W2 = sum lambda^(2 age)
   int rows = 0;
 
-  void update(double lambda) {
-    factor.update(lambda);
-    weight_sum = lambda * weight_sum + 1.0;
-    weight_square = lambda * lambda * weight_square + 1.0;
-    ++rows;
+  /// Takes the first `count` rows of a batch, oldest first; consumes them.
+  void update(RowBatch& batch, int count, double lambda) {
+    factor.update_batch(batch, count, lambda);
+    for (int k = 0; k < count; ++k) {
+      weight_sum = lambda * weight_sum + 1.0;
+      weight_square = lambda * lambda * weight_square + 1.0;
+    }
+    rows += count;
   }
   void clear() {
     factor.clear();
@@ -122,6 +125,9 @@ class ChannelEvaluator {
   /// rotated responses; two such estimates are correlated as these vectors are.
   void gain_functional(int input, Eigen::Ref<Eigen::VectorXd> functional) const;
   [[nodiscard]] double reference_gain(int cv, int input) const;
+  [[nodiscard]] double* inverse_row(int i) const {
+    return inverse_.get() + static_cast<std::size_t>(i) * static_cast<std::size_t>(padded_);
+  }
 
   RegressionShape shape_;
   int block_;
@@ -132,7 +138,7 @@ class ChannelEvaluator {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   int padded_;                        // columns of all inputs, rounded up to whole granules
   RowMajor triangle_;                 // R_t, columns scaled to norm 1; padded with zeros
-  RowMajor inverse_;                  // T, likewise
+  AlignedArray inverse_;              // T, likewise
   Eigen::VectorXd norms_;             // of the columns
   Eigen::VectorXd scales_;            // 1 / norms_
   Eigen::VectorXd rotated_;           // the CV's rotated responses of those rows
@@ -140,10 +146,11 @@ class ChannelEvaluator {
   Eigen::VectorXd coefficients_;      // of the whole regression
   const double* own_lags_ = nullptr;  // a_1..a_p of the CV's own residual, in coefficients_
   double residual_norm_ = 0.0;        // of the CV's own last residual
-  RowMajor covariance_;        // S: S S' = T_i T_i', covariance of block i's scaled coefficients
-  RowMajor behind_;            // of T_i, columns behind the block; then their reflectors
-  Eigen::MatrixXd direction_;  // B x m: weights of the gain-error estimate on the block
-  Eigen::MatrixXd usual_;      // orthonormal basis of the usual errors, whitened
+  RowMajor covariance_;         // S: S S' = T_i T_i', covariance of block i's scaled coefficients
+  AlignedArray behind_;         // of T_i, columns behind the block; then their reflectors
+  std::vector<double> shares_;  // of the rows above in a reflector
+  Eigen::MatrixXd direction_;   // B x m: weights of the gain-error estimate on the block
+  Eigen::MatrixXd usual_;       // orthonormal basis of the usual errors, whitened
   int usual_rank_ = 0;
   Eigen::MatrixXd generators_;  // whitened: 100 % gain, ln time constant, sample later, earlier
   Eigen::MatrixXd usual_generators_;  // the generators in the coordinates of usual_

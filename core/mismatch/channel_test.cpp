@@ -22,6 +22,13 @@ constexpr double kPriorRows = 200.0;
 constexpr double kRecentRows = 100.0;
 constexpr double kLastingRows = 2000.0;
 
+// Weight of a row that waits for its own.
+constexpr double kWaiting = -1.0;
+
+// A row that says more of a direction hardly seen before than of the noise: of rows that wait
+// together, all say the same, so they do not move what is known of the noise.
+constexpr double kNewDirection = 1.0;
+
 // A sliding window is rebuilt each time it has grown by this part: never a row is taken out of a
 // factor, which would lose digits after an outlier.
 constexpr int kSlideParts = 8;
@@ -29,7 +36,7 @@ constexpr int kSlideParts = 8;
 }  // namespace
 
 ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryLength>& memories,
-                         int remembered, const LinearModel& model,
+                         int remembered, int patience, const LinearModel& model,
                          std::vector<MaterialityLimits> limits)
     : shape_(shape),
       lengths_(memories),
@@ -37,7 +44,10 @@ ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryL
       history_(shape, remembered),
       evaluator_(shape, model, std::move(limits)),
       evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs) * memories.size()),
-      row_(shape.columns()) {
+      rows_(shape.columns() + 1, patience),
+      weighed_(shape.columns() + 1, patience),
+      previews_(static_cast<std::size_t>(patience)) {
+  ages_.reserve(previews_.size());
   if (memories.empty()) throw std::invalid_argument("the channel test needs a memory");
   for (const MemoryLength& length : memories) {
     if (!(length.lambda > 0.0 && length.lambda <= 1.0) || length.window < 0 ||
@@ -59,22 +69,18 @@ ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryL
 void ChannelTest::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
                          const Eigen::Ref<const Eigen::VectorXd>& residuals) {
   history_.push(inputs, residuals);
-  bool filled = false;
   for (int j = 0; j < shape_.cvs; ++j) {
     Response& response = responses_[index(j)];
-    weight_windows_[index(j)].push(0.0);
+    weight_windows_[index(j)].push(history_.usable(j) ? kWaiting : 0.0);
     scale_windows_[index(j)].push(response.scale);
     response.span = std::min(response.span + 1, remembered_);
-    if (history_.usable(j)) {
-      if (!filled) history_.fill(0, row_.data());
-      filled = true;
-      take_row(j, 0);
-    }
+    if (++response.waiting >= patience(j)) fold(j);
     for (int m = 0; m < memory_count(); ++m) slide(j, m);
   }
 }
 
 void ChannelTest::skip(std::int64_t missing) {
+  for (int j = 0; j < shape_.cvs; ++j) fold(j);
   history_.skip(missing);
   for (int j = 0; j < shape_.cvs; ++j) {
     Response& response = responses_[index(j)];
@@ -86,48 +92,78 @@ void ChannelTest::skip(std::int64_t missing) {
   }
 }
 
-// `row_` holds the regressors of the row.
-void ChannelTest::take_row(int cv, int age) {
-  const int columns = shape_.columns();
-  const double residual = history_.residual(cv, age);
-  RegressionMemory& first = memories_[at(cv, 0)];
-  double* out = first.factor.row();
-  std::copy_n(row_.data(), columns, out);
-  out[columns] = residual;
-  const double weight = responses_[index(cv)].scaled ? weigh(cv) : 1.0;
-  weight_windows_[index(cv)].set(age, weight);
-  for (int m = 0; m < memory_count(); ++m) {
-    RegressionMemory& memory = memories_[at(cv, m)];
-    double* row = memory.factor.row();
-    for (int c = 0; c < columns; ++c) row[c] = row_(c) * weight;
-    row[columns] = residual * weight;
-    memory.update(lengths_[static_cast<std::size_t>(m)].lambda);
-  }
-  if (!responses_[index(cv)].scaled) begin_scale(cv);
+// While there are few rows each one teaches the next what to expect.
+int ChannelTest::patience(int cv) const {
+  return memories_[at(cv, 0)].ready() ? rows_.capacity() : 1;
 }
 
-// Weight of the row that the first memory's factor is about to take; follows the noise level.
-double ChannelTest::weigh(int cv) {
+void ChannelTest::fold(int cv) {
   Response& response = responses_[index(cv)];
-  GivensQr& factor = memories_[at(cv, 0)].factor;
-  double* row = factor.row();
+  if (response.waiting > 0) take(cv, std::min(response.waiting, response.span) - 1, 0);
+  response.waiting = 0;
+}
+
+// The rows that wait of these ages (oldest >= newest), as many as fit into a batch.
+void ChannelTest::take(int cv, int oldest, int newest) {
+  const Response& response = responses_[index(cv)];
+  LagWindow& weights = weight_windows_[index(cv)];
+  const int columns = shape_.columns();
+  ages_.clear();
+  for (int age = oldest; age >= newest; --age) {
+    if (weights.window()[age] != kWaiting) continue;
+    double* row = rows_.row(static_cast<int>(ages_.size()));
+    history_.fill(age, row);
+    row[columns] = history_.residual(cv, age);
+    ages_.push_back(age);
+  }
+  const int count = static_cast<int>(ages_.size());
+  const auto copy_weighed = [&](int k, double weight) {
+    const double* from = rows_.row(k);
+    double* to = weighed_.row(k);
+    for (int c = 0; c <= columns; ++c) to[c] = from[c] * weight;
+  };
+  if (response.scaled) {
+    for (int k = 0; k < count; ++k) copy_weighed(k, 1.0);
+    memories_[at(cv, 0)].factor.preview_batch(weighed_, count, previews_.data());
+  }
+  int k = 0;
+  for (int age = oldest; age >= newest; --age) {
+    scale_windows_[index(cv)].set(age, response.scale);
+    if (k == count || ages_[static_cast<std::size_t>(k)] != age) continue;
+    weights.set(age, response.scaled ? weigh(cv, previews_[static_cast<std::size_t>(k)]) : 1.0);
+    ++k;
+  }
+  for (int m = 0; m < memory_count(); ++m) {
+    const double lambda = lengths_[static_cast<std::size_t>(m)].lambda;
+    for (int r = 0; r < count; ++r)
+      copy_weighed(r, weights.window()[ages_[static_cast<std::size_t>(r)]]);
+    memories_[at(cv, m)].update(weighed_, count, lambda);
+  }
+  if (!response.scaled) begin_scale(cv);
+}
+
+// Weight of the row of which this is known before it is taken; follows the noise level.
+double ChannelTest::weigh(int cv, const GivensQr::Preview& preview) {
+  Response& response = responses_[index(cv)];
   double weight = 1.0 / response.scale;
-  for (int c = 0; c <= shape_.columns(); ++c) row[c] *= weight;
-  const GivensQr::Preview preview = factor.preview(lengths_.front().lambda);
-  const double error = std::abs(preview.error) * std::sqrt(preview.share);  // in s.d.
+  const double leverage = preview.leverage * weight * weight;
+  const double error = std::abs(preview.error) * weight / std::sqrt(1.0 + leverage);  // in s.d.
   const double clipped = std::min(error, kClip);
   if (error > clipped) weight *= clipped / error;
-  const double square = clipped * clipped * response.scale * response.scale;
+  const bool new_direction = leverage > kNewDirection;
   response.square_rows += 1.0;
+  response.clipped_share +=
+      ((error > kClip && !new_direction ? 1.0 : 0.0) - response.clipped_share) /
+      std::min(kPriorRows + response.square_rows, kLastingRows);
+  const double heavy = (response.clipped_share - kNormalClipped) / (kHeavyClipped - kNormalClipped);
+  for (int m = 0; m < memory_count(); ++m)
+    memories_[at(cv, m)].heavy_tails = std::clamp(heavy, 0.0, 1.0);
+  if (new_direction) return weight;
+  const double square = clipped * clipped * response.scale * response.scale;
   response.recent_square +=
       (square - response.recent_square) / std::min(response.square_rows, kRecentRows);
   response.lasting_square +=
       (square - response.lasting_square) / std::min(response.square_rows, kLastingRows);
-  response.clipped_share += ((error > kClip ? 1.0 : 0.0) - response.clipped_share) /
-                            std::min(kPriorRows + response.square_rows, kLastingRows);
-  const double heavy = (response.clipped_share - kNormalClipped) / (kHeavyClipped - kNormalClipped);
-  for (int m = 0; m < memory_count(); ++m)
-    memories_[at(cv, m)].heavy_tails = std::clamp(heavy, 0.0, 1.0);
   response.scale_rows = std::min(response.scale_rows + 1.0, kScaleRows);
   response.scale *= std::sqrt(1.0 + (clipped * clipped - 1.0) / response.scale_rows);
   return weight;
@@ -160,27 +196,34 @@ void ChannelTest::slide(int cv, int memory) {
   if (window == 0 || responses_[index(cv)].span <= window) return;
   if (++slides_[at(cv, memory)] < window / kSlideParts) return;
   slides_[at(cv, memory)] = 0;
+  fold(cv);
   refill(cv, memory, window);
 }
 
 // From the rows as they were weighed.
 void ChannelTest::refill(int cv, int memory, int samples) {
   RegressionMemory& target = memories_[at(cv, memory)];
+  const double lambda = lengths_[static_cast<std::size_t>(memory)].lambda;
   target.clear();
   const int columns = shape_.columns();
+  int count = 0;
   for (int age = samples - 1; age >= 0; --age) {
     const double weight = row_weight(cv, age);
-    if (!(weight > 0.0)) continue;
-    double* row = target.factor.row();
-    history_.fill(age, row);
-    for (int c = 0; c < columns; ++c) row[c] *= weight;
-    row[columns] = history_.residual(cv, age) * weight;
-    target.update(lengths_[static_cast<std::size_t>(memory)].lambda);
+    if (weight > 0.0) {
+      double* row = weighed_.row(count++);
+      history_.fill(age, row);
+      row[columns] = history_.residual(cv, age);
+      for (int c = 0; c <= columns; ++c) row[c] *= weight;
+    }
+    if (count < weighed_.capacity() && age > 0) continue;
+    target.update(weighed_, count, lambda);
+    count = 0;
   }
 }
 
 // Rows are weighed anew: what was surprising under what is now forgotten may be usual after it.
 void ChannelTest::start_afresh(int cv, int samples) {
+  fold(cv);
   Response& response = responses_[index(cv)];
   response.span = std::min(samples, response.span);
   for (int m = 0; m < memory_count(); ++m) {
@@ -191,15 +234,17 @@ void ChannelTest::start_afresh(int cv, int samples) {
   response.scale = scale_windows_[index(cv)].window()[response.span - 1];
   response.square_rows = response.recent_square = response.lasting_square = 0.0;
   response.clipped_share = kNormalClipped;
-  for (int age = response.span - 1; age >= 0; --age) {
-    scale_windows_[index(cv)].set(age, response.scale);
-    if (!(row_weight(cv, age) > 0.0)) continue;
-    history_.fill(age, row_.data());
-    take_row(cv, age);
+  for (int age = response.span - 1; age >= 0; --age)
+    if (row_weight(cv, age) > 0.0) weight_windows_[index(cv)].set(age, kWaiting);
+  for (int oldest = response.span - 1; oldest >= 0;) {
+    const int newest = std::max(oldest - patience(cv) + 1, 0);
+    take(cv, oldest, newest);
+    oldest = newest - 1;
   }
 }
 
 void ChannelTest::evaluate(int cv, int memory) {
+  fold(cv);
   evaluator_.evaluate(cv, memories_[at(cv, memory)],
                       &evidence_[at(cv, memory) * static_cast<std::size_t>(shape_.inputs)]);
 }

@@ -9,6 +9,7 @@
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/regression_history.hpp"
 #include "core/model/linear_model.hpp"
+#include "core/regression/row_batch.hpp"
 
 namespace mpm {
 
@@ -34,12 +35,17 @@ struct MemoryLength {
 /// Several memories run side by side on the same rows: a long one that sees small errors, a short
 /// one that sees sudden ones sooner. A CV can be started afresh from any sample that is still
 /// remembered.
+///
+/// Once a CV's memory is ready its rows wait for each other and are taken together (`fold`), which
+/// loads a factor once for all of them. The prediction that weighs a row is that of the rows before
+/// the first one that waits with it.
 class ChannelTest {
  public:
   /// `memories`: the first one is the longest; its prediction errors weigh the rows.
-  /// `remembered`: samples from which a CV can start afresh.
+  /// `remembered`: samples from which a CV can start afresh. `patience`: samples (>= 1) after which
+  /// rows that wait are taken at the latest.
   ChannelTest(const RegressionShape& shape, const std::vector<MemoryLength>& memories,
-              int remembered, const LinearModel& model,
+              int remembered, int patience, const LinearModel& model,
               std::vector<MaterialityLimits> limits = {{}});
 
   /// Takes u(k) and e(k) of the next interval, NaN where unknown.
@@ -48,9 +54,11 @@ class ChannelTest {
   /// `missing` intervals (>= 1) of which nothing is known.
   void skip(std::int64_t missing);
   /// Whether the last sample gave this CV a row.
-  [[nodiscard]] bool took_row(int cv) const { return weight_windows_[index(cv)].window()[0] > 0.0; }
+  [[nodiscard]] bool took_row(int cv) const { return history_.usable(cv); }
 
-  /// Refreshes the evidence of one CV in one memory, which is ready.
+  /// Takes the rows of a CV that wait; before, nothing else that is asked here knows of them.
+  void fold(int cv);
+  /// Folds, and refreshes the evidence of one CV in one memory, which is ready.
   void evaluate(int cv, int memory = 0);
   [[nodiscard]] const ChannelEvidence& evidence(int cv, int input, int memory = 0) const {
     return evidence_[at(cv, memory) * static_cast<std::size_t>(shape_.inputs) +
@@ -94,13 +102,15 @@ class ChannelTest {
     double lasting_square = 0.0;  // over 2000
     double square_rows = 0.0;
     double clipped_share = 0.0;  // of the rows, over 2000
+    int waiting = 0;             // samples since the last fold
   };
   [[nodiscard]] std::size_t index(int cv) const { return static_cast<std::size_t>(cv); }
   [[nodiscard]] std::size_t at(int cv, int memory) const {
     return static_cast<std::size_t>(memory * shape_.cvs + cv);
   }
-  void take_row(int cv, int age);
-  double weigh(int cv);
+  [[nodiscard]] int patience(int cv) const;
+  void take(int cv, int oldest, int newest);
+  double weigh(int cv, const GivensQr::Preview& preview);
   void begin_scale(int cv);
   void slide(int cv, int memory);
   void refill(int cv, int memory, int samples);
@@ -111,12 +121,16 @@ class ChannelTest {
   RegressionHistory history_;
   ChannelEvaluator evaluator_;
   std::vector<Response> responses_;
-  std::vector<LagWindow> weight_windows_;   // per CV and row: 1 / scale, times the clip; 0 = no row
+  std::vector<LagWindow> weight_windows_;   // per CV and row: 1 / scale, times the clip; 0 = no
+                                            // row, < 0: it waits
   std::vector<LagWindow> scale_windows_;    // per CV and row: `Response::scale` before it
   std::vector<RegressionMemory> memories_;  // memory-major
   std::vector<int> slides_;                 // per memory: samples until its window is rebuilt
   std::vector<ChannelEvidence> evidence_;
-  Eigen::VectorXd row_;
+  RowBatch rows_;     // as they are
+  RowBatch weighed_;  // consumed by the factors
+  std::vector<int> ages_;
+  std::vector<GivensQr::Preview> previews_;
 };
 
 }  // namespace mpm

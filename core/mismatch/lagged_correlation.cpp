@@ -40,10 +40,10 @@ LaggedCorrelation::LaggedCorrelation(const Shape& shape, double lambda)
   const int shared_past =
       shape_.kind == CorrelationKind::kAlternative ? shape.inputs * shape_.controlling_lags : 0;
   if (!conventional())
-    factors_.emplace_back(1 + shared_past, shape.inputs, block_columns_, responses);
+    factors_.emplace_back(1 + shared_past, shape.inputs, block_columns_, responses, lambda);
   for (int i = 0; i < shape.inputs; ++i) {
     input_windows_.emplace_back(window_rows_);
-    if (conventional()) factors_.emplace_back(1, 1, 1, responses);
+    if (conventional()) factors_.emplace_back(1, 1, 1, responses, lambda);
   }
   for (int j = 0; j < shape.cvs; ++j) residual_windows_.emplace_back(window_rows_);
   totals_.assign(static_cast<std::size_t>(shape.inputs), 0.0);
@@ -75,7 +75,7 @@ void LaggedCorrelation::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
       out = fill_inputs(out);
     for (const LagWindow& residual : residual_windows_)
       out = std::copy_n(residual.window(), lag_count(), out);  // lag last_lag first
-    factors_[f].update(lambda_);
+    factors_[f].update();
   }
 }
 
@@ -91,7 +91,7 @@ void LaggedCorrelation::evaluate() {
   const int lags = lag_count();
   for (int i = 0; i < shape_.inputs; ++i) {
     const auto s = static_cast<std::size_t>(i);
-    const LeaveOneOutQr& factors = factors_[conventional() ? s : 0];
+    LeaveOneOutQr& factors = factors_[conventional() ? s : 0];
     const int block = conventional() ? 0 : i;
     const double* squares = factors.residual_squares(block);
     const double* products = factors.residual_products(block);

@@ -108,9 +108,10 @@ void CvAlarms::step(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
                                                             : AlarmState::kCleared);
 }
 
-std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, const ChannelTest& test,
+std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, ChannelTest& test,
                                                  ChangeScan& scan) {
   since_scan_ = 0;
+  test.fold(cv);
   std::optional<ChangePoint> change = scan.scan(test, cv);
   const bool ended = change && change->kind == ChangeKind::kEnded && any();
   const bool certain = change && (risen || ended || change->p_value < kCertain);

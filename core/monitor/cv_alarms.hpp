@@ -55,7 +55,7 @@ class CvAlarms {
   [[nodiscard]] bool something_wrong(int cv, bool quiet, const ChannelTest& test) const;
   [[nodiscard]] bool memories_disagree(int cv, const ChannelTest& test,
                                        const Condition::Limits& limits) const;
-  [[nodiscard]] std::optional<ChangePoint> find_change(int cv, bool risen, const ChannelTest& test,
+  [[nodiscard]] std::optional<ChangePoint> find_change(int cv, bool risen, ChannelTest& test,
                                                        ChangeScan& scan);
 
   std::vector<Condition> conditions_;

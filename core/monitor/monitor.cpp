@@ -81,7 +81,8 @@ struct Monitor::State {
                     settings.lambda),
         test({signal_counts.inputs(), signal_counts.cv, settings.fir_lags, settings.residual_order,
               settings.tail_poles},
-             settings.memories, settings.remembered, model, settings.materiality),
+             settings.memories, settings.remembered, settings.evaluation_stride, model,
+             settings.materiality),
         scan(test.shape()) {
     const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
     status.resize(channels);
@@ -133,6 +134,7 @@ struct Monitor::State {
   [[nodiscard]] Reason why_not_excited(int cv, int input);
   double threshold_for(const ChannelEvidence& evidence, double freedom, double channel_rate);
   void find_peak(int cv, int input, ChannelStatus& channel) const;
+  void correlate();
 
   SignalCounts counts;
   LinearModel model;
@@ -153,6 +155,7 @@ struct Monitor::State {
   std::vector<std::int64_t> unknown_runs;  // per input
   std::vector<InputMotion> motions;        // per input
   LaggedCorrelation correlation;
+  bool correlated = false;  // correlations and their peaks know the last sample
   ChannelTest test;
   ChangeScan scan;
   std::vector<Cv> cvs;
@@ -277,13 +280,13 @@ void Monitor::State::take_sample() {
 
 // Of each CV every so many samples, one CV after the other.
 void Monitor::State::evaluate() {
-  correlation.evaluate();
   const std::int64_t stride = settings.evaluation_stride;
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
+    const bool due = (samples + j * stride / counts.cv) % stride == 0;
+    if (due) test.fold(j);
     if (cv.alarms.isolating() || !test.memory(j).ready()) cv.judged = false;
-    const bool due = !cv.judged || (samples + j * stride / counts.cv) % stride == 0;
-    cv.evaluated = due && test.memory(j).ready();
+    cv.evaluated = (due || !cv.judged) && test.memory(j).ready();
     if (!cv.evaluated) continue;
     cv.judged = true;
     for (int m = 0; m < test.memory_count(); ++m)
@@ -339,7 +342,11 @@ void Monitor::State::take_frame(const Frame& frame) {
 
 void Monitor::State::judge() {
   const double channel_rate = settings.false_alarm_rate / (counts.inputs() * counts.cv);
-  if (settings.threshold == ThresholdKind::kMeanLine) line = mean_line(correlation);
+  correlated = false;
+  if (settings.threshold == ThresholdKind::kMeanLine) {
+    correlation.evaluate();
+    line = mean_line(correlation);
+  }
   for (int i = 0; i < counts.inputs(); ++i)
     for (int j = 0; j < counts.cv; ++j) judge_channel(j, i, channel_rate);
 }
@@ -350,7 +357,6 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   const CvAlarms& alarms = of(cv).alarms;
   channel.effective_samples = memory.effective_rows();
   channel.confounder = -1;
-  find_peak(cv, input, channel);
 
   channel.verdict = Verdict::kUndetermined;
   const bool outage = of(cv).without_row > settings.fir_lags &&
@@ -364,7 +370,6 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
     const double effective_samples = channel.effective_samples;
     channel = ChannelStatus{};  // what was known before says nothing now
     channel.effective_samples = effective_samples;
-    find_peak(cv, input, channel);
     if (alarms.isolating() && alarms.state(input) == AlarmState::kActive)
       channel.p_value = alarms.change_p_value();
     const bool bad =
@@ -382,6 +387,7 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   const bool alarmed = alarms.state(input) == AlarmState::kActive;
   bool exceeds = evidence.p_value < channel_rate || alarmed;
   if (settings.threshold == ThresholdKind::kMeanLine) {
+    find_peak(cv, input, channel);
     channel.statistic = std::abs(channel.partial_correlation);
     channel.threshold = line;
     exceeds = channel.statistic > channel.threshold;
@@ -454,11 +460,22 @@ void Monitor::State::find_peak(int cv, int input, ChannelStatus& channel) const 
   }
 }
 
+// Only once somebody asks: rows that wait for each other cost a fraction.
+void Monitor::State::correlate() {
+  if (correlated) return;
+  correlation.evaluate();
+  for (int i = 0; i < counts.inputs(); ++i)
+    for (int j = 0; j < counts.cv; ++j) find_peak(j, i, status[index(j, i)]);
+  correlated = true;
+}
+
 const ChannelStatus& Monitor::channel(int cv, int input) const {
+  state_->correlate();
   return state_->status[state_->index(cv, input)];
 }
 AlarmState Monitor::alarm(int cv, int input) const { return state_->of(cv).alarms.state(input); }
 Eigen::Ref<const Eigen::VectorXd> Monitor::partial_correlations(int cv, int input) const {
+  state_->correlate();
   return state_->correlation.correlations(cv, input);
 }
 int Monitor::first_lag() const { return state_->settings.first_lag; }

@@ -3,35 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <new>
+#include <limits>
 #include <stdexcept>
 
 namespace mpm {
 namespace {
-
-// A regressor entry that is left with less than this fraction of the column's magnitude after the
-// earlier columns are rotated off is rounding noise: |x| <= 64 eps * max |x| is taken for 0.
-constexpr double kNoise = 64 * 2.220446049250313e-16;
-
-using Granule = Eigen::Array<double, static_cast<int>(kRowGranule), 1>;
 
 // Of a stored row at least this much must be kept for r + s x' to lose no more than a digit.
 constexpr double kMostlyKept = 0.1;
 
 }  // namespace
 
-void GivensQr::AlignedDelete::operator()(double* p) const {
-  ::operator delete[](p, std::align_val_t{kRowAlignment});
-}
-
-GivensQr::AlignedArray GivensQr::make_aligned(std::size_t count) {
-  AlignedArray array(static_cast<double*>(
-      ::operator new[](count * sizeof(double), std::align_val_t{kRowAlignment})));
-  std::fill_n(array.get(), count, 0.0);
-  return array;
-}
-
-GivensQr::GivensQr(int columns, int responses) : columns_(columns), responses_(responses) {
+GivensQr::GivensQr(int columns, int responses)
+    : columns_(columns), responses_(responses), own_(std::max(columns + responses, 1), 1) {
   if (columns <= 0 || responses <= 0)
     throw std::invalid_argument("GivensQr needs at least one column and one response");
   const auto total = static_cast<std::size_t>(columns) + static_cast<std::size_t>(responses);
@@ -41,105 +25,49 @@ GivensQr::GivensQr(int columns, int responses) : columns_(columns), responses_(r
     factor_size_ += width_ - row_begin(i);
   }
   factor_ = make_aligned(factor_size_);
-  row_ = make_aligned(width_);
-  preview_row_ = make_aligned(width_);
   weights_.assign(static_cast<std::size_t>(columns), 0.0);
   magnitudes_.assign(static_cast<std::size_t>(columns), 0.0);
   squares_.assign(static_cast<std::size_t>(responses), 0.0);
   products_.assign(static_cast<std::size_t>(responses), 0.0);
 }
 
-double GivensQr::denoised(int column, double entry) const {
-  return std::abs(entry) <= kNoise * magnitudes_[static_cast<std::size_t>(column)] ? 0.0 : entry;
-}
-
-// With q = 1 / w, w' = w lambda d / d' reads q' = q + x_i^2 / (lambda d): entry after entry only an
-// addition has to wait for the one before, no division.
-GivensQr::Share GivensQr::weigh(int i, double lambda, double entry, double& inverse_row_weight) {
-  double& weight = weights_[static_cast<std::size_t>(i)];
-  const double faded = lambda * weight;
-  const double square = entry * entry;
-  const double row_weight = 1.0 / inverse_row_weight;
-  const double taken = row_weight * square;
-  weight = faded + taken;
-  if (!(taken > 0.0)) return {0.0, 1.0};
-  inverse_row_weight += square / faded;
-  const double inverse = 1.0 / weight;
-  return {row_weight * entry * inverse, faded * inverse};
-}
-
-void GivensQr::update(double lambda) {
+void GivensQr::update_batch(RowBatch& batch, int count, double lambda) {
+  if (count == 0) return;
   const double root_lambda = std::sqrt(lambda);
-  for (int i = 0; i < columns_; ++i) {
-    double& magnitude = magnitudes_[static_cast<std::size_t>(i)];
-    magnitude = std::max(magnitude * root_lambda, std::abs(row_[static_cast<std::size_t>(i)]));
+  double* magnitudes = batch.magnitudes_.get();
+  for (int k = 0; k < count; ++k) {
+    const double* row = batch.row(k);
+    double* out = magnitudes + batch.offset(k);
+    for (int i = 0; i < columns_; ++i) {
+      double& magnitude = magnitudes_[static_cast<std::size_t>(i)];
+      magnitude = std::max(magnitude * root_lambda, std::abs(row[i]));
+      out[i] = magnitude;
+    }
+    batch.inverse_row_weights_[static_cast<std::size_t>(k)] = 1.0;
   }
-  accumulate(lambda, eliminate(lambda, 1.0));
+  eliminate_batch(batch, count, lambda, magnitudes, batch.stride_);
+  for (int k = 0; k < count; ++k)
+    accumulate(lambda, 1.0 / batch.inverse_row_weights_[static_cast<std::size_t>(k)],
+               left(batch, k));
 }
 
-double GivensQr::rotate(double lambda, double weight, const double* magnitudes) {
-  std::copy_n(magnitudes, columns_, magnitudes_.begin());
-  return eliminate(lambda, weight);
+void GivensQr::rotate_batch(RowBatch& batch, int count, double lambda, double* weights,
+                            const double* magnitudes, std::size_t stride) {
+  for (int k = 0; k < count; ++k)
+    batch.inverse_row_weights_[static_cast<std::size_t>(k)] = 1.0 / weights[k];
+  std::copy_n(magnitudes + static_cast<std::size_t>(count - 1) * stride, columns_,
+              magnitudes_.begin());
+  eliminate_batch(batch, count, lambda, magnitudes, stride);
+  for (int k = 0; k < count; ++k)
+    weights[k] = 1.0 / batch.inverse_row_weights_[static_cast<std::size_t>(k)];
 }
 
-double GivensQr::eliminate(double lambda, double weight) {
-  double* x = row_.get();
-  constexpr int kGroup = static_cast<int>(kRowGranule);
-  std::array<double*, kRowGranule> rows{};
-  std::array<double, kRowGranule> entries{};
-  std::array<double, kRowGranule> gains{};
-  std::array<double, kRowGranule> kept{};
-  std::array<Granule, kRowGranule> heads;
-  double inverse_row_weight = 1.0 / weight;
-  int i = 0;
-  for (; i + kGroup <= columns_; i += kGroup) {
-    // The triangle of the group's own columns first, then all columns behind it in one pass.
-    // Stored entries left of the diagonal are 0, which all eight lanes of an operation preserve.
-    Granule head = Eigen::Map<const Granule>(x + i);
-#pragma GCC unroll 8
-    for (std::size_t a = 0; a < kRowGranule; ++a) {
-      rows[a] = factor_.get() + offsets_[static_cast<std::size_t>(i) + a];
-      const auto lane = static_cast<Eigen::Index>(a);
-      entries[a] = denoised(i + static_cast<int>(a), head(lane));
-      heads[a] = head;
-      head -= entries[a] * Eigen::Map<const Granule>(rows[a]);
-      head(lane) = 0.0;
-    }
-    double least_kept = 1.0;
-    for (std::size_t a = 0; a < kRowGranule; ++a) {
-      const Share share = weigh(i + static_cast<int>(a), lambda, entries[a], inverse_row_weight);
-      Eigen::Map<Granule> stored(rows[a]);
-      stored = share.kept * stored + share.gain * heads[a];
-      rows[a][a] = 1.0;
-      rows[a] += kRowGranule;
-      gains[a] = share.gain;
-      kept[a] = share.kept;
-      least_kept = std::min(least_kept, share.kept);
-    }
-    double* behind = x + i + kGroup;
-    const std::size_t count = width_ - static_cast<std::size_t>(i + kGroup);
-    if (least_kept >= kMostlyKept) {
-      eliminate_rows(rows.data(), behind, count, entries.data(), gains.data());
-    } else {
-      for (std::size_t a = 0; a < kRowGranule; ++a)
-        blend_row(rows[a], behind, count, entries[a], gains[a], kept[a]);
-    }
-  }
-  for (; i < columns_; ++i) {
-    const std::size_t begin = row_begin(i);
-    double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i)];
-    const double entry = denoised(i, x[i]);
-    const Share share = weigh(i, lambda, entry, inverse_row_weight);
-    blend_row(stored, x + begin, width_ - begin, entry, share.gain, share.kept);
-    stored[static_cast<std::size_t>(i) - begin] = 1.0;
-    x[i] = 0.0;
-  }
-
-  return 1.0 / inverse_row_weight;
+void GivensQr::accumulate_batch(const RowBatch& batch, int count, double lambda,
+                                const double* weights) {
+  for (int k = 0; k < count; ++k) accumulate(lambda, weights[k], left(batch, k));
 }
 
-void GivensQr::accumulate(double lambda, double left_weight) {
-  const double* left = row_.get() + columns_;
+void GivensQr::accumulate(double lambda, double left_weight, const double* left) {
   for (int k = 0; k < responses_; ++k) {
     const auto s = static_cast<std::size_t>(k);
     squares_[s] = lambda * squares_[s] + left_weight * left[k] * left[k];
@@ -147,40 +75,112 @@ void GivensQr::accumulate(double lambda, double left_weight) {
   }
 }
 
-GivensQr::Preview GivensQr::preview(double lambda) {
-  double* x = preview_row_.get();
-  std::copy_n(row_.get(), width_, x);
+// The triangle of a group of columns first, then all columns behind it in one pass.
+void GivensQr::eliminate_batch(RowBatch& batch, int count, double lambda, const double* magnitudes,
+                               std::size_t stride) {
+  constexpr int kGroup = static_cast<int>(kRowGranule);
+  std::array<double*, kRowGranule> rows{};
+  const auto shares = static_cast<std::size_t>(count) * kRowGranule;
+  int i = 0;
+  for (; i + kGroup <= columns_; i += kGroup) {
+    for (std::size_t a = 0; a < kRowGranule; ++a)
+      rows[a] = factor_.get() + offsets_[static_cast<std::size_t>(i) + a];
+    eliminate_heads(rows.data(), {batch.row(0) + i, batch.stride_, count},
+                    {lambda, weights_.data() + i, batch.inverse_row_weights_.get(), magnitudes + i,
+                     stride, batch.entries_.get(), batch.gains_.get(), batch.kept_.get()});
+    for (double*& row : rows) row += kRowGranule;
+    const std::size_t behind = width_ - static_cast<std::size_t>(i + kGroup);
+    const double* entries = batch.entries_.get();
+    const double* gains = batch.gains_.get();
+    const double* kept = batch.kept_.get();
+    if (*std::min_element(kept, kept + shares) >= kMostlyKept) {
+      eliminate_block(rows.data(), {batch.row(0) + i + kGroup, batch.stride_, count}, behind,
+                      entries, gains);
+      continue;
+    }
+    for (std::size_t at = 0; at < shares; ++at) {
+      double* x = batch.row(static_cast<int>(at / kRowGranule)) + i + kGroup;
+      double* stored = rows[at % kRowGranule];
+      if (kept[at] >= kMostlyKept)
+        eliminate_row(stored, x, behind, entries[at], gains[at]);
+      else
+        blend_row(stored, x, behind, entries[at], gains[at], kept[at]);
+    }
+  }
+  for (; i < columns_; ++i) eliminate_column(i, batch, count, lambda, magnitudes, stride);
+}
+
+// The last columns, fewer than a group. As the groups do it: with q = 1 / w, w' = w lambda d / d'
+// reads q' = q + x_i^2 / (lambda d).
+void GivensQr::eliminate_column(int column, RowBatch& batch, int count, double lambda,
+                                const double* magnitudes, std::size_t stride) {
+  const auto c = static_cast<std::size_t>(column);
+  const std::size_t begin = row_begin(column);
+  double* stored = factor_.get() + offsets_[c];
+  double& weight = weights_[c];
+  for (int k = 0; k < count; ++k) {
+    const auto s = static_cast<std::size_t>(k);
+    double* x = batch.row(k);
+    const double entry = std::abs(x[c]) <= kRoundingNoise * magnitudes[s * stride + c] ? 0.0 : x[c];
+    double& inverse_row_weight = batch.inverse_row_weights_[s];
+    const double faded = lambda * weight;
+    const double square = entry * entry;
+    const double row_weight = 1.0 / inverse_row_weight;
+    const double taken = row_weight * entry * entry;
+    weight = std::fma(lambda, weight, taken);
+    double gain = 0.0;
+    double kept = 1.0;
+    if (square > 0.0 && inverse_row_weight < std::numeric_limits<double>::infinity())
+      inverse_row_weight += square / faded;
+    if (taken > 0.0) {
+      gain = row_weight * entry / weight;
+      kept = faded / weight;
+    }
+    blend_row(stored, x + begin, width_ - begin, entry, gain, kept);
+    stored[c - begin] = 1.0;
+    x[c] = 0.0;
+  }
+}
+
+void GivensQr::preview_batch(RowBatch& batch, int count, Preview* previews) const {
   constexpr int kGroup = static_cast<int>(kRowGranule);
   std::array<const double*, kRowGranule> rows{};
-  std::array<double, kRowGranule> entries{};
-  double inverse_share = 1.0;
-  const auto take = [&](int i, double entry) {
-    const auto s = static_cast<std::size_t>(i);
-    if (std::abs(entry) <= kNoise * std::max(magnitudes_[s], std::abs(row_[s]))) return 0.0;
-    const double square = entry * entry;
-    if (square > 0.0) inverse_share += square / (lambda * weights_[s]);
-    return entry;
+  double* magnitudes = batch.magnitudes_.get();
+  for (int c = 0; c < columns_; ++c) {
+    const auto s = static_cast<std::size_t>(c);
+    magnitudes[s] = magnitudes_[s];
+    for (int k = 0; k < count; ++k)
+      magnitudes[s] = std::max(magnitudes[s], std::abs(batch.row(k)[c]));
+  }
+  for (int k = 0; k < count; ++k) previews[k].leverage = 0.0;
+  const auto count_in = [&](int c, int k, double entry) {
+    if (entry != 0.0) previews[k].leverage += entry * entry / weights_[static_cast<std::size_t>(c)];
   };
   int i = 0;
   for (; i + kGroup <= columns_; i += kGroup) {
-    Granule head = Eigen::Map<const Granule>(x + i);
-#pragma GCC unroll 8
-    for (std::size_t a = 0; a < kRowGranule; ++a) {
-      const double* stored = factor_.get() + offsets_[static_cast<std::size_t>(i) + a];
-      entries[a] = take(i + static_cast<int>(a), head(static_cast<Eigen::Index>(a)));
-      head -= entries[a] * Eigen::Map<const Granule>(stored);
-      rows[a] = stored + kRowGranule;
-    }
-    project_rows(rows.data(), x + i + kGroup, width_ - static_cast<std::size_t>(i + kGroup),
-                 entries.data());
+    for (std::size_t a = 0; a < kRowGranule; ++a)
+      rows[a] = factor_.get() + offsets_[static_cast<std::size_t>(i) + a];
+    double* entries = batch.entries_.get();
+    project_heads(rows.data(), {batch.row(0) + i, batch.stride_, count}, magnitudes + i, entries);
+    for (const double*& row : rows) row += kRowGranule;
+    project_block(rows.data(), {batch.row(0) + i + kGroup, batch.stride_, count},
+                  width_ - static_cast<std::size_t>(i + kGroup), entries);
+    for (int k = 0; k < count; ++k)
+      for (int a = 0; a < kGroup; ++a) count_in(i + a, k, entries[k * kGroup + a]);
   }
   for (; i < columns_; ++i) {
     const std::size_t begin = row_begin(i);
-    project_row(factor_.get() + offsets_[static_cast<std::size_t>(i)], x + begin, width_ - begin,
-                take(i, x[i]));
-    x[i] = 0.0;
+    const double noise = kRoundingNoise * magnitudes[static_cast<std::size_t>(i)];
+    for (int k = 0; k < count; ++k) {
+      double* x = batch.row(k);
+      const double entry = std::abs(x[i]) <= noise ? 0.0 : x[i];
+      project_row(factor_.get() + offsets_[static_cast<std::size_t>(i)], x + begin, width_ - begin,
+                  entry);
+      x[i] = 0.0;
+      count_in(i, k, entry);
+    }
   }
-  return {x[columns_], 1.0 / inverse_share};
+  for (int k = 0; k < count; ++k) previews[k].error = batch.row(k)[columns_];
 }
 
 void GivensQr::scale(double factor) {
@@ -212,8 +212,8 @@ void GivensQr::centred_norms(int first, Eigen::Ref<Eigen::VectorXd> norms) const
   for (int i = 1; i < end; ++i) {
     const double weight = weights_[static_cast<std::size_t>(i)];
     const int begin = std::max(first, i);
-    const double* row = entry(i, begin);
-    for (int j = begin; j < end; ++j, ++row) norms(j - first) += weight * *row * *row;
+    const Eigen::Map<const Eigen::ArrayXd> row(entry(i, begin), end - begin);
+    norms.tail(end - begin).array() += weight * row * row;
   }
   norms = norms.cwiseSqrt();
 }

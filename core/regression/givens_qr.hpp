@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include "core/regression/rotation.hpp"
+#include "core/regression/row_batch.hpp"
 
 namespace mpm {
 
@@ -47,27 +47,35 @@ class GivensQr {
 
   /// Where the caller writes the next row, columns() regressors followed by responses() values,
   /// all finite. `update` consumes it.
-  [[nodiscard]] double* row() { return row_.get(); }
+  [[nodiscard]] double* row() { return own_.row(0); }
 
   /// Takes the row into the factor; everything before is weighted by lambda (0 < lambda <= 1).
-  void update(double lambda);
+  void update(double lambda) { update_batch(own_, 1, lambda); }
 
-  /// The two parts of `update`, for a row of which another factor has eliminated columns before.
-  /// `rotate` eliminates these ones: `weight` is what the row has left, `magnitudes` the largest
-  /// values its columns had at first. Returns the weight of what is then left of the responses.
-  [[nodiscard]] double rotate(double lambda, double weight, const double* magnitudes);
-  [[nodiscard]] const double* left() const { return row_.get() + columns_; }
-  void accumulate(double lambda, double left_weight);
+  /// Takes the first `count` rows of a batch, one after the other, with the bits of as many
+  /// updates; consumes them. A stored row is loaded once for all of them.
+  void update_batch(RowBatch& batch, int count, double lambda);
 
-  /// What the rows so far (weighted by lambda) say of the row that waits in row(), which stays:
-  /// its response 0 minus their prediction, and the share 1 / (1 + leverage) in (0, 1] by which
-  /// the prediction's own uncertainty enlarges that error's variance. A row in a direction never
-  /// seen has share 0.
+  /// The two parts of `update_batch`, for rows of which another factor has eliminated columns
+  /// before. `rotate_batch` eliminates these ones: `weights` (one per row) is what the rows have
+  /// left, and becomes what is then left of the responses; `magnitudes` (`stride` from row to row)
+  /// the largest values that the columns had at first, as of each row.
+  void rotate_batch(RowBatch& batch, int count, double lambda, double* weights,
+                    const double* magnitudes, std::size_t stride);
+  [[nodiscard]] const double* left(const RowBatch& batch, int k) const {
+    return batch.row(k) + columns_;
+  }
+  void accumulate_batch(const RowBatch& batch, int count, double lambda, const double* weights);
+
+  /// What the rows so far say of one that was not taken: its response 0 minus their prediction, and
+  /// by how much the prediction's own uncertainty adds to that error's variance,
+  /// x' (R' R)^-1 x >= 0; infinite in a direction never seen.
   struct Preview {
     double error = 0.0;
-    double share = 1.0;
+    double leverage = 0.0;
   };
-  [[nodiscard]] Preview preview(double lambda);
+  /// Of each of the first `count` rows of a batch, by itself; consumes them.
+  void preview_batch(RowBatch& batch, int count, Preview* previews) const;
 
   /// Multiplies all that was taken so far by `factor` (> 0), as if each row had come scaled.
   void scale(double factor);
@@ -109,12 +117,6 @@ class GivensQr {
   static constexpr double kNegligible = 1e-7;
 
  private:
-  struct AlignedDelete {
-    void operator()(double* p) const;
-  };
-  using AlignedArray = std::unique_ptr<double[], AlignedDelete>;
-  static AlignedArray make_aligned(std::size_t count);
-
   /// Row i is stored from the granule that holds column i on.
   [[nodiscard]] static std::size_t row_begin(int i) {
     return static_cast<std::size_t>(i) / kRowGranule * kRowGranule;
@@ -124,16 +126,11 @@ class GivensQr {
            row_begin(i);
   }
 
-  /// The row's entry in a column, 0 where it is noise.
-  [[nodiscard]] double denoised(int column, double entry) const;
-  /// Coefficients of the rotation of the row's entry x_i into stored row i.
-  struct Share {
-    double gain;  // s
-    double kept;  // lambda d / d'
-  };
-  /// Rotates the row into the factor; returns the weight of what is left.
-  double eliminate(double lambda, double weight);
-  Share weigh(int i, double lambda, double entry, double& inverse_row_weight);
+  void eliminate_batch(RowBatch& batch, int count, double lambda, const double* magnitudes,
+                       std::size_t stride);
+  void eliminate_column(int column, RowBatch& batch, int count, double lambda,
+                        const double* magnitudes, std::size_t stride);
+  void accumulate(double lambda, double left_weight, const double* left);
 
   int columns_;
   int responses_;
@@ -141,8 +138,7 @@ class GivensQr {
   std::vector<std::size_t> offsets_;  // of each stored row in factor_
   std::size_t factor_size_ = 0;
   AlignedArray factor_;
-  AlignedArray row_;
-  AlignedArray preview_row_;
+  RowBatch own_;
   std::vector<double> weights_;     // D, the squared diagonal of R
   std::vector<double> magnitudes_;  // per column, largest |x| seen, forgotten with sqrt(lambda)
   std::vector<double> squares_;

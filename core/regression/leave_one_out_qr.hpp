@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/regression/givens_qr.hpp"
+#include "core/regression/row_batch.hpp"
 
 namespace mpm {
 
@@ -22,20 +23,24 @@ namespace mpm {
 /// m (m b) (m b / 2 + responses) of separate factors. No allocation after construction.
 class LeaveOneOutQr {
  public:
-  /// All > 0; responses may be 0.
-  LeaveOneOutQr(int lead_in, int blocks, int block_columns, int responses);
+  /// All > 0; responses may be 0. At each row everything before is weighted by lambda
+  /// (0 < lambda <= 1).
+  LeaveOneOutQr(int lead_in, int blocks, int block_columns, int responses, double lambda);
 
-  /// Where the caller writes the next row. `update` leaves it as it is.
-  [[nodiscard]] double* row() { return row_.data(); }
-  /// Takes the row; everything before is weighted by lambda (0 < lambda <= 1).
-  void update(double lambda);
+  /// Where the caller writes the next row, all of it.
+  [[nodiscard]] double* row() { return rows_.row(waiting_); }
+  /// Takes the row. Rows wait for each other, with the same bits, until the residuals are read or
+  /// no more can wait.
+  void update();
 
   /// Residual sums of squares, given all other blocks, of a block's first column and then of each
   /// response; and of products of the first column's residual with each of them.
-  [[nodiscard]] const double* residual_squares(int block) const {
+  [[nodiscard]] const double* residual_squares(int block) {
+    fold();
     return leaf(block).residual_squares();
   }
-  [[nodiscard]] const double* residual_products(int block) const {
+  [[nodiscard]] const double* residual_products(int block) {
+    fold();
     return leaf(block).residual_products();
   }
 
@@ -46,10 +51,15 @@ class LeaveOneOutQr {
     GivensQr factor;  // responses: what is left of those blocks, or, of one, its first column
     std::size_t low = 0, high = 0;  // nodes that keep the first and the second half of them
   };
-  std::size_t add_node(int first, int last, int columns);
-  void take(Node& node, double lambda, double weight, const double* magnitudes);
-  void hand_down(const Node& parent, Node& child, int out_first, int out_last, double lambda,
-                 double weight);
+  /// What the nodes of one depth have in hand: one after the other, so they share it.
+  struct Level {
+    RowBatch rows;
+    std::vector<double> weights;
+  };
+  std::size_t add_node(int first, int last, int columns, std::size_t depth);
+  void fold();
+  void take(Node& node, std::size_t depth, const double* magnitudes);
+  void hand_down(const Node& parent, Node& child, int out_first, int out_last, std::size_t depth);
   [[nodiscard]] const GivensQr& leaf(int block) const {
     return nodes_[leaves_[static_cast<std::size_t>(block)]].factor;
   }
@@ -57,10 +67,14 @@ class LeaveOneOutQr {
   int lead_in_;
   int block_columns_;
   int responses_;
-  std::vector<double> row_;
+  double lambda_;
   std::vector<double> magnitudes_;  // per column, largest |x| seen, forgotten with sqrt(lambda)
-  std::vector<Node> nodes_;         // the root first
+  RowBatch rows_;                   // that wait
+  int waiting_ = 0;
+  std::vector<double> waiting_magnitudes_;  // per row that waits: magnitudes_ as of it
+  std::vector<Node> nodes_;                 // the root first
   std::vector<std::size_t> leaves_;
+  std::vector<Level> levels_;
 };
 
 }  // namespace mpm

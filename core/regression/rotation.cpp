@@ -11,26 +11,32 @@ namespace {
 struct Kernels {
   decltype(&kernels_base::rotate_rows) rotate_rows;
   decltype(&kernels_base::eliminate_row) eliminate_row;
-  decltype(&kernels_base::eliminate_rows) eliminate_rows;
   decltype(&kernels_base::blend_row) blend_row;
   decltype(&kernels_base::project_row) project_row;
-  decltype(&kernels_base::project_rows) project_rows;
+  decltype(&kernels_base::eliminate_heads) eliminate_heads;
+  decltype(&kernels_base::eliminate_block) eliminate_block;
+  decltype(&kernels_base::project_heads) project_heads;
+  decltype(&kernels_base::project_block) project_block;
+  decltype(&kernels_base::inner_products) inner_products;
 };
+
+#define MPM_KERNELS(set)                                                                          \
+  Kernels {                                                                                       \
+    set::rotate_rows, set::eliminate_row, set::blend_row, set::project_row, set::eliminate_heads, \
+        set::eliminate_block, set::project_heads, set::project_block, set::inner_products         \
+  }
 
 Kernels pick_kernels() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
       __builtin_cpu_supports("avx512cd"))
-    return {kernels_v4::rotate_rows, kernels_v4::eliminate_row, kernels_v4::eliminate_rows,
-            kernels_v4::blend_row,   kernels_v4::project_row,   kernels_v4::project_rows};
+    return MPM_KERNELS(kernels_v4);
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
       __builtin_cpu_supports("bmi2"))
-    return {kernels_v3::rotate_rows, kernels_v3::eliminate_row, kernels_v3::eliminate_rows,
-            kernels_v3::blend_row,   kernels_v3::project_row,   kernels_v3::project_rows};
+    return MPM_KERNELS(kernels_v3);
 #endif
-  return {kernels_base::rotate_rows, kernels_base::eliminate_row, kernels_base::eliminate_rows,
-          kernels_base::blend_row,   kernels_base::project_row,   kernels_base::project_rows};
+  return MPM_KERNELS(kernels_base);
 }
 
 const Kernels kKernels = pick_kernels();
@@ -61,11 +67,6 @@ void eliminate_row(double* r, double* x, std::size_t count, double entry, double
   kKernels.eliminate_row(r, x, count, entry, gain);
 }
 
-void eliminate_rows(double* const* r, double* x, std::size_t count, const double* entries,
-                    const double* gains) {
-  kKernels.eliminate_rows(r, x, count, entries, gains);
-}
-
 void blend_row(double* r, double* x, std::size_t count, double entry, double gain, double kept) {
   kKernels.blend_row(r, x, count, entry, gain, kept);
 }
@@ -74,8 +75,27 @@ void project_row(const double* r, double* x, std::size_t count, double entry) {
   kKernels.project_row(r, x, count, entry);
 }
 
-void project_rows(const double* const* r, double* x, std::size_t count, const double* entries) {
-  kKernels.project_rows(r, x, count, entries);
+void eliminate_heads(double* const* r, const RowBlock& x, const HeadBlock& head) {
+  kKernels.eliminate_heads(r, x, head);
+}
+
+void eliminate_block(double* const* r, const RowBlock& x, std::size_t count, const double* entries,
+                     const double* gains) {
+  kKernels.eliminate_block(r, x, count, entries, gains);
+}
+
+void project_heads(const double* const* r, const RowBlock& x, const double* magnitudes,
+                   double* entries) {
+  kKernels.project_heads(r, x, magnitudes, entries);
+}
+
+void project_block(const double* const* r, const RowBlock& x, std::size_t count,
+                   const double* entries) {
+  kKernels.project_block(r, x, count, entries);
+}
+
+void inner_products(const double* a, const RowBlock& x, std::size_t count, double* products) {
+  kKernels.inner_products(a, x, count, products);
 }
 
 }  // namespace mpm

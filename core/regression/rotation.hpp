@@ -5,7 +5,8 @@
 /// The numerical kernel of this project: plane (Givens) rotations of long rows.
 ///
 /// The loops are compiled for several instruction sets and picked once at start. All of them give
-/// the same bits: the operations are element-wise and no multiply-add is contracted.
+/// the same bits: the operations are element-wise and each multiply-add is rounded once, as the
+/// code says, none as the compiler likes.
 namespace mpm {
 
 /// Alignment of rows, bytes; and the same in doubles.
@@ -29,15 +30,50 @@ void rotate_rows(double* x, double* y, std::size_t count, const Rotation& rotati
 /// Square-root-free rotation of a row r with unit diagonal and a row x (Gentleman 1973):
 /// x' = x - entry r, r' = r + gain x'. No overlap.
 void eliminate_row(double* r, double* x, std::size_t count, double entry, double gain);
-/// The same with kRowGranule rows one after the other, in one pass.
-void eliminate_rows(double* const* r, double* x, std::size_t count, const double* entries,
-                    const double* gains);
 /// The same as eliminate_row, with r' = kept r + gain x, kept = 1 - gain entry: one multiplication
 /// more, and no cancellation where little of the old row is kept.
 void blend_row(double* r, double* x, std::size_t count, double entry, double gain, double kept);
 /// Only x' = x - entry r.
 void project_row(const double* r, double* x, std::size_t count, double entry);
-/// The same with kRowGranule rows one after the other, in one pass.
-void project_rows(const double* const* r, double* x, std::size_t count, const double* entries);
+
+/// Consecutive rows, each `stride` doubles after the one before.
+struct RowBlock {
+  double* first;
+  std::size_t stride;
+  int rows;
+};
+
+/// An entry of a row that is left with less than this fraction of its column's magnitude after the
+/// earlier columns are rotated off is rounding noise: |x| <= 64 eps * max |x| is taken for 0.
+inline constexpr double kRoundingNoise = 64 * 2.220446049250313e-16;
+
+/// What eliminating kRowGranule columns of a block of rows needs to know and finds out, beside the
+/// rows. Per row and column arrays have kRowGranule values a row, unless said otherwise.
+struct HeadBlock {
+  double lambda;
+  double* weights;               // of the kRowGranule stored rows
+  double* inverse_row_weights;   // one per row
+  const double* magnitudes;      // of the columns, as of each row
+  std::size_t magnitude_stride;  // from row to row
+  double* entries;               // out: of the rows, 0 where they are noise
+  double* gains;                 // out
+  double* kept;                  // out
+};
+
+/// Rotates the entries of a block of rows in kRowGranule columns, row after row, into the triangle
+/// of as many stored rows `r`: granules that begin at the first of these columns.
+void eliminate_heads(double* const* r, const RowBlock& x, const HeadBlock& head);
+/// eliminate_row for each of kRowGranule stored rows and each of a block of rows, one after the
+/// other, with the bits of that many calls; the stored rows stay in registers meanwhile. `count`
+/// and the alignment of all rows are multiples of a granule.
+void eliminate_block(double* const* r, const RowBlock& x, std::size_t count, const double* entries,
+                     const double* gains);
+/// The same two for rows that are only projected: nothing stored changes.
+void project_heads(const double* const* r, const RowBlock& x, const double* magnitudes,
+                   double* entries);
+void project_block(const double* const* r, const RowBlock& x, std::size_t count,
+                   const double* entries);
+/// Inner products of `a` with each row of x, `count` (whole granules) values each.
+void inner_products(const double* a, const RowBlock& x, std::size_t count, double* products);
 
 }  // namespace mpm

@@ -64,13 +64,33 @@ UnitMonitor::UnitMonitor(const config::UnitConfig& config, const std::vector<boo
 
 void UnitMonitor::push(const Frame& frame) {
   monitor_.push(frame);
+  interval_ = frame.interval;
+  source_time_ns_ = frame.source_time_ns;
+  filled_ = false;
+  alarms_.clear();
+  if (monitor_.transitions().empty()) return;
+  const int cvs = config_.counts().cv;
+  for (const AlarmTransition& transition : monitor_.transitions()) {
+    const ChannelRecord& channel =
+        channels()[static_cast<std::size_t>(transition.input * cvs + transition.cv)];
+    alarms_.push_back({channel.unit, channel.mv, channel.cv, channel.interval,
+                       channel.source_time_ns,
+                       transition.to == AlarmState::kActive ? "active" : "cleared", channel.p_value,
+                       channel.statistic, channel.threshold, channel.partial_correlation,
+                       channel.lag, channel.effect_size});
+  }
+}
+
+// Nobody reads all records of every frame of a recording.
+void UnitMonitor::fill() const {
+  filled_ = true;
   const SignalCounts counts = config_.counts();
   for (int i = 0; i < counts.inputs(); ++i) {
     for (int j = 0; j < counts.cv; ++j) {
       ChannelRecord& record = channels_[static_cast<std::size_t>(i * counts.cv + j)];
       const ChannelStatus& status = monitor_.channel(j, i);
-      record.interval = frame.interval;
-      record.source_time_ns = frame.source_time_ns;
+      record.interval = interval_;
+      record.source_time_ns = source_time_ns_;
       record.verdict = to_string(status.verdict);
       record.reason = status.verdict == Verdict::kUndetermined ? to_string(status.reason) : "";
       if (status.confounder >= 0) record.reason += " with " + config_.input_tag(status.confounder);
@@ -89,16 +109,6 @@ void UnitMonitor::push(const Frame& frame) {
       for (Eigen::Index l = 0; l < values.size(); ++l)
         record.partial_correlations[static_cast<std::size_t>(l)] = values(l);
     }
-  }
-  alarms_.clear();
-  for (const AlarmTransition& transition : monitor_.transitions()) {
-    const ChannelRecord& channel =
-        channels_[static_cast<std::size_t>(transition.input * counts.cv + transition.cv)];
-    alarms_.push_back({channel.unit, channel.mv, channel.cv, channel.interval,
-                       channel.source_time_ns,
-                       transition.to == AlarmState::kActive ? "active" : "cleared", channel.p_value,
-                       channel.statistic, channel.threshold, channel.partial_correlation,
-                       channel.lag, channel.effect_size});
   }
 }
 

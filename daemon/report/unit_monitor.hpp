@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "config/unit_config.hpp"
@@ -20,15 +21,23 @@ class UnitMonitor {
   void push(const Frame& frame);
 
   /// All channels after the last frame; inputs outermost, CVs innermost.
-  [[nodiscard]] const std::vector<ChannelRecord>& channels() const { return channels_; }
+  [[nodiscard]] const std::vector<ChannelRecord>& channels() const {
+    if (!filled_) fill();
+    return channels_;
+  }
   /// Alarms that the last frame changed.
   [[nodiscard]] const std::vector<AlarmRecord>& alarms() const { return alarms_; }
   [[nodiscard]] const MonitorCounters& counters() const { return monitor_.counters(); }
 
  private:
+  void fill() const;
+
   config::UnitConfig config_;
   Monitor monitor_;
-  std::vector<ChannelRecord> channels_;
+  std::int64_t interval_ = 0;  // of the last frame
+  std::int64_t source_time_ns_ = 0;
+  mutable bool filled_ = true;  // the records say what the monitor does
+  mutable std::vector<ChannelRecord> channels_;
   std::vector<AlarmRecord> alarms_;
 };
 

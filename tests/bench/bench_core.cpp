@@ -114,7 +114,7 @@ struct Channels {
       : inputs(size.mvs, 1),
         residuals(size.cvs, 2),
         test({size.mvs, size.cvs, 20, 8, {std::exp(-1.0 / 40.0)}}, {{0.9995, 0}, {0.998, 0}}, 100,
-             LinearModel(first_order_model(size))) {
+             8, LinearModel(first_order_model(size))) {
     while (!test.memory(0).ready()) update();
     evaluate();
   }

@@ -22,7 +22,7 @@ ChannelTest run(std::uint64_t seed, int samples, int from, int until, double siz
   spec.channels = {{0, 0, TransferFunction{1.0, {15.0}, 0, 1, false}},
                    {0, 1, TransferFunction{1.0, {15.0}, 0, 1, false}}};
   const LinearModel model(spec);
-  ChannelTest channel_test({2, 1, 12, 4, {std::exp(-1.0 / 15.0)}}, {{0.9995, 0}}, 3000, model);
+  ChannelTest channel_test({2, 1, 12, 4, {std::exp(-1.0 / 15.0)}}, {{0.9995, 0}}, 3000, 10, model);
   LinearModel hidden(spec);
   Eigen::VectorXd u(2), e(1);
   double noise = 0.0;
@@ -55,18 +55,15 @@ TEST_CASE("a change that begins inside the memory is dated and its input named")
 }
 
 TEST_CASE("the end of a mismatch is seen as such") {
-  int ended = 0;
-  for (std::uint64_t seed = 11; seed <= 20; ++seed) {
+  for (std::uint64_t seed = 11; seed <= 30; ++seed) {
     const ChannelTest channel_test = run(seed, 2000, 0, 1500, 0.4);
     ChangeScan scan(channel_test.shape());
     const std::optional<ChangePoint> change = scan.scan(channel_test, 0);
     CAPTURE(seed);
     REQUIRE(change);
-    CHECK(change->kind != ChangeKind::kBegan);
+    CHECK(change->kind == ChangeKind::kEnded);
     CHECK(change->samples == Approx(500).margin(60));
-    ended += change->kind == ChangeKind::kEnded ? 1 : 0;
   }
-  CHECK(ended >= 5);  // where rows about the moment fit neither side, another change fits better
 }
 
 TEST_CASE("a mismatch that was there all along, no mismatch, and louder noise are no change") {

@@ -41,7 +41,7 @@ TEST_CASE("the channel test equals brute-force batch fits") {
   const LinearModel model(first_order(m, n, 10.0));
   ChannelTest channel_test({m, n, oracle["fir_lags"], oracle["residual_order"],
                             oracle["tail_poles"].get<std::vector<double>>()},
-                           {{oracle["lambda"], 0}}, 100, model);
+                           {{oracle["lambda"], 0}}, 100, oracle["patience"], model);
   Eigen::VectorXd u(m), e(n), noise = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd before = Eigen::VectorXd::Zero(2);
   for (int k = 0; k < oracle["samples"].get<int>(); ++k) {
@@ -114,7 +114,7 @@ struct OpenLoop {
 };
 
 ChannelTest make_test(const ModelSpec& spec, double lambda = 1.0) {
-  return ChannelTest({2, 2, 12, 4, {std::exp(-1.0 / 15.0)}}, {{lambda, 0}}, 2000,
+  return ChannelTest({2, 2, 12, 4, {std::exp(-1.0 / 15.0)}}, {{lambda, 0}}, 2000, 1,
                      LinearModel(spec));
 }
 
@@ -244,7 +244,7 @@ TEST_CASE("units of any size give the same verdict") {
 
 TEST_CASE("the channel test allocates nothing per sample") {
   const ModelSpec spec = first_order(3, 3, 50.0);
-  ChannelTest channel_test({3, 3, 20, 8, {0.98}}, {{0.9995, 0}, {1.0, 500}}, 600,
+  ChannelTest channel_test({3, 3, 20, 8, {0.98}}, {{0.9995, 0}, {1.0, 500}}, 600, 8,
                            LinearModel(spec));
   Eigen::VectorXd u(3), e(3);
   const std::uint64_t before = test::allocation_count();

@@ -73,24 +73,65 @@ TEST_CASE("the Givens factor equals a batch Householder factorisation") {
   }
 }
 
-TEST_CASE("preview tells the error of the coming row and its own uncertainty") {
+TEST_CASE("a preview tells the errors of rows to come and their own uncertainty") {
   // Expected: batch fit of the rows before, leverage x' (X'X)^-1 x by a Householder solve.
   const Problem problem(120, 10, 1, 0.98);
   GivensQr qr = problem.factor();
-  const Eigen::MatrixXd all = problem.weighted() * std::sqrt(0.98);
+  const Eigen::MatrixXd all = problem.weighted();
   const Eigen::MatrixXd x = all.leftCols(10);
   const Eigen::VectorXd b = x.colPivHouseholderQr().solve(all.col(10));
-  Eigen::VectorXd row(11);
-  for (int c = 0; c < 11; ++c) row(c) = test::uniform(99, c);
-  Eigen::Map<Eigen::VectorXd>(qr.row(), 11) = row;
-  const Eigen::VectorXd h = x.transpose().completeOrthogonalDecomposition().solve(row.head(10));
-  const GivensQr::Preview preview = qr.preview(0.98);
-  CHECK(preview.error == Approx(row(10) - row.head(10).dot(b)).epsilon(1e-10));
-  CHECK(preview.share == Approx(1.0 / (1.0 + h.squaredNorm())).epsilon(1e-10));
+  RowBatch batch(11, 3);
+  for (int k = 0; k < 3; ++k)
+    for (int c = 0; c < 11; ++c)
+      batch.row(k)[c] = test::uniform(static_cast<std::uint64_t>(99 + k), c);
+  const Eigen::MatrixXd rows =
+      Eigen::Map<const Eigen::Matrix<double, 3, 11, Eigen::RowMajor>, 0, Eigen::OuterStride<>>(
+          batch.row(0), Eigen::OuterStride<>(batch.row(1) - batch.row(0)));
+  std::array<GivensQr::Preview, 3> previews{};
+  qr.preview_batch(batch, 3, previews.data());
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::VectorXd row = rows.row(k);
+    const Eigen::VectorXd h = x.transpose().completeOrthogonalDecomposition().solve(row.head(10));
+    const GivensQr::Preview& preview = previews[static_cast<std::size_t>(k)];
+    CHECK(preview.error == Approx(row(10) - row.head(10).dot(b)).epsilon(1e-10));
+    CHECK(preview.leverage == Approx(h.squaredNorm()).epsilon(1e-10));
+  }
   const double before = qr.residual_square(0);
-  qr.update(0.98);
-  CHECK(qr.residual_square(0) - 0.98 * before ==
-        Approx(preview.share * preview.error * preview.error).epsilon(1e-10));
+  Eigen::Map<Eigen::VectorXd>(qr.row(), 11) = rows.row(0);
+  qr.update(1.0);
+  CHECK(
+      qr.residual_square(0) - before ==
+      Approx(previews[0].error * previews[0].error / (1.0 + previews[0].leverage)).epsilon(1e-10));
+}
+
+TEST_CASE("rows taken together leave the bits of rows taken one by one") {
+  // Few rows at first, so that columns are new and little of the stored rows is kept; 20 columns:
+  // two groups and a rest; column 7 says nothing that column 6 does not.
+  constexpr int kColumns = 20;
+  for (const int together : {2, 7, 33}) {
+    GivensQr one_by_one(kColumns, 3), at_once(kColumns, 3);
+    RowBatch batch(kColumns + 3, together);
+    for (int begin = 0; begin < 200; begin += together) {
+      for (int k = 0; k < together; ++k) {
+        for (int c = 0; c < kColumns + 3; ++c)
+          batch.row(k)[c] = c == 7 ? 2.0 * batch.row(k)[6]
+                                   : test::uniform(static_cast<std::uint64_t>(c), begin + k);
+        std::copy_n(batch.row(k), kColumns + 3, one_by_one.row());
+        one_by_one.update(0.97);
+      }
+      at_once.update_batch(batch, together, 0.97);
+    }
+    bool same = true;
+    for (int i = 0; i < kColumns; ++i) {
+      same = same && one_by_one.root(i) == at_once.root(i);
+      for (int j = i; j < kColumns; ++j) same = same && one_by_one.r(i, j) == at_once.r(i, j);
+      for (int r = 0; r < 3; ++r) same = same && one_by_one.z(i, r) == at_once.z(i, r);
+    }
+    for (int r = 0; r < 3; ++r)
+      same = same && one_by_one.residual_product(r) == at_once.residual_product(r) &&
+             one_by_one.residual_square(r) == at_once.residual_square(r);
+    CHECK(same);
+  }
 }
 
 TEST_CASE("scaling the factor is scaling the rows") {
@@ -137,44 +178,77 @@ TEST_CASE("information that appears late replaces what rounding left") {
   CHECK((coefficients - b).norm() <= 1e-9 * b.norm());
 }
 
+// All long loops of one instruction set, on the same numbers; everything that they leave.
+#define MPM_RUN(set)                                                                       \
+  run({set::rotate_rows, set::eliminate_row, set::blend_row, set::project_row,             \
+       set::eliminate_heads, set::eliminate_block, set::project_heads, set::project_block, \
+       set::inner_products})
+
+struct KernelSet {
+  decltype(&kernels_base::rotate_rows) rotate_rows;
+  decltype(&kernels_base::eliminate_row) eliminate_row;
+  decltype(&kernels_base::blend_row) blend_row;
+  decltype(&kernels_base::project_row) project_row;
+  decltype(&kernels_base::eliminate_heads) eliminate_heads;
+  decltype(&kernels_base::eliminate_block) eliminate_block;
+  decltype(&kernels_base::project_heads) project_heads;
+  decltype(&kernels_base::project_block) project_block;
+  decltype(&kernels_base::inner_products) inner_products;
+};
+
+std::vector<double> run(const KernelSet& kernels) {
+  constexpr std::size_t kWidth = 8 + 40;  // a head and whole granules behind it
+  constexpr int kRows = 37;
+  constexpr std::size_t kAll = kWidth * kRows;
+  const AlignedArray stored = make_aligned(8 * kWidth);
+  const AlignedArray x = make_aligned(kAll);
+  const AlignedArray projected = make_aligned(kAll);
+  for (std::size_t i = 0; i < kAll; ++i) x[i] = test::uniform(1, static_cast<std::int64_t>(i));
+  std::copy_n(x.get(), kAll, projected.get());
+  double* r[8];
+  const double* seen[8];
+  for (std::size_t a = 0; a < 8; ++a) {
+    r[a] = stored.get() + a * kWidth;
+    seen[a] = r[a];
+    for (std::size_t i = 0; i < kWidth; ++i)
+      r[a][i] = i < a ? 0.0 : i == a ? 1.0 : test::uniform(2 + a, static_cast<std::int64_t>(i));
+  }
+  std::vector<double> weights(8, 3.0), row_weights(kRows, 1.0), magnitudes(8, 2.0);
+  weights[5] = 0.0;  // never seen
+  std::vector<double> entries(8 * kRows), gains(entries), kept(entries), products(kRows);
+  kernels.eliminate_heads(r, {x.get(), kWidth, kRows},
+                          {0.99, weights.data(), row_weights.data(), magnitudes.data(), 0,
+                           entries.data(), gains.data(), kept.data()});
+  for (double*& row : r) row += 8;
+  kernels.eliminate_block(r, {x.get() + 8, kWidth, kRows}, kWidth - 8, entries.data(),
+                          gains.data());
+  kernels.project_heads(seen, {projected.get(), kWidth, kRows}, magnitudes.data(), entries.data());
+  for (const double*& row : seen) row += 8;
+  kernels.project_block(seen, {projected.get() + 8, kWidth, kRows}, kWidth - 8, entries.data());
+  kernels.inner_products(r[0], {projected.get() + 8, kWidth, kRows}, kWidth - 8, products.data());
+  kernels.rotate_rows(r[0], x.get() + 8, 39, 0.8, 0.6, 0.8, 0.599);
+  kernels.eliminate_row(r[1], x.get() + 8, 39, 0.3, 0.7);
+  kernels.blend_row(r[2], x.get() + 8, 39, 0.1, 0.2, 0.9);
+  kernels.project_row(r[3], x.get() + 8, 39, 0.4);
+  std::vector<double> all = {stored.get(), stored.get() + 8 * kWidth};
+  for (const double* values : {x.get(), projected.get()})
+    for (int k = 0; k < kRows; ++k)  // what is left of a head is of no use to anybody
+      all.insert(all.end(), values + static_cast<std::size_t>(k) * kWidth + 8,
+                 values + static_cast<std::size_t>(k + 1) * kWidth);
+  for (const auto* values : {&weights, &row_weights, &entries, &gains, &kept, &products})
+    all.insert(all.end(), values->begin(), values->end());
+  return all;
+}
+
 TEST_CASE("every instruction set gives the same bits") {
-  constexpr std::size_t kCount = 173;
-  const auto run = [](auto rotate, auto eliminate, auto eliminate_eight, auto blend, auto project,
-                      auto project_eight) {
-    std::vector<double> x(kCount), rows(8 * kCount);
-    for (std::size_t i = 0; i < kCount; ++i) x[i] = test::uniform(1, static_cast<std::int64_t>(i));
-    for (std::size_t i = 0; i < 8 * kCount; ++i)
-      rows[i] = test::uniform(2, static_cast<std::int64_t>(i));
-    double* r[8];
-    double entries[8], gains[8];
-    for (std::size_t a = 0; a < 8; ++a) {
-      r[a] = rows.data() + a * kCount;
-      entries[a] = test::uniform(3, static_cast<std::int64_t>(a));
-      gains[a] = test::uniform(4, static_cast<std::int64_t>(a));
-    }
-    rotate(r[0], x.data(), kCount, 0.8, 0.6, 0.8, 0.599);
-    eliminate(r[1], x.data(), kCount, 0.3, 0.7);
-    eliminate_eight(r, x.data(), kCount, entries, gains);
-    blend(r[2], x.data(), kCount, 0.1, 0.2, 0.9);
-    project(r[3], x.data(), kCount, 0.4);
-    project_eight(r, x.data(), kCount, entries);
-    rows.insert(rows.end(), x.begin(), x.end());
-    return rows;
-  };
-  const std::vector<double> base =
-      run(kernels_base::rotate_rows, kernels_base::eliminate_row, kernels_base::eliminate_rows,
-          kernels_base::blend_row, kernels_base::project_row, kernels_base::project_rows);
+  const std::vector<double> base = MPM_RUN(kernels_base);
+  CHECK(std::all_of(base.begin(), base.end(), [](double value) { return !std::isnan(value); }));
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2"))
-    CHECK(base == run(kernels_v3::rotate_rows, kernels_v3::eliminate_row,
-                      kernels_v3::eliminate_rows, kernels_v3::blend_row, kernels_v3::project_row,
-                      kernels_v3::project_rows));
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    CHECK(base == MPM_RUN(kernels_v3));
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
-    CHECK(base == run(kernels_v4::rotate_rows, kernels_v4::eliminate_row,
-                      kernels_v4::eliminate_rows, kernels_v4::blend_row, kernels_v4::project_row,
-                      kernels_v4::project_rows));
+    CHECK(base == MPM_RUN(kernels_v4));
 #endif
-  CHECK(base.size() == 9 * kCount);
 }
 
 TEST_CASE("a rotation has no range of numbers where it fails") {

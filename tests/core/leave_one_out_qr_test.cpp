@@ -17,7 +17,7 @@ TEST_CASE("leaving one block out of a shared tree equals a factor of its own per
   constexpr double kLambda = 0.99;
   for (const int blocks : {1, 2, 3, 4, 5, 7}) {
     const int columns = 1 + blocks * kBlockColumns;
-    LeaveOneOutQr tree(1, blocks, kBlockColumns, kResponses);
+    LeaveOneOutQr tree(1, blocks, kBlockColumns, kResponses, kLambda);
     std::vector<GivensQr> separate;
     for (int i = 0; i < blocks; ++i)
       separate.emplace_back(1 + (blocks - 1) * kBlockColumns, 1 + kResponses);
@@ -26,7 +26,7 @@ TEST_CASE("leaving one block out of a shared tree equals a factor of its own per
       for (std::size_t c = 0; c < row.size(); ++c) row[c] = c == 0 ? 1.0 : test::coloured(c, k);
       if (blocks > 1) row[6] = row[1] + 1e-3 * row[6];  // nearly collinear blocks
       std::copy(row.begin(), row.end(), tree.row());
-      tree.update(kLambda);
+      tree.update();
       for (int i = 0; i < blocks; ++i) {
         const auto block = row.begin() + 1 + i * kBlockColumns;
         double* out = separate[static_cast<std::size_t>(i)].row();
@@ -51,7 +51,7 @@ TEST_CASE("leaving one block out of a shared tree equals a factor of its own per
 }
 
 TEST_CASE("a block that the others make up entirely is left without movement") {
-  LeaveOneOutQr tree(1, 3, 4, 1);
+  LeaveOneOutQr tree(1, 3, 4, 1, 0.99);
   for (int k = 0; k < 300; ++k) {
     double* out = tree.row();
     *out++ = 1.0;
@@ -59,7 +59,7 @@ TEST_CASE("a block that the others make up entirely is left without movement") {
     for (std::uint64_t c = 1; c <= 4; ++c)
       *out++ = test::coloured(c, k) + 2.0 * test::coloured(c + 4, k);
     *out = test::coloured(20, k);
-    tree.update(0.99);
+    tree.update();
   }
   for (int i = 0; i < 3; ++i) CHECK(tree.residual_squares(i)[0] < 1e-24);
 }

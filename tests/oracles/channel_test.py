@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Brute-force channel test: writes channel_test.json.
 
-The weights depend on earlier estimates, so every row is judged by a batch least-squares fit of all
-rows before it (numpy.linalg.lstsq), and F of a block is the change of the weighted residual sum of
+The weights depend on earlier estimates, so every row is judged by a batch least-squares fit
+(numpy.linalg.lstsq) of all rows before those that waited with it, and F of a block is the change of the weighted residual sum of
 squares when the block's columns are left out: two fits, no factor, no recursion.
 Run: /usr/bin/python3 tests/oracles/channel_test.py  (numpy 1.24.2)
 """
@@ -14,8 +14,10 @@ import numpy as np
 from counter_noise import coloured, uniform
 
 M, N, LAGS, ORDER, POLES, LAM, SAMPLES = 2, 2, 4, 2, [0.9], 0.998, 700
+PATIENCE = 7  # samples after which the rows that wait are taken, once there are enough
 BLOCK = LAGS + len(POLES)
 COLUMNS = 1 + N * ORDER + M * BLOCK
+FIRST = max(LAGS, ORDER) + 1  # sample that gives the first row
 
 
 def signals():
@@ -37,9 +39,8 @@ def rows(u, e):
             for p, pole in enumerate(POLES):
                 before = s[i, p, t - 1] if t else 0.0
                 s[i, p, t] = pole * before + (1 - pole) * (u[i, t] - origin[i])
-    first = max(LAGS, ORDER) + 1
     x = []
-    for t in range(first, SAMPLES):
+    for t in range(FIRST, SAMPLES):
         row = [1.0]
         for j in range(N):
             row += [e[j, t - q] for q in range(1, ORDER + 1)]
@@ -47,7 +48,7 @@ def rows(u, e):
             row += [u[i, t - q] - origin[i] for q in range(1, LAGS + 1)]
             row += [s[i, p, t - LAGS - 1] for p in range(len(POLES))]
         x.append(row)
-    return np.array(x), e[:, first:]
+    return np.array(x), e[:, FIRST:]
 
 
 def fit(x, y):
@@ -56,34 +57,56 @@ def fit(x, y):
     return b, float(np.sum((y - x @ b) ** 2))
 
 
+def freedom_of(rows):
+    age = LAM ** np.arange(rows)
+    return np.sum(age) ** 2 / np.sum(age**2) - COLUMNS
+
+
+def enough(rows, clipped_share):
+    """Five rows a column, up to 25 where tails are heavy, or not yet known to be light."""
+    heavy = min(max((clipped_share - 0.008) / (0.02 - 0.008), 0.0), 1.0)
+    return rows >= (5.0 + 20.0 * heavy) * COLUMNS and freedom_of(rows) >= COLUMNS
+
+
 def weigh(x, y):
     """Row weights 1 / (s max(1, |r| / 3 s)), r standardised by its own uncertainty."""
     count = len(y)
     weight = np.ones(count)
     scale, scale_rows, scaled = 1.0, 0.0, False
+    clipped_share, judged = 0.02, 0.0
+    begin, waiting = 0, 0
     for k in range(count):
-        age = LAM ** ((k - 1 - np.arange(k)) / 2.0)
+        waiting += 1
+        if enough(begin, clipped_share) and waiting < PATIENCE and k + 1 < count:
+            continue
+        waiting, end = 0, k + 1
         if scaled:
-            xw = x[:k] * (age * weight[:k])[:, None] * np.sqrt(LAM)
-            yw = y[:k] * age * weight[:k] * np.sqrt(LAM)
-            b, _ = fit(xw, yw)
-            row = x[k] / scale
+            age = LAM ** ((begin - 1 - np.arange(begin)) / 2.0)
+            xw = x[:begin] * (age * weight[:begin])[:, None]
+            b, _ = fit(xw, y[:begin] * age * weight[:begin])
             norms = np.linalg.norm(xw, axis=0)
-            h = np.linalg.lstsq((xw / norms).T, row / norms, rcond=None)[0]
-            error = abs(y[k] / scale - row @ b) / np.sqrt(1 + h @ h)
-            clipped = min(error, 3.0)
-            weight[k] = (clipped / error if error > clipped else 1.0) / scale
-            scale_rows = min(scale_rows + 1, 300.0)
-            scale *= np.sqrt(1 + (clipped**2 - 1) / scale_rows)
-        elif k + 1 >= 2 * COLUMNS:
-            now = LAM ** ((k - np.arange(k + 1)) / 2.0)
-            _, sse = fit(x[:k + 1] * now[:, None], y[:k + 1] * now)
-            w1, w2 = np.sum(now**2), np.sum(now**4)
-            freedom = w1 * w1 / w2 - COLUMNS
-            scale = np.sqrt(sse / w1 * (freedom + COLUMNS) / max(freedom, 1.0))
+            for row in range(begin, end):
+                h = np.linalg.lstsq((xw / norms).T, x[row] / scale / norms, rcond=None)[0]
+                new = h @ h > 1.0  # says more of a new direction than of the noise
+                error = abs(y[row] - x[row] @ b) / scale / np.sqrt(1 + h @ h)
+                clipped = min(error, 3.0)
+                weight[row] = (clipped / error if error > clipped else 1.0) / scale
+                judged += 1
+                clipped_share += ((error > 3.0 and not new) - clipped_share) / min(200 + judged,
+                                                                                   2000)
+                if new:
+                    continue
+                scale_rows = min(scale_rows + 1, 300.0)
+                scale *= np.sqrt(1 + (clipped**2 - 1) / scale_rows)
+        elif end >= 2 * COLUMNS:
+            now = LAM ** ((k - np.arange(end)) / 2.0)
+            _, sse = fit(x[:end] * now[:, None], y[:end] * now)
+            freedom = freedom_of(end)
+            scale = np.sqrt(sse / np.sum(now**2) * (freedom + COLUMNS) / max(freedom, 1.0))
             scale_rows = min(max(freedom, 1.0), 300.0)
-            weight[:k + 1] = 1.0 / scale
+            weight[:end] = 1.0 / scale
             scaled = True
+        begin = end
     return weight
 
 
@@ -108,7 +131,7 @@ def main():
             line.append((without - full) / (BLOCK * variance) * w1 / w2)
         statistics.append(line)
     out = dict(numpy=np.__version__, inputs=M, cvs=N, fir_lags=LAGS, residual_order=ORDER,
-               tail_poles=POLES, samples=SAMPLES, effective_rows=w1 * w1 / w2,
+               tail_poles=POLES, samples=SAMPLES, patience=PATIENCE, effective_rows=w1 * w1 / w2,
                statistics=statistics, **{"lambda": LAM})
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "channel_test.json")
     with open(path, "w") as file:
