@@ -67,7 +67,7 @@ struct Monitor::State {
         const AlarmSettings& alarm_settings)
       : counts(signal_counts),
         model(spec),
-        has_prediction(predictions),
+        may_predict(predictions),
         settings(derive_settings(spec, model, monitor_settings, alarm_settings)),
         inputs(Eigen::VectorXd::Zero(signal_counts.inputs())),
         held_inputs(Eigen::VectorXd::Zero(signal_counts.inputs())),
@@ -93,8 +93,7 @@ struct Monitor::State {
       motions.emplace_back(settings.remembered / 4.0);
       unknown_runs.push_back(0);
     }
-    simulates =
-        std::find(has_prediction.begin(), has_prediction.end(), false) != has_prediction.end();
+    has_model = std::find(acts.begin(), acts.end(), true) != acts.end();
   }
 
   /// One CV: whether its data serve, and its alarms.
@@ -108,6 +107,7 @@ struct Monitor::State {
     double implausible_share = 0.0;
     double spike_share = 0.0;
     std::uint64_t spikes = 0;
+    bool predicted = false;  // by what came with the frames; else simulated
     bool evaluated = false;  // in this sample
     bool judged = false;     // there is evidence from the present memory
   };
@@ -119,6 +119,7 @@ struct Monitor::State {
 
   void take_frame(const Frame& frame);
   void pass_gap(std::int64_t missing);
+  void follow_predictions();
   void read_inputs(const Frame& frame);
   void read_residuals(const Frame& frame);
   void distrust_simulation(int input);
@@ -138,9 +139,10 @@ struct Monitor::State {
 
   SignalCounts counts;
   LinearModel model;
-  std::vector<bool> has_prediction;
+  std::vector<bool> may_predict;
   DerivedSettings settings;
-  bool simulates = false;
+  bool has_model = false;
+  bool simulates = true;  // some CV
   bool model_started = false;
   bool first = true;
   std::int64_t last_interval = 0;   // pushed
@@ -172,6 +174,22 @@ struct Monitor::State {
   MonitorCounters counters;
 };
 
+// Where the control system says what its model predicts, no simulation of ours is asked.
+void Monitor::State::follow_predictions() {
+  simulates = false;
+  for (int j = 0; j < counts.cv; ++j) {
+    Cv& cv = of(j);
+    if (!cv.predicted && screen.predicted(j)) {
+      cv.predicted = true;
+      cv.settling = 0;
+      if (samples > 0) test.start_afresh(j, 0);
+    }
+    // Without any model only the control system can predict.
+    simulates =
+        simulates || (!cv.predicted && (has_model || !may_predict[static_cast<std::size_t>(j)]));
+  }
+}
+
 void Monitor::State::read_inputs(const Frame& frame) {
   for (int i = 0; i < counts.inputs(); ++i) {
     const bool is_mv = i < counts.mv;
@@ -194,16 +212,15 @@ void Monitor::State::read_inputs(const Frame& frame) {
 // forgotten that.
 void Monitor::State::distrust_simulation(int input) {
   for (int j = 0; j < counts.cv; ++j)
-    if (!has_prediction[static_cast<std::size_t>(j)] && acts[index(j, input)])
-      of(j).settling = settings.settling_samples;
+    if (!of(j).predicted && acts[index(j, input)]) of(j).settling = settings.settling_samples;
 }
 
 void Monitor::State::read_residuals(const Frame& frame) {
   const SignalBlock& measured = frame[SignalKind::kCv];
   const SignalBlock& predicted = frame[SignalKind::kPrediction];
   for (int j = 0; j < counts.cv; ++j) {
-    const bool given = has_prediction[static_cast<std::size_t>(j)];
     Cv& cv = of(j);
+    const bool given = cv.predicted;
     const auto at = static_cast<std::size_t>(j);
     const bool implausible = measured.quality[at] == Quality::kImplausible ||
                              (given && predicted.quality[at] == Quality::kImplausible);
@@ -295,9 +312,9 @@ void Monitor::State::evaluate() {
 }
 
 Monitor::Monitor(const ModelSpec& model, const SignalCounts& counts,
-                 const std::vector<bool>& has_prediction, const MonitorSettings& settings,
+                 const std::vector<bool>& may_predict, const MonitorSettings& settings,
                  const AlarmSettings& alarms)
-    : state_(std::make_unique<State>(model, counts, has_prediction, settings, alarms)) {}
+    : state_(std::make_unique<State>(model, counts, may_predict, settings, alarms)) {}
 Monitor::Monitor(Monitor&&) noexcept = default;
 Monitor& Monitor::operator=(Monitor&&) noexcept = default;
 Monitor::~Monitor() = default;
@@ -321,6 +338,7 @@ void Monitor::State::take_frame(const Frame& frame) {
   const std::int64_t missing = samples == 0 ? 0 : frame.interval - taken_interval - 1;
   taken_interval = frame.interval;
   if (missing > 0) pass_gap(missing);
+  if (simulates) follow_predictions();
   // Anew with each frame: what disturbs in the model keeps to the clock of the data over gaps.
   if (simulates) model.set_time_s(1e-9 * static_cast<double>(frame.source_time_ns));
   read_inputs(frame);

@@ -34,11 +34,10 @@ struct MonitorCounters {
 /// Deterministic: same frames, same bytes. No allocation in `push` after construction.
 class Monitor {
  public:
-  /// `has_prediction[j]`: CV j's model prediction comes with the frame; otherwise it is simulated
-  /// from `model`.
-  Monitor(const ModelSpec& model, const SignalCounts& counts,
-          const std::vector<bool>& has_prediction, const MonitorSettings& settings,
-          const AlarmSettings& alarms);
+  /// `may_predict[j]`: CV j's model prediction may come with the frames. As long as none came, it
+  /// is simulated from `model`; with the first one the CV begins anew.
+  Monitor(const ModelSpec& model, const SignalCounts& counts, const std::vector<bool>& may_predict,
+          const MonitorSettings& settings, const AlarmSettings& alarms);
   Monitor(Monitor&&) noexcept;
   Monitor& operator=(Monitor&&) noexcept;
   ~Monitor();

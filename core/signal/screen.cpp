@@ -62,14 +62,13 @@ bool Screen::Repeats::at_end() const {
   return (last == low && at_low >= kEndHits) || (last == high && at_high >= kEndHits);
 }
 
-Screen::Screen(const SignalCounts& counts, std::vector<bool> has_prediction, std::vector<bool> acts,
+Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::vector<bool> acts,
                int dead_time)
     : counts_(counts),
-      has_prediction_(std::move(has_prediction)),
+      may_predict_(std::move(may_predict)),
+      predicted_(static_cast<std::size_t>(counts.cv), false),
       acts_(std::move(acts)),
       dead_time_(dead_time),
-      inputs_matter_(std::find(has_prediction_.begin(), has_prediction_.end(), false) !=
-                     has_prediction_.end()),
       since_rest_(static_cast<std::size_t>(counts.inputs()), 0),
       ring_(kDelay + 1, Frame(counts)),
       jumps_(static_cast<std::size_t>(counts.cv)) {
@@ -89,6 +88,7 @@ const Frame* Screen::push(const Frame& frame) {
       if (block.usable(i))
         repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)].take(block.values(i));
   }
+  if (inputs_matter_) follow_predictions(frame[SignalKind::kPrediction]);
   follow_inputs();
   if (inputs_matter_) {
     screen_repeats(SignalKind::kMv);
@@ -99,6 +99,16 @@ const Frame* Screen::push(const Frame& frame) {
   if (held_ > kDelay)
     for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
   return held_ > kDelay ? &ago(kDelay) : nullptr;
+}
+
+void Screen::follow_predictions(const SignalBlock& predictions) {
+  for (int j = 0; j < counts_.cv; ++j) {
+    const auto s = static_cast<std::size_t>(j);
+    if (predicted_[s] || !may_predict_[s] || !predictions.usable(j)) continue;
+    predicted_[s] = true;
+    jumps_[s] = Jumps{};  // from now on of the residual
+  }
+  inputs_matter_ = std::find(predicted_.begin(), predicted_.end(), false) != predicted_.end();
 }
 
 void Screen::follow_inputs() {
@@ -149,7 +159,7 @@ bool Screen::level(int cv, int frames, double& value) {
   const Frame& frame = ago(frames);
   if (!frame[SignalKind::kCv].usable(cv)) return false;
   value = frame[SignalKind::kCv].values(cv);
-  if (!has_prediction_[static_cast<std::size_t>(cv)]) return true;
+  if (!predicted(cv)) return true;
   if (!frame[SignalKind::kPrediction].usable(cv)) return false;
   value -= frame[SignalKind::kPrediction].values(cv);
   return true;

@@ -32,8 +32,9 @@ class Screen {
   /// Returns that make a signal a coarse one.
   static constexpr int kReturns = 3;
 
-  /// `acts[input * cvs + cv]`: the model has that channel; `dead_time`: its longest, samples.
-  Screen(const SignalCounts& counts, std::vector<bool> has_prediction, std::vector<bool> acts,
+  /// `may_predict[j]`: a prediction of CV j may come with the frames. `acts[input * cvs + cv]`: the
+  /// model has that channel; `dead_time`: its longest, samples.
+  Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::vector<bool> acts,
          int dead_time);
 
   /// Takes a frame; the one `kDelay` frames ago with its qualities as found, null for the first
@@ -41,6 +42,8 @@ class Screen {
   [[nodiscard]] const Frame* push(const Frame& frame);
 
   [[nodiscard]] const ScreenCounters& counters() const { return counters_; }
+  /// Whether a prediction of the CV has come at all.
+  [[nodiscard]] bool predicted(int cv) const { return predicted_[static_cast<std::size_t>(cv)]; }
   /// Spikes of one CV so far.
   [[nodiscard]] std::uint64_t spikes(int cv) const {
     return jumps_[static_cast<std::size_t>(cv)].spikes;
@@ -72,6 +75,7 @@ class Screen {
   [[nodiscard]] Frame& ago(int frames) {
     return ring_[static_cast<std::size_t>((position_ + kDelay + 1 - frames) % (kDelay + 1))];
   }
+  void follow_predictions(const SignalBlock& predictions);
   void follow_inputs();
   [[nodiscard]] bool may_rest(SignalKind kind, int index) const;
   void screen_repeats(SignalKind kind);
@@ -80,10 +84,11 @@ class Screen {
   [[nodiscard]] bool level(int cv, int frames, double& value);
 
   SignalCounts counts_;
-  std::vector<bool> has_prediction_;
+  std::vector<bool> may_predict_;
+  std::vector<bool> predicted_;
   std::vector<bool> acts_;
   int dead_time_;
-  bool inputs_matter_ = false;
+  bool inputs_matter_ = true;
   bool all_mvs_rest_ = true;
   std::vector<int> since_rest_;  // per input, samples
   std::vector<Frame> ring_;

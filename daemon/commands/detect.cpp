@@ -25,7 +25,7 @@ struct DetectOptions {
 };
 
 DetectReport run(const config::UnitConfig& unit, io::FrameSource& source, Journal* journal) {
-  UnitMonitor monitor(unit, source.has_prediction());
+  UnitMonitor monitor(unit);
   DetectReport report;
   report.unit = unit.unit;
   Frame frame(unit.counts());

@@ -148,6 +148,40 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a prediction that never comes is simulated, as where none is expected") {
+  // `blind(k)`: no prediction comes at k.
+  Experiment experiment;
+  experiment.gain_ratio = 0.75;
+  const auto p_values = [&](Monitor monitor, auto blind) {
+    std::vector<double> values;
+    experiment.run(2000, [&](const Frame& frame) {
+      Frame seen = frame;
+      SignalBlock& prediction = seen[SignalKind::kPrediction];
+      if (blind(frame.interval)) {
+        prediction.values.setConstant(std::numeric_limits<double>::quiet_NaN());
+        std::fill(prediction.quality.begin(), prediction.quality.end(), Quality::kBad);
+      }
+      monitor.push(seen);
+      for (int i = 0; i < 2; ++i) values.push_back(monitor.channel(0, i).p_value);
+    });
+    return values;
+  };
+  const auto always = [](std::int64_t) { return true; };
+  const auto monitor_of = [&](bool expected) {
+    return Monitor(experiment.model, experiment.counts, {expected, expected}, {}, {});
+  };
+  const std::vector<double> simulated = p_values(monitor_of(true), always);
+  CHECK(simulated == p_values(monitor_of(false), always));
+  CHECK(simulated.back() < 1e-9);
+
+  // From the first prediction on it is what counts, and what was simulated before is forgotten:
+  // the evidence is that of the samples since then.
+  const std::vector<double> late =
+      p_values(monitor_of(true), [](std::int64_t k) { return k < 1000; });
+  CHECK(late[2 * 1010] == 1.0);  // too few samples again
+  CHECK(late.back() < 1e-9);
+}
+
 TEST_CASE("an error within the materiality limits is a mismatch but no alarm") {
   Experiment experiment;
   experiment.gain_ratio = 0.97;
