@@ -8,25 +8,7 @@
 namespace mpm {
 namespace {
 
-struct Kernels {
-  decltype(&kernels_base::rotate_rows) rotate_rows;
-  decltype(&kernels_base::eliminate_row) eliminate_row;
-  decltype(&kernels_base::blend_row) blend_row;
-  decltype(&kernels_base::project_row) project_row;
-  decltype(&kernels_base::eliminate_heads) eliminate_heads;
-  decltype(&kernels_base::eliminate_block) eliminate_block;
-  decltype(&kernels_base::project_heads) project_heads;
-  decltype(&kernels_base::project_block) project_block;
-  decltype(&kernels_base::inner_products) inner_products;
-};
-
-#define MPM_KERNELS(set)                                                                          \
-  Kernels {                                                                                       \
-    set::rotate_rows, set::eliminate_row, set::blend_row, set::project_row, set::eliminate_heads, \
-        set::eliminate_block, set::project_heads, set::project_block, set::inner_products         \
-  }
-
-Kernels pick_kernels() {
+KernelSet pick_kernels() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
@@ -39,7 +21,7 @@ Kernels pick_kernels() {
   return MPM_KERNELS(kernels_base);
 }
 
-const Kernels kKernels = pick_kernels();
+const KernelSet kKernels = pick_kernels();
 
 }  // namespace
 

@@ -25,3 +25,27 @@
 MPM_DECLARE_KERNELS(kernels_base)
 MPM_DECLARE_KERNELS(kernels_v3)
 MPM_DECLARE_KERNELS(kernels_v4)
+
+namespace mpm {
+
+/// All of one instruction set.
+struct KernelSet {
+  decltype(&kernels_base::rotate_rows) rotate_rows;
+  decltype(&kernels_base::eliminate_row) eliminate_row;
+  decltype(&kernels_base::blend_row) blend_row;
+  decltype(&kernels_base::project_row) project_row;
+  decltype(&kernels_base::eliminate_heads) eliminate_heads;
+  decltype(&kernels_base::eliminate_block) eliminate_block;
+  decltype(&kernels_base::project_heads) project_heads;
+  decltype(&kernels_base::project_block) project_block;
+  decltype(&kernels_base::inner_products) inner_products;
+};
+
+#define MPM_KERNELS(set)                                                                   \
+  ::mpm::KernelSet {                                                                       \
+    ::mpm::set::rotate_rows, ::mpm::set::eliminate_row, ::mpm::set::blend_row,             \
+        ::mpm::set::project_row, ::mpm::set::eliminate_heads, ::mpm::set::eliminate_block, \
+        ::mpm::set::project_heads, ::mpm::set::project_block, ::mpm::set::inner_products   \
+  }
+
+}  // namespace mpm

@@ -179,23 +179,6 @@ TEST_CASE("information that appears late replaces what rounding left") {
 }
 
 // All long loops of one instruction set, on the same numbers; everything that they leave.
-#define MPM_RUN(set)                                                                       \
-  run({set::rotate_rows, set::eliminate_row, set::blend_row, set::project_row,             \
-       set::eliminate_heads, set::eliminate_block, set::project_heads, set::project_block, \
-       set::inner_products})
-
-struct KernelSet {
-  decltype(&kernels_base::rotate_rows) rotate_rows;
-  decltype(&kernels_base::eliminate_row) eliminate_row;
-  decltype(&kernels_base::blend_row) blend_row;
-  decltype(&kernels_base::project_row) project_row;
-  decltype(&kernels_base::eliminate_heads) eliminate_heads;
-  decltype(&kernels_base::eliminate_block) eliminate_block;
-  decltype(&kernels_base::project_heads) project_heads;
-  decltype(&kernels_base::project_block) project_block;
-  decltype(&kernels_base::inner_products) inner_products;
-};
-
 std::vector<double> run(const KernelSet& kernels) {
   constexpr std::size_t kWidth = 8 + 40;  // a head and whole granules behind it
   constexpr int kRows = 37;
@@ -241,13 +224,13 @@ std::vector<double> run(const KernelSet& kernels) {
 }
 
 TEST_CASE("every instruction set gives the same bits") {
-  const std::vector<double> base = MPM_RUN(kernels_base);
+  const std::vector<double> base = run(MPM_KERNELS(kernels_base));
   CHECK(std::all_of(base.begin(), base.end(), [](double value) { return !std::isnan(value); }));
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    CHECK(base == MPM_RUN(kernels_v3));
+    CHECK(base == run(MPM_KERNELS(kernels_v3)));
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
-    CHECK(base == MPM_RUN(kernels_v4));
+    CHECK(base == run(MPM_KERNELS(kernels_v4)));
 #endif
 }
 
