@@ -22,6 +22,10 @@ constexpr double kPriorRows = 200.0;
 constexpr double kRecentRows = 100.0;
 constexpr double kLastingRows = 2000.0;
 
+// While there are fewer rows per column each one teaches the next what to expect: their prediction
+// errors would have too much in common if they were taken together.
+constexpr int kTogether = 10;
+
 // Weight of a row that waits for its own.
 constexpr double kWaiting = -1.0;
 
@@ -92,9 +96,8 @@ void ChannelTest::skip(std::int64_t missing) {
   }
 }
 
-// While there are few rows each one teaches the next what to expect.
 int ChannelTest::patience(int cv) const {
-  return memories_[at(cv, 0)].ready() ? rows_.capacity() : 1;
+  return memories_[at(cv, 0)].rows >= kTogether * shape_.columns() ? rows_.capacity() : 1;
 }
 
 void ChannelTest::fold(int cv) {
@@ -123,14 +126,20 @@ void ChannelTest::take(int cv, int oldest, int newest) {
     for (int c = 0; c <= columns; ++c) to[c] = from[c] * weight;
   };
   if (response.scaled) {
-    for (int k = 0; k < count; ++k) copy_weighed(k, 1.0);
+    const double before = response.scale;  // rounding noise is told by the size of what was taken
+    for (int k = 0; k < count; ++k) copy_weighed(k, 1.0 / before);
     memories_[at(cv, 0)].factor.preview_batch(weighed_, count, previews_.data());
+    for (int k = 0; k < count; ++k) {
+      previews_[static_cast<std::size_t>(k)].error *= before;
+      previews_[static_cast<std::size_t>(k)].leverage *= before * before;
+    }
   }
   int k = 0;
   for (int age = oldest; age >= newest; --age) {
     scale_windows_[index(cv)].set(age, response.scale);
     if (k == count || ages_[static_cast<std::size_t>(k)] != age) continue;
-    weights.set(age, response.scaled ? weigh(cv, previews_[static_cast<std::size_t>(k)]) : 1.0);
+    weights.set(
+        age, response.scaled ? weigh(cv, previews_[static_cast<std::size_t>(k)], count > 1) : 1.0);
     ++k;
   }
   for (int m = 0; m < memory_count(); ++m) {
@@ -143,14 +152,14 @@ void ChannelTest::take(int cv, int oldest, int newest) {
 }
 
 // Weight of the row of which this is known before it is taken; follows the noise level.
-double ChannelTest::weigh(int cv, const GivensQr::Preview& preview) {
+double ChannelTest::weigh(int cv, const GivensQr::Preview& preview, bool together) {
   Response& response = responses_[index(cv)];
   double weight = 1.0 / response.scale;
   const double leverage = preview.leverage * weight * weight;
   const double error = std::abs(preview.error) * weight / std::sqrt(1.0 + leverage);  // in s.d.
   const double clipped = std::min(error, kClip);
   if (error > clipped) weight *= clipped / error;
-  const bool new_direction = leverage > kNewDirection;
+  const bool new_direction = together && leverage > kNewDirection;
   response.square_rows += 1.0;
   response.clipped_share +=
       ((error > kClip && !new_direction ? 1.0 : 0.0) - response.clipped_share) /

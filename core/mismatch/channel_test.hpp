@@ -36,9 +36,9 @@ struct MemoryLength {
 /// one that sees sudden ones sooner. A CV can be started afresh from any sample that is still
 /// remembered.
 ///
-/// Once a CV's memory is ready its rows wait for each other and are taken together (`fold`), which
-/// loads a factor once for all of them. The prediction that weighs a row is that of the rows before
-/// the first one that waits with it.
+/// Once a CV has had enough rows, new ones wait for each other and are taken together (`fold`),
+/// which loads a factor once for all of them. The prediction that weighs a row is that of the rows
+/// before the first one that waits with it.
 class ChannelTest {
  public:
   /// `memories`: the first one is the longest; its prediction errors weigh the rows.
@@ -110,7 +110,7 @@ class ChannelTest {
   }
   [[nodiscard]] int patience(int cv) const;
   void take(int cv, int oldest, int newest);
-  double weigh(int cv, const GivensQr::Preview& preview);
+  double weigh(int cv, const GivensQr::Preview& preview, bool together);
   void begin_scale(int cv);
   void slide(int cv, int memory);
   void refill(int cv, int memory, int samples);

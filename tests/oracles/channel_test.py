@@ -14,7 +14,7 @@ import numpy as np
 from counter_noise import coloured, uniform
 
 M, N, LAGS, ORDER, POLES, LAM, SAMPLES = 2, 2, 4, 2, [0.9], 0.998, 700
-PATIENCE = 7  # samples after which the rows that wait are taken, once there are enough
+PATIENCE, TOGETHER = 7, 10  # samples that rows wait, once there are so many per column
 BLOCK = LAGS + len(POLES)
 COLUMNS = 1 + N * ORDER + M * BLOCK
 FIRST = max(LAGS, ORDER) + 1  # sample that gives the first row
@@ -62,22 +62,15 @@ def freedom_of(rows):
     return np.sum(age) ** 2 / np.sum(age**2) - COLUMNS
 
 
-def enough(rows, clipped_share):
-    """Five rows a column, up to 25 where tails are heavy, or not yet known to be light."""
-    heavy = min(max((clipped_share - 0.008) / (0.02 - 0.008), 0.0), 1.0)
-    return rows >= (5.0 + 20.0 * heavy) * COLUMNS and freedom_of(rows) >= COLUMNS
-
-
 def weigh(x, y):
     """Row weights 1 / (s max(1, |r| / 3 s)), r standardised by its own uncertainty."""
     count = len(y)
     weight = np.ones(count)
     scale, scale_rows, scaled = 1.0, 0.0, False
-    clipped_share, judged = 0.02, 0.0
     begin, waiting = 0, 0
     for k in range(count):
         waiting += 1
-        if enough(begin, clipped_share) and waiting < PATIENCE and k + 1 < count:
+        if begin >= TOGETHER * COLUMNS and waiting < PATIENCE and k + 1 < count:
             continue
         waiting, end = 0, k + 1
         if scaled:
@@ -87,13 +80,11 @@ def weigh(x, y):
             norms = np.linalg.norm(xw, axis=0)
             for row in range(begin, end):
                 h = np.linalg.lstsq((xw / norms).T, x[row] / scale / norms, rcond=None)[0]
-                new = h @ h > 1.0  # says more of a new direction than of the noise
+                # Of rows taken together: says more of a new direction than of the noise.
+                new = h @ h > 1.0 and end - begin > 1
                 error = abs(y[row] - x[row] @ b) / scale / np.sqrt(1 + h @ h)
                 clipped = min(error, 3.0)
                 weight[row] = (clipped / error if error > clipped else 1.0) / scale
-                judged += 1
-                clipped_share += ((error > 3.0 and not new) - clipped_share) / min(200 + judged,
-                                                                                   2000)
                 if new:
                     continue
                 scale_rows = min(scale_rows + 1, 300.0)
