@@ -68,7 +68,15 @@ void tell_notices(LineFrames& lines) {
 }
 
 int publish_lines(const PublishOptions& options, const config::UnitConfig& unit, StopSignal& stop) {
-  LineFrames lines(std::make_unique<StandardInput>(stop), "stdin", format_of(options.format), unit);
+  std::optional<LineFrames> first;
+  try {
+    first.emplace(std::make_unique<StandardInput>(stop), "stdin", format_of(options.format), unit);
+  } catch (const config::InputError&) {
+    if (!stop.received()) throw;
+    std::cerr << "mpm publish: stopped before the first line\n";
+    return 0;
+  }
+  LineFrames& lines = *first;
   idl::DomainOptions domain = domain_options(unit.dds);
   domain.domain = options.domain.value_or(domain.domain);
   domain.partition = options.partition.value_or(domain.partition);
@@ -86,8 +94,9 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
   Frame frame;
   while (!stop.received()) {
     try {
-      if (!lines.next(frame)) break;
+      if (!lines.next(frame) || stop.received()) break;  // what a stop cuts off is no line
     } catch (const config::InputError& error) {
+      if (stop.received()) break;
       if (options.on_error == "stop") throw;
       std::cerr << error.what() << '\n';
       ++skipped;

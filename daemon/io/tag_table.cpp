@@ -52,7 +52,7 @@ std::string TagTable::problem() const {
   return "the file does not hold " + missing + others;
 }
 
-std::vector<std::string> TagTable::notices() const {
+std::vector<std::string> TagTable::notices(const std::string& without_prediction) const {
   std::vector<std::string> notices;
   if (!ignored_.empty())
     notices.push_back("ignored, since the unit file does not name them: " + config::join(ignored_));
@@ -60,8 +60,7 @@ std::vector<std::string> TagTable::notices() const {
   for (const auto& cv : unit_.cv)
     if (!cv.prediction.empty() && !seen(cv.prediction)) simulated.push_back(cv.prediction);
   if (!simulated.empty())
-    notices.push_back("not in the file, so the unit file's model simulates instead: " +
-                      config::join(simulated));
+    notices.push_back("not in the file, " + without_prediction + ": " + config::join(simulated));
   for (const auto& aux : unit_.aux)
     if (!seen(aux.tag)) absent.push_back(aux.tag);
   if (!absent.empty())

@@ -30,8 +30,10 @@ class TagTable {
   /// What is wrong with the set of tags seen; empty where it will do. Missing predictions are fine
   /// if the unit has a model.
   [[nodiscard]] std::string problem() const;
-  /// What the user should know: tags ignored, predictions that will be simulated.
-  [[nodiscard]] std::vector<std::string> notices() const;
+  /// What the user should know: tags ignored, predictions that the file does not hold and what
+  /// becomes of them.
+  [[nodiscard]] std::vector<std::string> notices(
+      const std::string& without_prediction = "so the unit file's model simulates instead") const;
   [[nodiscard]] std::vector<bool> has_prediction() const;
 
  private:

@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <pty.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -294,6 +296,79 @@ TEST_CASE("mpm publish names the line that is wrong, and stops or goes on") {
   CHECK(lines_of(corner.err()).size() == 3);
   CHECK(publish("time,u1\n0,1\n", "stop") == 3);
   CHECK(publish("", "stop") == 3);
+}
+
+TEST_CASE("no line of JSON ends mpm publish --on-error skip, and each is told with its place") {
+  const Corner corner("publish_json");
+  const std::string deep(100'000, '['), undeep(100'000, ']');
+  write_file(corner.folder.file("lines"),
+             "{\"time\":1,\"u1\":1e400}\n"
+             "{\"time\":2, \"u1\" : \"x\"}\n"
+             "{\"time\":3,\"u1\":1,\"u1.quality\":\"so so\"}\n"
+             "{\"time\":4,\"u1\":" +
+                 deep + undeep +
+                 "}\n"
+                 "{\"u2\":1,\"time\":\"now\"}\n"
+                 "{\"time\":5,\"interval\":1.5}\n"
+                 "{\"time\":6,\"u1\":2}\n");
+  const auto publish = [&](const std::string& on_error) {
+    return corner.mpm({"publish", "--config", corner.folder.file("toy.yaml"), "--wait-readers", "0",
+                       "--on-error", on_error},
+                      corner.folder.file("lines"));
+  };
+  CHECK(publish("stop") == 3);
+  CHECK(corner.err() == "stdin:1:16: error: 'u1' is out of range\n");
+  CHECK(publish("skip") == 0);
+  const std::vector<std::string> said = lines_of(corner.err());
+  REQUIRE(said.size() == 7);
+  CHECK(said[1] == "stdin:2:19: error: 'u1': \"x\" is no number");
+  CHECK(said[2].find("stdin:3:31: error: 'u1.quality': \"so so\" is no quality") == 0);
+  CHECK(said[3] == "stdin:4:16: error: 'u1': [...] is no number");
+  CHECK(said[4].find("stdin:5:16: error: \"time\": 'now'") == 0);
+  CHECK(said[5] == "stdin:6:22: error: \"interval\": 1.5 is no interval number");
+  CHECK(said[6] == "mpm publish: 1 lines published, 6 skipped");
+}
+
+/// True once the process asks for the signals that stop it instead of ending by them.
+bool blocks_interrupts(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string word; status >> word;)
+    if (word == "SigBlk:" && status >> word)
+      return (std::stoull(word, nullptr, 16) >> (SIGINT - 1) & 1U) != 0;
+  return false;
+}
+
+TEST_CASE("mpm publish that is stopped before its first line has done nothing wrong") {
+  const Corner corner("publish_idle");
+  const std::string pipe = corner.folder.file("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  const int silent = open(pipe.c_str(), O_RDWR);  // so that no end comes
+  REQUIRE(silent >= 0);
+  for (const std::string begun : {"", "{\"time\":1,"}) {
+    Process publish(corner.on_bus({"mpm", "publish", "--config", corner.folder.file("toy.yaml")}),
+                    corner.folder.file("out"), corner.folder.file("err"), {}, pipe);
+    REQUIRE(write(silent, begun.data(), begun.size()) == static_cast<ssize_t>(begun.size()));
+    REQUIRE(idl::eventually([&] { return blocks_interrupts(publish.pid()); }, kPatience));
+    publish.send(SIGINT);
+    CHECK(publish.wait(kPatience) == 0);
+    INFO(corner.err());
+    CHECK(corner.err().find("error") == std::string::npos);
+  }
+  close(silent);
+}
+
+TEST_CASE("mpm publish takes a CSV without predictions and says what becomes of them") {
+  const Corner corner("publish_bare");
+  const std::string unit = corner.folder.file("predicted.yaml");
+  std::string text = unit_yaml("toy");
+  const std::string cv = "{tag: y1, ";
+  text.replace(text.find(cv), cv.size(), cv + "prediction: yhat1, ");
+  write_file(unit, text);
+  write_file(corner.folder.file("lines"), "time,u1,u2,y1\n0,1,2,3\n");
+  CHECK(corner.mpm({"publish", "--config", unit, "--wait-readers", "0"},
+                   corner.folder.file("lines")) == 0);
+  CHECK(corner.err().find("so bad values go out") != std::string::npos);
+  CHECK(lines_of(corner.err()).back() == "mpm publish: 1 lines published");
 }
 
 TEST_CASE(
