@@ -350,5 +350,29 @@ TEST_CASE("The programs: exit codes, files, messages") {
   CHECK(mpm({"info", path("none.mcap")}) == 3);
 }
 
+TEST_CASE("mpm recover never writes over the file that it mends") {
+  Bench bench;
+  const std::string file = bench.folder.file("torn.mcap");
+  recording::McapRecording writer(file, bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 30)) writer.write(frame);
+  writer.finish();
+  const std::string torn = read_file(file).substr(0, read_file(file).size() - 50);
+  write_file(file, torn);
+  std::filesystem::create_symlink(file, bench.folder.file("link.mcap"));
+  std::filesystem::create_hard_link(file, bench.folder.file("twin.mcap"));
+  const std::string other_way =
+      bench.folder.file("../") +
+      std::filesystem::path(bench.folder.file("x")).parent_path().filename().string() +
+      "/torn.mcap";
+  for (const std::string& output :
+       {file, bench.folder.file("link.mcap"), bench.folder.file("twin.mcap"), other_way}) {
+    CAPTURE(output);
+    CHECK(run({"mpm", "recover", file, "--output", output}, bench.folder.file("out"),
+              bench.folder.file("err")) == 3);
+    CHECK(bench.text("err") == output + ": error: is the file that is read\n");
+    CHECK(read_file(file) == torn);
+  }
+}
+
 }  // namespace
 }  // namespace mpm::test
