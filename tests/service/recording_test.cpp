@@ -120,6 +120,30 @@ TEST_CASE("the quota takes the oldest of our files and no other") {
   CHECK(names_in(folder.file("")) == expected);
 }
 
+TEST_CASE("numbers go on behind those of earlier runs, which the quota counts and takes first") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"q-0002.mcap", "q-0009.mcap", "q-10000.mcap"})
+    write_bytes(folder.file(name), 300);
+  const std::vector<std::string> others = {"mpm-20200101T000000Z-0001.mcap",
+                                           "q-001.mcap",
+                                           "q-0001.mcap.bak",
+                                           "q-0001x.mcap",
+                                           "q.mcap",
+                                           "qq-0001.mcap"};
+  for (const std::string& name : others) write_bytes(folder.file(name), 1000);
+  RecordingFiles files(folder.file("q.mcap"), true, 1000, kStart);
+  files.make_room(300);  // 900 + 300 to come
+  CHECK(files.next() == folder.file("q-10001.mcap"));
+  CHECK(files.deleted() == 1);
+  CHECK_FALSE(std::filesystem::exists(folder.file("q-0002.mcap")));
+  write_bytes(folder.file("q-10002.mcap"), 1);  // by somebody else in the meantime
+  CHECK(files.next() == folder.file("q-10003.mcap"));
+  files.make_room(800);
+  CHECK_FALSE(std::filesystem::exists(folder.file("q-0009.mcap")));
+  CHECK(std::filesystem::exists(folder.file("q-10000.mcap")));  // the newest stays
+  for (const std::string& name : others) CHECK(std::filesystem::exists(folder.file(name)));
+}
+
 TEST_CASE("split files are whole by themselves and lose nothing between them") {
   const test::TemporaryFolder folder;
   RecordingOptions options;
