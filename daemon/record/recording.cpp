@@ -50,6 +50,8 @@ void Recording::open(std::int64_t now_ns) {
   path_ = files_.next();
   writer_.emplace(path_, options_.file);
   opened_ns_ = now_ns;
+  chunks_seen_ = 0;
+  saved_ = totals_.samples;
   channels_.clear();
   schemas_.clear();
   ++totals_.files;
@@ -84,6 +86,9 @@ void Recording::write(const RecordedSample& sample) {
     last_[{sample.topic, idl::leading_texts(sample.sample.cdr, keys)}] = sample;
   put(sample);
   ++totals_.samples;
+  if (writer_->chunks() == chunks_seen_) return;
+  chunks_seen_ = writer_->chunks();
+  saved_ = totals_.samples - (writer_->has_open_chunk() ? 1 : 0);
 }
 
 void Recording::put(const RecordedSample& sample) {
@@ -136,6 +141,10 @@ void Recording::tick(std::int64_t now_ns) {
 
 void Recording::finish() {
   if (writer_) close();
+}
+
+std::uint64_t Recording::unsaved() const {
+  return writer_ && writer_->has_open_chunk() ? totals_.samples - saved_ : 0;
 }
 
 RecordingTotals Recording::totals() const {

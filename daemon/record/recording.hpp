@@ -59,6 +59,8 @@ class Recording {
   void finish();
 
   [[nodiscard]] RecordingTotals totals() const;
+  /// Of the samples, those in the open chunk: lost if the disk takes no more.
+  [[nodiscard]] std::uint64_t unsaved() const;
   /// The file that is being written.
   [[nodiscard]] const std::string& path() const { return path_; }
 
@@ -88,6 +90,8 @@ class Recording {
   std::map<std::pair<std::size_t, std::vector<std::string>>, RecordedSample> last_;  // to repeat
   std::map<std::pair<std::size_t, std::string>, std::int64_t> last_interval_;
   RecordingTotals totals_;
+  std::uint64_t chunks_seen_ = 0;  // of the open file
+  std::uint64_t saved_ = 0;        // samples before the open chunk
 };
 
 }  // namespace mpm::daemon
