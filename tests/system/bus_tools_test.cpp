@@ -376,7 +376,7 @@ TEST_CASE(
   const Corner corner("split");
   const std::string folder = corner.folder.file("recordings");
   corner.record(folder, 2000,
-                {"--max-size", "50kB", "--chunk-size", "8kB", "--compression", "none"});
+                {"--max-size", "100kB", "--chunk-size", "8kB", "--compression", "none"});
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     files += entry.path().extension() == ".mcap";
@@ -472,14 +472,57 @@ TEST_CASE("a recorder keeps to its quota and never touches other files") {
   const std::string folder = corner.folder.file("recordings");
   std::filesystem::create_directories(folder);
   write_file(folder + "/other.mcap", std::string(500'000, 'x'));
-  corner.record(folder, 4000, {"--quota", "200kB", "--chunk-size", "4kB", "--compression", "none"});
+  corner.record(folder, 12'000, {"--quota", "1MB", "--chunk-size", "4kB", "--compression", "none"});
   std::uintmax_t bytes = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().filename() != "other.mcap") bytes += entry.file_size();
-  CHECK(bytes <= 200'000);
-  CHECK(bytes > 100'000);
+  CHECK(bytes <= 1'000'000);
+  CHECK(bytes > 500'000);
   CHECK(std::filesystem::file_size(folder + "/other.mcap") == 500'000);
   CHECK(read_file(corner.folder.file("started.err")).find("deleted") != std::string::npos);
+}
+
+TEST_CASE("a replay that would publish nothing, or not as meant, says so and ends with 3") {
+  const Corner corner("nothing");
+  const std::string file = corner.folder.file("run.mcap");
+  corner.record(file, 20);
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"--unit", "zzz"},
+                                                  {"--start-offset", "1h"},
+                                                  {"--topics", "mpm/alarm"},
+                                                  {"--remap", "zzz:=copy"},
+                                                  {"--remap", "toy:=a", "--remap", "toy:=b"},
+                                                  {"--start-paused"}}) {
+    CAPTURE(options);
+    std::vector<std::string> arguments = {"replay", file, "--wait-readers", "0"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    CHECK(corner.mpm(arguments) == 3);
+    CHECK(lines_of(corner.err()).size() == 1);
+  }
+  for (const char* option : {"--rate", "--start-offset", "--duration", "--wait-readers"})
+    for (const char* value : {"nan", "inf", "-1", "1e400", "x"}) {
+      CAPTURE(option, value);
+      CHECK(corner.mpm({"replay", file, option, value}) == 3);
+      CHECK(corner.err().find(option) != std::string::npos);
+    }
+  CHECK(corner.mpm({"replay"}) == 3);
+}
+
+TEST_CASE("options of a replay leave its files alone wherever they stand") {
+  const Corner corner("places");
+  const std::string file = corner.folder.file("run.mcap");
+  corner.record(file, 20);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--remap", "toy:=copy", file, "--rate", "0"},
+        {"--topics", "mpm/mv,mpm/cv", file, "--rate", "0"},
+        {"--topics", "mpm/mv", "mpm/cv", file, "--rate", "0"},
+        {"--rate", "0", "--topics", "mpm/mv", "mpm/cv", file},
+        {file, "--rate", "0", "--topics", "mpm/mv", "mpm/cv"}}) {
+    CAPTURE(arguments);
+    std::vector<std::string> all = {"replay", "--wait-readers", "0"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    CHECK(corner.mpm(all) == 0);
+    CHECK(corner.err() == "mpm replay: 40 samples published\n");
+  }
 }
 
 TEST_CASE("what cannot be recorded or replayed is said in one line") {
