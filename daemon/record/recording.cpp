@@ -127,11 +127,15 @@ void Recording::look_for_gap(const RecordedSample& sample) {
   if (!topics_[sample.topic].counts_intervals) return;
   const std::optional<idl::SampleStamp> stamp = idl::stamp_of(sample.sample.cdr);
   if (!stamp) return;
-  const auto [last, is_new] =
-      last_interval_.try_emplace({sample.topic, idl::unit_of(sample.sample.cdr)}, stamp->interval);
-  if (!is_new && stamp->interval > last->second)  // else the controller restarted
-    totals_.missing_intervals += static_cast<std::uint64_t>(stamp->interval - last->second - 1);
-  last->second = stamp->interval;
+  UnitIntervals& unit = units_[idl::unit_of(sample.sample.cdr)];
+  const auto [entry, is_new] = unit.topics.try_emplace(sample.topic);
+  TopicIntervals& topic = entry->second;
+  if (!is_new && stamp->interval > topic.last)  // else the controller restarted
+    topic.missing += static_cast<std::uint64_t>(stamp->interval - topic.last - 1);
+  topic.last = stamp->interval;
+  if (topic.missing <= unit.missing) return;
+  totals_.missing_intervals += topic.missing - unit.missing;
+  unit.missing = topic.missing;
 }
 
 void Recording::tick(std::int64_t now_ns) {

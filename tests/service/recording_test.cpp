@@ -193,6 +193,23 @@ TEST_CASE("split files are whole by themselves and lose nothing between them") {
   CHECK(expected == 500);
 }
 
+TEST_CASE("an interval that all topics of a unit lack is missing once") {
+  const test::TemporaryFolder folder;
+  RecordingOptions options;
+  options.output = folder.file("run.mcap");
+  Recording recording(options, kStart);
+  const std::size_t mv = recording.add_topic({"mpm/mv", "mpm::Sample", "text", 0, true});
+  const std::size_t cv = recording.add_topic({"mpm/cv", "mpm::Sample", "text", 0, true});
+  for (std::int64_t k = 0; k < 20; ++k) {
+    if (k == 5 || k == 6) continue;
+    recording.write(sample_of(mv, "shell", k));
+    if (k != 15) recording.write(sample_of(cv, "shell", k));
+    if (k != 10) recording.write(sample_of(cv, "other", k));
+  }
+  recording.finish();
+  CHECK(recording.totals().missing_intervals == 3 + 3);
+}
+
 TEST_CASE("a recording is split by time even where nothing comes") {
   const test::TemporaryFolder folder;
   RecordingOptions options;

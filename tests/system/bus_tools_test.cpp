@@ -525,6 +525,31 @@ TEST_CASE("options of a replay leave its files alone wherever they stand") {
   }
 }
 
+TEST_CASE("mpm record takes times and sizes with units and refuses what no file could keep to") {
+  const Corner corner("units");
+  const auto record = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all = {"record", "--output", corner.folder.file("recordings")};
+    all.insert(all.end(), options.begin(), options.end());
+    return corner.mpm(all);
+  };
+  CHECK(record({"--duration", "0.005m", "--max-size", "1.5GB", "--max-duration", "1h", "--quota",
+                "3GB", "--unit", "nope"}) == 0);
+  CHECK(corner.err().find("no sample of unit nope came") != std::string::npos);
+  CHECK(record({"--duration", "0.3"}) == 0);
+  CHECK(corner.err().find("no sample came") != std::string::npos);
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--quota", "20kB"}, {"--max-size", "1kB"}}) {
+    CHECK(record(options) == 3);
+    CHECK(corner.err().find("at least") != std::string::npos);
+  }
+  CHECK(record({"--quota", "1MB", "--max-size", "600kB"}) == 3);
+  for (const char* option : {"--duration", "--max-duration", "--chunk-duration", "--max-size"})
+    for (const char* value : {"nan", "inf", "-1", "1e400", "1 parsec", ""}) {
+      CAPTURE(option, value);
+      CHECK(record({option, value}) == 3);
+    }
+}
+
 TEST_CASE("what cannot be recorded or replayed is said in one line") {
   const Corner corner("refused");
   const auto file = [&](const char* name) { return corner.folder.file(name); };
