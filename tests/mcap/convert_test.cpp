@@ -350,6 +350,21 @@ TEST_CASE("The programs: exit codes, files, messages") {
   CHECK(mpm({"info", path("none.mcap")}) == 3);
 }
 
+TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell beside it") {
+  Bench bench;
+  const auto path = [&](const char* name) { return bench.folder.file(name); };
+  recording::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
+  a.finish();
+  REQUIRE(run({"mpm", "convert", path("a.mcap"), path("a.csv")}, path("out"), path("err")) == 0);
+  REQUIRE(run({"mpm", "convert", path("a.mcap"), "-"}, path("out"), path("err")) == 0);
+  CHECK(bench.text("out") == bench.text("a.csv"));
+  CHECK(bench.text("err").find("30 rows of 7 signals") != std::string::npos);
+  CHECK(bench.text("err").find(std::to_string(bench.text("a.csv").size()) + " bytes") !=
+        std::string::npos);
+  CHECK_FALSE(std::filesystem::exists("-"));
+}
+
 TEST_CASE("mpm recover never writes over the file that it mends") {
   Bench bench;
   const std::string file = bench.folder.file("torn.mcap");
