@@ -365,6 +365,26 @@ TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell b
   CHECK_FALSE(std::filesystem::exists("-"));
 }
 
+TEST_CASE("what standard output does not take is a failure") {
+  Bench bench;
+  const auto path = [&](const char* name) { return bench.folder.file(name); };
+  recording::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
+  a.finish();
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", path("a.mcap")},
+        {"info", path("a.mcap"), "--json"},
+        {"detect", "--config", path("small.yaml"), "--data", path("a.mcap"), "--json"},
+        {"convert", path("a.mcap"), "-"},
+        {"--version"}}) {
+    CAPTURE(arguments);
+    std::vector<std::string> all = arguments;
+    all.insert(all.begin(), "mpm");
+    CHECK(run(all, "/dev/full", path("err")) == 2);
+    CHECK(bench.text("err").find("standard output") != std::string::npos);
+  }
+}
+
 TEST_CASE("mpm recover never writes over the file that it mends") {
   Bench bench;
   const std::string file = bench.folder.file("torn.mcap");

@@ -174,6 +174,15 @@ class OnTerminal {
   std::string shown_;
 };
 
+/// True once the process asks for the signals that stop it instead of ending by them.
+bool blocks_interrupts(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string word; status >> word;)
+    if (word == "SigBlk:" && status >> word)
+      return (std::stoull(word, nullptr, 16) >> (SIGINT - 1) & 1U) != 0;
+  return false;
+}
+
 TEST_CASE("mpm topics lists who is on the bus, with types and units") {
   const Corner corner("topics");
   Process topics = corner.start({"mpm", "topics", "--json", "--duration", "1"});
@@ -237,6 +246,21 @@ TEST_CASE("mpm hz and delay measure a topic, also one that is not ours") {
   CHECK(code == 0);
   CHECK(corner.mpm({"hz", "mpm/cv", "--duration", "0.3"}) == 2);
   CHECK(corner.mpm({"hz", "mpm/nothing"}) == 3);
+}
+
+TEST_CASE("mpm hz and delay end in peace when the reader of their pipe has left") {
+  const Corner corner("left");
+  const std::string pipe = corner.folder.file("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  for (const char* command : {"hz", "delay"}) {
+    const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    REQUIRE(reader >= 0);
+    Process process(corner.on_bus({"mpm", command, "mpm/cv"}), pipe, corner.folder.file("err"));
+    REQUIRE(idl::eventually([&] { return blocks_interrupts(process.pid()); }, kPatience));
+    close(reader);
+    CHECK(corner.publish_during(process) == 0);
+    CHECK(corner.err().empty());
+  }
 }
 
 TEST_CASE("lines on standard input become samples that the monitor judges as it would the file") {
@@ -327,15 +351,6 @@ TEST_CASE("no line of JSON ends mpm publish --on-error skip, and each is told wi
   CHECK(said[4].find("stdin:5:16: error: \"time\": 'now'") == 0);
   CHECK(said[5] == "stdin:6:22: error: \"interval\": 1.5 is no interval number");
   CHECK(said[6] == "mpm publish: 1 lines published, 6 skipped");
-}
-
-/// True once the process asks for the signals that stop it instead of ending by them.
-bool blocks_interrupts(pid_t process) {
-  std::ifstream status("/proc/" + std::to_string(process) + "/status");
-  for (std::string word; status >> word;)
-    if (word == "SigBlk:" && status >> word)
-      return (std::stoull(word, nullptr, 16) >> (SIGINT - 1) & 1U) != 0;
-  return false;
 }
 
 TEST_CASE("mpm publish that is stopped before its first line has done nothing wrong") {
