@@ -10,6 +10,7 @@
 #include "config/load_unit.hpp"
 #include "config/unit_layout.hpp"
 #include "daemon/bus/domain_options.hpp"
+#include "daemon/commands/quantity.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/publish/interruptible_input.hpp"
 #include "daemon/publish/line_frames.hpp"
@@ -145,9 +146,9 @@ void add_publish(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"stop", "skip"}));
   command
       ->add_option("--wait-readers", options->wait_readers_s,
-                   "seconds to wait for a reader of every topic before the first line")
+                   "how long to wait for a reader of every topic before the first line")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->transform(time_value());
   command->add_option("--readers", options->readers, "how many readers of every topic to wait for")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

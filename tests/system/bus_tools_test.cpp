@@ -211,7 +211,8 @@ TEST_CASE("mpm echo prints samples and ends when it has enough") {
   CHECK(first["sample"]["unit"] == "toy");
   CHECK(first["sample"]["values"].size() == 2);
   CHECK(last["sample"]["interval"] == first["sample"]["interval"].get<int>() + 2);
-  CHECK(corner.mpm({"echo", "mpm/mv", "--once", "--duration", "0.2"}) == 2);
+  CHECK(corner.mpm({"echo", "mpm/mv", "--once", "--unit", "toy", "--duration", "0.2"}) == 2);
+  CHECK(corner.err() == "mpm echo: no sample of mpm/mv of unit toy came\n");
   CHECK(corner.mpm({"echo", "mpm/nothing"}) == 3);
   CHECK(lines_of(corner.err()).size() == 1);
 }
