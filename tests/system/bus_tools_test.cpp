@@ -246,6 +246,8 @@ TEST_CASE("mpm hz and delay measure a topic, also one that is not ours") {
   }
   CHECK(code == 0);
   CHECK(corner.mpm({"hz", "mpm/cv", "--duration", "0.3"}) == 2);
+  CHECK(corner.mpm({"hz", "--peer", "127.0.0.1", "mpm/cv", "--duration", "0.3s"}) == 2);
+  CHECK(corner.mpm({"hz", "mpm/cv", "--duration", "nan"}) == 3);
   CHECK(corner.mpm({"hz", "mpm/nothing"}) == 3);
 }
 
