@@ -15,8 +15,8 @@ namespace {
 
 using Units = std::map<std::string, double>;
 
-constexpr double kLongest_s = 1e9;  // 31 years; in ns it still fits
-constexpr double kLargest = 9e15;   // exact in a double
+constexpr double kLongestSeconds = 1e9;  // 31 years; in ns it still fits
+constexpr double kLargest = 9e15;        // exact in a double
 
 const Units& time_units() {
   static const Units units = {{"", 1.0},     {"s", 1.0},    {"m", 60.0},
@@ -63,7 +63,7 @@ std::string read_time(std::string& text, bool may_be_zero) {
   if (!seconds || (*seconds == 0.0 && !may_be_zero))
     return "'" + text + "' is no time" + (may_be_zero ? "" : " above 0") +
            ": seconds, or a number with s, min, h or d";
-  if (*seconds > kLongest_s) return "'" + text + "' is too long";
+  if (*seconds > kLongestSeconds) return "'" + text + "' is too long";
   text = plain(*seconds);
   return {};
 }
@@ -71,38 +71,36 @@ std::string read_time(std::string& text, bool may_be_zero) {
 }  // namespace
 
 CLI::Validator time_value() {
-  return CLI::Validator([](std::string& text) { return read_time(text, true); }, "TIME");
+  return {[](std::string& text) { return read_time(text, true); }, "TIME"};
 }
 
 CLI::Validator positive_time_value() {
-  return CLI::Validator([](std::string& text) { return read_time(text, false); }, "TIME");
+  return {[](std::string& text) { return read_time(text, false); }, "TIME"};
 }
 
 CLI::Validator size_value(std::uint64_t smallest) {
-  return CLI::Validator(
-      [smallest](std::string& text) -> std::string {
-        const std::optional<double> bytes = parse(text, size_units());
-        if (!bytes) return "'" + text + "' is no size: bytes, or a number with kB, MB, GB ...";
-        if (*bytes > kLargest) return "'" + text + "' is too large";
-        if (*bytes < static_cast<double>(smallest))
-          return "'" + text + "' is too small; it takes " +
-                 bytes_text(static_cast<double>(smallest)) + " at least";
-        text = std::to_string(static_cast<std::uint64_t>(*bytes));
-        return {};
-      },
-      "SIZE");
+  return {[smallest](std::string& text) -> std::string {
+            const std::optional<double> bytes = parse(text, size_units());
+            if (!bytes) return "'" + text + "' is no size: bytes, or a number with kB, MB, GB ...";
+            if (*bytes > kLargest) return "'" + text + "' is too large";
+            if (*bytes < static_cast<double>(smallest))
+              return "'" + text + "' is too small; it takes " +
+                     bytes_text(static_cast<double>(smallest)) + " at least";
+            text = std::to_string(static_cast<std::uint64_t>(*bytes));
+            return {};
+          },
+          "SIZE"};
 }
 
 CLI::Validator factor_value() {
-  return CLI::Validator(
-      [](std::string& text) -> std::string {
-        static const Units none = {{"", 1.0}};
-        const std::optional<double> number = parse(text, none);
-        if (!number) return "'" + text + "' is no number from 0 on";
-        text = plain(*number);
-        return {};
-      },
-      "NUMBER");
+  return {[](std::string& text) -> std::string {
+            static const Units none = {{"", 1.0}};
+            const std::optional<double> number = parse(text, none);
+            if (!number) return "'" + text + "' is no number from 0 on";
+            text = plain(*number);
+            return {};
+          },
+          "NUMBER"};
 }
 
 }  // namespace mpm::daemon

@@ -66,7 +66,7 @@ class Rates {
     std::snprintf(rate.data(), rate.size(), "%.0f/s", samples);
     return summary(state) + "; now " + rate.data() + ", " + bytes_text(bytes) + "/s";
   }
-  std::string summary(const RecorderState& state) const {
+  [[nodiscard]] std::string summary(const RecorderState& state) const {
     const RecordingTotals& totals = state.totals;
     std::string text = seconds_text(std::chrono::duration<double>(Clock::now() - start_).count());
     text += "  " + std::to_string(totals.samples) + " samples  " +
@@ -185,7 +185,7 @@ void add_record(CLI::App& app, int& exit_code) {
       ->transform(size_value(kSmallestQuota));
   command->add_option("--chunk-size", options->chunk_bytes, "of the file's chunks")
       ->transform(size_value(kSmallestChunk))
-      ->check(CLI::Range(std::uint64_t{0}, kLargestChunk));
+      ->check(CLI::Range(kSmallestChunk, kLargestChunk));
   command
       ->add_option("--chunk-duration", options->chunk_age_s,
                    "at most this much is lost if the recorder is killed")
