@@ -12,6 +12,7 @@
 #include "daemon/commands/replay.hpp"
 #include "daemon/commands/topics.hpp"
 #include "daemon/commands/watch.hpp"
+#include "daemon/service/standard_output.hpp"
 #include "daemon/service/version.hpp"
 
 namespace {
@@ -46,10 +47,13 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  int exit_code = 2;
   try {
-    return run(argc, argv);
+    exit_code = run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "mpm: error: " << error.what() << '\n';
-    return 2;
   }
+  if (mpm::daemon::finish_standard_output()) return exit_code;
+  std::cerr << "mpm: error: standard output cannot be written to\n";
+  return 2;
 }

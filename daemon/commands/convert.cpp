@@ -27,12 +27,12 @@ std::shared_ptr<const io::TimeZone> zone_of(const std::string& name) {
 }
 
 void tell(const Options& options, const recording::ConvertReport& report) {
-  std::cout << options.output << ": " << report.rows << " rows of " << report.signals
-            << " signals from " << io::utc_text(report.first_ns) << " to "
-            << io::utc_text(report.last_ns) << "\n  " << report.values << " values ("
-            << report.uncertain << " uncertain, " << report.bad << " bad), " << report.missing
-            << " missing; " << report.bytes << " bytes\n"
-            << std::flush;
+  std::ostream& out = options.output == io::kStandardOutput ? std::cerr : std::cout;
+  out << options.output << ": " << report.rows << " rows of " << report.signals << " signals from "
+      << io::utc_text(report.first_ns) << " to " << io::utc_text(report.last_ns) << "\n  "
+      << report.values << " values (" << report.uncertain << " uncertain, " << report.bad
+      << " bad), " << report.missing << " missing; " << report.bytes << " bytes\n"
+      << std::flush;
   for (const std::string& notice : report.notices)
     std::cerr << options.input << ": " << notice << '\n';
 }
@@ -71,7 +71,8 @@ void add_convert(CLI::App& app, int& exit_code) {
   command->add_option("input", options->input, "MCAP recording, or CSV in any historian layout")
       ->required();
   command
-      ->add_option("output", options->output, "what to write: MCAP if it ends in .mcap, else CSV")
+      ->add_option("output", options->output,
+                   "what to write: MCAP if it ends in .mcap, else CSV; - is CSV on standard output")
       ->required();
   command->add_option("--config", options->config,
                       "unit file: which signals, and for MCAP on which topic each goes");

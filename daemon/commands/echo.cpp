@@ -6,6 +6,7 @@
 #include <string>
 
 #include "daemon/commands/domain_flags.hpp"
+#include "daemon/commands/quantity.hpp"
 #include "daemon/commands/topics.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/service/signals.hpp"
@@ -81,6 +82,9 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic) {
     std::cout.flush();
     if (options.duration_s > 0.0 && Clock::now() >= end) break;
   }
+  if (printed == 0 && std::cout.good())
+    std::cerr << "mpm echo: no sample of " << options.topic
+              << (options.unit.empty() ? "" : " of unit " + options.unit) << " came\n";
   const bool bounded = options.once || options.count > 0;
   return (bounded ? printed < wanted : options.duration_s > 0.0 && printed == 0) ? 2 : 0;
 }
@@ -111,8 +115,8 @@ void add_echo(CLI::App& app, int& exit_code) {
   command->add_option("--count", options->count, "end after this many samples")
       ->check(CLI::PositiveNumber)
       ->excludes(once);
-  command->add_option("--duration", options->duration_s, "end after this many seconds")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--duration", options->duration_s, "end after this time, as 90 or 1.5h")
+      ->transform(positive_time_value());
   command->add_flag("--json", options->json, "print each sample as a JSON line");
   add_domain_flags(*command, options->domain);
   command->footer(

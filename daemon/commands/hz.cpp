@@ -1,3 +1,5 @@
+#include <array>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -5,6 +7,7 @@
 #include <string>
 
 #include "daemon/commands/domain_flags.hpp"
+#include "daemon/commands/quantity.hpp"
 #include "daemon/commands/topics.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/service/signals.hpp"
@@ -63,14 +66,16 @@ void print(const HzOptions& options, Measure measure, const WindowStatistics& va
       : measure == Measure::kInterval
           ? "average rate: %.3f  min: %.6f s  max: %.6f s  std dev: %.6f s  window: %zu"
           : "average delay: %.6f s  min: %.6f s  max: %.6f s  std dev: %.6f s  window: %zu";
-  std::printf(format, measure == Measure::kInterval ? rate : values.mean(), values.min(),
-              values.max(), values.deviation(), values.count());
-  std::printf("\n");
-  std::fflush(stdout);
+  std::array<char, 256> line{};
+  std::snprintf(line.data(), line.size(), format,
+                measure == Measure::kInterval ? rate : values.mean(), values.min(), values.max(),
+                values.deviation(), values.count());
+  std::cout << line.data() << std::endl;
 }
 
 // 0, or 2 if too little came to tell, 3 if there is no such topic.
 int measure_topic(const HzOptions& options, Measure measure) {
+  std::signal(SIGPIPE, SIG_IGN);  // the stream notices
   StopSignal stop;
   set_up_logging("warning");
   const idl::Participant participant(options.domain);
@@ -102,7 +107,7 @@ int measure_topic(const HzOptions& options, Measure measure) {
   const Clock::time_point end = start + std::chrono::duration_cast<Clock::duration>(
                                             std::chrono::duration<double>(options.duration_s));
   Clock::time_point next_report = start + kReportPeriod;
-  while (!stop.received()) {
+  while (std::cout.good() && !stop.received()) {
     if (wait_set.wait(kLongestWait)) reader->take(on_sample);
     const Clock::time_point now = Clock::now();
     if (options.duration_s > 0.0 && now >= end) break;
@@ -116,7 +121,7 @@ int measure_topic(const HzOptions& options, Measure measure) {
     std::cerr << "mpm: error: " << options.topic << ": too few samples came\n";
     return 2;
   }
-  print(options, measure, values);
+  if (std::cout.good()) print(options, measure, values);
   return 0;
 }
 
@@ -130,8 +135,8 @@ void add(CLI::App& app, const char* name, const char* description, Measure measu
   command->add_option("--window", options->window, "how many of the last samples count")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  command->add_option("--duration", options->duration_s, "end after this many seconds")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--duration", options->duration_s, "end after this time, as 90 or 1.5h")
+      ->transform(positive_time_value());
   command->add_flag("--json", options->json, "print JSON lines");
   add_domain_flags(*command, options->domain);
   command->footer(std::string("Example:\n  mpm ") + name +

@@ -10,6 +10,7 @@
 #include "config/load_unit.hpp"
 #include "config/unit_layout.hpp"
 #include "daemon/bus/domain_options.hpp"
+#include "daemon/commands/quantity.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/publish/interruptible_input.hpp"
 #include "daemon/publish/line_frames.hpp"
@@ -68,7 +69,15 @@ void tell_notices(LineFrames& lines) {
 }
 
 int publish_lines(const PublishOptions& options, const config::UnitConfig& unit, StopSignal& stop) {
-  LineFrames lines(std::make_unique<StandardInput>(stop), "stdin", format_of(options.format), unit);
+  std::optional<LineFrames> first;
+  try {
+    first.emplace(std::make_unique<StandardInput>(stop), "stdin", format_of(options.format), unit);
+  } catch (const config::InputError&) {
+    if (!stop.received()) throw;
+    std::cerr << "mpm publish: stopped before the first line\n";
+    return 0;
+  }
+  LineFrames& lines = *first;
   idl::DomainOptions domain = domain_options(unit.dds);
   domain.domain = options.domain.value_or(domain.domain);
   domain.partition = options.partition.value_or(domain.partition);
@@ -86,8 +95,9 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
   Frame frame;
   while (!stop.received()) {
     try {
-      if (!lines.next(frame)) break;
+      if (!lines.next(frame) || stop.received()) break;  // what a stop cuts off is no line
     } catch (const config::InputError& error) {
+      if (stop.received()) break;
       if (options.on_error == "stop") throw;
       std::cerr << error.what() << '\n';
       ++skipped;
@@ -136,9 +146,9 @@ void add_publish(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"stop", "skip"}));
   command
       ->add_option("--wait-readers", options->wait_readers_s,
-                   "seconds to wait for a reader of every topic before the first line")
+                   "how long to wait for a reader of every topic before the first line")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->transform(time_value());
   command->add_option("--readers", options->readers, "how many readers of every topic to wait for")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

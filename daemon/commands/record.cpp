@@ -11,6 +11,7 @@
 #include "config/load_unit.hpp"
 #include "daemon/bus/domain_options.hpp"
 #include "daemon/commands/domain_flags.hpp"
+#include "daemon/commands/quantity.hpp"
 #include "daemon/commands/status_line.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/record/recorder.hpp"
@@ -24,6 +25,11 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLongestWait{50};
 constexpr std::chrono::seconds kSearchPeriod{1};
 constexpr double kNsPerSecond = 1e9;
+
+// The schemas of all topics take 16 kB of every file, twice.
+constexpr std::uint64_t kSmallestFile = 100'000;
+constexpr std::uint64_t kSmallestQuota = 1'000'000;
+constexpr std::uint64_t kSmallestChunk = 1024, kLargestChunk = std::uint64_t{64} << 20U;
 
 struct RecordOptions {
   std::string config;
@@ -60,7 +66,7 @@ class Rates {
     std::snprintf(rate.data(), rate.size(), "%.0f/s", samples);
     return summary(state) + "; now " + rate.data() + ", " + bytes_text(bytes) + "/s";
   }
-  std::string summary(const RecorderState& state) const {
+  [[nodiscard]] std::string summary(const RecorderState& state) const {
     const RecordingTotals& totals = state.totals;
     std::string text = seconds_text(std::chrono::duration<double>(Clock::now() - start_).count());
     text += "  " + std::to_string(totals.samples) + " samples  " +
@@ -107,6 +113,10 @@ int record(const RecordOptions& options, StopSignal& stop) {
   recorder.finish();
   const RecorderState state = recorder.state();
   status.say("mpm record: " + rates.summary(state) + "  " + state.path);
+  if (state.totals.samples == 0 && state.dropped == 0)
+    status.say(options.recorder.unit.empty()
+                   ? "mpm record: no sample came"
+                   : "mpm record: no sample of unit " + options.recorder.unit + " came");
   for (const std::string& topic : recorder.not_found())
     status.say("mpm record: nobody wrote " + topic + ", or not with a type that can be asked for");
   if (state.problem.empty()) return 0;
@@ -127,6 +137,11 @@ int record(RecordOptions options) {
     options.recorder.unit = loaded.config.unit;
   }
   RecordingOptions& recording = options.recorder.recording;
+  if (recording.quota_bytes > 0 && recording.max_size_bytes > recording.quota_bytes / 2) {
+    std::cerr << "mpm record: error: --quota must hold two files of --max-size at least: one that "
+                 "is full and the next\n";
+    return 3;
+  }
   recording.max_duration_ns = static_cast<std::int64_t>(options.max_duration_s * kNsPerSecond);
   recording.file.compression = compression_of(options.compression);
   recording.file.chunk_bytes = options.chunk_bytes;
@@ -150,38 +165,38 @@ void add_record(CLI::App& app, int& exit_code) {
   auto* config =
       command->add_option("-c,--config", options->config, "unit file: this unit, on its domain");
   command->add_option("--unit", recorder.unit, "only this unit (default: all)")->excludes(config);
-  command->add_option("--topics", recorder.topics, "only these topics (default: all of mpm/*)");
+  command->add_option("--topics", recorder.topics, "only these topics (default: all of mpm/*)")
+      ->delimiter(',');
   command->add_option("-o,--output", recorder.recording.output, "file.mcap, or a folder")
       ->required();
-  const auto size = CLI::AsSizeValue(true);  // kB = 1000
-  const auto time = CLI::AsNumberWithUnit(
-      std::map<std::string, double>{{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}},
-      CLI::AsNumberWithUnit::CASE_INSENSITIVE, "TIME");
   command
       ->add_option("--max-size", recorder.recording.max_size_bytes,
-                   "begin another file after this much, as 100MB")
-      ->transform(size);
+                   "begin another file after this much, as 100MB or 1.5GB; at least 100 kB, since "
+                   "every file holds all types")
+      ->transform(size_value(kSmallestFile));
   command
       ->add_option("--max-duration", options->max_duration_s,
-                   "begin another file after this time, as 1h (s, min, h, d)")
-      ->transform(time);
+                   "begin another file after this time, as 90 or 1.5h (s, min, h, d)")
+      ->transform(positive_time_value());
   command
       ->add_option("--quota", recorder.recording.quota_bytes,
-                   "delete the oldest of the recording's files beyond this, as 10GB")
-      ->transform(size);
+                   "delete the oldest of the recording's files beyond this, as 10GB; at least 1 MB "
+                   "and two files of --max-size")
+      ->transform(size_value(kSmallestQuota));
   command->add_option("--chunk-size", options->chunk_bytes, "of the file's chunks")
-      ->transform(size)
-      ->check(CLI::Range(1024, 64 << 20));
+      ->transform(size_value(kSmallestChunk))
+      ->check(CLI::Range(kSmallestChunk, kLargestChunk));
   command
       ->add_option("--chunk-duration", options->chunk_age_s,
-                   "at most this much is lost if the recorder is killed, s")
+                   "at most this much is lost if the recorder is killed")
       ->capture_default_str()
+      ->transform(time_value())
       ->check(CLI::Range(0.01, 3600.0));
   command->add_option("--compression", options->compression, "of the file's chunks")
       ->capture_default_str()
       ->check(CLI::IsMember({"zstd", "none"}));
-  command->add_option("--duration", options->duration_s, "end after this many seconds")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--duration", options->duration_s, "end after this time, as 90 or 1.5h")
+      ->transform(positive_time_value());
   add_domain_flags(*command, options->domain);
   command->footer(
       "Examples:\n"

@@ -21,6 +21,9 @@ std::string default_output(const std::string& input) {
 // 0, or 3 on bad input.
 int run_recover(const std::string& input, const std::string& output) {
   try {
+    if (io::same_file(input, output))
+      throw config::InputError(
+          {output, 0, 0, config::Severity::kError, "", "is the file that is read"});
     io::ReplacementFile file(output);
     const mcap::RecoverReport report = mcap::recover(input, file.temporary());
     file.commit();
@@ -47,7 +50,10 @@ void add_recover(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "recover", "Mend a recording that has no end or is damaged: keep all that can be read");
   command->add_option("input", *input, "MCAP recording")->required();
-  command->add_option("--output", *output, "where to write it (default: IN.recovered.mcap)");
+  command->add_option(
+      "--output", *output,
+      "where to write it, not over IN (default: IN.recovered.mcap); replaces an older "
+      "file when it is whole");
   command->footer("Example:\n  mpm recover night.mcap --output night_mended.mcap");
   command->callback([input, output, &exit_code] {
     exit_code = run_recover(*input, output->empty() ? default_output(*input) : *output);

@@ -1,7 +1,9 @@
 #include "daemon/commands/replay.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -12,11 +14,13 @@
 
 #include "config/finding.hpp"
 #include "daemon/commands/domain_flags.hpp"
+#include "daemon/commands/quantity.hpp"
 #include "daemon/commands/status_line.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/replay/keyboard.hpp"
 #include "daemon/replay/mcap_source.hpp"
 #include "daemon/replay/player.hpp"
+#include "daemon/replay/selection.hpp"
 #include "daemon/service/signals.hpp"
 #include "idl/raw_writer.hpp"
 
@@ -50,9 +54,22 @@ std::map<std::string, std::string> parse_remap(const std::vector<std::string>& r
     const std::size_t at = rule.find(":=");
     if (at == std::string::npos || at == 0 || at + 2 == rule.size())
       throw std::invalid_argument("--remap: '" + rule + "' is not FROM:=TO");
-    remap[rule.substr(0, at)] = rule.substr(at + 2);
+    if (!remap.emplace(rule.substr(0, at), rule.substr(at + 2)).second)
+      throw std::invalid_argument("--remap: two rules for unit '" + rule.substr(0, at) + "'");
   }
   return remap;
+}
+
+/// `--topics T... FILE` takes FILE for a topic.
+void find_swallowed_files(ReplayOptions& options) {
+  std::vector<std::string>& topics = options.topics;
+  const auto is_file = [](const std::string& text) {
+    return idl::find_known_topic(text) == nullptr && std::filesystem::exists(text);
+  };
+  const auto files = std::stable_partition(topics.begin(), topics.end(),
+                                           [&](const auto& text) { return !is_file(text); });
+  options.files.insert(options.files.end(), files, topics.end());
+  topics.erase(files, topics.end());
 }
 
 /// Throws std::invalid_argument.
@@ -60,7 +77,8 @@ std::set<std::string> topics_of(const ReplayOptions& options) {
   std::set<std::string> topics(options.topics.begin(), options.topics.end());
   for (const std::string& topic : topics)
     if (idl::find_known_topic(topic) == nullptr)
-      throw std::invalid_argument("--topics: '" + topic + "' is no topic of the monitor");
+      throw std::invalid_argument("--topics: '" + topic +
+                                  "' is no topic of the monitor (write files before the options)");
   if (topics.empty())
     for (const idl::KnownTopic& topic : idl::known_topics())
       if (topic.input) topics.insert(topic.name);
@@ -88,11 +106,15 @@ void wait_for_readers(const Writers& writers, const ReplayOptions& options, Stop
 
 std::string progress_text(const PlayerState& state, std::int64_t length_ns) {
   std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), "%.1f of %.1f s  %llu samples  ",
-                static_cast<double>(state.recorded_ns) / kNsPerSecond,
-                static_cast<double>(length_ns) / kNsPerSecond,
-                static_cast<unsigned long long>(state.samples));
+  std::snprintf(text.data(), text.size(), "%.1f",
+                static_cast<double>(state.recorded_ns) / kNsPerSecond);
   std::string line = text.data();
+  if (length_ns > 0) {
+    std::snprintf(text.data(), text.size(), " of %.1f",
+                  static_cast<double>(length_ns) / kNsPerSecond);
+    line += text.data();
+  }
+  line += " s  " + std::to_string(state.samples) + " samples  ";
   if (state.rate == 0.0) {
     line += "as fast as readers keep up";
   } else {
@@ -120,6 +142,7 @@ bool send(const Writers& writers, const McapSource& source, const ReplaySample& 
 }
 
 int replay(const ReplayOptions& options, StopSignal& stop) {
+  if (options.files.empty()) throw std::invalid_argument("which recording? Give a file or folder");
   std::vector<std::string> files;
   for (const std::string& path : options.files)
     for (std::string& file : recording_files(path)) files.push_back(std::move(file));
@@ -128,6 +151,13 @@ int replay(const ReplayOptions& options, StopSignal& stop) {
   player_options.remap = parse_remap(options.remap);
   player_options.start_offset_ns = static_cast<std::int64_t>(options.start_offset_s * kNsPerSecond);
   player_options.duration_ns = static_cast<std::int64_t>(options.duration_s * kNsPerSecond);
+  check_selection(source, player_options);
+  for (const std::string& topic : options.topics)
+    if (source.topics().count(topic) == 0)
+      std::cerr << "mpm replay: the recording has no " << topic << '\n';
+  Keyboard keyboard;
+  if (player_options.start_paused && !keyboard.there())
+    throw std::invalid_argument("--start-paused: there is no terminal, so nobody could start it");
 
   const idl::Participant participant(options.domain);
   Writers writers;
@@ -137,7 +167,6 @@ int replay(const ReplayOptions& options, StopSignal& stop) {
   wait_for_readers(writers, options, stop);
 
   SteadyClock clock;
-  Keyboard keyboard;
   StatusLine status;
   if (keyboard.there()) status.say("space pause, s or right step, + and - speed, q quit");
   Player player(
@@ -158,7 +187,8 @@ int replay(const ReplayOptions& options, StopSignal& stop) {
   return 0;
 }
 
-int replay(const ReplayOptions& options) {
+int replay(ReplayOptions options) {
+  find_swallowed_files(options);
   StopSignal stop;  // before any thread
   set_up_logging("warning");
   try {
@@ -178,29 +208,34 @@ void add_replay(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("replay", "publish recordings again, as they were");
   const auto options = std::make_shared<ReplayOptions>();
   PlayerOptions& player = options->player;
-  command->add_option("files", options->files, "recordings (*.mcap), or folders of them")
-      ->required();
+  command->add_option("files", options->files, "recordings (*.mcap), or folders of them");
   command
       ->add_option("-r,--rate", player.rate,
                    "recorded time per time; 0 = as fast as readers keep up")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--start-offset", options->start_offset_s, "leave out this many seconds")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--duration", options->duration_s, "end after this many recorded seconds")
-      ->check(CLI::PositiveNumber);
+      ->transform(factor_value());
+  command
+      ->add_option("--start-offset", options->start_offset_s,
+                   "leave out this much at the beginning, as 90 or 1.5h (s, min, h, d)")
+      ->transform(time_value());
+  command->add_option("--duration", options->duration_s, "end after this much recorded time")
+      ->transform(positive_time_value());
   command->add_flag("-l,--loop", player.loop,
                     "begin again at the end; interval numbers and times go on");
   command->add_flag("-p,--start-paused", player.start_paused, "wait for the space bar");
-  command->add_option("--topics", options->topics,
-                      "these topics (default: the five inputs, so that a monitor judges anew)");
+  command
+      ->add_option("--topics", options->topics,
+                   "these topics, as mpm/mv,mpm/cv (default: the five inputs, so that a monitor "
+                   "judges anew)")
+      ->delimiter(',');
   command->add_option("--unit", player.unit, "only this unit");
-  command->add_option("--remap", options->remap, "publish unit FROM as TO: FROM:=TO; repeatable");
+  command->add_option("--remap", options->remap, "publish unit FROM as TO: FROM:=TO; repeatable")
+      ->allow_extra_args(false);  // what follows is a file
   command
       ->add_option("--wait-readers", options->wait_readers_s,
-                   "seconds to wait for a reader of every topic before the first sample")
+                   "how long to wait for a reader of every topic before the first sample")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->transform(time_value());
   command->add_option("--readers", options->readers, "how many readers of every topic to wait for")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

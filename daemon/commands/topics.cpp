@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "daemon/commands/domain_flags.hpp"
+#include "daemon/commands/quantity.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/service/signals.hpp"
 #include "daemon/topics/survey.hpp"
@@ -47,9 +48,9 @@ void add_topics(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("topics", "list who reads and writes what on the bus");
   const auto options = std::make_shared<TopicsOptions>();
   add_domain_flags(*command, options->domain);
-  command->add_option("--duration", options->duration_s, "look around for this many seconds")
+  command->add_option("--duration", options->duration_s, "how long to look around, as 90 or 1.5h")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->transform(positive_time_value());
   command->add_flag("--json", options->json, "print one JSON array");
   command->footer(
       "Units are those whose samples went by; a slow unit needs a longer --duration.\n"

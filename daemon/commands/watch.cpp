@@ -10,6 +10,7 @@
 
 #include "daemon/bus/output_readers.hpp"
 #include "daemon/commands/domain_flags.hpp"
+#include "daemon/commands/quantity.hpp"
 #include "daemon/log/logging.hpp"
 #include "daemon/service/signals.hpp"
 #include "daemon/watch/viewer.hpp"
@@ -82,8 +83,8 @@ void add_watch(CLI::App& app, int& exit_code) {
   command->add_flag("--alarms-only", options->alarms_only, "leave out what is not an alarm");
   command->add_flag("--until-alarm", options->until_alarm,
                     "end when an alarm is active; exit code 2 if none came");
-  command->add_option("--for", options->for_s, "end after this many seconds")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--for", options->for_s, "end after this time, as 90 or 1.5h")
+      ->transform(positive_time_value());
   command->footer(
       "Examples:\n"
       "  mpm watch --unit shell\n"

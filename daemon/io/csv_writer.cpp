@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iostream>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -52,11 +53,12 @@ bool needs_quality(const SignalBlock& block, int index) {
 }
 
 CsvWriter::CsvWriter(const std::string& path, std::vector<Column> columns, CsvOptions options)
-    : path_(path),
-      out_(path, std::ios::binary),
+    : path_(path == kStandardOutput ? "standard output" : path),
+      out_(path == kStandardOutput ? std::cout : file_),
       columns_(std::move(columns)),
       options_(std::move(options)) {
-  if (!out_) throw std::runtime_error(path + ": cannot be written to");
+  if (path != kStandardOutput) file_.open(path, std::ios::binary);
+  if (!out_) throw std::runtime_error(path_ + ": cannot be written to");
   options_.quality.resize(columns_.size());
   std::set<std::string> seen;
   for (const Column& column : columns_) {
@@ -130,13 +132,15 @@ void CsvWriter::write_long(const Frame& frame) {
 
 void CsvWriter::drain() {
   out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  bytes_ += buffer_.size();
   buffer_.clear();
   if (!out_) throw std::runtime_error(path_ + ": cannot be written to");
 }
 
 void CsvWriter::finish() {
   drain();
-  out_.close();
+  out_.flush();
+  if (file_.is_open()) file_.close();
   if (!out_) throw std::runtime_error(path_ + ": cannot be written to");
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -19,17 +20,22 @@ struct CsvOptions {
   std::vector<bool> quality;             ///< per column: has one of its own (wide only)
 };
 
+/// The name that stands for standard output.
+inline constexpr const char* kStandardOutput = "-";
+
 /// Writes a data file that `CsvReader` reads back bit by bit: numbers in the fewest digits that
 /// give the same double, times to the nanosecond. Missing values are empty cells.
 class CsvWriter {
  public:
-  /// Throws std::runtime_error where the file cannot be made, std::invalid_argument where a tag
-  /// cannot stand in a CSV file or stands there twice.
+  /// `path` "-": standard output. Throws std::runtime_error where the file cannot be made,
+  /// std::invalid_argument where a tag cannot stand in a CSV file or stands there twice.
   CsvWriter(const std::string& path, std::vector<Column> columns, CsvOptions options);
 
   void write(const Frame& frame);
   /// Throws std::runtime_error where not everything could be written.
   void finish();
+  /// What is buffered comes on top.
+  [[nodiscard]] std::uint64_t bytes_written() const { return bytes_; }
 
  private:
   void write_wide(const Frame& frame);
@@ -39,7 +45,9 @@ class CsvWriter {
   void drain();
 
   std::string path_;
-  std::ofstream out_;
+  std::ofstream file_;
+  std::ostream& out_;
+  std::uint64_t bytes_ = 0;
   std::vector<Column> columns_;
   std::vector<std::string> cells_;  ///< the tags, quoted where needed
   CsvOptions options_;

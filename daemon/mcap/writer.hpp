@@ -67,6 +67,8 @@ class Writer {
   [[nodiscard]] std::uint64_t bytes_written() const { return file_.size(); }
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   [[nodiscard]] std::uint64_t chunks() const { return chunks_; }
+  /// True while there is an open chunk: its messages are not in the file yet.
+  [[nodiscard]] bool has_open_chunk() const { return !chunk_.empty(); }
 
  private:
   struct ChannelState {

@@ -51,10 +51,6 @@ class CsvRows : public LineFrames::Rows {
                   "`time,<tag>,...` first");
     rows_ = io::read_wide(lines_, format, header, tags_, unit.counts(), notices);
     const auto seen = [this](const std::string& tag) { return !tag.empty() && tags_.seen(tag); };
-    for (const config::CvSignal& cv : unit.cv)
-      if (!cv.prediction.empty() && !seen(cv.prediction))
-        lines_.fail(1, "no column " + quoted(cv.prediction) + ", the prediction of " + cv.tag +
-                           "; take it out of the unit file and the monitor simulates it");
     absent[static_cast<std::size_t>(SignalKind::kSetpoint)] =
         std::none_of(unit.cv.begin(), unit.cv.end(),
                      [&](const config::CvSignal& cv) { return seen(cv.setpoint); });
@@ -87,7 +83,7 @@ class JsonRows : public LineFrames::Rows {
     if (time == line.end()) lines_.fail(1, "has no \"time\"");
     std::string problem;
     const std::optional<std::int64_t> time_ns = io::parse_time(text_of(*time), problem);
-    if (!time_ns) lines_.fail(1, "\"time\": " + quoted(text_of(*time)) + " " + problem);
+    if (!time_ns) fail_at("time", "\"time\": " + quoted(text_of(*time)) + " " + problem);
     frame.source_time_ns = *time_ns;
     for (const auto& [name, value] : line.items()) {
       if (name == "interval")
@@ -100,20 +96,45 @@ class JsonRows : public LineFrames::Rows {
 
  private:
   nlohmann::json parse() const {
+    std::string name;  // of the member at hand
+    const auto note_name = [&name](int, nlohmann::json::parse_event_t event, nlohmann::json& key) {
+      if (event == nlohmann::json::parse_event_t::key) name = key.get<std::string>();
+      return true;
+    };
     try {
-      return nlohmann::json::parse(lines_.text());
+      return nlohmann::json::parse(lines_.text(), note_name);
     } catch (const nlohmann::json::parse_error& error) {
       lines_.fail(static_cast<int>(error.byte), "is no JSON");
+    } catch (const nlohmann::json::exception&) {  // a number that no double holds
+      fail_at(name, "'" + name + "' is out of range");
     }
   }
 
+  /// Fails at the value of a member.
+  [[noreturn]] void fail_at(const std::string& name, const std::string& message) const {
+    const std::string key = nlohmann::json(name).dump();
+    const std::string& line = lines_.text();
+    for (std::size_t at = line.find(key); at != std::string::npos; at = line.find(key, at + 1)) {
+      const std::size_t colon = line.find_first_not_of(" \t", at + key.size());
+      if (colon == std::string::npos || line[colon] != ':') continue;
+      lines_.fail(static_cast<int>(line.find_first_not_of(" \t", colon + 1)) + 1, message);
+    }
+    lines_.fail(1, message);  // the name is written with escapes
+  }
+
+  // Not what is inside of a list or an object: that may be deep, and no value is one.
+  static std::string shown(const nlohmann::json& value) {
+    if (value.is_array()) return "[...]";
+    return value.is_object() ? "{...}" : value.dump();
+  }
+
   static std::string text_of(const nlohmann::json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
+    return value.is_string() ? value.get<std::string>() : shown(value);
   }
 
   std::int64_t read_interval(const nlohmann::json& value) const {
     if (!value.is_number_integer() || std::abs(value.get<double>()) > kLargestInterval)
-      lines_.fail(1, "\"interval\": " + value.dump() + " is no interval number");
+      fail_at("interval", "\"interval\": " + shown(value) + " is no interval number");
     return value.get<std::int64_t>();
   }
 
@@ -121,7 +142,7 @@ class JsonRows : public LineFrames::Rows {
     if (const io::Slot* slot = tags_.find(name)) {
       const std::optional<double> number =
           value.is_null() ? io::parse_value("", false) : io::parse_value(text_of(value), false);
-      if (!number) lines_.fail(1, quoted(name) + ": " + value.dump() + " is no number");
+      if (!number) fail_at(name, quoted(name) + ": " + shown(value) + " is no number");
       frame[slot->kind].values(slot->index) = *number;
       Quality& quality = quality_of(frame, *slot);
       if (std::isfinite(*number)) quality = Quality::kGood;
@@ -140,8 +161,8 @@ class JsonRows : public LineFrames::Rows {
     if (slot == nullptr) return;
     const std::optional<Quality> said = io::parse_quality(text_of(value));
     if (!said)
-      lines_.fail(1, quoted(name) + ": " + value.dump() +
-                         " is no quality: good, uncertain, bad or an OPC code");
+      fail_at(name, quoted(name) + ": " + shown(value) +
+                        " is no quality: good, uncertain, bad or an OPC code");
     Quality& quality = quality_of(frame, *slot);
     quality = std::max(quality, *said);
   }

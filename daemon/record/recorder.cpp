@@ -1,5 +1,6 @@
 #include "daemon/record/recorder.hpp"
 
+#include <algorithm>
 #include <exception>
 
 #include "daemon/replay/clock.hpp"
@@ -89,10 +90,11 @@ int Recorder::take() {
 
 void Recorder::write_all() {
   std::vector<RecordedSample> samples;
+  std::size_t written = 0;  // of `samples`
   try {
     while (queue_.pop(samples, kTick)) {
       const std::lock_guard lock(mutex_);
-      for (const RecordedSample& sample : samples) recording_.write(sample);
+      for (written = 0; written < samples.size(); ++written) recording_.write(samples[written]);
       recording_.tick(wall_time_ns());
     }
     const std::lock_guard lock(mutex_);
@@ -100,6 +102,11 @@ void Recorder::write_all() {
   } catch (const std::exception& error) {
     const std::lock_guard lock(mutex_);
     problem_ = error.what();
+    unwritten_ = samples.size() - std::min(written, samples.size());
+  }
+  while (queue_.pop(samples, kTick)) {  // after a problem: what was taken has no place any more
+    const std::lock_guard lock(mutex_);
+    unwritten_ += samples.size();
   }
 }
 
@@ -118,6 +125,10 @@ RecorderState Recorder::state() const {
   state.totals = recording_.totals();
   state.path = recording_.path();
   state.problem = problem_;
+  if (!problem_.empty()) {
+    state.totals.samples -= recording_.unsaved();
+    state.dropped += recording_.unsaved() + unwritten_;
+  }
   return state;
 }
 

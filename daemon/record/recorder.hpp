@@ -23,7 +23,7 @@ struct RecorderOptions {
 
 struct RecorderState {
   RecordingTotals totals;
-  std::uint64_t dropped = 0;  ///< the disk did not follow, and the queue was full
+  std::uint64_t dropped = 0;  ///< taken but not in the file: the disk did not follow, or is full
   std::uint64_t lost = 0;     ///< DDS says so
   std::string path;           ///< of the open file
   std::string problem;        ///< why the disk takes nothing any more; empty = it does
@@ -68,9 +68,10 @@ class Recorder {
   std::vector<RecordedSample> batch_;
 
   SampleQueue queue_;
-  mutable std::mutex mutex_;  // of the next two
+  mutable std::mutex mutex_;  // of the next three
   Recording recording_;
   std::string problem_;
+  std::uint64_t unwritten_ = 0;  // samples that came too late for the file after a problem
   std::thread writer_;
 };
 

@@ -50,6 +50,8 @@ void Recording::open(std::int64_t now_ns) {
   path_ = files_.next();
   writer_.emplace(path_, options_.file);
   opened_ns_ = now_ns;
+  chunks_seen_ = 0;
+  saved_ = totals_.samples;
   channels_.clear();
   schemas_.clear();
   ++totals_.files;
@@ -84,6 +86,9 @@ void Recording::write(const RecordedSample& sample) {
     last_[{sample.topic, idl::leading_texts(sample.sample.cdr, keys)}] = sample;
   put(sample);
   ++totals_.samples;
+  if (writer_->chunks() == chunks_seen_) return;
+  chunks_seen_ = writer_->chunks();
+  saved_ = totals_.samples - (writer_->has_open_chunk() ? 1 : 0);
 }
 
 void Recording::put(const RecordedSample& sample) {
@@ -122,11 +127,15 @@ void Recording::look_for_gap(const RecordedSample& sample) {
   if (!topics_[sample.topic].counts_intervals) return;
   const std::optional<idl::SampleStamp> stamp = idl::stamp_of(sample.sample.cdr);
   if (!stamp) return;
-  const auto [last, is_new] =
-      last_interval_.try_emplace({sample.topic, idl::unit_of(sample.sample.cdr)}, stamp->interval);
-  if (!is_new && stamp->interval > last->second)  // else the controller restarted
-    totals_.missing_intervals += static_cast<std::uint64_t>(stamp->interval - last->second - 1);
-  last->second = stamp->interval;
+  UnitIntervals& unit = units_[idl::unit_of(sample.sample.cdr)];
+  const auto [entry, is_new] = unit.topics.try_emplace(sample.topic);
+  TopicIntervals& topic = entry->second;
+  if (!is_new && stamp->interval > topic.last)  // else the controller restarted
+    topic.missing += static_cast<std::uint64_t>(stamp->interval - topic.last - 1);
+  topic.last = stamp->interval;
+  if (topic.missing <= unit.missing) return;
+  totals_.missing_intervals += topic.missing - unit.missing;
+  unit.missing = topic.missing;
 }
 
 void Recording::tick(std::int64_t now_ns) {
@@ -136,6 +145,10 @@ void Recording::tick(std::int64_t now_ns) {
 
 void Recording::finish() {
   if (writer_) close();
+}
+
+std::uint64_t Recording::unsaved() const {
+  return writer_ && writer_->has_open_chunk() ? totals_.samples - saved_ : 0;
 }
 
 RecordingTotals Recording::totals() const {

@@ -35,8 +35,10 @@ struct RecordingTotals {
   std::uint64_t samples = 0;
   std::uint64_t bytes = 0;  ///< of all its files, those deleted included
   std::uint64_t files = 0;
-  std::uint64_t deleted = 0;            ///< files, for the quota
-  std::uint64_t missing_intervals = 0;  ///< left out in the numbers of an input topic of a unit
+  std::uint64_t deleted = 0;  ///< files, for the quota
+  /// Left out in the numbers of the units' input topics; of each unit those of the topic that lacks
+  /// most, so that an interval of which all is missing counts once.
+  std::uint64_t missing_intervals = 0;
 };
 
 /// Samples into MCAP files, one after the other. Each file is whole by itself: types, and the
@@ -59,10 +61,20 @@ class Recording {
   void finish();
 
   [[nodiscard]] RecordingTotals totals() const;
+  /// Of the samples, those in the open chunk: lost if the disk takes no more.
+  [[nodiscard]] std::uint64_t unsaved() const;
   /// The file that is being written.
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
+  struct TopicIntervals {
+    std::int64_t last = 0;
+    std::uint64_t missing = 0;
+  };
+  struct UnitIntervals {
+    std::map<std::size_t, TopicIntervals> topics;
+    std::uint64_t missing = 0;  // of the topic that lacks most
+  };
   struct Channels {
     mcap::SchemaId schema = 0;
     mcap::ChannelId samples = 0, lifecycle = 0;
@@ -86,8 +98,10 @@ class Recording {
   std::map<std::size_t, Channels> channels_;  // of the open file
   std::map<std::string, mcap::SchemaId> schemas_;
   std::map<std::pair<std::size_t, std::vector<std::string>>, RecordedSample> last_;  // to repeat
-  std::map<std::pair<std::size_t, std::string>, std::int64_t> last_interval_;
+  std::map<std::string, UnitIntervals> units_;
   RecordingTotals totals_;
+  std::uint64_t chunks_seen_ = 0;  // of the open file
+  std::uint64_t saved_ = 0;        // samples before the open chunk
 };
 
 }  // namespace mpm::daemon

@@ -11,8 +11,9 @@ namespace mpm::daemon {
 ///
 /// OUTPUT ending in `.mcap`: that file, or `name-0001.mcap`, `name-0002.mcap` ... where files are
 /// split. Anything else is a folder, made if need be, of files `mpm-20260131T235959Z-0001.mcap`.
-/// In a folder earlier recordings with such names count for the quota and go first; no other file
-/// is ever deleted.
+/// Numbers go on behind the highest that is there. Earlier numbered files of the same name, in a
+/// folder all recordings with names as above, count for the quota and go first; no other file is
+/// ever deleted.
 class RecordingFiles {
  public:
   /// `start_ns`: UTC since 1970. `quota_bytes` 0: none. Throws std::runtime_error where the folder
@@ -20,7 +21,8 @@ class RecordingFiles {
   RecordingFiles(const std::string& output, bool split, std::uint64_t quota_bytes,
                  std::int64_t start_ns);
 
-  /// The next file's path. Throws std::invalid_argument if there is one already.
+  /// The next file's path, of none that is there. Throws std::invalid_argument where a file without
+  /// a number is there already.
   [[nodiscard]] std::string next();
   /// A file is complete and so long.
   void finished(const std::string& path, std::uint64_t bytes);
@@ -36,7 +38,8 @@ class RecordingFiles {
     std::uint64_t bytes = 0;
   };
 
-  void find_earlier();
+  /// `of_any_time`: whatever recording in this folder they belong to.
+  void find_earlier(bool of_any_time);
 
   std::filesystem::path folder_;
   std::string stem_;

@@ -65,8 +65,11 @@ ConvertReport convert(const std::string& input, const std::string& output,
   if (from_mcap && to_mcap) refuse(output, "both are MCAP files; there is nothing to convert");
   if (to_mcap && !options.unit)
     refuse(input, "give the unit file with --config: it tells which topic each tag belongs to");
-  if (io::same_file(input, output)) refuse(output, "is the file that is read");
-  io::ReplacementFile file(output);
+  std::optional<io::ReplacementFile> file;  // standard output is none
+  if (output != io::kStandardOutput) {
+    if (io::same_file(input, output)) refuse(output, "is the file that is read");
+    file.emplace(output);
+  }
   const TableOptions table_options{options.unit ? &*options.unit : nullptr, options.unit_name,
                                    options.input_zone, to_mcap};
   ConvertReport report;
@@ -77,19 +80,21 @@ ConvertReport convert(const std::string& input, const std::string& output,
     const Table table = open_table(input, table_options);
     report.signals = table.columns.size();
     if (to_mcap) {
-      McapRecording writer(file.temporary(), table.unit, table.columns);
+      McapRecording writer(file->temporary(), table.unit, table.columns);
       copy(table, writer, report);
     } else {
-      io::CsvWriter writer(file.temporary(), table.columns, std::move(csv));
+      io::CsvWriter writer(file ? file->temporary() : output, table.columns, std::move(csv));
       copy(table, writer, report);
+      report.bytes = writer.bytes_written();
     }
     report.notices = table.frames->notices();
   } catch (const std::invalid_argument& error) {  // what the input holds does not fit the output
     refuse(input, error.what());
   }
   if (report.rows == 0) refuse(input, "holds no rows");
-  report.bytes = std::filesystem::file_size(file.temporary());
-  file.commit();
+  if (!file) return report;
+  report.bytes = std::filesystem::file_size(file->temporary());
+  file->commit();
   return report;
 }
 

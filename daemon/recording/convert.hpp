@@ -32,8 +32,9 @@ struct ConvertReport {
   std::vector<std::string> notices;  ///< what was dropped or done, one line each
 };
 
-/// MCAP to CSV, CSV to MCAP, CSV to CSV in the other layout. `output` appears when it is whole.
-/// Throws config::InputError on bad input, std::runtime_error where it cannot be written.
+/// MCAP to CSV, CSV to MCAP, CSV to CSV in the other layout. `output` appears when it is whole;
+/// "-" is CSV on standard output. Throws config::InputError on bad input, std::runtime_error where
+/// it cannot be written.
 [[nodiscard]] ConvertReport convert(const std::string& input, const std::string& output,
                                     const ConvertOptions& options);
 

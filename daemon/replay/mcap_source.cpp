@@ -63,7 +63,9 @@ void McapSource::look_at(const std::string& path) {
   mcap::InputFile file(path);
   begin_ns_ = std::min(begin_ns_, first.log_time_ns);
   end_ns_ = std::max(end_ns_, first.log_time_ns);
-  for (const mcap::ChunkPlace& chunk : mcap::scan(file).chunks)
+  const mcap::FileLayout layout = mcap::scan(file);
+  end_known_ = end_known_ && !layout.messages_outside;  // heads tell no time of those
+  for (const mcap::ChunkPlace& chunk : layout.chunks)
     end_ns_ = std::max(end_ns_, static_cast<std::int64_t>(chunk.end_ns));
 }
 

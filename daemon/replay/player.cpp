@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "daemon/replay/selection.hpp"
+
 namespace mpm::daemon {
 namespace {
 
@@ -47,11 +49,6 @@ bool Player::play() {
   } while (true);
 }
 
-bool Player::wanted(const ReplaySample& sample, const std::string& unit) const {
-  const std::int64_t since = sample.log_time_ns - *begin_ns_;
-  return since >= options_.start_offset_ns && (options_.unit.empty() || unit == options_.unit);
-}
-
 bool Player::play_pass() {
   ReplaySample sample;
   pacer_.reset();
@@ -62,7 +59,7 @@ bool Player::play_pass() {
         sample.log_time_ns - *begin_ns_ - options_.start_offset_ns >= options_.duration_ns)
       return true;
     const std::string unit = idl::unit_of(sample.cdr);
-    if (!wanted(sample, unit)) continue;
+    if (!selects(options_, sample.log_time_ns - *begin_ns_, unit)) continue;
     state_.recorded_ns = sample.log_time_ns - *begin_ns_;
     if (wait_for(sample.log_time_ns) == Wait::kQuit) return true;
     if (state_.passes == 0 && options_.loop) shift_.see(sample, unit);

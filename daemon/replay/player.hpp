@@ -56,7 +56,6 @@ class Player {
   enum class Wait { kSend, kQuit };
 
   [[nodiscard]] bool play_pass();
-  [[nodiscard]] bool wanted(const ReplaySample& sample, const std::string& unit) const;
   [[nodiscard]] Wait wait_for(std::int64_t log_time_ns);
   /// True if a sample is to be sent now, whatever its time.
   [[nodiscard]] bool handle(Key key);

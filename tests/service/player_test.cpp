@@ -2,10 +2,15 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <deque>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "daemon/mcap/encode.hpp"
+#include "daemon/replay/mcap_source.hpp"
 #include "daemon/replay/player.hpp"
+#include "daemon/replay/selection.hpp"
+#include "tests/system/process.hpp"
 
 namespace mpm::daemon {
 namespace {
@@ -203,6 +208,78 @@ TEST_CASE("a loop over nothing ends") {
   options.unit = "nobody";
   stage.play(source, options);
   CHECK(stage.sent.empty());
+}
+
+TEST_CASE("a selection that chooses nothing is said before anything is played") {
+  FakeSource source(10);  // units a and b, 9.5 s
+  const auto said = [&](const PlayerOptions& options) -> std::string {
+    try {
+      check_selection(source, options);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return {};
+  };
+  PlayerOptions options;
+  CHECK(said(options).empty());
+  ReplaySample first;
+  REQUIRE(source.next(first));
+  CHECK(first.log_time_ns == 50 * kSecond);  // nothing was used up
+  source.rewind();
+  options.unit = "zzz";
+  CHECK(said(options) == "--unit: the recording has no unit 'zzz', but a, b");
+  options.unit = "b";
+  options.remap = {{"b", "c"}, {"x", "y"}};
+  CHECK(said(options) == "--remap: the recording has no unit 'x', but a, b");
+  options.remap = {{"b", "c"}};
+  options.start_offset_ns = 9 * kSecond;
+  CHECK(said(options).empty());
+  options.start_offset_ns = 10 * kSecond;
+  CHECK(said(options) == "--start-offset: the recording ends after 9.5 s");
+  options.start_offset_ns = 9 * kSecond;
+  options.duration_ns = kSecond / 4;  // b is half a second later
+  CHECK(said(options) == "no sample lies in the part that --start-offset and --duration choose");
+}
+
+TEST_CASE("a recording without chunks does not claim to know its length") {
+  const test::TemporaryFolder folder;
+  mcap::Bytes file;
+  mcap::Encoder encode(file);
+  encode.bytes(mcap::kMagic);
+  encode.record(mcap::Op::kHeader, [&] {
+    encode.text("");
+    encode.text("");
+  });
+  encode.record(mcap::Op::kChannel, [&] {
+    encode.u16(1);
+    encode.u16(0);
+    encode.text("mpm/mv");
+    encode.text("cdr");
+    encode.map({});
+  });
+  for (std::uint64_t k = 0; k < 3; ++k)
+    encode.record(mcap::Op::kMessage, [&] {
+      encode.u16(1);
+      encode.u32(0);
+      encode.u64(k * kSecond);
+      encode.u64(k * kSecond);
+      encode.bytes(sample_bytes("a", static_cast<std::int64_t>(k), 0));
+    });
+  encode.record(mcap::Op::kDataEnd, [&] { encode.u32(0); });
+  encode.record(mcap::Op::kFooter, [&] {
+    encode.u64(0);
+    encode.u64(0);
+    encode.u32(0);
+  });
+  encode.bytes(mcap::kMagic);
+  test::write_file(folder.file("bare.mcap"),
+                   {reinterpret_cast<const char*>(file.data()), file.size()});
+  McapSource source({folder.file("bare.mcap")}, {"mpm/mv"});
+  CHECK(source.length_ns() == 0);
+  ReplaySample sample;
+  int count = 0;
+  while (source.next(sample)) ++count;
+  CHECK(count == 3);
 }
 
 TEST_CASE("the pacer stays exact over years and at odd rates") {

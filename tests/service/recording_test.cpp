@@ -120,6 +120,30 @@ TEST_CASE("the quota takes the oldest of our files and no other") {
   CHECK(names_in(folder.file("")) == expected);
 }
 
+TEST_CASE("numbers go on behind those of earlier runs, which the quota counts and takes first") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"q-0002.mcap", "q-0009.mcap", "q-10000.mcap"})
+    write_bytes(folder.file(name), 300);
+  const std::vector<std::string> others = {"mpm-20200101T000000Z-0001.mcap",
+                                           "q-001.mcap",
+                                           "q-0001.mcap.bak",
+                                           "q-0001x.mcap",
+                                           "q.mcap",
+                                           "qq-0001.mcap"};
+  for (const std::string& name : others) write_bytes(folder.file(name), 1000);
+  RecordingFiles files(folder.file("q.mcap"), true, 1000, kStart);
+  files.make_room(300);  // 900 + 300 to come
+  CHECK(files.next() == folder.file("q-10001.mcap"));
+  CHECK(files.deleted() == 1);
+  CHECK_FALSE(std::filesystem::exists(folder.file("q-0002.mcap")));
+  write_bytes(folder.file("q-10002.mcap"), 1);  // by somebody else in the meantime
+  CHECK(files.next() == folder.file("q-10003.mcap"));
+  files.make_room(800);
+  CHECK_FALSE(std::filesystem::exists(folder.file("q-0009.mcap")));
+  CHECK(std::filesystem::exists(folder.file("q-10000.mcap")));  // the newest stays
+  for (const std::string& name : others) CHECK(std::filesystem::exists(folder.file(name)));
+}
+
 TEST_CASE("split files are whole by themselves and lose nothing between them") {
   const test::TemporaryFolder folder;
   RecordingOptions options;
@@ -167,6 +191,23 @@ TEST_CASE("split files are whole by themselves and lose nothing between them") {
     CHECK(sample_times == std::map<std::string, double>{{"cv", 1.0}, {"mv", 1.0}});
   }
   CHECK(expected == 500);
+}
+
+TEST_CASE("an interval that all topics of a unit lack is missing once") {
+  const test::TemporaryFolder folder;
+  RecordingOptions options;
+  options.output = folder.file("run.mcap");
+  Recording recording(options, kStart);
+  const std::size_t mv = recording.add_topic({"mpm/mv", "mpm::Sample", "text", 0, true});
+  const std::size_t cv = recording.add_topic({"mpm/cv", "mpm::Sample", "text", 0, true});
+  for (std::int64_t k = 0; k < 20; ++k) {
+    if (k == 5 || k == 6) continue;
+    recording.write(sample_of(mv, "shell", k));
+    if (k != 15) recording.write(sample_of(cv, "shell", k));
+    if (k != 10) recording.write(sample_of(cv, "other", k));
+  }
+  recording.finish();
+  CHECK(recording.totals().missing_intervals == 3 + 3);
 }
 
 TEST_CASE("a recording is split by time even where nothing comes") {

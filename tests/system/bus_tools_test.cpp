@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <pty.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -172,6 +174,15 @@ class OnTerminal {
   std::string shown_;
 };
 
+/// True once the process asks for the signals that stop it instead of ending by them.
+bool blocks_interrupts(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string word; status >> word;)
+    if (word == "SigBlk:" && status >> word)
+      return (std::stoull(word, nullptr, 16) >> (SIGINT - 1) & 1U) != 0;
+  return false;
+}
+
 TEST_CASE("mpm topics lists who is on the bus, with types and units") {
   const Corner corner("topics");
   Process topics = corner.start({"mpm", "topics", "--json", "--duration", "1"});
@@ -200,7 +211,8 @@ TEST_CASE("mpm echo prints samples and ends when it has enough") {
   CHECK(first["sample"]["unit"] == "toy");
   CHECK(first["sample"]["values"].size() == 2);
   CHECK(last["sample"]["interval"] == first["sample"]["interval"].get<int>() + 2);
-  CHECK(corner.mpm({"echo", "mpm/mv", "--once", "--duration", "0.2"}) == 2);
+  CHECK(corner.mpm({"echo", "mpm/mv", "--once", "--unit", "toy", "--duration", "0.2"}) == 2);
+  CHECK(corner.err() == "mpm echo: no sample of mpm/mv of unit toy came\n");
   CHECK(corner.mpm({"echo", "mpm/nothing"}) == 3);
   CHECK(lines_of(corner.err()).size() == 1);
 }
@@ -234,7 +246,24 @@ TEST_CASE("mpm hz and delay measure a topic, also one that is not ours") {
   }
   CHECK(code == 0);
   CHECK(corner.mpm({"hz", "mpm/cv", "--duration", "0.3"}) == 2);
+  CHECK(corner.mpm({"hz", "--peer", "127.0.0.1", "mpm/cv", "--duration", "0.3s"}) == 2);
+  CHECK(corner.mpm({"hz", "mpm/cv", "--duration", "nan"}) == 3);
   CHECK(corner.mpm({"hz", "mpm/nothing"}) == 3);
+}
+
+TEST_CASE("mpm hz and delay end in peace when the reader of their pipe has left") {
+  const Corner corner("left");
+  const std::string pipe = corner.folder.file("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  for (const char* command : {"hz", "delay"}) {
+    const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    REQUIRE(reader >= 0);
+    Process process(corner.on_bus({"mpm", command, "mpm/cv"}), pipe, corner.folder.file("err"));
+    REQUIRE(idl::eventually([&] { return blocks_interrupts(process.pid()); }, kPatience));
+    close(reader);
+    CHECK(corner.publish_during(process) == 0);
+    CHECK(corner.err().empty());
+  }
 }
 
 TEST_CASE("lines on standard input become samples that the monitor judges as it would the file") {
@@ -296,12 +325,76 @@ TEST_CASE("mpm publish names the line that is wrong, and stops or goes on") {
   CHECK(publish("", "stop") == 3);
 }
 
+TEST_CASE("no line of JSON ends mpm publish --on-error skip, and each is told with its place") {
+  const Corner corner("publish_json");
+  const std::string deep(100'000, '['), undeep(100'000, ']');
+  write_file(corner.folder.file("lines"),
+             "{\"time\":1,\"u1\":1e400}\n"
+             "{\"time\":2, \"u1\" : \"x\"}\n"
+             "{\"time\":3,\"u1\":1,\"u1.quality\":\"so so\"}\n"
+             "{\"time\":4,\"u1\":" +
+                 deep + undeep +
+                 "}\n"
+                 "{\"u2\":1,\"time\":\"now\"}\n"
+                 "{\"time\":5,\"interval\":1.5}\n"
+                 "{\"time\":6,\"u1\":2}\n");
+  const auto publish = [&](const std::string& on_error) {
+    return corner.mpm({"publish", "--config", corner.folder.file("toy.yaml"), "--wait-readers", "0",
+                       "--on-error", on_error},
+                      corner.folder.file("lines"));
+  };
+  CHECK(publish("stop") == 3);
+  CHECK(corner.err() == "stdin:1:16: error: 'u1' is out of range\n");
+  CHECK(publish("skip") == 0);
+  const std::vector<std::string> said = lines_of(corner.err());
+  REQUIRE(said.size() == 7);
+  CHECK(said[1] == "stdin:2:19: error: 'u1': \"x\" is no number");
+  CHECK(said[2].find("stdin:3:31: error: 'u1.quality': \"so so\" is no quality") == 0);
+  CHECK(said[3] == "stdin:4:16: error: 'u1': [...] is no number");
+  CHECK(said[4].find("stdin:5:16: error: \"time\": 'now'") == 0);
+  CHECK(said[5] == "stdin:6:22: error: \"interval\": 1.5 is no interval number");
+  CHECK(said[6] == "mpm publish: 1 lines published, 6 skipped");
+}
+
+TEST_CASE("mpm publish that is stopped before its first line has done nothing wrong") {
+  const Corner corner("publish_idle");
+  const std::string pipe = corner.folder.file("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  const int silent = open(pipe.c_str(), O_RDWR);  // so that no end comes
+  REQUIRE(silent >= 0);
+  for (const std::string begun : {"", "{\"time\":1,"}) {
+    Process publish(corner.on_bus({"mpm", "publish", "--config", corner.folder.file("toy.yaml")}),
+                    corner.folder.file("out"), corner.folder.file("err"), {}, pipe);
+    REQUIRE(write(silent, begun.data(), begun.size()) == static_cast<ssize_t>(begun.size()));
+    REQUIRE(idl::eventually([&] { return blocks_interrupts(publish.pid()); }, kPatience));
+    publish.send(SIGINT);
+    CHECK(publish.wait(kPatience) == 0);
+    INFO(corner.err());
+    CHECK(corner.err().find("error") == std::string::npos);
+  }
+  close(silent);
+}
+
+TEST_CASE("mpm publish takes a CSV without predictions and says what becomes of them") {
+  const Corner corner("publish_bare");
+  const std::string unit = corner.folder.file("predicted.yaml");
+  std::string text = unit_yaml("toy");
+  const std::string cv = "{tag: y1, ";
+  text.replace(text.find(cv), cv.size(), cv + "prediction: yhat1, ");
+  write_file(unit, text);
+  write_file(corner.folder.file("lines"), "time,u1,u2,y1\n0,1,2,3\n");
+  CHECK(corner.mpm({"publish", "--config", unit, "--wait-readers", "0"},
+                   corner.folder.file("lines")) == 0);
+  CHECK(corner.err().find("so bad values go out") != std::string::npos);
+  CHECK(lines_of(corner.err()).back() == "mpm publish: 1 lines published");
+}
+
 TEST_CASE(
     "a recording that was split replays as one, under another name and from where one wants") {
   const Corner corner("split");
   const std::string folder = corner.folder.file("recordings");
   corner.record(folder, 2000,
-                {"--max-size", "50kB", "--chunk-size", "8kB", "--compression", "none"});
+                {"--max-size", "100kB", "--chunk-size", "8kB", "--compression", "none"});
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     files += entry.path().extension() == ".mcap";
@@ -397,14 +490,82 @@ TEST_CASE("a recorder keeps to its quota and never touches other files") {
   const std::string folder = corner.folder.file("recordings");
   std::filesystem::create_directories(folder);
   write_file(folder + "/other.mcap", std::string(500'000, 'x'));
-  corner.record(folder, 4000, {"--quota", "200kB", "--chunk-size", "4kB", "--compression", "none"});
+  corner.record(folder, 12'000, {"--quota", "1MB", "--chunk-size", "4kB", "--compression", "none"});
   std::uintmax_t bytes = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().filename() != "other.mcap") bytes += entry.file_size();
-  CHECK(bytes <= 200'000);
-  CHECK(bytes > 100'000);
+  CHECK(bytes <= 1'000'000);
+  CHECK(bytes > 500'000);
   CHECK(std::filesystem::file_size(folder + "/other.mcap") == 500'000);
   CHECK(read_file(corner.folder.file("started.err")).find("deleted") != std::string::npos);
+}
+
+TEST_CASE("a replay that would publish nothing, or not as meant, says so and ends with 3") {
+  const Corner corner("nothing");
+  const std::string file = corner.folder.file("run.mcap");
+  corner.record(file, 20);
+  for (const std::vector<std::string>& options : {std::vector<std::string>{"--unit", "zzz"},
+                                                  {"--start-offset", "1h"},
+                                                  {"--topics", "mpm/alarm"},
+                                                  {"--remap", "zzz:=copy"},
+                                                  {"--remap", "toy:=a", "--remap", "toy:=b"},
+                                                  {"--start-paused"}}) {
+    CAPTURE(options);
+    std::vector<std::string> arguments = {"replay", file, "--wait-readers", "0"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    CHECK(corner.mpm(arguments) == 3);
+    CHECK(lines_of(corner.err()).size() == 1);
+  }
+  for (const char* option : {"--rate", "--start-offset", "--duration", "--wait-readers"})
+    for (const char* value : {"nan", "inf", "-1", "1e400", "x"}) {
+      CAPTURE(option, value);
+      CHECK(corner.mpm({"replay", file, option, value}) == 3);
+      CHECK(corner.err().find(option) != std::string::npos);
+    }
+  CHECK(corner.mpm({"replay"}) == 3);
+}
+
+TEST_CASE("options of a replay leave its files alone wherever they stand") {
+  const Corner corner("places");
+  const std::string file = corner.folder.file("run.mcap");
+  corner.record(file, 20);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--remap", "toy:=copy", file, "--rate", "0"},
+        {"--topics", "mpm/mv,mpm/cv", file, "--rate", "0"},
+        {"--topics", "mpm/mv", "mpm/cv", file, "--rate", "0"},
+        {"--rate", "0", "--topics", "mpm/mv", "mpm/cv", file},
+        {file, "--rate", "0", "--topics", "mpm/mv", "mpm/cv"}}) {
+    CAPTURE(arguments);
+    std::vector<std::string> all = {"replay", "--wait-readers", "0"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    CHECK(corner.mpm(all) == 0);
+    CHECK(corner.err() == "mpm replay: 40 samples published\n");
+  }
+}
+
+TEST_CASE("mpm record takes times and sizes with units and refuses what no file could keep to") {
+  const Corner corner("units");
+  const auto record = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all = {"record", "--output", corner.folder.file("recordings")};
+    all.insert(all.end(), options.begin(), options.end());
+    return corner.mpm(all);
+  };
+  CHECK(record({"--duration", "0.005m", "--max-size", "1.5GB", "--max-duration", "1h", "--quota",
+                "3GB", "--unit", "nope"}) == 0);
+  CHECK(corner.err().find("no sample of unit nope came") != std::string::npos);
+  CHECK(record({"--duration", "0.3"}) == 0);
+  CHECK(corner.err().find("no sample came") != std::string::npos);
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--quota", "20kB"}, {"--max-size", "1kB"}}) {
+    CHECK(record(options) == 3);
+    CHECK(corner.err().find("at least") != std::string::npos);
+  }
+  CHECK(record({"--quota", "1MB", "--max-size", "600kB"}) == 3);
+  for (const char* option : {"--duration", "--max-duration", "--chunk-duration", "--max-size"})
+    for (const char* value : {"nan", "inf", "-1", "1e400", "1 parsec", ""}) {
+      CAPTURE(option, value);
+      CHECK(record({option, value}) == 3);
+    }
 }
 
 TEST_CASE("what cannot be recorded or replayed is said in one line") {

@@ -1,8 +1,12 @@
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 #include <random>
+#include <regex>
 #include <thread>
 
 #include "daemon/mcap/ordered_reader.hpp"
@@ -204,6 +208,41 @@ TEST_CASE("a recorder loses none of 10 000 samples a second from a writer that w
   CHECK(said.find(" " + std::to_string(2 * kFrames + kLayouts) + " samples ") != std::string::npos);
   CHECK(said.find(" 0 dropped") != std::string::npos);
   CHECK(mv_intervals_in(recording).size() == kFrames);
+}
+
+TEST_CASE("what does not fit on the disk any more is counted as dropped") {
+  constexpr int kFrames = 3000, kLayouts = 2;
+  Stage stage("full");
+  const std::string recording = stage.folder.file("run.mcap");
+  rlimit before{};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const auto on_signal = std::signal(SIGXFSZ, SIG_IGN);  // the recorder inherits both
+  const rlimit small{150'000, before.rlim_max};
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &small) == 0);
+  Process recorder = stage.start("record", {"mpm", "record", "--output", recording, "--chunk-size",
+                                            "20kB", "--compression", "none"});
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &before) == 0);
+  std::signal(SIGXFSZ, on_signal);
+  const idl::Participant participant(stage.domain);
+  const idl::UnitPublisher publisher = toy_publisher(participant);
+  REQUIRE(publisher.wait_for_readers(kPatience));
+  Plant plant(2.0);
+  for (int k = 0; k < kFrames; ++k) REQUIRE(publisher.publish(plant.next()));
+  REQUIRE(publisher.flush(kPatience));
+  CHECK(recorder.wait(kPatience) == 2);
+  const std::string said = read_file(stage.folder.file("record.err"));
+  INFO(said);
+  std::smatch totals;
+  REQUIRE(std::regex_search(said, totals, std::regex("  (\\d+) samples  .*  (\\d+) dropped")));
+  const int samples = std::stoi(totals[1]), dropped = std::stoi(totals[2]);
+  CHECK(samples + dropped <= 2 * kFrames + kLayouts);  // it ends when it notices
+  CHECK(dropped > 0);
+  stage.run_alone("recover", {"mpm", "recover", recording});
+  std::ifstream mended(stage.folder.file("recover.out"));
+  std::string name;
+  int messages = 0;
+  REQUIRE(mended >> name >> messages);
+  CHECK(messages == samples);
 }
 
 TEST_CASE("a recording gives the same bytes live, replayed at any speed, and in mpm detect",
