@@ -71,6 +71,9 @@ int detect(const DetectOptions& options) {
     if (!options.journal.empty()) journal.emplace(options.journal);
     const DetectReport report = run(loaded.config, *frames, journal ? &*journal : nullptr);
     for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
+    if (report.samples == 0)
+      throw config::InputError({options.data, 0, 0, config::Severity::kError, "",
+                                "holds no control interval of unit '" + loaded.config.unit + "'"});
     std::cout << (options.json ? to_json(report).dump() + "\n" : to_text(report)) << std::flush;
     return options.fail_on_mismatch && report.mismatch() ? 1 : 0;
   } catch (const config::InputError& error) {
