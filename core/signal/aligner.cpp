@@ -143,6 +143,7 @@ void Aligner::fill(Slot& slot, const BlockView& block) {
   for (std::size_t i = 0; i < block.values.size(); ++i) {
     const bool finite = std::isfinite(block.values[i]);
     if (!finite) ++counters_.non_finite;
+    if (std::isinf(block.values[i])) ++counters_.infinite;
     target.values(static_cast<Eigen::Index>(i)) = block.values[i];
     target.quality[i] = !finite                 ? Quality::kBad
                         : block.quality.empty() ? Quality::kGood

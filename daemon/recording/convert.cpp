@@ -83,7 +83,9 @@ ConvertReport convert(const std::string& input, const std::string& output,
       io::CsvWriter writer(file.temporary(), table.columns, std::move(csv));
       copy(table, writer, report);
     }
-    report.notices = table.frames->notices();
+    report.notices = table.notices;
+    report.notices.insert(report.notices.end(), table.frames->notices().begin(),
+                          table.frames->notices().end());
   } catch (const std::invalid_argument& error) {  // what the input holds does not fit the output
     refuse(input, error.what());
   }

@@ -4,6 +4,7 @@
 
 #include "config/finding.hpp"
 #include "daemon/io/aligning.hpp"
+#include "daemon/mcap/printable.hpp"
 #include "daemon/recording/contents.hpp"
 #include "daemon/recording/unit_tags.hpp"
 
@@ -103,7 +104,10 @@ bool McapFrames::next(Frame& frame) {
   while (ready_.empty() && !done_) {
     switch (samples_.next()) {
       case SampleStream::Event::kSample:
-        if (samples_.sample().unit == unit_.unit) push(samples_.sample(), samples_.log_time_ns());
+        if (samples_.sample().unit == unit_.unit)
+          push(samples_.sample(), samples_.log_time_ns());
+        else
+          ++of_other_units_;
         break;
       case SampleStream::Event::kLayout:
         check_layout(samples_.layout());
@@ -134,7 +138,13 @@ void McapFrames::tell_counters() {
   tell(counters.late, " samples left out that came too late for their control interval");
   tell(counters.repeated, " samples left out that repeat a control interval");
   tell(counters.wrong_length, " samples left out that have the wrong number of values");
+  tell(counters.infinite, " values taken as missing: they are not finite");
   tell(counters.restarts, " restarts of the controller's count of intervals");
+  if (kinds_ != Kinds::kAllThereAre) return;
+  tell(of_other_units_, " samples of other units left out");
+  for (const auto& [topic, count] : samples_.others())
+    notices_.push_back(std::to_string(count) + " messages on " + mcap::printable(topic) +
+                       " left out: they hold no signals");
 }
 
 }  // namespace mpm::recording

@@ -48,6 +48,7 @@ class McapFrames : public io::FrameSource {
   std::int64_t patience_ns_;
   std::int64_t last_frame_ns_ = 0;  ///< log time of the last frame, or since when one is awaited
   std::int64_t now_ns_ = 0;
+  std::uint64_t of_other_units_ = 0;
   bool done_ = false;
 };
 

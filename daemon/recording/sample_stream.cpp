@@ -59,6 +59,7 @@ SampleStream::Event SampleStream::next() {
       if (layout_ == nullptr || !complete(*layout_)) refuse("mpm::Layout");
       return Event::kLayout;
     }
+    ++others_[channel.topic];
   }
   return Event::kEnd;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +34,8 @@ class SampleStream {
   [[nodiscard]] const mpm_Layout& layout() const { return *layout_; }
   [[nodiscard]] std::int64_t log_time_ns() const { return message_.log_time_ns; }
   [[nodiscard]] const mcap::Message& message() const { return message_; }
+  /// Messages passed over so far, by topic.
+  [[nodiscard]] const std::map<std::string, std::uint64_t>& others() const { return others_; }
 
  private:
   [[noreturn]] void refuse(const char* type) const;
@@ -43,6 +47,7 @@ class SampleStream {
   idl::CdrDecoder<mpm_Layout> layouts_;
   idl::SampleView sample_;
   const mpm_Layout* layout_ = nullptr;
+  std::map<std::string, std::uint64_t> others_;
 };
 
 }  // namespace mpm::recording

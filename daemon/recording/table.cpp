@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "config/finding.hpp"
+#include "config/suggest.hpp"
 #include "daemon/io/csv_reader.hpp"
 #include "daemon/io/csv_rows.hpp"
 #include "daemon/mcap/record_stream.hpp"
@@ -79,6 +80,12 @@ Table open_mcap(const std::string& path, const TableOptions& options) {
     const RecordedKind& known = recorded[kind];
     return known.seen && (index >= known.tags.size() || !known.tags[index].empty());
   });
+  for (std::size_t k = 0; k < kSignalKindCount; ++k) {
+    const auto kind = static_cast<SignalKind>(k);
+    if (recorded[kind].seen && table.unit.counts().of(kind) == 0)
+      table.notices.push_back(std::string(topic_of(kind)) +
+                              " left out: the unit file has no such signals");
+  }
   table.frames = std::make_unique<McapFrames>(path, table.unit, McapFrames::Kinds::kAllThereAre);
   return table;
 }
@@ -100,12 +107,20 @@ Table open_csv(const std::string& path, const TableOptions& options) {
   if (options.unit == nullptr) return table;
   // Only what the unit names; the frames keep all.
   std::vector<io::Column> named;
+  std::vector<std::string> others;
   for (const io::Column& column : columns_of(*options.unit, [](auto...) { return true; })) {
     const auto found = std::find_if(table.columns.begin(), table.columns.end(),
                                     [&](const io::Column& have) { return have.tag == column.tag; });
     if (found != table.columns.end()) named.push_back(*found);
   }
   if (named.empty()) refuse(path, "holds no signal of unit '" + options.unit->unit + "'");
+  for (const io::Column& column : table.columns)
+    if (std::none_of(named.begin(), named.end(),
+                     [&](const io::Column& taken) { return taken.tag == column.tag; }))
+      others.push_back(column.tag);
+  if (!others.empty())
+    table.notices.push_back("left out, since the unit file does not name them: " +
+                            config::join(others));
   table.columns = std::move(named);
   return table;
 }
