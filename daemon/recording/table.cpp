@@ -86,7 +86,7 @@ Table open_mcap(const std::string& path, const TableOptions& options) {
       table.notices.push_back(std::string(topic_of(kind)) +
                               " left out: the unit file has no such signals");
   }
-  table.frames = std::make_unique<McapFrames>(path, table.unit, McapFrames::Kinds::kAllThereAre);
+  table.frames = std::make_unique<McapFrames>(path, table.unit, io::Purpose::kKeep);
   return table;
 }
 
@@ -94,7 +94,8 @@ Table open_csv(const std::string& path, const TableOptions& options) {
   Table table;
   if (options.unit != nullptr && options.number) {
     table.unit = *options.unit;
-    auto reader = std::make_unique<io::CsvReader>(path, table.unit, options.zone);
+    auto reader =
+        std::make_unique<io::CsvReader>(path, table.unit, options.zone, io::Purpose::kKeep);
     table.columns = columns_of(table.unit, [&](SignalKind, std::size_t, const std::string& tag) {
       return reader->holds(tag);
     });
