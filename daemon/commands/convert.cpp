@@ -5,6 +5,7 @@
 #include <string>
 
 #include "config/load_unit.hpp"
+#include "daemon/commands/time_zone.hpp"
 #include "daemon/io/time_text.hpp"
 #include "daemon/recording/convert.hpp"
 
@@ -20,11 +21,6 @@ struct Options {
   std::string time_zone;
   std::string from_time_zone;
 };
-
-std::shared_ptr<const io::TimeZone> zone_of(const std::string& name) {
-  if (name.empty() || name == "utc" || name == "UTC" || name == "seconds") return nullptr;
-  return std::make_shared<io::TimeZone>(name);
-}
 
 void tell(const Options& options, const recording::ConvertReport& report) {
   std::cout << options.output << ": " << report.rows << " rows of " << report.signals

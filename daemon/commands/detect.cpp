@@ -7,6 +7,7 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
+#include "daemon/commands/time_zone.hpp"
 #include "daemon/monitoring/journal.hpp"
 #include "daemon/recording/open_recording.hpp"
 #include "daemon/report/detect_report.hpp"
@@ -20,6 +21,7 @@ struct DetectOptions {
   std::string data;
   std::string scenario;
   std::string journal;
+  std::string time_zone;
   bool json = false;
   bool fail_on_mismatch = false;
 };
@@ -66,7 +68,7 @@ int detect(const DetectOptions& options) {
       loaded.config.monitor = scenario.scenario.monitor;
     }
     const std::unique_ptr<io::FrameSource> frames =
-        recording::open_recording(options.data, loaded.config);
+        recording::open_recording(options.data, loaded.config, zone_of(options.time_zone));
     std::optional<Journal> journal;
     if (!options.journal.empty()) journal.emplace(options.journal);
     const DetectReport report = run(loaded.config, *frames, journal ? &*journal : nullptr);
@@ -95,6 +97,7 @@ void add_detect(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--scenario", options->scenario,
                       "scenario (name or file) whose `monitor` settings replace the unit file's");
+  add_time_zone(*command, options->time_zone);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--journal", options->journal,
                       "append every sample's verdicts and alarms to this file as JSON lines");

@@ -5,15 +5,16 @@
 #include <string>
 
 #include "config/finding.hpp"
+#include "daemon/commands/time_zone.hpp"
 #include "daemon/recording/info_text.hpp"
 
 namespace mpm::daemon {
 namespace {
 
 // 0, or 3 on bad input. A torn file is no bad input here: that it is torn is the information.
-int run_info(const std::string& path, bool json) {
+int run_info(const std::string& path, const std::string& zone, bool json) {
   try {
-    const recording::FileInfo info = recording::inspect(path);
+    const recording::FileInfo info = recording::inspect(path, zone_of(zone));
     for (const std::string& notice : info.notices) std::cerr << path << ": " << notice << '\n';
     std::cout << (json ? to_json(info).dump(-1, ' ', false,
                                             nlohmann::ordered_json::error_handler_t::replace) +
@@ -31,15 +32,17 @@ int run_info(const std::string& path, bool json) {
 
 void add_info(CLI::App& app, int& exit_code) {
   auto path = std::make_shared<std::string>();
+  auto zone = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   CLI::App* command =
       app.add_subcommand("info",
                          "Tell what a recording (MCAP) or a CSV file holds: topics, units, "
                          "span, gaps, qualities, and whether it is whole");
   command->add_option("file", *path, "MCAP recording, or CSV in any historian layout")->required();
+  add_time_zone(*command, *zone);
   command->add_flag("--json", *json, "print one JSON object");
   command->footer("Example:\n  mpm info night.mcap");
-  command->callback([path, json, &exit_code] { exit_code = run_info(*path, *json); });
+  command->callback([path, zone, json, &exit_code] { exit_code = run_info(*path, *zone, *json); });
 }
 
 }  // namespace mpm::daemon

@@ -174,8 +174,8 @@ class RowClock {
   double step_ns_ = 0.0;
 };
 
-void inspect_csv(FileInfo& info) {
-  io::CsvRows rows(info.path);
+void inspect_csv(FileInfo& info, std::shared_ptr<const io::TimeZone> zone) {
+  io::CsvRows rows(info.path, std::move(zone));
   info.is_long = rows.is_long();
   info.delimiter = rows.delimiter();
   for (const io::Column& column : rows.columns()) {
@@ -227,14 +227,14 @@ double TimeTally::rate_hz() const {
   return count > 1 && span_s > 0.0 ? static_cast<double>(count - 1) / span_s : 0.0;
 }
 
-FileInfo inspect(const std::string& path) {
+FileInfo inspect(const std::string& path, std::shared_ptr<const io::TimeZone> zone) {
   FileInfo info;
   info.path = path;
   info.is_mcap = mcap::is_mcap(path) || path.ends_with(".mcap");
   if (info.is_mcap)
     inspect_mcap(info);
   else
-    inspect_csv(info);
+    inspect_csv(info, std::move(zone));
   std::error_code ignored;
   info.bytes = std::filesystem::file_size(path, ignored);
   return info;

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "core/signal/frame.hpp"
+#include "daemon/io/time_zone.hpp"
 
 namespace mpm::recording {
 
@@ -82,7 +84,8 @@ struct FileInfo {
 };
 
 /// Reads all of the file. Throws config::InputError where it is no data file at all; one that is
-/// torn is told as far as it goes.
-[[nodiscard]] FileInfo inspect(const std::string& path);
+/// torn is told as far as it goes. Local times of a CSV are those of `zone`; refused without one.
+[[nodiscard]] FileInfo inspect(const std::string& path,
+                               std::shared_ptr<const io::TimeZone> zone = nullptr);
 
 }  // namespace mpm::recording

@@ -61,5 +61,32 @@ TEST_CASE("mpm detect takes a recording without one control interval for bad inp
         std::string::npos);
 }
 
+TEST_CASE("Exports in local times are read by every command that reads data") {
+  Bench bench;
+  write_file(bench.folder.file("l.csv"),
+             "time;u;d,1;y;z\n31.03.2024 01:59:00;1;1;2;3\n31.03.2024 03:00:00;2;1;2;3\n");
+  CHECK(detect(bench, "l.csv") == 3);
+  CHECK(lines_of(bench.text("err"))
+            .back()
+            .find("l.csv:2:1: error: '31.03.2024 01:59:00' is a local "
+                  "time: ") != std::string::npos);
+  CHECK(bench.text("err").find("--time-zone") != std::string::npos);
+  CHECK(detect(bench, "l.csv", {"--time-zone", "Europe/Berlin", "--json"}) == 0);
+  const auto json = nlohmann::json::parse(bench.text("out"));
+  CHECK(json["samples"] == 2);
+  CHECK(json["missing_samples"] == 0);
+  CHECK(detect(bench, "l.csv", {"--time-zone", "Mars/Base"}) == 3);
+
+  CHECK(mpm(bench, {"info", bench.folder.file("l.csv")}) == 3);
+  CHECK(bench.text("err").find("--time-zone") != std::string::npos);
+  CHECK(mpm(bench, {"info", bench.folder.file("l.csv"), "--time-zone", "Europe/Berlin"}) == 0);
+  CHECK(bench.text("out").find("2024-03-31T00:59:00Z to 2024-03-31T01:00:00Z") !=
+        std::string::npos);
+  const std::string unit = bench.folder.file("small.yaml");
+  CHECK(mpm(bench, {"diagnose", "--config", unit, "--data", bench.folder.file("l.csv"), "--out",
+                    bench.folder.file("d"), "--time-zone", "Europe/Berlin"}) == 3);
+  CHECK(bench.text("err").find("too short: 2 usable samples") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace mpm::test
