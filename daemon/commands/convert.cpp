@@ -64,7 +64,9 @@ void add_convert(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "convert", "Turn a recording (MCAP) into CSV, or CSV into a recording, without losing a bit");
-  command->add_option("input", options->input, "MCAP recording, or CSV in any historian layout")
+  command
+      ->add_option("input", options->input,
+                   "MCAP recording, a folder of one that was split, or CSV in any historian layout")
       ->required();
   command
       ->add_option("output", options->output, "what to write: MCAP if it ends in .mcap, else CSV")

@@ -59,9 +59,10 @@ struct TopicTally {
   std::uint64_t bytes = 0;
 };
 
-/// What a data file holds.
+/// What a data file, or a recording of several, holds.
 struct FileInfo {
-  std::string path;
+  std::string path;                ///< the name of all where there are several
+  std::vector<std::string> files;  ///< of MCAP, in the order of time
   bool is_mcap = false;
   std::uint64_t bytes = 0;
   TimeTally times;      ///< of all messages or rows
@@ -83,8 +84,11 @@ struct FileInfo {
   std::vector<std::string> notices;
 };
 
-/// Reads all of the file. Throws config::InputError where it is no data file at all; one that is
-/// torn is told as far as it goes. Local times of a CSV are those of `zone`; refused without one.
+/// Reads all of the files. Several MCAP files, or a folder of them, are one recording. Throws
+/// config::InputError where it is no data file at all; one that is torn is told as far as it goes.
+/// Local times of a CSV are those of `zone`; refused without one.
+[[nodiscard]] FileInfo inspect(const std::vector<std::string>& paths,
+                               std::shared_ptr<const io::TimeZone> zone = nullptr);
 [[nodiscard]] FileInfo inspect(const std::string& path,
                                std::shared_ptr<const io::TimeZone> zone = nullptr);
 

@@ -49,6 +49,7 @@ Json signals_json(const std::vector<SignalTally>& signals) {
 }
 
 void add_mcap(const FileInfo& info, Json& json) {
+  json["files"] = info.files;
   json["library"] = info.library;
   json["profile"] = info.profile;
   json["index"] = info.index_problem.empty() ? "intact" : info.index_problem;
@@ -196,6 +197,7 @@ Json to_json(const FileInfo& info) {
 std::string to_text(const FileInfo& info) {
   std::string text =
       info.path + ": " + (info.is_mcap ? "MCAP" : "CSV") + ", " + bytes_text(info.bytes);
+  if (info.files.size() > 1) text += ", " + std::to_string(info.files.size()) + " files";
   if (!info.library.empty()) text += ", written by " + mcap::printable(info.library);
   text += "\n  " + std::to_string(info.times.count) + (info.is_mcap ? " messages, " : " rows, ") +
           span_text(info.times) + "\n";

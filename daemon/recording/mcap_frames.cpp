@@ -17,32 +17,34 @@ namespace {
 
 }  // namespace
 
-McapFrames::McapFrames(const std::string& path, const config::UnitConfig& unit, io::Purpose purpose)
+McapFrames::McapFrames(const std::vector<std::string>& paths, const config::UnitConfig& unit,
+                       io::Purpose purpose)
     : unit_(unit),
       purpose_(purpose),
-      aligner_(unit.counts(), look_into(path, purpose),
+      aligner_(unit.counts(), look_into(paths, purpose),
                [this](const Frame& frame) {
                  last_frame_ns_ = now_ns_;
                  ready_.push_back(frame);
                }),
-      samples_(path),
+      samples_(paths),
       patience_ns_(io::frame_patience(unit).count()) {}
 
 // Which kinds to wait for: as the daemon does, but what is nowhere in the file will not come.
-std::array<bool, kSignalKindCount> McapFrames::look_into(const std::string& path,
+std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::string>& paths,
                                                          io::Purpose purpose) {
   std::array<bool, kSignalKindCount> wanted = io::needed_kinds(unit_);
   wanted[static_cast<std::size_t>(SignalKind::kAux)] = !unit_.aux.empty();
   if (purpose == io::Purpose::kKeep)
     for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
       wanted[kind] = unit_.counts().of(static_cast<SignalKind>(kind)) > 0;
-  const Contents contents = survey(path, [&](const Contents& so_far) {
+  const Contents contents = survey(paths, [&](const Contents& so_far) {
     const auto found = so_far.find(unit_.unit);
     if (found == so_far.end()) return false;
     for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
       if (wanted[kind] && !found->second.kinds[kind].seen) return false;
     return true;
   });
+  const std::string path = mcap::name_of(paths);
   const auto found = contents.find(unit_.unit);
   if (found == contents.end())
     refuse(path, "holds no samples of unit '" + unit_.unit + "'" +

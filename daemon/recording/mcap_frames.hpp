@@ -15,16 +15,16 @@
 
 namespace mpm::recording {
 
-/// The frames of one unit from an MCAP recording: its samples in the order of their log times, put
-/// together by the aligner of the daemon. Log time stands for the daemon's clock, so that a kind
-/// that falls silent is given up after the same time; what the daemon saw live comes out again.
-/// Memory stays flat.
+/// The frames of one unit from an MCAP recording, of one file or several: its samples in the order
+/// of their log times, put together by the aligner of the daemon. Log time stands for the daemon's
+/// clock, so that a kind that falls silent is given up after the same time; what the daemon saw
+/// live comes out again. Memory stays flat.
 class McapFrames : public io::FrameSource {
  public:
   /// A frame waits for what the daemon needs to judge the unit or, to keep them, for all kinds in
   /// the file. Throws config::InputError where the file is damaged, or holds no samples of the unit
   /// or not those that it needs.
-  McapFrames(const std::string& path, const config::UnitConfig& unit,
+  McapFrames(const std::vector<std::string>& paths, const config::UnitConfig& unit,
              io::Purpose purpose = io::Purpose::kJudge);
 
   [[nodiscard]] bool next(Frame& frame) override;
@@ -32,7 +32,8 @@ class McapFrames : public io::FrameSource {
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
 
  private:
-  std::array<bool, kSignalKindCount> look_into(const std::string& path, io::Purpose purpose);
+  std::array<bool, kSignalKindCount> look_into(const std::vector<std::string>& paths,
+                                               io::Purpose purpose);
   void check_needed(const std::string& path, const RecordedUnit& recorded);
   void check_layout(const mpm_Layout& layout);
   void push(const idl::SampleView& sample, std::int64_t now_ns);

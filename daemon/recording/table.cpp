@@ -7,7 +7,7 @@
 #include "config/suggest.hpp"
 #include "daemon/io/csv_reader.hpp"
 #include "daemon/io/csv_rows.hpp"
-#include "daemon/mcap/record_stream.hpp"
+#include "daemon/mcap/file_sequence.hpp"
 #include "daemon/recording/contents.hpp"
 #include "daemon/recording/mcap_frames.hpp"
 #include "daemon/recording/unit_tags.hpp"
@@ -65,7 +65,7 @@ config::UnitConfig unit_of(const std::string& path, const std::string& name,
 }
 
 Table open_mcap(const std::string& path, const TableOptions& options) {
-  const Contents contents = survey(path, [](const Contents&) { return false; });
+  const Contents contents = survey({path}, [](const Contents&) { return false; });
   const std::string wanted = options.unit != nullptr ? options.unit->unit : options.unit_name;
   if (contents.empty()) refuse(path, "holds no samples of any unit");
   if (wanted.empty() && contents.size() > 1)
@@ -86,7 +86,7 @@ Table open_mcap(const std::string& path, const TableOptions& options) {
       table.notices.push_back(std::string(topic_of(kind)) +
                               " left out: the unit file has no such signals");
   }
-  table.frames = std::make_unique<McapFrames>(path, table.unit, io::Purpose::kKeep);
+  table.frames = std::make_unique<McapFrames>(std::vector{path}, table.unit, io::Purpose::kKeep);
   return table;
 }
 
@@ -129,8 +129,7 @@ Table open_csv(const std::string& path, const TableOptions& options) {
 }  // namespace
 
 Table open_table(const std::string& path, const TableOptions& options) {
-  return mcap::is_mcap(path) || path.ends_with(".mcap") ? open_mcap(path, options)
-                                                        : open_csv(path, options);
+  return mcap::is_recording(path) ? open_mcap(path, options) : open_csv(path, options);
 }
 
 }  // namespace mpm::recording
