@@ -173,6 +173,8 @@ class RowClock {
       } else {
         judge(last_ns_, time_ns);
       }
+    } else if (info_.times.count > 0) {
+      info_.times.add_step_back(last_ns_, time_ns);
     }
     last_ns_ = time_ns;
     info_.times.add(time_ns);
@@ -250,9 +252,14 @@ void TimeTally::add_gap(std::int64_t before_ns, std::int64_t after_ns, std::uint
   longest_gap_at_ns = before_ns;
 }
 
+void TimeTally::add_step_back(std::int64_t before_ns, std::int64_t after_ns) {
+  if (out_of_order++ > 0 && before_ns - after_ns <= farthest_back_ns) return;
+  farthest_back_ns = before_ns - after_ns;
+  farthest_back_at_ns = before_ns;
+}
+
 double TimeTally::rate_hz() const {
-  const double span_s =
-      (static_cast<double>(last_ns) - static_cast<double>(first_ns)) / kNsPerSecond;
+  const double span_s = static_cast<double>(last_ns - first_ns) / kNsPerSecond;
   return count > 1 && span_s > 0.0 ? static_cast<double>(count - 1) / span_s : 0.0;
 }
 

@@ -30,9 +30,13 @@ struct TimeTally {
   std::uint64_t missing = 0;  ///< control intervals in the gaps
   std::int64_t longest_gap_ns = 0;
   std::int64_t longest_gap_at_ns = 0;  ///< the last time before it
+  std::uint64_t out_of_order = 0;      ///< rows not later than the one before
+  std::int64_t farthest_back_ns = 0;
+  std::int64_t farthest_back_at_ns = 0;  ///< the time before that step
 
   void add(std::int64_t time_ns);
   void add_gap(std::int64_t before_ns, std::int64_t after_ns, std::uint64_t intervals);
+  void add_step_back(std::int64_t before_ns, std::int64_t after_ns);
   /// Per second; 0 where that cannot be told.
   [[nodiscard]] double rate_hz() const;
 };

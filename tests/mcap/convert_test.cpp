@@ -273,6 +273,19 @@ TEST_CASE("Info tells a CSV's step, gaps and qualities, and a torn recording's t
         std::string::npos);
 }
 
+TEST_CASE("Info tells where a CSV's clock goes back, and times without rounding") {
+  Bench bench;
+  write_file(bench.folder.file("a.csv"), "time,u\n0,1\n0.5,1\n1,1\n0,1\n0.5,1\n0.5,1\n249.5,1\n");
+  const recording::FileInfo info = recording::inspect(bench.folder.file("a.csv"));
+  const auto json = to_json(info);
+  CHECK(json["out_of_order"]["count"] == 2);
+  CHECK(json["out_of_order"]["farthest_back_s"] == 1.0);
+  CHECK(json["out_of_order"]["farthest_back_at"] == "1970-01-01T00:00:01Z");
+  CHECK(json["rows"]["duration_s"] == 249.5);
+  CHECK(to_text(info).find("; 2 rows not later than the one before, the farthest back by 1 s after "
+                           "1970-01-01T00:00:01Z\n") != std::string::npos);
+}
+
 TEST_CASE("The programs: exit codes, files, messages") {
   Bench bench;
   const auto mpm = [&](std::vector<std::string> arguments) {
