@@ -226,8 +226,10 @@ void Monitor::State::read_residuals(const Frame& frame) {
                              (given && predicted.quality[at] == Quality::kImplausible);
     cv.implausible_share += kImplausibleStep * ((implausible ? 1.0 : 0.0) - cv.implausible_share);
     residuals(j) = kUnknown;
-    if (!measured.usable(j) || (given && !predicted.usable(j))) {
-      ++counters.bad_values;
+    const bool measures = measured.usable(j), predicts = !given || predicted.usable(j);
+    counters.bad_values += (measures ? 0 : 1) + (predicts ? 0 : 1);
+    if (!measures || !predicts) {
+      // no residual
     } else if (given) {
       residuals(j) = measured.values(j) - predicted.values(j);
     } else if (model_started && cv.settling == 0) {

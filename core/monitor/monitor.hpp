@@ -26,7 +26,8 @@ struct MonitorCounters {
   std::uint64_t used = 0;          ///< gave some CV a row
   std::uint64_t missing = 0;       ///< intervals skipped between frames
   std::uint64_t out_of_order = 0;  ///< frames not newer than the last one; ignored
-  std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed
+  std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed, in the
+                                   ///< frames that have left the screen
   ScreenCounters implausible;      ///< of these: good by their quality, but not by their look
 };
 

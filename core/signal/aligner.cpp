@@ -66,6 +66,9 @@ void Aligner::expire() {
                         current_.newest_of[kind] < current_.newest - settings_.max_lateness;
     if ((needed_ & bit) != 0 && behind) silent_ |= bit;
   }
+  std::int64_t last_complete = current_.newest;
+  while (last_complete >= current_.next && !complete(last_complete)) --last_complete;
+  while (current_.next <= last_complete) settle_next(current_);
   advance();
 }
 
@@ -91,9 +94,13 @@ bool Aligner::near(const Window& window, std::int64_t interval) const {
          interval <= window.newest + settings_.capacity;
 }
 
-Aligner::Slot& Aligner::slot_of(Window& window, std::int64_t interval) const {
+std::size_t Aligner::place_of(std::int64_t interval) const {
   const std::int64_t size = settings_.capacity;
-  return window.slots[static_cast<std::size_t>(((interval % size) + size) % size)];
+  return static_cast<std::size_t>(((interval % size) + size) % size);
+}
+
+Aligner::Slot& Aligner::slot_of(Window& window, std::int64_t interval) const {
+  return window.slots[place_of(interval)];
 }
 
 bool Aligner::store(Window& window, const BlockView& block) {
@@ -136,6 +143,7 @@ void Aligner::fill(Slot& slot, const BlockView& block) {
   for (std::size_t i = 0; i < block.values.size(); ++i) {
     const bool finite = std::isfinite(block.values[i]);
     if (!finite) ++counters_.non_finite;
+    if (std::isinf(block.values[i])) ++counters_.infinite;
     target.values(static_cast<Eigen::Index>(i)) = block.values[i];
     target.quality[i] = !finite                 ? Quality::kBad
                         : block.quality.empty() ? Quality::kGood
@@ -169,13 +177,14 @@ void Aligner::emit(Slot& slot) {
   sink_(slot.frame);
 }
 
+bool Aligner::complete(std::int64_t interval) const {
+  const Slot& slot = current_.slots[place_of(interval)];
+  return slot.used && slot.interval == interval && slot.present == needed_;
+}
+
 void Aligner::advance() {
-  while (pending()) {
-    const Slot& slot = slot_of(current_, current_.next);
-    const bool complete = slot.used && slot.interval == current_.next && slot.present == needed_;
-    if (!complete && !past_lateness(current_.next)) return;
+  while (pending() && (complete(current_.next) || past_lateness(current_.next)))
     settle_next(current_);
-  }
 }
 
 bool Aligner::past_lateness(std::int64_t interval) const {

@@ -35,6 +35,7 @@ struct AlignerCounters {
   std::uint64_t out_of_order = 0;  ///< blocks that came after a newer one of their kind, in time
   std::uint64_t wrong_length = 0;  ///< blocks of another size, or with an absurd interval number
   std::uint64_t non_finite = 0;    ///< values; they become bad
+  std::uint64_t infinite = 0;      ///< of these: not just without a value
   std::uint64_t restarts = 0;      ///< the interval number went back to a new beginning
 };
 
@@ -46,11 +47,11 @@ struct AlignerCounters {
 ///   - all needed blocks are there, or
 ///   - every needed kind has gone on to an interval more than `max_lateness` newer, or
 ///   - some kind is `capacity` intervals ahead, or
-///   - `expire()` says that a kind has fallen silent.
+///   - `expire()` says that a kind has fallen silent, or that what came last waits for too long.
 /// Absent blocks of an emitted frame are bad and have no value; an interval of which nothing came
 /// is left out. So as long as blocks come no more than `max_lateness` intervals late, the frames
 /// depend on what came and not on its order. The first frame after a start waits for the lateness
-/// to pass.
+/// to pass, or for `expire()`.
 ///
 /// Blocks far from the current window are gathered in a second one. When that one has a complete
 /// frame, it takes over: the controller restarted or was away. A single stray number changes
@@ -66,8 +67,9 @@ class Aligner {
 
   void push(const BlockView& block);
 
-  /// For the caller that has a clock, when nothing was emitted for too long: from now on does not
-  /// wait for kinds that are behind by more than the lateness, until they come again.
+  /// For the caller that has a clock, when nothing was emitted for too long: what lies before a
+  /// complete frame is not awaited any longer; nor are, until they come again, kinds that are
+  /// behind by more than the lateness.
   void expire();
 
   /// Emits all that is there, for the caller that knows that nothing more will come.
@@ -97,11 +99,13 @@ class Aligner {
 
   void start(Window& window, std::int64_t interval);
   [[nodiscard]] bool near(const Window& window, std::int64_t interval) const;
+  [[nodiscard]] std::size_t place_of(std::int64_t interval) const;
   [[nodiscard]] Slot& slot_of(Window& window, std::int64_t interval) const;
   /// Stores the block; true if it completed its frame.
   bool store(Window& window, const BlockView& block);
   void fill(Slot& slot, const BlockView& block);
   void settle_next(Window& window);
+  [[nodiscard]] bool complete(std::int64_t interval) const;
   void emit(Slot& slot);
   void advance();
   void take_over();

@@ -71,6 +71,7 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
       dead_time_(dead_time),
       since_rest_(static_cast<std::size_t>(counts.inputs()), 0),
       ring_(kDelay + 1, Frame(counts)),
+      marked_(kDelay + 1),
       jumps_(static_cast<std::size_t>(counts.cv)) {
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
     repeats_.emplace_back(static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind))));
@@ -79,6 +80,7 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
 const Frame* Screen::push(const Frame& frame) {
   position_ = (position_ + 1) % (kDelay + 1);
   ring_[static_cast<std::size_t>(position_)] = frame;
+  marked_[static_cast<std::size_t>(position_)] = {};
   held_ = std::min(held_ + 1, kDelay + 1);
 
   for (const SignalKind kind :
@@ -98,7 +100,12 @@ const Frame* Screen::push(const Frame& frame) {
   screen_repeats(SignalKind::kCv);
   if (held_ > kDelay)
     for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
-  return held_ > kDelay ? &ago(kDelay) : nullptr;
+  if (held_ <= kDelay) return nullptr;
+  const ScreenCounters& marked = marked_[place(kDelay)];
+  counters_.frozen += marked.frozen;
+  counters_.clipped += marked.clipped;
+  counters_.spikes += marked.spikes;
+  return &ago(kDelay);
 }
 
 void Screen::follow_predictions(const SignalBlock& predictions) {
@@ -139,19 +146,20 @@ void Screen::screen_repeats(SignalKind kind) {
   for (int i = 0; i < ago(0)[kind].size(); ++i) {
     const Repeats& repeats = repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
     if (!ago(0)[kind].usable(i)) continue;
+    if (kind == SignalKind::kPrediction && !predicted(i)) continue;
     if (may_rest(kind, i) || (input && repeats.at_end())) continue;
-    if (repeats.at_end()) mark(kind, i, 0, counters_.clipped);
+    if (repeats.at_end()) mark(kind, i, 0, &ScreenCounters::clipped);
     if (!repeats.frozen()) continue;
     for (int frames = 0; frames < std::min({repeats.run, kDelay + 1, held_}); ++frames)
-      mark(kind, i, frames, counters_.frozen);
+      mark(kind, i, frames, &ScreenCounters::frozen);
   }
 }
 
-void Screen::mark(SignalKind kind, int index, int frames, std::uint64_t& counter) {
+void Screen::mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter) {
   Quality& quality = ago(frames)[kind].quality[static_cast<std::size_t>(index)];
   if (quality > Quality::kUncertain) return;
   quality = Quality::kImplausible;
-  ++counter;
+  ++(marked_[place(frames)].*counter);
 }
 
 // What should move smoothly: the residual where a prediction comes along, else the measurement.
@@ -186,7 +194,7 @@ void Screen::screen_spikes(int cv) {
              std::abs(levels[next] - jumps.home) < 0.5 * std::abs(away);
     };
     if (std::abs(away) > kSpike * jumps.scale && (back_at(2) || back_at(3))) {
-      mark(SignalKind::kCv, cv, kDelay - 1, counters_.spikes);
+      mark(SignalKind::kCv, cv, kDelay - 1, &ScreenCounters::spikes);
       ++jumps.spikes;
     }
   }

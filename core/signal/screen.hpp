@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// What the screen found implausible so far, in values.
+/// What the screen found implausible, in values of the frames that have left it.
 struct ScreenCounters {
   std::uint64_t frozen = 0;
   std::uint64_t clipped = 0;
@@ -72,14 +72,15 @@ class Screen {
     int since_home = 0;  // frames
     std::uint64_t spikes = 0;
   };
-  [[nodiscard]] Frame& ago(int frames) {
-    return ring_[static_cast<std::size_t>((position_ + kDelay + 1 - frames) % (kDelay + 1))];
+  [[nodiscard]] std::size_t place(int frames) const {
+    return static_cast<std::size_t>((position_ + kDelay + 1 - frames) % (kDelay + 1));
   }
+  [[nodiscard]] Frame& ago(int frames) { return ring_[place(frames)]; }
   void follow_predictions(const SignalBlock& predictions);
   void follow_inputs();
   [[nodiscard]] bool may_rest(SignalKind kind, int index) const;
   void screen_repeats(SignalKind kind);
-  void mark(SignalKind kind, int index, int frames, std::uint64_t& counter);
+  void mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter);
   void screen_spikes(int cv);
   [[nodiscard]] bool level(int cv, int frames, double& value);
 
@@ -92,6 +93,7 @@ class Screen {
   bool all_mvs_rest_ = true;
   std::vector<int> since_rest_;  // per input, samples
   std::vector<Frame> ring_;
+  std::vector<ScreenCounters> marked_;  // of the same frames
   int position_ = 0;
   int held_ = 0;
   std::vector<std::vector<Repeats>> repeats_;  // per kind

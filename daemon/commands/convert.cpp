@@ -5,6 +5,7 @@
 #include <string>
 
 #include "config/load_unit.hpp"
+#include "daemon/commands/time_zone.hpp"
 #include "daemon/io/time_text.hpp"
 #include "daemon/recording/convert.hpp"
 
@@ -20,11 +21,6 @@ struct Options {
   std::string time_zone;
   std::string from_time_zone;
 };
-
-std::shared_ptr<const io::TimeZone> zone_of(const std::string& name) {
-  if (name.empty() || name == "utc" || name == "UTC" || name == "seconds") return nullptr;
-  return std::make_shared<io::TimeZone>(name);
-}
 
 void tell(const Options& options, const recording::ConvertReport& report) {
   std::ostream& out = options.output == io::kStandardOutput ? std::cerr : std::cout;
@@ -68,7 +64,9 @@ void add_convert(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "convert", "Turn a recording (MCAP) into CSV, or CSV into a recording, without losing a bit");
-  command->add_option("input", options->input, "MCAP recording, or CSV in any historian layout")
+  command
+      ->add_option("input", options->input,
+                   "MCAP recording, a folder of one that was split, or CSV in any historian layout")
       ->required();
   command
       ->add_option("output", options->output,

@@ -4,9 +4,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
+#include "daemon/commands/time_zone.hpp"
+#include "daemon/mcap/file_sequence.hpp"
 #include "daemon/monitoring/journal.hpp"
 #include "daemon/recording/open_recording.hpp"
 #include "daemon/report/detect_report.hpp"
@@ -17,9 +20,10 @@ namespace {
 
 struct DetectOptions {
   std::string config;
-  std::string data;
+  std::vector<std::string> data;
   std::string scenario;
   std::string journal;
+  std::string time_zone;
   bool json = false;
   bool fail_on_mismatch = false;
 };
@@ -66,11 +70,14 @@ int detect(const DetectOptions& options) {
       loaded.config.monitor = scenario.scenario.monitor;
     }
     const std::unique_ptr<io::FrameSource> frames =
-        recording::open_recording(options.data, loaded.config);
+        recording::open_recording(options.data, loaded.config, zone_of(options.time_zone));
     std::optional<Journal> journal;
     if (!options.journal.empty()) journal.emplace(options.journal);
     const DetectReport report = run(loaded.config, *frames, journal ? &*journal : nullptr);
     for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
+    if (report.samples == 0)
+      throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",
+                                "holds no control interval of unit '" + loaded.config.unit + "'"});
     std::cout << (options.json ? to_json(report).dump() + "\n" : to_text(report)) << std::flush;
     return options.fail_on_mismatch && report.mismatch() ? 1 : 0;
   } catch (const config::InputError& error) {
@@ -88,10 +95,12 @@ void add_detect(CLI::App& app, int& exit_code) {
   command->add_option("--config", options->config, "unit file")->required();
   command
       ->add_option("--data", options->data,
-                   "data file (MCAP recording, or CSV in any historian layout)")
+                   "data file: CSV in any historian layout, or MCAP recording; several of "
+                   "those, or a folder of them, are one")
       ->required();
   command->add_option("--scenario", options->scenario,
                       "scenario (name or file) whose `monitor` settings replace the unit file's");
+  add_time_zone(*command, options->time_zone);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--journal", options->journal,
                       "append every sample's verdicts and alarms to this file as JSON lines");

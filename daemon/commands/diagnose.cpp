@@ -13,6 +13,7 @@
 #include "daemon/closed_loop/compare_loops.hpp"
 #include "daemon/closed_loop/run_mpmsim.hpp"
 #include "daemon/commands/progress_bar.hpp"
+#include "daemon/commands/time_zone.hpp"
 #include "daemon/io/output_folder.hpp"
 #include "daemon/io/read_recording.hpp"
 #include "daemon/recording/open_recording.hpp"
@@ -30,6 +31,7 @@ struct DiagnoseOptions {
   std::string validate;
   std::string out;
   std::string scenario;
+  std::string time_zone;
   double fit_share = DiagnosisSettings().fit_share;
   std::uint64_t seed = DiagnosisSettings().seed;
   bool seed_given = false;
@@ -74,8 +76,8 @@ std::optional<config::UnitConfig> load(const std::string& file) {
 }
 
 Recording read(const std::string& file, const config::UnitConfig& unit,
-               std::vector<std::string>& notices) {
-  const std::unique_ptr<io::FrameSource> frames = recording::open_recording(file, unit);
+               const std::shared_ptr<const io::TimeZone>& zone, std::vector<std::string>& notices) {
+  const std::unique_ptr<io::FrameSource> frames = recording::open_recording(file, unit, zone);
   const io::RecordingFile data = io::read_recording(*frames, unit, file);
   const std::string problem = io::recording_problem(data.recording, needed_samples(unit.model));
   if (!problem.empty()) refuse(file, problem);
@@ -93,8 +95,10 @@ Recording read(const std::string& file, const config::UnitConfig& unit,
 DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
   DiagnosisRun run;
   run.unit = std::move(unit);
-  run.recording = read(options.data, run.unit, run.notices);
-  if (!options.validate.empty()) run.validation = read(options.validate, run.unit, run.notices);
+  const std::shared_ptr<const io::TimeZone> zone = zone_of(options.time_zone);
+  run.recording = read(options.data, run.unit, zone, run.notices);
+  if (!options.validate.empty())
+    run.validation = read(options.validate, run.unit, zone, run.notices);
   run.program = version_text("mpm");
   run.command_line = command_line();
   run.config_file = options.config;
@@ -225,6 +229,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   command->add_option("--scenario", options->scenario,
                       "compare how well the simulator's controller does on this scenario with the "
                       "unit file's model and with the extended one");
+  add_time_zone(*command, options->time_zone);
   command->add_flag("--json", options->json, "print report.json too");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <string>
 #include <system_error>
@@ -31,9 +32,11 @@ std::optional<double> parse_number(std::string_view text) {
   double value = 0.0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size()) return std::nullopt;
-  if (status == std::errc::result_out_of_range) return kNoValue;
+  // Too large or too small; from_chars does not say which. strtod gives infinity, or what is left.
+  if (status == std::errc::result_out_of_range)
+    return std::strtod(std::string(text).c_str(), nullptr);
   if (status != std::errc()) return std::nullopt;
-  return std::isfinite(value) ? value : kNoValue;
+  return value;
 }
 
 }  // namespace

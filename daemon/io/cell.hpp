@@ -8,8 +8,9 @@
 /// What a cell of a data file says.
 namespace mpm::io {
 
-/// A number (decimal point or, with `decimal_comma`, either), or NaN for the words that mean "no
-/// value" (empty, nan, Bad, No Data, I/O Timeout, ...). Nothing for any other text.
+/// A number (decimal point or, with `decimal_comma`, either), infinite where no double is as large,
+/// or NaN for the words that mean "no value" (empty, nan, Bad, No Data, I/O Timeout, ...). Nothing
+/// for any other text.
 [[nodiscard]] std::optional<double> parse_value(std::string_view text, bool decimal_comma);
 
 /// good | uncertain | bad, OPC DA codes (192 | 64 | 0 with substatus) or OPC UA status codes; empty

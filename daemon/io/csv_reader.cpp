@@ -31,12 +31,13 @@ std::string seconds(double value) {
 }  // namespace
 
 CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit,
-                     std::shared_ptr<const TimeZone> zone)
-    : CsvReader(open_file(path), path, unit, std::move(zone)) {}
+                     std::shared_ptr<const TimeZone> zone, Purpose purpose)
+    : CsvReader(open_file(path), path, unit, std::move(zone), purpose) {}
 
 CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
-                     const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone)
-    : sample_time_s_(unit.sample_time_s), lines_(std::move(input), name), tags_(unit) {
+                     const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone,
+                     Purpose purpose)
+    : sample_time_s_(unit.sample_time_s), lines_(std::move(input), name), tags_(unit, purpose) {
   open(unit.counts(), std::move(zone));
 }
 

@@ -21,13 +21,15 @@ namespace mpm::io {
 class CsvReader : public FrameSource {
  public:
   /// Reads the header and the first rows. Throws config::InputError (`file:line:col: message`) if
-  /// the file cannot be opened, a tag is missing or the rows are not sample_time apart.
+  /// the file cannot be opened, a tag that the purpose needs is missing or the rows are not
+  /// sample_time apart.
   /// Local times are read as those of `zone`; refused without one.
   CsvReader(const std::string& path, const config::UnitConfig& unit,
-            std::shared_ptr<const TimeZone> zone = nullptr);
+            std::shared_ptr<const TimeZone> zone = nullptr, Purpose purpose = Purpose::kJudge);
   /// The same from a stream that can seek; `name` stands for the file in messages.
   CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
-            const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone = nullptr);
+            const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone = nullptr,
+            Purpose purpose = Purpose::kJudge);
 
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] const std::vector<bool>& has_prediction() const override { return has_prediction_; }

@@ -12,9 +12,15 @@ constexpr std::int64_t kHalfHourNs = 1800 * kNsPerSecond;
 
 std::optional<std::int64_t> LocalTimes::read(std::string_view text, std::string_view series,
                                              std::string& problem) {
-  if (!zone_) return parse_time(text, problem);
   const std::optional<LocalTime> local = parse_local_time(text);
   if (!local) return parse_time(text, problem);
+  if (!zone_) {
+    problem =
+        "is a local time: add its zone, Z or +hh:mm, or name it to convert, detect, diagnose or "
+        "info "
+        "with --time-zone";
+    return std::nullopt;
+  }
   const TimeZone::Moments moments = zone_->moments(local->seconds);
   if (moments.count == 0) {
     problem = "does not exist in " + zone_->name() + ": the clock goes forward over it";

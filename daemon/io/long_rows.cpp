@@ -46,6 +46,19 @@ struct Sample {
   Quality quality = Quality::kBad;
 };
 
+/// A frame being filled, and what of it has come.
+struct Row {
+  Frame frame;
+  std::array<std::vector<bool>, kSignalKindCount> there;
+
+  void begin(const SignalCounts& counts, std::int64_t time_ns) {
+    clear(frame, counts);
+    frame.source_time_ns = time_ns;
+    for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+      there[kind].assign(static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind))), false);
+  }
+};
+
 class LongRows : public RowSource {
  public:
   LongRows(LineReader& lines, const CsvFormat& format, const std::vector<Cell>& header,
@@ -70,18 +83,18 @@ class LongRows : public RowSource {
   [[nodiscard]] bool next(Frame& frame) override {
     if (gathered_) {
       if (gathered_->empty()) return false;
-      frame = std::move(gathered_->begin()->second);
+      frame = std::move(gathered_->begin()->second.frame);
       gathered_->erase(gathered_->begin());
       return true;
     }
     if (!pending_) pending_ = read_sample();
     if (!pending_) return false;
-    clear(frame, counts_);
-    frame.source_time_ns = pending_->time_ns;
-    while (pending_ && pending_->time_ns == frame.source_time_ns) {
-      put(*pending_, frame);
+    row_.begin(counts_, pending_->time_ns);
+    while (pending_ && pending_->time_ns == row_.frame.source_time_ns) {
+      put(*pending_, row_);
       pending_ = read_sample();
     }
+    frame = row_.frame;
     return true;
   }
 
@@ -108,11 +121,8 @@ class LongRows : public RowSource {
   void gather() {
     gathered_.emplace();
     while (const std::optional<Sample> sample = read_sample()) {
-      const auto [entry, is_new] = gathered_->try_emplace(sample->time_ns, counts_);
-      if (is_new) {
-        clear(entry->second, counts_);
-        entry->second.source_time_ns = sample->time_ns;
-      }
+      const auto [entry, is_new] = gathered_->try_emplace(sample->time_ns);
+      if (is_new) entry->second.begin(counts_, sample->time_ns);
       put(*sample, entry->second);
     }
   }
@@ -132,19 +142,25 @@ class LongRows : public RowSource {
       sample.slot = *slot;
       sample.time_ns =
           read_time(lines_, cells_[*columns_.time], times_, cells_[*columns_.tag].text);
-      sample.value = read_value(lines_, format_, cells_[*columns_.value]);
+      sample.value = read_value(lines_, format_, cells_[*columns_.value], tally_);
       sample.quality = Quality::kGood;
       if (columns_.quality) sample.quality = read_quality(lines_, cells_[*columns_.quality]);
       if (!std::isfinite(sample.value)) sample.quality = Quality::kBad;
       return sample;
     }
+    tally_.tell(notices_);
+    tally_ = {};
     if (const std::string notice = times_.notice(); !notice.empty()) notices_.push_back(notice);
     times_.restart();
     return std::nullopt;
   }
 
-  static void put(const Sample& sample, Frame& frame) {
-    SignalBlock& block = frame[sample.slot.kind];
+  void put(const Sample& sample, Row& row) {
+    std::vector<bool>& there = row.there[static_cast<std::size_t>(sample.slot.kind)];
+    const auto at = static_cast<std::size_t>(sample.slot.index);
+    if (there[at]) ++tally_.repeated;
+    there[at] = true;
+    SignalBlock& block = row.frame[sample.slot.kind];
     block.values(sample.slot.index) = sample.value;
     block.quality[static_cast<std::size_t>(sample.slot.index)] = sample.quality;
   }
@@ -159,7 +175,9 @@ class LongRows : public RowSource {
   std::vector<std::string>& notices_;
   std::vector<Cell> cells_;
   std::optional<Sample> pending_;
-  std::optional<std::map<std::int64_t, Frame>> gathered_;
+  Row row_;
+  ReadTally tally_;
+  std::optional<std::map<std::int64_t, Row>> gathered_;
 };
 
 }  // namespace

@@ -2,18 +2,31 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "daemon/io/cell.hpp"
 
 namespace mpm::io {
 
-double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell) {
+void ReadTally::tell(std::vector<std::string>& notices) const {
+  if (not_finite > 0)
+    notices.push_back(std::to_string(not_finite) +
+                      " values taken as missing: they are not finite, or too large for a double");
+  if (repeated > 0)
+    notices.push_back(std::to_string(repeated) +
+                      " values replaced by later ones of the same tag and time");
+}
+
+double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell,
+                  ReadTally& tally) {
   const std::optional<double> value = parse_value(cell.text, format.decimal_comma());
   if (!value)
     lines.fail(cell.column,
                "'" + std::string(cell.text) + "' is no number; leave empty what is missing");
-  return *value;
+  if (!std::isinf(*value)) return *value;
+  ++tally.not_finite;
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 std::int64_t read_time(const LineReader& lines, const Cell& cell, LocalTimes& times,

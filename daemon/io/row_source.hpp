@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,15 @@ struct CsvFormat {
   char delimiter = ',';
   std::shared_ptr<const TimeZone> zone = nullptr;  ///< of local times; null = there may be none
   [[nodiscard]] bool decimal_comma() const { return delimiter != ','; }
+};
+
+/// Cells that were not taken as they stand in the file.
+struct ReadTally {
+  std::uint64_t not_finite = 0;  ///< values; taken as missing
+  std::uint64_t repeated = 0;    ///< values of a tag at a time that it has already
+
+  /// One line for each kind that there was.
+  void tell(std::vector<std::string>& notices) const;
 };
 
 /// Frames as they stand in the file: values, qualities and time, not yet numbered.
@@ -48,7 +58,8 @@ class RowSource {
                                                    std::vector<std::string>& notices);
 
 /// Shared by both: a cell's value, time and quality, or InputError at its place.
-[[nodiscard]] double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell);
+[[nodiscard]] double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell,
+                                ReadTally& tally);
 [[nodiscard]] std::int64_t read_time(const LineReader& lines, const Cell& cell, LocalTimes& times,
                                      std::string_view series = {});
 [[nodiscard]] Quality read_quality(const LineReader& lines, const Cell& cell);

@@ -4,7 +4,8 @@
 
 namespace mpm::io {
 
-TagTable::TagTable(const config::UnitConfig& unit) : unit_(unit) {
+TagTable::TagTable(const config::UnitConfig& unit, Purpose purpose)
+    : unit_(unit), purpose_(purpose) {
   const auto add = [this](const std::string& tag, SignalKind kind, std::size_t index) {
     if (!tag.empty()) slots_[tag] = {kind, static_cast<int>(index)};
   };
@@ -30,7 +31,27 @@ void TagTable::see(std::string_view tag) {
 
 bool TagTable::seen(const std::string& tag) const { return seen_.count(tag) > 0; }
 
+// In the order of the kinds.
+std::vector<std::string> TagTable::absent() const {
+  std::vector<std::string> tags;
+  const auto look = [&](const std::string& tag) {
+    if (!tag.empty() && !seen(tag)) tags.push_back(tag);
+  };
+  for (const auto& mv : unit_.mv) look(mv.tag);
+  for (const auto& dv : unit_.dv) look(dv.tag);
+  for (const auto& cv : unit_.cv) look(cv.tag);
+  for (const auto& cv : unit_.cv) look(cv.prediction);
+  for (const auto& cv : unit_.cv) look(cv.setpoint);
+  for (const auto& aux : unit_.aux) look(aux.tag);
+  return tags;
+}
+
 std::string TagTable::problem() const {
+  if (purpose_ == Purpose::kKeep)
+    return absent().size() < slots_.size() || slots_.empty()
+               ? std::string()
+               : "the file holds no signal of unit '" + unit_.unit + "'" +
+                     (ignored_.empty() ? "" : "; it holds " + config::join(ignored_));
   std::string missing;
   bool unlike = false;  // a tag that no column of the file resembles
   const auto need = [&](const std::string& tag, const char* what) {
@@ -56,16 +77,22 @@ std::vector<std::string> TagTable::notices() const {
   std::vector<std::string> notices;
   if (!ignored_.empty())
     notices.push_back("ignored, since the unit file does not name them: " + config::join(ignored_));
-  std::vector<std::string> simulated, absent;
+  if (purpose_ == Purpose::kKeep) {
+    const std::vector<std::string> lacking = absent();
+    if (!lacking.empty())
+      notices.push_back("signals of the unit that are not in the file: " + config::join(lacking));
+    return notices;
+  }
+  std::vector<std::string> simulated, absent_aux;
   for (const auto& cv : unit_.cv)
     if (!cv.prediction.empty() && !seen(cv.prediction)) simulated.push_back(cv.prediction);
   if (!simulated.empty())
     notices.push_back("not in the file, so the unit file's model simulates instead: " +
                       config::join(simulated));
   for (const auto& aux : unit_.aux)
-    if (!seen(aux.tag)) absent.push_back(aux.tag);
-  if (!absent.empty())
-    notices.push_back("aux tags that are not in the file: " + config::join(absent));
+    if (!seen(aux.tag)) absent_aux.push_back(aux.tag);
+  if (!absent_aux.empty())
+    notices.push_back("aux tags that are not in the file: " + config::join(absent_aux));
   return notices;
 }
 

@@ -16,10 +16,13 @@ struct Slot {
   int index = 0;
 };
 
+/// What a file is read for: to judge the unit, or to keep whatever of it is there.
+enum class Purpose { kJudge, kKeep };
+
 /// The tags of a unit and which of them a file holds.
 class TagTable {
  public:
-  explicit TagTable(const config::UnitConfig& unit);
+  explicit TagTable(const config::UnitConfig& unit, Purpose purpose = Purpose::kJudge);
 
   /// Null for a tag that the unit does not name.
   [[nodiscard]] const Slot* find(std::string_view tag) const;
@@ -27,15 +30,18 @@ class TagTable {
   void see(std::string_view tag);
   [[nodiscard]] bool seen(const std::string& tag) const;
 
-  /// What is wrong with the set of tags seen; empty where it will do. Missing predictions are fine
-  /// if the unit has a model.
+  /// What is wrong with the set of tags seen; empty where it will do. To judge the unit takes all
+  /// inputs and CVs, and predictions if it has no model.
   [[nodiscard]] std::string problem() const;
-  /// What the user should know: tags ignored, predictions that will be simulated.
+  /// What the user should know: tags ignored, predictions that will be simulated, absent signals.
   [[nodiscard]] std::vector<std::string> notices() const;
   [[nodiscard]] std::vector<bool> has_prediction() const;
 
  private:
+  [[nodiscard]] std::vector<std::string> absent() const;
+
   config::UnitConfig unit_;
+  Purpose purpose_;
   std::unordered_map<std::string, Slot> slots_;
   std::unordered_map<std::string, bool> seen_;
   std::vector<std::string> ignored_;  ///< in the order of the file

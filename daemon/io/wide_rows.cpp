@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "config/suggest.hpp"
 #include "daemon/io/cell.hpp"
 #include "daemon/io/row_source.hpp"
 
@@ -50,7 +51,7 @@ class WideRows : public RowSource {
     clear(frame, counts_);
     frame.source_time_ns = read_time(lines_, cells_[time_], times_);
     for (const Column& column : values_) {
-      const double value = read_value(lines_, format_, cells_[column.cell]);
+      const double value = read_value(lines_, format_, cells_[column.cell], tally_);
       SignalBlock& block = frame[column.slot.kind];
       block.values(column.slot.index) = value;
       if (std::isfinite(value))
@@ -67,6 +68,8 @@ class WideRows : public RowSource {
 
  private:
   bool end() {
+    tally_.tell(notices_);
+    tally_ = {};
     if (const std::string notice = times_.notice(); !notice.empty()) notices_.push_back(notice);
     times_.restart();
     return false;
@@ -85,11 +88,17 @@ class WideRows : public RowSource {
 
   void find_columns(const std::vector<Cell>& header, TagTable& tags) {
     std::map<std::string_view, int> first_columns;
+    std::vector<std::string> without_tag;
+    std::size_t without_name = 0;
     for (std::size_t i = 0; i < header.size(); ++i) {
       const std::string_view name = header[i].text;
       if (name.empty() && i + 1 == header.size()) {  // a delimiter at the end
         --width_;
         break;
+      }
+      if (name.empty()) {
+        ++without_name;
+        continue;
       }
       const auto [first, is_new] = first_columns.emplace(name, header[i].column);
       if (!is_new && (tags.find(name) != nullptr || i == time_))
@@ -99,13 +108,27 @@ class WideRows : public RowSource {
       if (i == time_ || !is_new) continue;
       const std::size_t suffix = name.size() - std::min(name.size(), kQualitySuffix.size());
       if (suffix > 0 && same_word(name.substr(suffix), kQualitySuffix)) {
-        const Slot* slot = tags.find(name.substr(0, suffix));
-        if (slot != nullptr) qualities_.push_back({i, *slot});
+        const std::string_view tag = name.substr(0, suffix);
+        const Slot* slot = tags.find(tag);
+        if (!holds(header, tag))
+          without_tag.emplace_back(name);
+        else if (slot != nullptr)
+          qualities_.push_back({i, *slot});
         continue;
       }
       tags.see(name);
       if (const Slot* slot = tags.find(name)) values_.push_back({i, *slot});
     }
+    if (!without_tag.empty())
+      notices_.push_back("ignored, since the tag that they qualify has no column: " +
+                         config::join(without_tag));
+    if (without_name > 0)
+      notices_.push_back(std::to_string(without_name) + " columns without a name are ignored");
+  }
+
+  static bool holds(const std::vector<Cell>& header, std::string_view name) {
+    return std::any_of(header.begin(), header.end(),
+                       [name](const Cell& cell) { return cell.text == name; });
   }
 
   /// Engineering units below the header, as historians export them.
@@ -119,6 +142,8 @@ class WideRows : public RowSource {
           parse_value(cells_[column.cell].text, format_.decimal_comma());
       if (value && std::isfinite(*value)) return false;  // data without a time
     }
+    notices_.push_back("line " + std::to_string(lines_.number()) +
+                       " is taken for a row of units and left out");
     return true;
   }
 
@@ -131,6 +156,7 @@ class WideRows : public RowSource {
   std::size_t time_ = 0;
   std::vector<Column> values_, qualities_;
   std::vector<Cell> cells_;
+  ReadTally tally_;
   bool seen_first_ = false;
 };
 

@@ -23,14 +23,15 @@ SignalKind kind_by_name(std::string_view name, bool& known) {
 
 }  // namespace
 
-Contents survey(const std::string& path, const std::function<bool(const Contents&)>& enough) {
+Contents survey(const std::vector<std::string>& paths,
+                const std::function<bool(const Contents&)>& enough) {
   Contents contents;
-  SampleStream stream(path);
+  SampleStream stream(paths);
   const auto unit_of = [&](std::string_view name) -> RecordedUnit& {
     const auto found = contents.find(name);
     if (found != contents.end()) return found->second;
     if (contents.size() >= kMostUnits)
-      throw config::InputError({path, 0, 0, config::Severity::kError, "",
+      throw config::InputError({mcap::name_of(paths), 0, 0, config::Severity::kError, "",
                                 "holds more than " + std::to_string(kMostUnits) + " units"});
     return contents[std::string(name)];
   };

@@ -33,9 +33,9 @@ struct RecordedUnit {
 /// By name.
 using Contents = std::map<std::string, RecordedUnit, std::less<>>;
 
-/// What units an MCAP file holds. Reads on until `enough(contents)` or the end. Throws
+/// What units MCAP files hold. Reads on until `enough(contents)` or the end. Throws
 /// config::InputError where the file cannot be read.
-[[nodiscard]] Contents survey(const std::string& path,
+[[nodiscard]] Contents survey(const std::vector<std::string>& paths,
                               const std::function<bool(const Contents&)>& enough);
 
 /// "'a', 'b'", for messages.

@@ -7,7 +7,7 @@
 
 #include "config/finding.hpp"
 #include "daemon/io/replacement_file.hpp"
-#include "daemon/mcap/record_stream.hpp"
+#include "daemon/mcap/file_sequence.hpp"
 #include "daemon/recording/mcap_recording.hpp"
 
 namespace mpm::recording {
@@ -60,7 +60,7 @@ void copy(const Table& table, Writer& writer, ConvertReport& report) {
 
 ConvertReport convert(const std::string& input, const std::string& output,
                       const ConvertOptions& options) {
-  const bool from_mcap = mcap::is_mcap(input) || input.ends_with(".mcap");
+  const bool from_mcap = mcap::is_recording(input);
   const bool to_mcap = output.ends_with(".mcap");
   if (from_mcap && to_mcap) refuse(output, "both are MCAP files; there is nothing to convert");
   if (to_mcap && !options.unit)
@@ -87,7 +87,9 @@ ConvertReport convert(const std::string& input, const std::string& output,
       copy(table, writer, report);
       report.bytes = writer.bytes_written();
     }
-    report.notices = table.frames->notices();
+    report.notices = table.notices;
+    report.notices.insert(report.notices.end(), table.frames->notices().begin(),
+                          table.frames->notices().end());
   } catch (const std::invalid_argument& error) {  // what the input holds does not fit the output
     refuse(input, error.what());
   }

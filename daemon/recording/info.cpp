@@ -6,6 +6,7 @@
 
 #include "config/finding.hpp"
 #include "daemon/io/csv_rows.hpp"
+#include "daemon/mcap/file_sequence.hpp"
 #include "daemon/mcap/reader.hpp"
 #include "daemon/mcap/scan.hpp"
 #include "daemon/recording/sample_stream.hpp"
@@ -108,27 +109,55 @@ class McapInspector {
   std::map<std::pair<std::string, SignalKind>, std::vector<std::string>> tags_;
 };
 
-void inspect_mcap(FileInfo& info) {
-  mcap::Reader reader(info.path);
-  McapInspector inspector(info);
+void inspect_file(const std::string& path, McapInspector& inspector, FileInfo& info) {
+  mcap::Reader reader(path);
+  // Of several files, which one is meant.
+  const std::string prefix = info.files.size() > 1 ? path + ": " : "";
+  const std::uint64_t before = info.times.count;
   try {
     mcap::Message message;
     while (reader.next(message)) inspector.add(message);
   } catch (const config::InputError& error) {
-    info.problem = error.finding().key + ": " + error.finding().message;
+    if (info.problem.empty())
+      info.problem = prefix + error.finding().key + ": " + error.finding().message;
   }
-  inspector.finish();
   info.library = reader.library();
   info.profile = reader.profile();
 
-  mcap::InputFile file(info.path);
+  mcap::InputFile file(path);
   const mcap::FileLayout layout = mcap::scan(file);
-  info.chunks = layout.chunks.size();
-  info.packed_bytes = layout.packed_bytes;
-  info.unpacked_bytes = layout.unpacked_bytes;
-  info.compressions = layout.compressions;
-  info.index_problem =
-      layout.damage ? "the file has no end" : mcap::index_problem(file, layout, info.times.count);
+  info.chunks += layout.chunks.size();
+  info.packed_bytes += layout.packed_bytes;
+  info.unpacked_bytes += layout.unpacked_bytes;
+  info.compressions.insert(layout.compressions.begin(), layout.compressions.end());
+  const std::string problem = layout.damage
+                                  ? "the file has no end"
+                                  : mcap::index_problem(file, layout, info.times.count - before);
+  if (info.index_problem.empty() && !problem.empty()) info.index_problem = prefix + problem;
+}
+
+/// Log time of the first message; that of a file without any does not matter.
+std::int64_t start_ns(const std::string& path) {
+  mcap::Reader reader(path);
+  mcap::Message message;
+  try {
+    return reader.next(message) ? message.log_time_ns : 0;
+  } catch (const config::InputError&) {  // torn before its first message
+    return 0;
+  }
+}
+
+// Not by mcap::FileSequence, which refuses what is torn.
+void inspect_mcap(const std::vector<std::string>& paths, FileInfo& info) {
+  std::vector<std::pair<std::int64_t, std::string>> starts;
+  for (const std::string& file : mcap::recording_files(paths))
+    starts.emplace_back(start_ns(file), file);
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [start, file] : starts) info.files.push_back(file);
+  McapInspector inspector(info);
+  for (const std::string& file : info.files) inspect_file(file, inspector, info);
+  inspector.finish();
 }
 
 /// Steps between rows: the first ones are kept until their median is known.
@@ -144,6 +173,8 @@ class RowClock {
       } else {
         judge(last_ns_, time_ns);
       }
+    } else if (info_.times.count > 0) {
+      info_.times.add_step_back(last_ns_, time_ns);
     }
     last_ns_ = time_ns;
     info_.times.add(time_ns);
@@ -174,8 +205,8 @@ class RowClock {
   double step_ns_ = 0.0;
 };
 
-void inspect_csv(FileInfo& info) {
-  io::CsvRows rows(info.path);
+void inspect_csv(FileInfo& info, std::shared_ptr<const io::TimeZone> zone) {
+  io::CsvRows rows(info.path, std::move(zone));
   info.is_long = rows.is_long();
   info.delimiter = rows.delimiter();
   for (const io::Column& column : rows.columns()) {
@@ -221,23 +252,37 @@ void TimeTally::add_gap(std::int64_t before_ns, std::int64_t after_ns, std::uint
   longest_gap_at_ns = before_ns;
 }
 
+void TimeTally::add_step_back(std::int64_t before_ns, std::int64_t after_ns) {
+  if (out_of_order++ > 0 && before_ns - after_ns <= farthest_back_ns) return;
+  farthest_back_ns = before_ns - after_ns;
+  farthest_back_at_ns = before_ns;
+}
+
 double TimeTally::rate_hz() const {
-  const double span_s =
-      (static_cast<double>(last_ns) - static_cast<double>(first_ns)) / kNsPerSecond;
+  const double span_s = static_cast<double>(last_ns - first_ns) / kNsPerSecond;
   return count > 1 && span_s > 0.0 ? static_cast<double>(count - 1) / span_s : 0.0;
 }
 
-FileInfo inspect(const std::string& path) {
+FileInfo inspect(const std::vector<std::string>& paths, std::shared_ptr<const io::TimeZone> zone) {
   FileInfo info;
-  info.path = path;
-  info.is_mcap = mcap::is_mcap(path) || path.ends_with(".mcap");
+  info.path = mcap::name_of(paths);
+  const auto csv = std::find_if_not(paths.begin(), paths.end(), mcap::is_recording);
+  info.is_mcap = csv == paths.end();
+  if (!info.is_mcap && paths.size() > 1)
+    throw config::InputError({*csv, 0, 0, config::Severity::kError, "",
+                              "is no MCAP file; only those are taken together"});
   if (info.is_mcap)
-    inspect_mcap(info);
+    inspect_mcap(paths, info);
   else
-    inspect_csv(info);
+    inspect_csv(info, std::move(zone));
   std::error_code ignored;
-  info.bytes = std::filesystem::file_size(path, ignored);
+  for (const std::string& file : info.is_mcap ? info.files : paths)
+    info.bytes += std::filesystem::file_size(file, ignored);
   return info;
+}
+
+FileInfo inspect(const std::string& path, std::shared_ptr<const io::TimeZone> zone) {
+  return inspect(std::vector{path}, std::move(zone));
 }
 
 }  // namespace mpm::recording

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "core/signal/frame.hpp"
+#include "daemon/io/time_zone.hpp"
 
 namespace mpm::recording {
 
@@ -28,9 +30,13 @@ struct TimeTally {
   std::uint64_t missing = 0;  ///< control intervals in the gaps
   std::int64_t longest_gap_ns = 0;
   std::int64_t longest_gap_at_ns = 0;  ///< the last time before it
+  std::uint64_t out_of_order = 0;      ///< rows not later than the one before
+  std::int64_t farthest_back_ns = 0;
+  std::int64_t farthest_back_at_ns = 0;  ///< the time before that step
 
   void add(std::int64_t time_ns);
   void add_gap(std::int64_t before_ns, std::int64_t after_ns, std::uint64_t intervals);
+  void add_step_back(std::int64_t before_ns, std::int64_t after_ns);
   /// Per second; 0 where that cannot be told.
   [[nodiscard]] double rate_hz() const;
 };
@@ -57,9 +63,10 @@ struct TopicTally {
   std::uint64_t bytes = 0;
 };
 
-/// What a data file holds.
+/// What a data file, or a recording of several, holds.
 struct FileInfo {
-  std::string path;
+  std::string path;                ///< the name of all where there are several
+  std::vector<std::string> files;  ///< of MCAP, in the order of time
   bool is_mcap = false;
   std::uint64_t bytes = 0;
   TimeTally times;      ///< of all messages or rows
@@ -81,8 +88,12 @@ struct FileInfo {
   std::vector<std::string> notices;
 };
 
-/// Reads all of the file. Throws config::InputError where it is no data file at all; one that is
-/// torn is told as far as it goes.
-[[nodiscard]] FileInfo inspect(const std::string& path);
+/// Reads all of the files. Several MCAP files, or a folder of them, are one recording. Throws
+/// config::InputError where it is no data file at all; one that is torn is told as far as it goes.
+/// Local times of a CSV are those of `zone`; refused without one.
+[[nodiscard]] FileInfo inspect(const std::vector<std::string>& paths,
+                               std::shared_ptr<const io::TimeZone> zone = nullptr);
+[[nodiscard]] FileInfo inspect(const std::string& path,
+                               std::shared_ptr<const io::TimeZone> zone = nullptr);
 
 }  // namespace mpm::recording

@@ -14,7 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+// Divided, not multiplied by 1e-9, which is no double: 249.5 s stay 249.5.
+double seconds(std::int64_t ns) { return static_cast<double>(ns) / 1e9; }
 
 Json span_json(const TimeTally& times) {
   Json json;
@@ -37,6 +38,15 @@ Json gaps_json(const TimeTally& times) {
   return json;
 }
 
+Json order_json(const TimeTally& times) {
+  Json json;
+  json["count"] = times.out_of_order;
+  if (times.out_of_order == 0) return json;
+  json["farthest_back_s"] = seconds(times.farthest_back_ns);
+  json["farthest_back_at"] = io::utc_text(times.farthest_back_at_ns);
+  return json;
+}
+
 Json signals_json(const std::vector<SignalTally>& signals) {
   Json json = Json::array();
   for (const SignalTally& signal : signals)
@@ -49,6 +59,7 @@ Json signals_json(const std::vector<SignalTally>& signals) {
 }
 
 void add_mcap(const FileInfo& info, Json& json) {
+  json["files"] = info.files;
   json["library"] = info.library;
   json["profile"] = info.profile;
   json["index"] = info.index_problem.empty() ? "intact" : info.index_problem;
@@ -115,6 +126,14 @@ std::string gaps_text(const TimeTally& times) {
          io::utc_text(times.longest_gap_at_ns);
 }
 
+std::string order_text(const TimeTally& times) {
+  if (times.out_of_order == 0) return {};
+  return "; " + std::to_string(times.out_of_order) + (times.out_of_order == 1 ? " row" : " rows") +
+         " not later than the one before, the farthest back by " +
+         duration_text(seconds(times.farthest_back_ns)) + " after " +
+         io::utc_text(times.farthest_back_at_ns);
+}
+
 std::string signal_text(const SignalTally& signal) {
   const auto all =
       static_cast<double>(signal.good + signal.uncertain + signal.bad + signal.missing);
@@ -165,7 +184,7 @@ std::string csv_text(const FileInfo& info) {
   std::string text = std::string("  layout: ") + (info.is_long ? "long" : "wide") + ", cells by " +
                      (info.delimiter == '\t' ? std::string("tab") : std::string(1, info.delimiter));
   if (info.step_s > 0.0) text += line("; rows every %.6g s", info.step_s);
-  text += "; " + gaps_text(info.times) + "\n  signals:\n";
+  text += "; " + gaps_text(info.times) + order_text(info.times) + "\n  signals:\n";
   for (const SignalTally& signal : info.signals) text += signal_text(signal);
   return text;
 }
@@ -188,6 +207,7 @@ Json to_json(const FileInfo& info) {
   json["delimiter"] = std::string(1, info.delimiter);
   json["step_s"] = info.step_s;
   json["gaps"] = gaps_json(info.times);
+  json["out_of_order"] = order_json(info.times);
   json["signals"] = signals_json(info.signals);
   json["notices"] = info.notices;
   return json;
@@ -196,6 +216,7 @@ Json to_json(const FileInfo& info) {
 std::string to_text(const FileInfo& info) {
   std::string text =
       info.path + ": " + (info.is_mcap ? "MCAP" : "CSV") + ", " + bytes_text(info.bytes);
+  if (info.files.size() > 1) text += ", " + std::to_string(info.files.size()) + " files";
   if (!info.library.empty()) text += ", written by " + mcap::printable(info.library);
   text += "\n  " + std::to_string(info.times.count) + (info.is_mcap ? " messages, " : " rows, ") +
           span_text(info.times) + "\n";

@@ -4,6 +4,7 @@
 
 #include "config/finding.hpp"
 #include "daemon/io/aligning.hpp"
+#include "daemon/mcap/printable.hpp"
 #include "daemon/recording/contents.hpp"
 #include "daemon/recording/unit_tags.hpp"
 
@@ -16,37 +17,40 @@ namespace {
 
 }  // namespace
 
-McapFrames::McapFrames(const std::string& path, const config::UnitConfig& unit, Kinds kinds)
+McapFrames::McapFrames(const std::vector<std::string>& paths, const config::UnitConfig& unit,
+                       io::Purpose purpose)
     : unit_(unit),
-      kinds_(kinds),
-      aligner_(unit.counts(), look_into(path, kinds),
+      purpose_(purpose),
+      aligner_(unit.counts(), look_into(paths, purpose),
                [this](const Frame& frame) {
                  last_frame_ns_ = now_ns_;
                  ready_.push_back(frame);
                }),
-      samples_(path),
+      samples_(paths),
       patience_ns_(io::frame_patience(unit).count()) {}
 
 // Which kinds to wait for: as the daemon does, but what is nowhere in the file will not come.
-std::array<bool, kSignalKindCount> McapFrames::look_into(const std::string& path, Kinds kinds) {
+std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::string>& paths,
+                                                         io::Purpose purpose) {
   std::array<bool, kSignalKindCount> wanted = io::needed_kinds(unit_);
   wanted[static_cast<std::size_t>(SignalKind::kAux)] = !unit_.aux.empty();
-  if (kinds == Kinds::kAllThereAre)
+  if (purpose == io::Purpose::kKeep)
     for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
       wanted[kind] = unit_.counts().of(static_cast<SignalKind>(kind)) > 0;
-  const Contents contents = survey(path, [&](const Contents& so_far) {
+  const Contents contents = survey(paths, [&](const Contents& so_far) {
     const auto found = so_far.find(unit_.unit);
     if (found == so_far.end()) return false;
     for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
       if (wanted[kind] && !found->second.kinds[kind].seen) return false;
     return true;
   });
+  const std::string path = mcap::name_of(paths);
   const auto found = contents.find(unit_.unit);
   if (found == contents.end())
     refuse(path, "holds no samples of unit '" + unit_.unit + "'" +
                      (contents.empty() ? "; it holds none of any unit"
                                        : "; its units are " + names_of(contents)));
-  if (kinds == Kinds::kNeeded) check_needed(path, found->second);
+  if (purpose == io::Purpose::kJudge) check_needed(path, found->second);
   const RecordedKind& predictions = found->second[SignalKind::kPrediction];
   for (std::size_t i = 0; i < unit_.cv.size(); ++i)  // a layout with "" says that a CV has none
     has_prediction_.push_back(predictions.seen && !unit_.cv[i].prediction.empty() &&
@@ -103,7 +107,10 @@ bool McapFrames::next(Frame& frame) {
   while (ready_.empty() && !done_) {
     switch (samples_.next()) {
       case SampleStream::Event::kSample:
-        if (samples_.sample().unit == unit_.unit) push(samples_.sample(), samples_.log_time_ns());
+        if (samples_.sample().unit == unit_.unit)
+          push(samples_.sample(), samples_.log_time_ns());
+        else
+          ++of_other_units_;
         break;
       case SampleStream::Event::kLayout:
         check_layout(samples_.layout());
@@ -111,7 +118,7 @@ bool McapFrames::next(Frame& frame) {
       case SampleStream::Event::kEnd:
         done_ = true;
         // What the daemon would still wait for at the end is of use to somebody who wants all.
-        if (kinds_ == Kinds::kAllThereAre)
+        if (purpose_ == io::Purpose::kKeep)
           aligner_.finish();
         else
           aligner_.expire();
@@ -134,7 +141,13 @@ void McapFrames::tell_counters() {
   tell(counters.late, " samples left out that came too late for their control interval");
   tell(counters.repeated, " samples left out that repeat a control interval");
   tell(counters.wrong_length, " samples left out that have the wrong number of values");
+  tell(counters.infinite, " values taken as missing: they are not finite");
   tell(counters.restarts, " restarts of the controller's count of intervals");
+  if (purpose_ != io::Purpose::kKeep) return;
+  tell(of_other_units_, " samples of other units left out");
+  for (const auto& [topic, count] : samples_.others())
+    notices_.push_back(std::to_string(count) + " messages on " + mcap::printable(topic) +
+                       " left out: they hold no signals");
 }
 
 }  // namespace mpm::recording

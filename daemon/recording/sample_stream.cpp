@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "config/finding.hpp"
-#include "daemon/mcap/ordered_reader.hpp"
 #include "daemon/mcap/printable.hpp"
 
 namespace mpm::recording {
@@ -33,11 +32,8 @@ std::optional<SignalKind> kind_of(std::string_view topic) {
   return std::nullopt;
 }
 
-SampleStream::SampleStream(const std::string& path, const mcap::TimeRange& range)
-    : path_(path), messages_(mcap::open_messages(path, range)) {}
-
 void SampleStream::refuse(const char* type) const {
-  throw config::InputError({path_, 0, 0, config::Severity::kError, "",
+  throw config::InputError({messages_.file(), 0, 0, config::Severity::kError, "",
                             "message " + std::to_string(message_.sequence) + " on " +
                                 mcap::printable(message_.channel->topic) + " (" +
                                 mcap::printable(message_.channel->message_encoding) + ") is no " +
@@ -45,7 +41,7 @@ void SampleStream::refuse(const char* type) const {
 }
 
 SampleStream::Event SampleStream::next() {
-  while (messages_->next(message_)) {
+  while (messages_.next(message_)) {
     const mcap::Channel& channel = *message_.channel;
     const bool cdr = channel.message_encoding == "cdr";
     if (const std::optional<SignalKind> kind = kind_of(channel.topic)) {
@@ -59,6 +55,7 @@ SampleStream::Event SampleStream::next() {
       if (layout_ == nullptr || !complete(*layout_)) refuse("mpm::Layout");
       return Event::kLayout;
     }
+    ++others_[channel.topic];
   }
   return Event::kEnd;
 }

@@ -1,11 +1,13 @@
 #pragma once
 
-#include <memory>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "daemon/mcap/message.hpp"
+#include "daemon/mcap/file_sequence.hpp"
 #include "idl/cdr.hpp"
 #include "idl/sample_view.hpp"
 
@@ -16,13 +18,14 @@ namespace mpm::recording {
 /// Nothing for topics that hold no samples.
 [[nodiscard]] std::optional<SignalKind> kind_of(std::string_view topic);
 
-/// The samples and layouts among the messages of an MCAP file.
+/// The samples and layouts among the messages of a recording.
 class SampleStream {
  public:
   enum class Event { kEnd, kSample, kLayout };
 
-  /// In the order of log times. Throws config::InputError where the file is no whole MCAP file.
-  explicit SampleStream(const std::string& path, const mcap::TimeRange& range = {});
+  /// Of files and folders, in the order of log times. Throws config::InputError where one is no
+  /// whole MCAP file.
+  explicit SampleStream(const std::vector<std::string>& paths) : messages_(paths) {}
 
   /// Throws config::InputError where the file is damaged, or where a topic of ours holds something
   /// else than it should.
@@ -32,17 +35,19 @@ class SampleStream {
   [[nodiscard]] const mpm_Layout& layout() const { return *layout_; }
   [[nodiscard]] std::int64_t log_time_ns() const { return message_.log_time_ns; }
   [[nodiscard]] const mcap::Message& message() const { return message_; }
+  /// Messages passed over so far, by topic.
+  [[nodiscard]] const std::map<std::string, std::uint64_t>& others() const { return others_; }
 
  private:
   [[noreturn]] void refuse(const char* type) const;
 
-  std::string path_;
-  std::unique_ptr<mcap::MessageSource> messages_;
+  mcap::FileSequence messages_;
   mcap::Message message_;
   idl::CdrDecoder<mpm_Sample> samples_;
   idl::CdrDecoder<mpm_Layout> layouts_;
   idl::SampleView sample_;
   const mpm_Layout* layout_ = nullptr;
+  std::map<std::string, std::uint64_t> others_;
 };
 
 }  // namespace mpm::recording

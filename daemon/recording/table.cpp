@@ -4,9 +4,10 @@
 #include <utility>
 
 #include "config/finding.hpp"
+#include "config/suggest.hpp"
 #include "daemon/io/csv_reader.hpp"
 #include "daemon/io/csv_rows.hpp"
-#include "daemon/mcap/record_stream.hpp"
+#include "daemon/mcap/file_sequence.hpp"
 #include "daemon/recording/contents.hpp"
 #include "daemon/recording/mcap_frames.hpp"
 #include "daemon/recording/unit_tags.hpp"
@@ -64,7 +65,7 @@ config::UnitConfig unit_of(const std::string& path, const std::string& name,
 }
 
 Table open_mcap(const std::string& path, const TableOptions& options) {
-  const Contents contents = survey(path, [](const Contents&) { return false; });
+  const Contents contents = survey({path}, [](const Contents&) { return false; });
   const std::string wanted = options.unit != nullptr ? options.unit->unit : options.unit_name;
   if (contents.empty()) refuse(path, "holds no samples of any unit");
   if (wanted.empty() && contents.size() > 1)
@@ -79,7 +80,13 @@ Table open_mcap(const std::string& path, const TableOptions& options) {
     const RecordedKind& known = recorded[kind];
     return known.seen && (index >= known.tags.size() || !known.tags[index].empty());
   });
-  table.frames = std::make_unique<McapFrames>(path, table.unit, McapFrames::Kinds::kAllThereAre);
+  for (std::size_t k = 0; k < kSignalKindCount; ++k) {
+    const auto kind = static_cast<SignalKind>(k);
+    if (recorded[kind].seen && table.unit.counts().of(kind) == 0)
+      table.notices.push_back(std::string(topic_of(kind)) +
+                              " left out: the unit file has no such signals");
+  }
+  table.frames = std::make_unique<McapFrames>(std::vector{path}, table.unit, io::Purpose::kKeep);
   return table;
 }
 
@@ -87,7 +94,8 @@ Table open_csv(const std::string& path, const TableOptions& options) {
   Table table;
   if (options.unit != nullptr && options.number) {
     table.unit = *options.unit;
-    auto reader = std::make_unique<io::CsvReader>(path, table.unit, options.zone);
+    auto reader =
+        std::make_unique<io::CsvReader>(path, table.unit, options.zone, io::Purpose::kKeep);
     table.columns = columns_of(table.unit, [&](SignalKind, std::size_t, const std::string& tag) {
       return reader->holds(tag);
     });
@@ -100,12 +108,20 @@ Table open_csv(const std::string& path, const TableOptions& options) {
   if (options.unit == nullptr) return table;
   // Only what the unit names; the frames keep all.
   std::vector<io::Column> named;
+  std::vector<std::string> others;
   for (const io::Column& column : columns_of(*options.unit, [](auto...) { return true; })) {
     const auto found = std::find_if(table.columns.begin(), table.columns.end(),
                                     [&](const io::Column& have) { return have.tag == column.tag; });
     if (found != table.columns.end()) named.push_back(*found);
   }
   if (named.empty()) refuse(path, "holds no signal of unit '" + options.unit->unit + "'");
+  for (const io::Column& column : table.columns)
+    if (std::none_of(named.begin(), named.end(),
+                     [&](const io::Column& taken) { return taken.tag == column.tag; }))
+      others.push_back(column.tag);
+  if (!others.empty())
+    table.notices.push_back("left out, since the unit file does not name them: " +
+                            config::join(others));
   table.columns = std::move(named);
   return table;
 }
@@ -113,8 +129,7 @@ Table open_csv(const std::string& path, const TableOptions& options) {
 }  // namespace
 
 Table open_table(const std::string& path, const TableOptions& options) {
-  return mcap::is_mcap(path) || path.ends_with(".mcap") ? open_mcap(path, options)
-                                                        : open_csv(path, options);
+  return mcap::is_recording(path) ? open_mcap(path, options) : open_csv(path, options);
 }
 
 }  // namespace mpm::recording

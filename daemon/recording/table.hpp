@@ -24,6 +24,7 @@ struct Table {
   config::UnitConfig unit;  ///< as given, or made of what the file tells
   std::vector<io::Column> columns;
   std::unique_ptr<io::FrameSource> frames;
+  std::vector<std::string> notices;  ///< what of the file is not in the columns
 };
 
 /// Throws config::InputError where the file cannot be read so.

@@ -7,7 +7,7 @@
 namespace mpm::daemon {
 namespace {
 
-double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
+double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) / 1e9; }
 
 std::string format(const char* pattern, double a, double b) {
   char text[96];

@@ -36,7 +36,7 @@ class UnitMonitor {
   Monitor monitor_;
   std::int64_t interval_ = 0;  // of the last frame
   std::int64_t source_time_ns_ = 0;
-  mutable bool filled_ = true;  // the records say what the monitor does
+  mutable bool filled_ = false;  // the records say what the monitor does
   mutable std::vector<ChannelRecord> channels_;
   std::vector<AlarmRecord> alarms_;
 };

@@ -263,6 +263,25 @@ TEST_CASE(
   CHECK(bench.aligner.counters().incomplete == 41);
 }
 
+TEST_CASE("aligner: what was awaited for too long does not hold back complete frames") {
+  Bench bench;
+  bench.push_all(0, 4);  // fewer than the lateness
+  CHECK(bench.frames.empty());
+  bench.aligner.expire();
+  CHECK(bench.intervals() == std::vector<std::int64_t>{0, 1, 2, 3, 4});
+  bench.push(SignalKind::kMv, 6);  // of 5 nothing comes, of 6 and 9 only one block
+  bench.push_all(7, 8);
+  bench.push(SignalKind::kMv, 9);
+  CHECK(bench.frames.size() == 5);
+  bench.aligner.expire();
+  CHECK(bench.intervals() == std::vector<std::int64_t>{0, 1, 2, 3, 4, 6, 7, 8});
+  CHECK(bench.aligner.counters().incomplete == 1);
+  CHECK(bench.aligner.counters().missing == 1);
+  bench.push(SignalKind::kCv, 9);  // was still awaited
+  bench.push(SignalKind::kPrediction, 9);
+  CHECK(bench.intervals().back() == 9);
+}
+
 TEST_CASE("aligner: a controller that starts again is followed, with increasing numbers") {
   Bench bench;
   bench.push_all(5000, 5100);

@@ -426,6 +426,24 @@ TEST_CASE("inputs that move as one name each other") {
     }
 }
 
+TEST_CASE("implausible values are a part of the bad ones at every moment") {
+  Experiment experiment;
+  experiment.predictions = GENERATE(true, false);
+  Monitor monitor = experiment.monitor();
+  experiment.run(1000, [&](const Frame& original) {
+    Frame frame = original;
+    if (original.interval > 500) {  // measurement and prediction stand still, to the end
+      frame[SignalKind::kCv].values(0) = 50.25;
+      frame[SignalKind::kPrediction].values(0) = 50.125;
+    }
+    monitor.push(frame);
+    const ScreenCounters& implausible = monitor.counters().implausible;
+    REQUIRE(implausible.frozen + implausible.clipped + implausible.spikes <=
+            monitor.counters().bad_values);
+  });
+  CHECK(monitor.counters().implausible.frozen > 400);
+}
+
 TEST_CASE("gaps, bad values and repeats are counted and skew nothing") {
   const Experiment experiment;
   Monitor monitor = experiment.monitor();

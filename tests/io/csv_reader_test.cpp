@@ -234,7 +234,9 @@ TEST_CASE("Bad input is an error at its place") {
        "d.csv:3:1: error: 'noon' is no time: give seconds or ISO 8601 such as "
        "2024-05-01T12:00:00Z"},
       {"time,u1,u2,y1\n2024-05-01T12:00:00,1,2,3\n",
-       "d.csv:2:1: error: '2024-05-01T12:00:00' is a local time: add its zone, Z or +hh:mm"},
+       "d.csv:2:1: error: '2024-05-01T12:00:00' is a local time: add its zone, Z or +hh:mm, or "
+       "name "
+       "it to convert, detect, diagnose or info with --time-zone"},
       {"time,u1,u2,y1\n,1,2,3\n",
        "d.csv:2:1: error: '' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z"},
       {"time,u1,u2,y1\n0,1,2\n1,1,2,3\n", "d.csv:2:5: error: has 3 cells, the header 4"},

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <sstream>
 
@@ -79,12 +80,16 @@ TEST_CASE("Values and the words for none") {
   CHECK(parse_value("-1e-3", false) == -1e-3);
   CHECK(parse_value("1,5", true) == 1.5);
   for (const char* word : {"", "nan", "NaN", "NAN", "Bad", "bad", "BAD", "Bad Input", "No Data",
-                           "I/O Timeout", "i/o timeout", "null", "inf", "-inf", "1e999"}) {
+                           "I/O Timeout", "i/o timeout", "null"}) {
     CAPTURE(word);
     const auto value = parse_value(word, false);
     REQUIRE(value);
     CHECK(std::isnan(*value));
   }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  CHECK(parse_value("inf", false) == kInfinity);
+  CHECK(parse_value("-1e999", false) == -kInfinity);
+  CHECK(parse_value("1e-400", false) == 0.0);
   for (const char* word : {"1,5", "abc", "1.5x", "0x10", "--1", "1 000"})
     CHECK_FALSE(parse_value(word, false));
   CHECK_FALSE(parse_value("1,000,5", true));

@@ -14,6 +14,7 @@
 #include "daemon/recording/info_text.hpp"
 #include "daemon/recording/mcap_recording.hpp"
 #include "daemon/recording/open_recording.hpp"
+#include "tests/mcap/bench.hpp"
 #include "tests/mcap/files.hpp"
 #include "tests/system/process.hpp"
 
@@ -21,42 +22,6 @@ namespace mpm::test {
 namespace {
 
 const std::string kShell = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
-
-const std::string kSmall =
-    "unit: small\nsample_time: 60\n"
-    "signals: {mv: u, dv: 'd,1', cv: [{tag: y, prediction: yhat, setpoint: sp}, z], aux: "
-    "['#amb']}\n"
-    "model: {channels: [{cv: y, mv: u, gain: 2, time_constants: [480]}]}\n";
-
-struct Bench {
-  TemporaryFolder folder;
-  config::UnitConfig unit;
-
-  Bench() {
-    write_file(folder.file("small.yaml"), kSmall);
-    unit = config::load_unit(folder.file("small.yaml")).config;
-  }
-  recording::ConvertReport convert(const std::string& from, const std::string& to,
-                                   recording::ConvertOptions options = {}) {
-    return recording::convert(folder.file(from), folder.file(to), options);
-  }
-  recording::ConvertOptions with_unit() const {
-    recording::ConvertOptions options;
-    options.unit = unit;
-    return options;
-  }
-  std::string text(const std::string& name) const { return read_file(folder.file(name)); }
-  std::string error(const std::string& from, const std::string& to,
-                    recording::ConvertOptions options) {
-    try {
-      static_cast<void>(convert(from, to, std::move(options)));
-    } catch (const config::InputError& error) {
-      CHECK_FALSE(std::filesystem::exists(folder.file(to)));
-      return error.what();
-    }
-    return {};
-  }
-};
 
 /// Any bits that are a finite double.
 double any_double(std::mt19937_64& random) {
@@ -90,16 +55,6 @@ std::vector<Frame> any_frames(const config::UnitConfig& unit, int count) {
     frames.push_back(std::move(frame));
   }
   return frames;
-}
-
-std::vector<io::Column> all_columns() {
-  return {{"u", SignalKind::kMv, 0},
-          {"d,1", SignalKind::kDv, 0},
-          {"y", SignalKind::kCv, 0},
-          {"z", SignalKind::kCv, 1},
-          {"yhat", SignalKind::kPrediction, 0},
-          {"sp", SignalKind::kSetpoint, 0},
-          {"#amb", SignalKind::kAux, 0}};
 }
 
 TEST_CASE("MCAP, CSV, MCAP, CSV: not a bit is lost, in either layout and any zone") {
@@ -316,6 +271,19 @@ TEST_CASE("Info tells a CSV's step, gaps and qualities, and a torn recording's t
   write_file(bench.folder.file("wrong.mcap"), wrong);
   CHECK(recording::inspect(bench.folder.file("wrong.mcap")).index_problem.find("CRC") !=
         std::string::npos);
+}
+
+TEST_CASE("Info tells where a CSV's clock goes back, and times without rounding") {
+  Bench bench;
+  write_file(bench.folder.file("a.csv"), "time,u\n0,1\n0.5,1\n1,1\n0,1\n0.5,1\n0.5,1\n249.5,1\n");
+  const recording::FileInfo info = recording::inspect(bench.folder.file("a.csv"));
+  const auto json = to_json(info);
+  CHECK(json["out_of_order"]["count"] == 2);
+  CHECK(json["out_of_order"]["farthest_back_s"] == 1.0);
+  CHECK(json["out_of_order"]["farthest_back_at"] == "1970-01-01T00:00:01Z");
+  CHECK(json["rows"]["duration_s"] == 249.5);
+  CHECK(to_text(info).find("; 2 rows not later than the one before, the farthest back by 1 s after "
+                           "1970-01-01T00:00:01Z\n") != std::string::npos);
 }
 
 TEST_CASE("The programs: exit codes, files, messages") {

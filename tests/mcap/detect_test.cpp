@@ -1,0 +1,92 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/mcap/bench.hpp"
+#include "tests/system/process.hpp"
+
+namespace mpm::test {
+namespace {
+
+/// Rows of the small unit, a minute apart.
+std::string rows(int count) {
+  std::string text = "time,u,\"d,1\",y,z,yhat,sp\n";
+  for (int k = 0; k < count; ++k)
+    text += std::to_string(60 * k) + "," + std::to_string(0.1 * k) + ",1," +
+            std::to_string(0.3 * k) + "," + std::to_string(0.7 * k) + ",1.5,2\n";
+  return text;
+}
+
+int mpm(const Bench& bench, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "mpm");
+  return run(arguments, bench.folder.file("out"), bench.folder.file("err")).value_or(-1);
+}
+
+int detect(const Bench& bench, const std::string& data, std::vector<std::string> options = {}) {
+  std::vector<std::string> arguments = {"detect", "--config", bench.folder.file("small.yaml"),
+                                        "--data", bench.folder.file(data)};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  return mpm(bench, arguments);
+}
+
+TEST_CASE("mpm detect says the same of a few rows, whatever file holds them") {
+  Bench bench;
+  const int count = GENERATE(1, 7, 8, 9, 12);
+  write_file(bench.folder.file("a.csv"), rows(count));
+  static_cast<void>(bench.convert("a.csv", "a.mcap", bench.with_unit()));
+  REQUIRE(detect(bench, "a.csv", {"--json", "--journal", bench.folder.file("csv.jsonl")}) == 0);
+  const std::string csv = bench.text("out");
+  REQUIRE(detect(bench, "a.mcap", {"--json", "--journal", bench.folder.file("mcap.jsonl")}) == 0);
+  CHECK(bench.text("out") == csv);
+  CHECK(bench.text("mcap.jsonl") == bench.text("csv.jsonl"));
+  const auto json = nlohmann::json::parse(csv);
+  CHECK(json["samples"] == count);
+  for (const auto& channel : json["channels"]) {
+    CHECK(channel["verdict"] == "undetermined");
+    CHECK(channel["reason"] == "warming_up");
+  }
+}
+
+TEST_CASE("mpm detect takes a recording without one control interval for bad input") {
+  Bench bench;
+  write_file(bench.folder.file("a.csv"), rows(20));
+  static_cast<void>(bench.convert("a.csv", "a.mcap", bench.with_unit()));
+  // No sample of the recording fits a unit that is wider in every kind.
+  write_file(bench.folder.file("small.yaml"),
+             "unit: small\nsample_time: 60\n"
+             "signals: {mv: [u, v], dv: ['d,1', e], cv: [{tag: y, prediction: yhat}, z, w]}\n"
+             "model: {channels: [{cv: y, mv: u, gain: 2, time_constants: [480]}]}\n");
+  CHECK(detect(bench, "a.mcap") == 3);
+  CHECK(bench.text("out").empty());
+  CHECK(bench.text("err").find("a.mcap: error: holds no control interval of unit 'small'") !=
+        std::string::npos);
+}
+
+TEST_CASE("Exports in local times are read by every command that reads data") {
+  Bench bench;
+  write_file(bench.folder.file("l.csv"),
+             "time;u;d,1;y;z\n31.03.2024 01:59:00;1;1;2;3\n31.03.2024 03:00:00;2;1;2;3\n");
+  CHECK(detect(bench, "l.csv") == 3);
+  CHECK(lines_of(bench.text("err"))
+            .back()
+            .find("l.csv:2:1: error: '31.03.2024 01:59:00' is a local "
+                  "time: ") != std::string::npos);
+  CHECK(bench.text("err").find("--time-zone") != std::string::npos);
+  CHECK(detect(bench, "l.csv", {"--time-zone", "Europe/Berlin", "--json"}) == 0);
+  const auto json = nlohmann::json::parse(bench.text("out"));
+  CHECK(json["samples"] == 2);
+  CHECK(json["missing_samples"] == 0);
+  CHECK(detect(bench, "l.csv", {"--time-zone", "Mars/Base"}) == 3);
+
+  CHECK(mpm(bench, {"info", bench.folder.file("l.csv")}) == 3);
+  CHECK(bench.text("err").find("--time-zone") != std::string::npos);
+  CHECK(mpm(bench, {"info", bench.folder.file("l.csv"), "--time-zone", "Europe/Berlin"}) == 0);
+  CHECK(bench.text("out").find("2024-03-31T00:59:00Z to 2024-03-31T01:00:00Z") !=
+        std::string::npos);
+  const std::string unit = bench.folder.file("small.yaml");
+  CHECK(mpm(bench, {"diagnose", "--config", unit, "--data", bench.folder.file("l.csv"), "--out",
+                    bench.folder.file("d"), "--time-zone", "Europe/Berlin"}) == 3);
+  CHECK(bench.text("err").find("too short: 2 usable samples") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace mpm::test

@@ -1,0 +1,64 @@
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/recording/mcap_recording.hpp"
+#include "tests/mcap/bench.hpp"
+#include "tests/mcap/files.hpp"
+
+namespace mpm::test {
+namespace {
+
+/// Values of every signal that the row has, two of them not good.
+void write_recording(const Bench& bench, const std::string& name,
+                     const std::vector<io::Column>& columns) {
+  recording::McapRecording writer(bench.folder.file(name), bench.unit, columns);
+  for (int k = 0; k < 40; ++k) {
+    Frame frame(bench.unit.counts());
+    for (SignalBlock& block : frame.blocks) {
+      block.values.setConstant(std::numeric_limits<double>::quiet_NaN());
+      std::fill(block.quality.begin(), block.quality.end(), Quality::kBad);
+    }
+    frame.interval = k;
+    frame.source_time_ns = k * 60'000'000'000;
+    for (const io::Column& column : columns) {
+      frame[column.kind].values(column.index) = 0.1 * k + column.index;
+      frame[column.kind].quality[static_cast<std::size_t>(column.index)] =
+          k == 7 ? Quality::kUncertain : Quality::kGood;
+    }
+    writer.write(frame);
+  }
+  writer.finish();
+}
+
+TEST_CASE("A recording of some topics or signals only goes to CSV and back, bit by bit") {
+  Bench bench;
+  const std::vector<io::Column> all = all_columns();
+  const auto columns = GENERATE_COPY(values<std::vector<io::Column>>({
+      {all[0]},                 // the MV
+      {all[1], all[6]},         // a DV, an aux signal
+      {all[0], all[3]},         // of two CVs the second
+      {all[4]},                 // predictions
+      {all[5], all[2], all[0]}  // no DV
+  }));
+  write_recording(bench, "a.mcap", columns);
+  static_cast<void>(bench.convert("a.mcap", "a.csv"));
+  const recording::ConvertReport report = bench.convert("a.csv", "b.mcap", bench.with_unit());
+  CHECK(report.signals == columns.size());
+  CHECK(report.rows == 40);
+  CHECK(report.missing == 0);
+  REQUIRE(report.notices.size() == 1);
+  CHECK(report.notices[0].find("signals of the unit that are not in the file: ") == 0);
+  CHECK(bench.text("b.mcap") == bench.text("a.mcap"));
+}
+
+TEST_CASE("A CSV without one signal of the unit becomes no recording") {
+  Bench bench;
+  write_file(bench.folder.file("a.csv"), "time,a,b\n0,1,2\n60,1,2\n");
+  CHECK(bench.error("a.csv", "a.mcap", bench.with_unit()) ==
+        bench.folder.file("a.csv") +
+            ":1:1: error: the file holds no signal of unit 'small'; it holds a, b");
+}
+
+}  // namespace
+}  // namespace mpm::test
