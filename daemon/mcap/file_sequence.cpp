@@ -50,11 +50,13 @@ void FileSequence::look_at(const std::string& path) {
   const std::unique_ptr<MessageSource> messages = open_messages(path);
   Message first;
   if (!messages->next(first)) return;
-  File file{path, first.log_time_ns, first.log_time_ns, {}};
+  File file{path, first.log_time_ns, first.log_time_ns, true, {}};
   for (const auto& [id, channel] : messages->definitions().channels())
     file.topics.insert(channel.topic);
   InputFile input(path);
-  for (const ChunkPlace& chunk : scan(input).chunks)
+  const FileLayout layout = scan(input);
+  file.end_known = !layout.messages_outside;
+  for (const ChunkPlace& chunk : layout.chunks)
     file.end_ns = std::max(file.end_ns, static_cast<std::int64_t>(chunk.end_ns));
   files_.push_back(std::move(file));
 }

@@ -32,6 +32,7 @@ McapSource::McapSource(const std::vector<std::string>& files, const std::set<std
   for (const mcap::FileSequence::File& file : messages_.files()) {
     begin_ns_ = std::min(begin_ns_, file.start_ns);
     end_ns_ = std::max(end_ns_, file.end_ns);
+    end_known_ = end_known_ && file.end_known;
     for (const std::string& topic : file.topics)
       if (topics_.count(topic) > 0) found_.insert(topic);
   }

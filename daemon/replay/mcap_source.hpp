@@ -24,8 +24,9 @@ class McapSource : public ReplaySource {
 
   /// Those of the chosen topics that the files hold.
   [[nodiscard]] const std::set<std::string>& topics() const { return found_; }
-  /// From the first to the last log time of the files, whatever the topic; ns.
-  [[nodiscard]] std::int64_t length_ns() const { return end_ns_ - begin_ns_; }
+  /// From the first to the last log time of the files, whatever the topic, in ns; 0 where that is
+  /// not known without reading them.
+  [[nodiscard]] std::int64_t length_ns() const { return end_known_ ? end_ns_ - begin_ns_ : 0; }
   /// Of the files, that of the last sample.
   [[nodiscard]] const std::string& file() const { return messages_.file(); }
 
@@ -36,6 +37,7 @@ class McapSource : public ReplaySource {
   std::set<std::string> topics_, found_;
   mcap::FileSequence messages_;
   std::int64_t begin_ns_ = 0, end_ns_ = 0;
+  bool end_known_ = true;
   Lifecycle lifecycle_;
 };
 
