@@ -208,7 +208,11 @@ void add_diagnose(CLI::App& app, int& exit_code) {
       "diagnose",
       "Show what the simulation gets wrong, name the cause, extend the model, measure the gain");
   command->add_option("--config", options->config, "unit file")->required();
-  command->add_option("--data", options->data, "data file (CSV, any historian layout)")->required();
+  command
+      ->add_option("--data", options->data,
+                   "data file: CSV in any historian layout, MCAP recording, or a folder of one "
+                   "that was split")
+      ->required();
   command->add_option("--validate", options->validate,
                       "measure the gain on this data file and fit on all of --data");
   command

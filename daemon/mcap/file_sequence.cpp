@@ -55,7 +55,7 @@ void FileSequence::look_at(const std::string& path) {
     file.topics.insert(channel.topic);
   InputFile input(path);
   const FileLayout layout = scan(input);
-  file.end_known = !layout.messages_outside;  // heads tell no time of those
+  file.end_known = !layout.messages_outside;
   for (const ChunkPlace& chunk : layout.chunks)
     file.end_ns = std::max(file.end_ns, static_cast<std::int64_t>(chunk.end_ns));
   files_.push_back(std::move(file));

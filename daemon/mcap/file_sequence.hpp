@@ -29,7 +29,8 @@ class FileSequence {
   struct File {
     std::string path;
     std::int64_t start_ns = 0, end_ns = 0;
-    bool end_known = true;  ///< without reading it
+    bool end_known =
+        true;  ///< not where messages lie outside of chunks: heads tell no time of those
     std::set<std::string> topics;
   };
 
