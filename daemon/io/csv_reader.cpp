@@ -49,7 +49,6 @@ void CsvReader::open(const SignalCounts& counts, std::shared_ptr<const TimeZone>
   lines_.split(format.delimiter, header);
   rows_ = is_long_header(header) ? read_long(lines_, format, header, tags_, counts, row_notices_)
                                  : read_wide(lines_, format, header, tags_, counts, row_notices_);
-  has_prediction_ = tags_.has_prediction();
   notices_ = tags_.notices();
 
   for (std::size_t i = 0; i < kRowsAhead; ++i) {

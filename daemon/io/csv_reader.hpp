@@ -32,7 +32,6 @@ class CsvReader : public FrameSource {
             Purpose purpose = Purpose::kJudge);
 
   [[nodiscard]] bool next(Frame& frame) override;
-  [[nodiscard]] const std::vector<bool>& has_prediction() const override { return has_prediction_; }
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
   /// True if the file has the tag.
   [[nodiscard]] bool holds(const std::string& tag) const { return tags_.seen(tag); }
@@ -51,7 +50,6 @@ class CsvReader : public FrameSource {
   TagTable tags_;
   std::vector<std::string> row_notices_;
   std::vector<std::string> notices_;
-  std::vector<bool> has_prediction_;
   std::unique_ptr<RowSource> rows_;
   std::deque<Frame> ahead_;  ///< rows read to learn what follows
   std::int64_t first_ns_ = 0;

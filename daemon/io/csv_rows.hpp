@@ -19,7 +19,6 @@ class CsvRows : public FrameSource {
   explicit CsvRows(const std::string& path, std::shared_ptr<const TimeZone> zone = nullptr);
 
   [[nodiscard]] bool next(Frame& frame) override;
-  [[nodiscard]] const std::vector<bool>& has_prediction() const override { return no_flags_; }
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
   /// In the order of the file.
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
@@ -34,7 +33,6 @@ class CsvRows : public FrameSource {
   std::unique_ptr<TagTable> tags_;
   std::unique_ptr<RowSource> rows_;
   std::vector<std::string> notices_;
-  std::vector<bool> no_flags_;
 };
 
 }  // namespace mpm::io

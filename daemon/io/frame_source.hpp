@@ -17,8 +17,6 @@ class FrameSource {
 
   /// Fills `frame`; false at the end. Throws config::InputError on bad input.
   [[nodiscard]] virtual bool next(Frame& frame) = 0;
-  /// One per CV: its prediction comes with the frames. Otherwise it has to be simulated.
-  [[nodiscard]] virtual const std::vector<bool>& has_prediction() const = 0;
   /// What the user should know but need not act on, complete after the last frame.
   [[nodiscard]] virtual const std::vector<std::string>& notices() const = 0;
 };

@@ -96,10 +96,4 @@ std::vector<std::string> TagTable::notices() const {
   return notices;
 }
 
-std::vector<bool> TagTable::has_prediction() const {
-  std::vector<bool> flags;
-  for (const auto& cv : unit_.cv) flags.push_back(!cv.prediction.empty() && seen(cv.prediction));
-  return flags;
-}
-
 }  // namespace mpm::io

@@ -35,7 +35,6 @@ class TagTable {
   [[nodiscard]] std::string problem() const;
   /// What the user should know: tags ignored, predictions that will be simulated, absent signals.
   [[nodiscard]] std::vector<std::string> notices() const;
-  [[nodiscard]] std::vector<bool> has_prediction() const;
 
  private:
   [[nodiscard]] std::vector<std::string> absent() const;

@@ -51,10 +51,6 @@ std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::
                      (contents.empty() ? "; it holds none of any unit"
                                        : "; its units are " + names_of(contents)));
   if (purpose == io::Purpose::kJudge) check_needed(path, found->second);
-  const RecordedKind& predictions = found->second[SignalKind::kPrediction];
-  for (std::size_t i = 0; i < unit_.cv.size(); ++i)  // a layout with "" says that a CV has none
-    has_prediction_.push_back(predictions.seen && !unit_.cv[i].prediction.empty() &&
-                              (i >= predictions.tags.size() || !predictions.tags[i].empty()));
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
     wanted[kind] = wanted[kind] && found->second.kinds[kind].seen;
   return wanted;

@@ -28,7 +28,6 @@ class McapFrames : public io::FrameSource {
              io::Purpose purpose = io::Purpose::kJudge);
 
   [[nodiscard]] bool next(Frame& frame) override;
-  [[nodiscard]] const std::vector<bool>& has_prediction() const override { return has_prediction_; }
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
 
  private:
@@ -42,7 +41,6 @@ class McapFrames : public io::FrameSource {
   config::UnitConfig unit_;
   io::Purpose purpose_;
   std::vector<std::string> notices_;
-  std::vector<bool> has_prediction_;
   std::deque<Frame> ready_;
   Aligner aligner_;
   SampleStream samples_;

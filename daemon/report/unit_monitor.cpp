@@ -42,11 +42,9 @@ void fill_sizes(const ChannelStatus& status, double sample_time_s, ChannelRecord
 }  // namespace
 
 UnitMonitor::UnitMonitor(const config::UnitConfig& config)
-    : UnitMonitor(config, predictions_of(config)) {}
-
-UnitMonitor::UnitMonitor(const config::UnitConfig& config, const std::vector<bool>& has_prediction)
     : config_(config),
-      monitor_(config.model, config.counts(), has_prediction, config.monitor, config.alarms) {
+      monitor_(config.model, config.counts(), predictions_of(config), config.monitor,
+               config.alarms) {
   const SignalCounts counts = config.counts();
   for (int i = 0; i < counts.inputs(); ++i) {
     for (int j = 0; j < counts.cv; ++j) {

@@ -13,9 +13,6 @@ namespace mpm::daemon {
 /// both go through here, so that the same frames give the same records.
 class UnitMonitor {
  public:
-  /// `has_prediction[j]`: CV j's prediction comes with the frames.
-  UnitMonitor(const config::UnitConfig& config, const std::vector<bool>& has_prediction);
-  /// As the unit file says: every CV that names a prediction tag has one.
   explicit UnitMonitor(const config::UnitConfig& config);
 
   void push(const Frame& frame);
