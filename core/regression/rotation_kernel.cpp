@@ -240,6 +240,23 @@ inline void eliminate_one(double* const* r, double* x, std::size_t count, const 
   }
 }
 
+inline void project_one(const double* const* r, double* x, std::size_t count,
+                        const double* entries) {
+  const double* stored[kEight];
+  double entry[kEight];
+  for (std::size_t a = 0; a < kEight; ++a) {
+    stored[a] = r[a];
+    entry[a] = entries[a];
+  }
+  for (std::size_t c = 0; c < count; c += kLanes) {
+    Lanes left = at<Lanes>(x + c);
+#pragma GCC unroll 8
+    for (std::size_t a = 0; a < kEight; ++a)
+      subtract_product(entry[a], at<Lanes>(stored[a] + c), left);
+    at<Lanes>(x + c) = left;
+  }
+}
+
 template <std::size_t kColumns>
 inline void project_columns(const double* const* r, const RowBlock& x, std::size_t c,
                             const double* entry) {
@@ -335,6 +352,11 @@ void project_heads(const double* const* r, const RowBlock& x, const double* magn
 
 void project_block(const double* const* r, const RowBlock& x, std::size_t count,
                    const double* entries) {
+  if (x.rows < kFewRows) {
+    for (int k = 0; k < x.rows; ++k, entries += kEight)
+      project_one(r, x.first + static_cast<std::size_t>(k) * x.stride, count, entries);
+    return;
+  }
   std::size_t c = 0;
   for (; c + kAbreast * kLanes <= count; c += kAbreast * kLanes)
     project_columns<kAbreast>(r, x, c, entries);
