@@ -156,7 +156,7 @@ def latency_figures(build, push_us):
 
 RECORDER_TARGET = 10_000.0  # samples/s
 WEEK = 604_800  # rows of 1 Hz
-WEEK_PART = 6_048  # measured; the time grows with the rows
+WEEK_PART = WEEK // 25
 WEEK_TARGET_S = 60.0
 
 
@@ -174,7 +174,7 @@ def recording_figures(build):
          "met": recorded >= RECORDER_TARGET},
         {"name": "mpm replay --rate 0, one reader: samples/s", "unit": "1/s",
          "value": measure("replay")},
-        {"name": "mpm detect, a week of 1 Hz of 10x10, from 1 % of it: s", "unit": "s",
+        {"name": "mpm detect, a week of 1 Hz of 10x10, from 4 % of it: s", "unit": "s",
          "value": seconds, "target": f"<= {WEEK_TARGET_S:g}", "met": seconds <= WEEK_TARGET_S},
     ]
 
