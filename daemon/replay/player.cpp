@@ -9,7 +9,7 @@
 namespace mpm::daemon {
 namespace {
 
-constexpr std::int64_t kLongestSleep_ns = 50'000'000;
+constexpr std::int64_t kLongestSleepNs = 50'000'000;
 constexpr std::array kRates = {0.01, 0.02, 0.05, 0.1,  0.2,  0.5,  1.0,  2.0,
                                5.0,  10.0, 20.0, 50.0, 100., 200., 500., 1000.};
 
@@ -88,7 +88,7 @@ Player::Wait Player::wait_for(std::int64_t log_time_ns) {
       return Wait::kSend;
     }
     const std::int64_t now = clock_.now();
-    const std::int64_t latest = now + kLongestSleep_ns;
+    const std::int64_t latest = now + kLongestSleepNs;
     if (pacer_->paused()) {
       clock_.sleep_until(latest);
       continue;
