@@ -1,28 +1,62 @@
 #include "config/unit_layout.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace mpm::config {
+namespace {
+
+template <class Signals, class Field>
+std::vector<std::string> each(const Signals& signals, Field field) {
+  std::vector<std::string> texts;
+  texts.reserve(signals.size());
+  for (const auto& signal : signals) texts.push_back(signal.*field);
+  return texts;
+}
+
+}  // namespace
+
+std::vector<std::string> tags_of(const UnitConfig& unit, SignalKind kind) {
+  switch (kind) {
+    case SignalKind::kMv:
+      return each(unit.mv, &InputSignal::tag);
+    case SignalKind::kDv:
+      return each(unit.dv, &InputSignal::tag);
+    case SignalKind::kAux:
+      return each(unit.aux, &InputSignal::tag);
+    case SignalKind::kCv:
+      return each(unit.cv, &CvSignal::tag);
+    case SignalKind::kPrediction:
+      return each(unit.cv, &CvSignal::prediction);
+    case SignalKind::kSetpoint:
+      return each(unit.cv, &CvSignal::setpoint);
+  }
+  return {};
+}
+
+std::vector<std::string> engineering_units_of(const UnitConfig& unit, SignalKind kind) {
+  switch (kind) {
+    case SignalKind::kMv:
+      return each(unit.mv, &InputSignal::unit);
+    case SignalKind::kDv:
+      return each(unit.dv, &InputSignal::unit);
+    case SignalKind::kAux:
+      return each(unit.aux, &InputSignal::unit);
+    default:
+      return each(unit.cv, &CvSignal::unit);
+  }
+}
 
 UnitLayout unit_layout(const UnitConfig& unit) {
   UnitLayout layout;
   layout.unit = unit.unit;
   layout.sample_time_s = unit.sample_time_s;
-  const auto add = [&](SignalKind kind, const std::string& tag, const std::string& measure) {
-    layout[kind].tags.push_back(tag);
-    layout[kind].engineering_units.push_back(measure);
-  };
-  for (const InputSignal& mv : unit.mv) add(SignalKind::kMv, mv.tag, mv.unit);
-  for (const InputSignal& dv : unit.dv) add(SignalKind::kDv, dv.tag, dv.unit);
-  for (const CvSignal& cv : unit.cv) {
-    add(SignalKind::kCv, cv.tag, cv.unit);
-    add(SignalKind::kPrediction, cv.prediction, cv.unit);
-    add(SignalKind::kSetpoint, cv.setpoint, cv.unit);
-  }
-  for (const SignalKind kind : {SignalKind::kPrediction, SignalKind::kSetpoint}) {
-    const std::vector<std::string>& tags = layout[kind].tags;
+  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
+                                SignalKind::kPrediction, SignalKind::kSetpoint}) {
+    std::vector<std::string> tags = tags_of(unit, kind);
     if (std::all_of(tags.begin(), tags.end(), [](const std::string& tag) { return tag.empty(); }))
-      layout[kind] = {};
+      continue;
+    layout[kind] = {std::move(tags), engineering_units_of(unit, kind)};
   }
   return layout;
 }

@@ -42,9 +42,6 @@ constexpr double kConfident = 1.645;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Rows of the inverse that are found together; whole granules.
-constexpr int kTogether = 8;
-
 // Columns of `generators_`.
 enum Generator : int { kGain, kTime, kLater, kEarlier, kGenerators };
 
@@ -404,22 +401,24 @@ double ChannelEvaluator::reference_gain(int cv, int input) const {
   return largest / norms_(input * block_);
 }
 
-// Some rows at a time, the last ones first; what is behind these rows is subtracted from all of
+// A granule of rows at a time, the last ones first; what is behind them is subtracted from all of
 // them in one go.
 void ChannelEvaluator::invert_triangle() {
   constexpr int kGranule = static_cast<int>(kRowGranule);
+  const auto all = static_cast<int>(norms_.size());
+  const auto width = static_cast<std::size_t>(padded_);
   std::array<const double*, kRowGranule> rows{};
-  std::array<double, kTogether * kRowGranule> entries{};
-  for (int first = (padded_ - 1) / kTogether * kTogether; first >= 0; first -= kTogether) {
-    const int end = std::min(first + kTogether, padded_);
-    const int count = end - first;
+  std::array<double, kRowGranule * kRowGranule> entries{};
+  for (int first = padded_ - kGranule; first >= 0; first -= kGranule) {
+    const int end = first + kGranule;
     for (int i = first; i < end; ++i)
       std::fill(inverse_row(i) + first, inverse_row(i) + padded_, 0.0);
     for (int c = end; c < padded_; c += kGranule) {  // row c has zeros before column c
-      for (int a = 0; a < kGranule; ++a) rows[static_cast<std::size_t>(a)] = inverse_row(c + a) + c;
-      for (int k = 0; k < count; ++k)
+      for (int k = 0; k < kGranule; ++k) {
+        rows[static_cast<std::size_t>(k)] = inverse_row(c + k) + c;
         std::copy_n(triangle_.row(first + k).data() + c, kGranule, entries.data() + k * kGranule);
-      project_block(rows.data(), {inverse_row(first) + c, static_cast<std::size_t>(padded_), count},
+      }
+      project_block(rows.data(), {inverse_row(first) + c, width, kGranule},
                     static_cast<std::size_t>(padded_ - c), entries.data());
     }
     for (int i = end - 1; i >= first; --i) {
@@ -427,10 +426,10 @@ void ChannelEvaluator::invert_triangle() {
       for (int c = i + 1; c < end; ++c)
         project_row(inverse_row(c) + c, out + c, static_cast<std::size_t>(padded_ - c),
                     triangle_(i, c));
-      const double inverse =
-          1.0 / (i < norms_.size() && norms_(i) > 0.0 ? std::max(triangle_(i, i), kOwnShare) : 1.0);
+      const bool moves = i < all && norms_(i) > 0.0;
+      const double inverse = moves ? 1.0 / std::max(triangle_(i, i), kOwnShare) : 1.0;
       for (int k = i + 1; k < padded_; ++k) out[k] *= inverse;
-      out[i] = i < norms_.size() ? inverse : 0.0;
+      out[i] = i < all ? inverse : 0.0;
     }
   }
 }

@@ -143,10 +143,7 @@ bool send(const Writers& writers, const McapSource& source, const ReplaySample& 
 
 int replay(const ReplayOptions& options, StopSignal& stop) {
   if (options.files.empty()) throw std::invalid_argument("which recording? Give a file or folder");
-  std::vector<std::string> files;
-  for (const std::string& path : options.files)
-    for (std::string& file : recording_files(path)) files.push_back(std::move(file));
-  McapSource source(files, topics_of(options));
+  McapSource source(options.files, topics_of(options));
   PlayerOptions player_options = options.player;
   player_options.remap = parse_remap(options.remap);
   player_options.start_offset_ns = static_cast<std::int64_t>(options.start_offset_s * kNsPerSecond);

@@ -16,9 +16,8 @@ std::optional<std::int64_t> LocalTimes::read(std::string_view text, std::string_
   if (!local) return parse_time(text, problem);
   if (!zone_) {
     problem =
-        "is a local time: add its zone, Z or +hh:mm, or name it to convert, detect, diagnose or "
-        "info "
-        "with --time-zone";
+        "is a local time: add its zone, Z or +hh:mm, or name it to convert, detect, diagnose "
+        "or info with --time-zone";
     return std::nullopt;
   }
   const TimeZone::Moments moments = zone_->moments(local->seconds);

@@ -13,6 +13,15 @@ bool is_recording(const std::string& path) {
   return std::filesystem::is_directory(path) || is_mcap(path) || path.ends_with(".mcap");
 }
 
+bool is_recording(const std::vector<std::string>& paths) {
+  const auto other = std::find_if_not(paths.begin(), paths.end(),
+                                      [](const auto& path) { return is_recording(path); });
+  if (other == paths.end()) return true;
+  if (paths.size() == 1) return false;
+  throw config::InputError({*other, 0, 0, config::Severity::kError, "",
+                            "is no MCAP file; only those are taken together"});
+}
+
 std::vector<std::string> recording_files(const std::string& path) {
   if (!std::filesystem::is_directory(path)) return {path};
   std::vector<std::string> files;

@@ -12,6 +12,8 @@ namespace mpm::mcap {
 
 /// True for what is read as MCAP: a folder, a file that begins so, or one that is named so.
 [[nodiscard]] bool is_recording(const std::string& path);
+/// The same of several. Throws config::InputError where only some are: CSV files come alone.
+[[nodiscard]] bool is_recording(const std::vector<std::string>& paths);
 
 /// `path` itself, or, if it is a folder, its *.mcap files by name.
 [[nodiscard]] std::vector<std::string> recording_files(const std::string& path);

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
+#include "config/unit_layout.hpp"
 #include "core/identify/diagnosis.hpp"
 #include "daemon/io/aligning.hpp"
+#include "idl/topics.hpp"
 
 namespace mpm::daemon {
 namespace {
@@ -22,18 +25,13 @@ RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
                     std::chrono::duration<double>(sample_time_s * samples)));
 }
 
-std::vector<std::string> tags_of(const config::UnitConfig& config, const std::string& kind) {
-  std::vector<std::string> tags;
-  if (kind == "mv")
-    for (const auto& signal : config.mv) tags.push_back(signal.tag);
-  if (kind == "dv")
-    for (const auto& signal : config.dv) tags.push_back(signal.tag);
-  for (const auto& signal : config.cv) {
-    if (kind == "cv") tags.push_back(signal.tag);
-    if (kind == "prediction") tags.push_back(signal.prediction);
-    if (kind == "setpoint") tags.push_back(signal.setpoint);
+std::vector<std::string> tags_of(const config::UnitConfig& unit, std::string_view kind) {
+  for (std::size_t k = 0; k < kSignalKindCount; ++k) {
+    const auto candidate = static_cast<SignalKind>(k);
+    if (candidate != SignalKind::kAux && kind == idl::kind_name(candidate))
+      return config::tags_of(unit, candidate);
   }
-  return tags;
+  return {};
 }
 
 }  // namespace

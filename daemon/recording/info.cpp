@@ -9,8 +9,8 @@
 #include "daemon/mcap/file_sequence.hpp"
 #include "daemon/mcap/reader.hpp"
 #include "daemon/mcap/scan.hpp"
+#include "daemon/recording/kind_name.hpp"
 #include "daemon/recording/sample_stream.hpp"
-#include "daemon/recording/unit_tags.hpp"
 
 namespace mpm::recording {
 namespace {
@@ -266,11 +266,7 @@ double TimeTally::rate_hz() const {
 FileInfo inspect(const std::vector<std::string>& paths, std::shared_ptr<const io::TimeZone> zone) {
   FileInfo info;
   info.path = mcap::name_of(paths);
-  const auto csv = std::find_if_not(paths.begin(), paths.end(), mcap::is_recording);
-  info.is_mcap = csv == paths.end();
-  if (!info.is_mcap && paths.size() > 1)
-    throw config::InputError({*csv, 0, 0, config::Severity::kError, "",
-                              "is no MCAP file; only those are taken together"});
+  info.is_mcap = mcap::is_recording(paths);
   if (info.is_mcap)
     inspect_mcap(paths, info);
   else

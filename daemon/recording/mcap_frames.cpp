@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "config/finding.hpp"
+#include "config/unit_layout.hpp"
 #include "daemon/io/aligning.hpp"
 #include "daemon/mcap/printable.hpp"
 #include "daemon/recording/contents.hpp"
-#include "daemon/recording/unit_tags.hpp"
+#include "daemon/recording/kind_name.hpp"
 
 namespace mpm::recording {
 namespace {

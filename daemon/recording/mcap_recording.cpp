@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "config/unit_layout.hpp"
+#include "daemon/recording/kind_name.hpp"
 #include "daemon/recording/sample_stream.hpp"
-#include "daemon/recording/unit_tags.hpp"
 #include "idl/topic_catalog.hpp"
 
 namespace mpm::recording {

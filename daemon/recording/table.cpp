@@ -5,12 +5,12 @@
 
 #include "config/finding.hpp"
 #include "config/suggest.hpp"
+#include "config/unit_layout.hpp"
 #include "daemon/io/csv_reader.hpp"
 #include "daemon/io/csv_rows.hpp"
 #include "daemon/mcap/file_sequence.hpp"
 #include "daemon/recording/contents.hpp"
 #include "daemon/recording/mcap_frames.hpp"
-#include "daemon/recording/unit_tags.hpp"
 
 namespace mpm::recording {
 namespace {

@@ -10,8 +10,6 @@
 
 namespace mpm::daemon {
 
-using mcap::recording_files;
-
 /// Recordings as one: the samples of all files in the order of their log times.
 class McapSource : public ReplaySource {
  public:
