@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "config/load_unit.hpp"
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 #include "daemon/closed_loop/compare_loops.hpp"
 #include "daemon/closed_loop/run_mpmsim.hpp"
 #include "daemon/commands/progress_bar.hpp"

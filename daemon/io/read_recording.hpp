@@ -4,7 +4,7 @@
 #include <string>
 
 #include "config/unit_config.hpp"
-#include "core/identify/recording.hpp"
+#include "core/identify/fit/recording.hpp"
 #include "daemon/io/frame_source.hpp"
 
 namespace mpm::io {

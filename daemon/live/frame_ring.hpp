@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/identify/recording.hpp"
+#include "core/identify/fit/recording.hpp"
 #include "core/signal/frame.hpp"
 
 namespace mpm::daemon {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 
 namespace mpm::daemon {
 namespace {

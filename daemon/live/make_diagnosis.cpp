@@ -2,7 +2,7 @@
 
 #include <exception>
 
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 #include "daemon/io/read_recording.hpp"
 #include "daemon/live/named_cause.hpp"
 #include "daemon/report/explain.hpp"

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "config/unit_layout.hpp"
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 #include "daemon/io/aligning.hpp"
 #include "idl/topics.hpp"
 

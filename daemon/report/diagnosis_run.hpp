@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
-#include "core/identify/diagnosis.hpp"
-#include "core/identify/recording.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/identify/fit/recording.hpp"
 
 /// All that the reports of `mpm diagnose` are made from.
 namespace mpm::daemon {

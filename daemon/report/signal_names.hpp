@@ -3,7 +3,7 @@
 #include <string>
 
 #include "config/unit_config.hpp"
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 
 namespace mpm::daemon {
 

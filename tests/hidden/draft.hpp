@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
-#include "core/identify/finding.hpp"
+#include "core/identify/causes/finding.hpp"
 #include "sim/signals/random_stream.hpp"
 #include "tests/hidden/cv_noise.hpp"
 #include "tests/hidden/effect_class.hpp"
