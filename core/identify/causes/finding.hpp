@@ -4,48 +4,38 @@
 #include <string>
 #include <vector>
 
+#include "core/identify/fit/effect.hpp"
+
 /// What `diagnose` names: causes of a difference between a plant and its simulation.
 namespace mpm {
 
-enum class Cause {
-  kGain,
-  kDeadTime,
-  kTimeConstant,
-  kDynamics,  ///< two or more of the three above in one channel
-  kInputScale,
-  kOutputScale,
-  kInputNonlinearity,
-  kStiction,
-  kOutputNonlinearity,
-  kUnmodelledInput,
-  kOutputDisturbance,
-  kNoise,
-  kStateNonlinearity,
-  kUnnamed,  ///< something no cause above means: never in a finding
+class Cause;
+
+/// A name of the contract, which several kinds of a cause may share. Equal if the same object.
+struct CauseName {
+  const char* text;               ///< "gain"
+  const char* title;              ///< "Gain": a headline
+  const char* kind_key = "kind";  ///< what the contract calls the word for the kind
 };
 
-/// As the reports say it: `gain`, `dead_time`, ...
-[[nodiscard]] const char* name_of(Cause cause);
+/// What a finding is about.
+struct Subject {
+  const Cause* cause = nullptr;  ///< never null in a finding
+  Place place = {};
 
-/// A fitted number with its 95 % interval. Names and units as in the contract: `gain_ratio`,
-/// `dead_time_error` (s), `time_constant_ratio`, `band`, `jump` (input units), `size` (CV units)
-/// ...
+  [[nodiscard]] bool operator==(const Subject&) const = default;
+};
+
+/// A fitted number with its 95 % interval, in the unit that its quantity names.
 struct Parameter {
-  std::string name;
+  const Quantity* quantity = nullptr;
   double value = 0.0;
   double low = 0.0;
   double high = 0.0;
-};
+  int number = 0;  ///< from 1 where a finding has several of its quantity
 
-/// What a cause is about; -1 where a kind of signal plays no part.
-struct Subject {
-  Cause cause = Cause::kGain;
-  int cv = -1;
-  int input = -1;    ///< MV or DV
-  int aux = -1;      ///< the measured signal that the model leaves out
-  std::string kind;  ///< of a nonlinearity, shape of a disturbance, term of a state; else empty
-
-  [[nodiscard]] bool operator==(const Subject&) const = default;
+  /// As the reports say it: `gain_ratio`, `overflow_1`.
+  [[nodiscard]] std::string name() const;
 };
 
 /// Another explanation of the same difference.
@@ -63,6 +53,8 @@ struct Finding {
   std::optional<double> onset_s;  ///< clock of the data; where it began inside the data
   std::vector<Rival> rivals;      ///< closest first
   bool repaired = true;           ///< the extended model holds it, and is the better for it
+
+  [[nodiscard]] const Parameter* find(const Quantity& quantity) const;
 };
 
 }  // namespace mpm

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "core/identify/causes/finding.hpp"
+#include "core/identify/diagnosis/channel_estimates.hpp"
+#include "core/identify/diagnosis/statement.hpp"
+#include "core/identify/diagnosis/validation.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
 
 namespace mpm {
-
-/// Share of the work that is done when all causes have been looked for.
-constexpr double kSearched = 0.9;
 
 struct DiagnosisSettings {
   int mv_count = 0;            ///< of the model's inputs; the rest are DVs
@@ -26,31 +26,6 @@ struct DiagnosisSettings {
 };
 
 enum class DiagnosisVerdict { kMatch, kMismatch, kUndetermined };
-
-/// A difference that is there but that no cause explains: shown and located, not named.
-struct Unexplained {
-  int cv = 0;
-  int input = -1;        ///< the input it goes with; -1 = none
-  std::string manner;    ///< how: `product`, `swing`, `direction` (unnamed.hpp); empty = unknown
-  double p_value = 1.0;  ///< of what is left having nothing to do with it
-  double share = 0.0;    ///< of the residual's variance that it makes up
-};
-
-/// One CV's free-running simulation on the samples that no fit has seen.
-struct CvScore {
-  double rmse_before = 0.0, rmse_after = 0.0;  ///< CV units
-  double fit_before = 0.0, fit_after = 0.0;    ///< 100 (1 - |y - ysim| / |y - mean y|)
-  /// 95 % block-bootstrap interval of 1 - rmse_after / rmse_before.
-  double gain_low = 0.0, gain_high = 0.0;
-  bool refused = false;  ///< an extension was fitted and did not carry over
-};
-
-/// How far a channel of the plant is from the model's, with everything else refitted.
-struct ChannelEstimate {
-  int cv = 0;
-  int input = 0;
-  Parameter gain_ratio, time_constant_ratio, dead_time_error;  ///< the last in s
-};
 
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::kUndetermined;

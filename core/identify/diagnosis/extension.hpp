@@ -2,15 +2,10 @@
 
 #include <vector>
 
-#include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/identify/fit/problem.hpp"
 #include "core/identify/search/search.hpp"
 
 namespace mpm {
-
-/// The cause named at `index`, in the terms of the contract.
-[[nodiscard]] Finding to_finding(const SearchResult& found, std::size_t index,
-                                 const Problem& problem);
 
 /// The problem's model with what was found: the effects, and for each CV that they touch the small
 /// channel errors and the level that were fitted beside them. A CV with `keep` false stays as it

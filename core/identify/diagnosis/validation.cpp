@@ -5,6 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "core/identify/diagnosis/calibration.hpp"
+
 namespace mpm {
 
 using Eigen::Index;
@@ -19,7 +21,6 @@ double mean_of_finite(const Eigen::Ref<const VectorXd>& values) {
 
 CvScore score_errors(const Eigen::Ref<const VectorXd>& before,
                      const Eigen::Ref<const VectorXd>& after, Index block, std::uint64_t seed) {
-  constexpr int kResamples = 500;
   // Running sums make any block's sum two look-ups.
   std::vector<double> old_running = {0.0}, new_running = {0.0};
   for (Index k = 0; k < before.size(); ++k) {
@@ -50,8 +51,8 @@ CvScore score_errors(const Eigen::Ref<const VectorXd>& before,
     gains.push_back(1.0 - std::sqrt(new_draw / std::max(1e-300, old_draw)));
   }
   std::sort(gains.begin(), gains.end());
-  result.gain_low = gains[static_cast<std::size_t>(0.025 * kResamples)];
-  result.gain_high = gains[static_cast<std::size_t>(0.975 * kResamples)];
+  result.gain_low = gains[static_cast<std::size_t>(kTail * kResamples)];
+  result.gain_high = gains[static_cast<std::size_t>((1.0 - kTail) * kResamples)];
   return result;
 }
 

@@ -2,10 +2,16 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-
-#include "core/identify/diagnosis/diagnosis.hpp"
-
 namespace mpm {
+
+/// One CV's free-running simulation on the samples that no fit has seen.
+struct CvScore {
+  double rmse_before = 0.0, rmse_after = 0.0;  ///< CV units
+  double fit_before = 0.0, fit_after = 0.0;    ///< 100 (1 - |y - ysim| / |y - mean y|)
+  /// 95 % block-bootstrap interval of 1 - rmse_after / rmse_before.
+  double gain_low = 0.0, gain_high = 0.0;
+  bool refused = false;  ///< an extension was fitted and did not carry over
+};
 
 /// Of the values that are; 1 where there are none or all are 0.
 [[nodiscard]] double mean_of_finite(const Eigen::Ref<const Eigen::VectorXd>& values);

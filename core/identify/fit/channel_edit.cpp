@@ -147,6 +147,14 @@ double slowest_time_constant_s(const ChannelSpec& channel, double sample_time_s)
   return LinearModel(alone(channel, sample_time_s)).slowest_time_constant_samples() * sample_time_s;
 }
 
+double slowest_of_cv_s(const ModelSpec& model, int cv, double least_samples) {
+  double slowest = least_samples * model.sample_time_s;
+  for (const ChannelSpec& channel : model.channels)
+    if (channel.cv == cv)
+      slowest = std::max(slowest, slowest_time_constant_s(channel, model.sample_time_s));
+  return slowest;
+}
+
 ModelSpec in_channels(const ModelSpec& model) {
   if (!model.state_space) return model;
   constexpr double kSettled = 1e-6;

@@ -27,6 +27,8 @@ struct ChannelError {
 
 /// Its slowest time constant (s), at least one sample time.
 [[nodiscard]] double slowest_time_constant_s(const ChannelSpec& channel, double sample_time_s);
+/// The slowest of all of a CV, at least so many samples.
+[[nodiscard]] double slowest_of_cv_s(const ModelSpec& model, int cv, double least_samples);
 
 /// A model of this channel alone, without its input block, in deviations (all origins 0).
 [[nodiscard]] ModelSpec alone(const ChannelSpec& channel, double sample_time_s);

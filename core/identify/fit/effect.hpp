@@ -2,46 +2,55 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "core/identify/causes/finding.hpp"
+#include "core/identify/fit/quantity.hpp"
 #include "core/model/model_spec.hpp"
 
 namespace mpm {
 
 /// One number of an effect: what it is before anything is known, and how to move it.
 struct Coordinate {
-  std::string name;
+  const Quantity* quantity = nullptr;  ///< outlives it; its form says what `value` is
   double value = 0.0;
   double prior_mean = 0.0;  ///< value that means "no effect", or the middle of what is likely
   double prior_sd = 1.0;    ///< Gaussian
   double step = 1e-3;       ///< of a finite difference
   double low = -1e30, high = 1e30;
+  int number = 0;  ///< from 1 where an effect has several of its quantity
 };
 
-/// A cause with numbers: an edit of the model. The same list of effects says what the fit tries,
-/// what the findings are and what the extended model holds.
+/// Where an effect acts; -1 where a kind of signal plays no part.
+struct Place {
+  int cv = -1;     ///< -1: all CVs that the input acts on
+  int input = -1;  ///< MV or DV
+  int aux = -1;    ///< a measured signal that the model leaves out
+
+  [[nodiscard]] bool operator==(const Place&) const = default;
+};
+
+class Edit;
+
+/// An edit of the model with a few numbers. The same list of effects says what a fit tries, what
+/// the findings are and what the extended model holds.
 struct Effect {
-  Subject subject;
+  const Edit* edit = nullptr;  ///< outlives it
+  Place place = {};
   std::vector<Coordinate> coordinates;
   /// Acts from this row on (0 = throughout): before it the CV is what it would be without.
   Eigen::Index onset = 0;
   /// 2 ln of how many equal alternatives (rows to begin at, shapes, ...) it was picked from.
   double search_cost = 0.0;
-  /// Of a valve: it slips once and sticks again.
-  bool slips_once = false;
+  /// Which of the forms that its edit knows; 0 is the usual one.
+  int variant = 0;
   /// Seen in the data themselves, whatever the model: not weighed against others.
   bool certain = false;
-  /// Of an unnamed one, samples x coordinates: what the CV does per unit of each.
+  /// Of what edits no model, samples x coordinates: what the CV does per unit of each.
   std::shared_ptr<const Eigen::MatrixXd> shape = {};
 
-  [[nodiscard]] const Coordinate* find(const std::string& name) const;
-  [[nodiscard]] double value(const std::string& name, double otherwise) const;
+  [[nodiscard]] const Coordinate* find(const Quantity& quantity, int number = 0) const;
+  [[nodiscard]] double value(const Quantity& quantity, double otherwise, int number = 0) const;
 };
-
-/// 2 ln of so many equal alternatives; 0 counts as 1.
-[[nodiscard]] double cost_of(std::size_t alternatives);
 
 /// What an effect may touch.
 struct Surroundings {
@@ -50,11 +59,25 @@ struct Surroundings {
   int model_inputs = 0;  ///< the aux signals are numbered after these
 };
 
-/// Edits `model` (aux signals are inputs after the model's own).
-void apply(const Effect& effect, const Surroundings& surroundings, ModelSpec& model);
+/// What an effect's numbers do to a model. The causes are such edits; a fit needs to know no more
+/// of them.
+class Edit {
+ public:
+  Edit() = default;
+  Edit(const Edit&) = delete;
+  Edit& operator=(const Edit&) = delete;
+  virtual ~Edit() = default;
 
-/// Whether the effect's own form knows its onset; all others are mixed from with and without it.
-[[nodiscard]] bool knows_onset(const Effect& effect);
+  /// Edits `model` (aux signals are inputs after the model's own).
+  virtual void apply(const Effect& effect, const Surroundings& surroundings,
+                     ModelSpec& model) const = 0;
+  /// Whether the edited model knows the effect's onset; all others are mixed from with and without.
+  [[nodiscard]] virtual bool knows_onset() const { return false; }
+  /// Whether the CV jumps at the onset, as it does at a shock of the noise.
+  [[nodiscard]] virtual bool jumps() const { return false; }
+};
+
+void apply(const Effect& effect, const Surroundings& surroundings, ModelSpec& model);
 
 /// Whether it changes what this CV does in `model`.
 [[nodiscard]] bool touches(const Effect& effect, const ModelSpec& model, int cv);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/initial_state.hpp"
 #include "core/identify/fit/plateau.hpp"
@@ -48,33 +49,23 @@ Problem::Problem(const ModelSpec& model, int model_inputs, const Recording& reco
     const auto measured = recording.cvs.col(cv);
     data.known = measured.unaryExpr([](double y) { return std::isfinite(y) ? 1.0 : 0.0; });
     data.measured = measured.unaryExpr([](double y) { return std::isfinite(y) ? y : 0.0; });
-    find_clipping(cv, data);
+    data.measured_sd = spread(data.measured, data.known);
+    plateaus_.push_back(take_out_plateaus(cv, data));
     data_.push_back(std::move(data));
   }
   settle({}, nullptr);
 }
 
-void Problem::find_clipping(int cv, CvData& data) {
-  if (model_.output_blocks[static_cast<std::size_t>(cv)]) return;
+Plateaus Problem::take_out_plateaus(int cv, CvData& data) const {
+  if (model_.output_blocks[static_cast<std::size_t>(cv)]) return {};
   const auto measured = recording().cvs.col(cv);
   const Plateaus plateaus = find_plateaus(measured);
-  if (!plateaus.low && !plateaus.high) return;
-  Effect effect;
-  effect.subject = {Cause::kOutputNonlinearity, cv, -1, -1, "saturation"};
-  effect.certain = true;
-  const double range = spread(data.measured, data.known);
-  const auto level = [&](const char* name, double value) {
-    // The data tell it to the last digit.
-    effect.coordinates.push_back({name, value, value, 1e-6 * range, 1e-4 * range, -1e300, 1e300});
-  };
-  if (plateaus.low) level("low", *plateaus.low);
-  if (plateaus.high) level("high", *plateaus.high);
-  clipping_.push_back(effect);
-  const double tie = 1e-9 * range;
+  const double tie = kPlateauTie * data.measured_sd;
   for (Index k = 0; k < measured.size(); ++k)
     if ((plateaus.low && measured(k) <= *plateaus.low + tie) ||
         (plateaus.high && measured(k) >= *plateaus.high - tie))
       data.known(k) = data.measured(k) = 0.0;
+  return plateaus;
 }
 
 ModelSpec Problem::with(const std::vector<Effect>& effects) const {
@@ -110,14 +101,14 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
       return (simulator_.cv(changed, cv) - base) / step;
     };
     constexpr double kStep = 0.01;
-    const auto small = [&](const char* name, double sd, const VectorXd& derivative) {
-      add({channel.input, name, sd}, sd * derivative);
+    const auto small = [&](const Quantity& what, double sd, const VectorXd& derivative) {
+      add({channel.input, &what, sd}, sd * derivative);
     };
-    small("gain_ratio", tolerances_.gain, difference({1.0 + kStep, 1.0, 0.0}, kStep));
-    small("log_time_constant_ratio", tolerances_.log_time_constant,
+    small(kGainRatio, tolerances_.gain, difference({1.0 + kStep, 1.0, 0.0}, kStep));
+    small(kTimeConstantRatio, tolerances_.log_time_constant,
           difference({1.0, std::exp(kStep), 0.0}, kStep));
     if (std::holds_alternative<TransferFunction>(channel.dynamics))
-      small("dead_time_samples", tolerances_.dead_time_samples,
+      small(kDeadTimeError, tolerances_.dead_time_samples,
             difference({1.0, 1.0, 0.25 * model.sample_time_s}, 0.25));
   }
   // A first state that is off by more than it shows would explain whatever one wants.
@@ -141,8 +132,7 @@ VectorXd Problem::with_shocks(const CvFit& state, const std::vector<Effect>& eff
   VectorXd innovations = state.innovations;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const Effect& effect = effects[i];
-    if (effect.subject.kind != "step" || effect.subject.cv != state.cv || effect.onset == 0)
-      continue;
+    if (!effect.edit->jumps() || effect.place.cv != state.cv || effect.onset == 0) continue;
     std::vector<Effect> others = effects;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     const VectorXd step =
@@ -176,9 +166,9 @@ VectorXd Problem::simulate(const std::vector<Effect>& effects, int cv) {
   bool stale = true;
   // Effects with an onset come last: each adds what it changes from its onset on.
   for (const Effect& effect : effects)
-    if (effect.onset == 0 || knows_onset(effect)) apply(effect, surroundings_, model);
+    if (effect.onset == 0 || effect.edit->knows_onset()) apply(effect, surroundings_, model);
   for (const Effect& effect : effects) {
-    if (effect.onset == 0 || knows_onset(effect) || !touches(effect, model, cv)) continue;
+    if (effect.onset == 0 || effect.edit->knows_onset() || !touches(effect, model, cv)) continue;
     if (stale) simulated = simulator_.cv(model, cv);
     const VectorXd before = simulator_.cv(model, cv);
     apply(effect, surroundings_, model);
@@ -188,7 +178,7 @@ VectorXd Problem::simulate(const std::vector<Effect>& effects, int cv) {
   }
   if (stale) simulated = simulator_.cv(model, cv);
   for (const Effect& effect : effects)
-    if (effect.shape && effect.subject.cv == cv)
+    if (effect.shape && effect.place.cv == cv)
       for (std::size_t i = 0; i < effect.coordinates.size(); ++i)
         simulated += effect.coordinates[i].value * effect.shape->col(static_cast<Index>(i));
   return simulated;
@@ -208,10 +198,8 @@ MatrixXd Problem::nuisances(const std::vector<Effect>& effects, int cv) const {
   MatrixXd result = data.nuisances;
   for (std::size_t b = 0; b < data.meaning.size(); ++b)
     for (const Effect& effect : effects)
-      if (effect.onset == 0 && effect.subject.cv == cv &&
-          effect.subject.cause != Cause::kOutputScale &&
-          effect.subject.input == data.meaning[b].input && data.meaning[b].input >= 0 &&
-          effect.find(data.meaning[b].coordinate))
+      if (effect.onset == 0 && effect.place.cv == cv && data.meaning[b].input >= 0 &&
+          effect.place.input == data.meaning[b].input && effect.find(*data.meaning[b].quantity))
         result.col(static_cast<Index>(b)).setZero();
   return result;
 }
@@ -280,6 +268,13 @@ Index Problem::best_onset(const Fit& fit, Index first, Index last) {
   Index best = 0;
   cost.minCoeff(&best);
   return first + best;
+}
+
+std::vector<int> touched(const Effect& effect, const Problem& problem) {
+  std::vector<int> cvs;
+  for (int cv = 0; cv < problem.model().cv_count; ++cv)
+    if (touches(effect, problem.model(), cv)) cvs.push_back(cv);
+  return cvs;
 }
 
 }  // namespace mpm

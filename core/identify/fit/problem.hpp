@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/identify/fit/effect.hpp"
+#include "core/identify/fit/plateau.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/identify/fit/simulator.hpp"
 #include "core/identify/fit/whitening.hpp"
@@ -11,18 +12,18 @@
 
 namespace mpm {
 
-/// Small errors that every model has: fitted beside any cause, under a Gaussian prior.
+/// Small errors that every model has: fitted beside any effect, under a Gaussian prior.
 struct Tolerances {
   double gain = 0.02;               ///< s.d. of the relative gain error
   double log_time_constant = 0.03;  ///< s.d. of the log of the time constants' ratio
   double dead_time_samples = 0.1;   ///< s.d.
 };
 
-/// A small error of one channel that is fitted beside any cause.
+/// A small error of one channel that is fitted beside any effect.
 struct SmallError {
-  int input = -1;               ///< -1: level or initial state
-  const char* coordinate = "";  ///< of the effect that would make it a large one
-  double sd = 0.0;              ///< of the tolerance, in that coordinate's units
+  int input = -1;                      ///< -1: level or initial state
+  const Quantity* quantity = nullptr;  ///< of the effect that would make it a large one
+  double sd = 0.0;                     ///< of the tolerance, in the form of that quantity
 };
 
 /// What one CV's fit works on, whatever is fitted: A(q) (y - ysim - nuisances beta) is white.
@@ -33,6 +34,7 @@ struct CvData {
   Eigen::MatrixXd nuisances;        ///< scaled so that beta ~ N(0, I) before the data are seen
   std::vector<SmallError> meaning;  ///< of each nuisance
   double rows = 0.0;                ///< with a weight
+  double measured_sd = 0.0;         ///< of all that was measured, clipped or not
 };
 
 /// One CV's side of a fit.
@@ -71,8 +73,8 @@ struct Fit {
 ///
 /// A fit is generalised least squares (Gauss-Newton, finite differences, orthogonal) of the
 /// effects' coordinates, each CV with its own autoregressive noise, re-estimated in every step.
-/// Each CV is reduced to its square-root information on the shared coordinates, so that a cause in
-/// an input may be seen by all CVs at once (Bierman 1977).
+/// Each CV is reduced to its square-root information on the shared coordinates, so that an effect
+/// in an input may be seen by all CVs at once (Bierman 1977).
 class Problem {
  public:
   /// `model` in channels and with aux inputs; `recording` must outlive the problem.
@@ -101,8 +103,10 @@ class Problem {
                                             std::size_t coordinate, int cv,
                                             const Eigen::VectorXd& at);
 
-  /// Clipped CVs as effects, with the levels that the data show.
-  [[nodiscard]] const std::vector<Effect>& clipping() const { return clipping_; }
+  /// The levels that a CV does not read beyond, as the data show; rows there count as unknown.
+  [[nodiscard]] const Plateaus& plateaus(int cv) const {
+    return plateaus_[static_cast<std::size_t>(cv)];
+  }
   [[nodiscard]] const ModelSpec& model() const { return model_; }
   [[nodiscard]] const Surroundings& surroundings() const { return surroundings_; }
   [[nodiscard]] const Recording& recording() const { return simulator_.recording(); }
@@ -113,10 +117,10 @@ class Problem {
  private:
   class Fitting;  // one call of fit(), in fitting.cpp
   [[nodiscard]] ModelSpec with(const std::vector<Effect>& effects) const;
-  /// What a CV's plateau says, and its rows as unknown.
-  void find_clipping(int cv, CvData& data);
-  /// Innovations as they would be without the steps in `effects`, at their onsets: a shock in the
-  /// noise looks like a step there, and must not lose what makes it one by being fitted.
+  /// Where a CV is clipped, and its rows as unknown.
+  [[nodiscard]] Plateaus take_out_plateaus(int cv, CvData& data) const;
+  /// Innovations as they would be without the jumps in `effects`, at their onsets: a shock in the
+  /// noise looks like a jump there, and must not lose what makes it one by being fitted.
   [[nodiscard]] Eigen::VectorXd with_shocks(const CvFit& state, const std::vector<Effect>& effects);
   void make_nuisances(const ModelSpec& model, int cv);
   /// The nuisances that no effect makes superfluous; the others are zero.
@@ -130,7 +134,10 @@ class Problem {
   Tolerances tolerances_;
   NoiseModel noise_;
   std::vector<CvData> data_;
-  std::vector<Effect> clipping_;
+  std::vector<Plateaus> plateaus_;
 };
+
+/// The CVs that an effect touches, ascending.
+[[nodiscard]] std::vector<int> touched(const Effect& effect, const Problem& problem);
 
 }  // namespace mpm

@@ -16,4 +16,7 @@ struct Recording {
   [[nodiscard]] Eigen::Index samples() const { return cvs.rows(); }
 };
 
+/// Some rows of a recording, on the same clock.
+[[nodiscard]] Recording part(const Recording& recording, Eigen::Index first, Eigen::Index count);
+
 }  // namespace mpm

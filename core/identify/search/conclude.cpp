@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
+#include "core/identify/search/calibration.hpp"
 #include "core/identify/search/odds.hpp"
 #include "core/identify/search/trial.hpp"
 
@@ -11,10 +14,6 @@ namespace mpm {
 using Eigen::Index;
 
 namespace {
-
-/// An offset is one beyond so many s.d. of the noise, and of its own estimate.
-constexpr double kOffsetInNoise = 1.5;
-constexpr double kOffsetInSd = 6.0;
 
 /// Cost of the CVs that an effect touches with one of its coordinates held `off` from its value.
 double cost_at(Problem& problem, const Fit& fit, std::size_t effect, Index coordinate, double off) {
@@ -32,15 +31,11 @@ double cost_at(Problem& problem, const Fit& fit, std::size_t effect, Index coord
 }  // namespace
 
 void widen_kinked(Problem& problem, SearchResult& result, const std::function<void()>& tell) {
-  constexpr double kRise = 3.84;  // chi square, 1 degree of freedom
   Index first = 0;
   for (std::size_t e = 0; e < result.fit.effects.size(); ++e) {
     const Effect& effect = result.fit.effects[e];
     const auto count = static_cast<Index>(effect.coordinates.size());
-    const bool kinked =
-        effect.subject.cause == Cause::kStiction || effect.subject.kind == "deadband" ||
-        (effect.subject.cause == Cause::kInputNonlinearity && effect.subject.kind == "saturation");
-    for (Index i = 0; kinked && i < std::min<Index>(2, count); ++i) {
+    for (Index i = 0; i < std::min<Index>(cause_of(effect).kinked_numbers(), count); ++i) {
       double& variance = result.fit.covariance(first + i, first + i);
       const double sd = std::max(std::sqrt(variance),
                                  1e-3 * effect.coordinates[static_cast<std::size_t>(i)].prior_sd);
@@ -48,7 +43,7 @@ void widen_kinked(Problem& problem, SearchResult& result, const std::function<vo
       const double least = cost_at(problem, result.fit, e, i, 0.0);
       double reach = 0.0;
       for (const double side : {-1.0, 1.0})
-        for (const double steps : {1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 15.0, 20.0})
+        for (const double steps : kReachesOfRise)
           if (cost_at(problem, result.fit, e, i, side * steps * sd) < least + kRise)
             reach = std::max(reach, steps * sd);
       variance = std::max(variance, reach * reach / kRise);
@@ -62,22 +57,21 @@ void name_levels(const Problem& problem, SearchResult& result) {
     // An input that the model left out has an operating point that nobody knows.
     const bool new_input =
         std::any_of(result.named.begin(), result.named.end(), [&](const Named& named) {
-          return named.effect.subject.cause == Cause::kUnmodelledInput &&
-                 named.effect.subject.cv == fit.cv;
+          return named.effect.edit == &causes::unmodelled_input() &&
+                 named.effect.place.cv == fit.cv;
         });
     if (new_input) continue;
     const CvData& data = problem.data(fit.cv);
     const double level = data.nuisances(0, 0) * fit.beta(0);
     const double noise = std::sqrt(fit.residual.squaredNorm() / std::max(1.0, data.known.sum()));
-    const double memory = std::max(0.02, 1.0 - fit.noise.coefficients.sum());
+    const double memory = std::max(kLeastReturn, 1.0 - fit.noise.coefficients.sum());
     const double rows = std::max(1.0, independence({fit}) * data.rows);
     const double sd = std::sqrt(fit.variance / rows) / memory;
     if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd)) continue;
     Named named;
-    named.effect.subject = {Cause::kOutputDisturbance, fit.cv, -1, -1, "step"};
-    named.effect.coordinates = {{"size", level, 0.0, noise, 0.01 * noise, -1e300, 1e300}};
+    named.effect = causes::constant_offset(fit.cv, level, noise);
     named.evidence = level * level / (sd * sd);
-    named.confidence = 0.99;
+    named.confidence = kOffsetConfidence;
     const Index old = result.fit.covariance.rows();
     result.fit.covariance.conservativeResize(old + 1, old + 1);
     result.fit.covariance.col(old).setZero();

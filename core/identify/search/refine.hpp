@@ -11,13 +11,11 @@ namespace mpm {
 /// Moves the onset of a trial about until no other moment is better.
 void place_onset(Trials& trials, Trial& trial);
 
-/// How far a valve slips shows in few rows: from coarse starts the fit ends in plain play. So where
-/// one input is best explained by play or sticking, looks at all slips near its width and adds the
-/// likeliest to `trials`, which are sorted by odds and not empty.
-void try_valves(Trials& tries, Screening& screening, std::vector<Trial>& trials);
+/// Where the best explanation asks for a closer look near it, fits the likeliest of what there is
+/// to see and adds them to `trials`, which are sorted by odds and not empty.
+void look_closer(Trials& tries, Screening& screening, std::vector<Trial>& trials);
 
-/// Play and sticking are not smooth in their widths, nor is a square wave in its edges: looks
-/// around, ever closer.
-void polish(Trials& trials, Trial& trial);
+/// Steps the numbers of a trial about, ever closer, where its cause says how.
+void step_about(Trials& trials, Trial& trial);
 
 }  // namespace mpm

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <optional>
 
-#include "core/identify/causes/candidates.hpp"
-#include "core/identify/causes/unnamed.hpp"
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/search/calibration.hpp"
 #include "core/identify/search/conclude.hpp"
 #include "core/identify/search/odds.hpp"
 #include "core/identify/search/refine.hpp"
@@ -19,18 +19,19 @@ namespace {
 
 using Eigen::Index;
 
-/// Candidates fitted in full in every round, beside the best of each cause.
-constexpr std::size_t kShortlist = 16;
-/// 2 ln odds of what the data themselves show.
-constexpr double kCertain = 1000.0;
+/// The same cause at the same place, with the same numbers.
+bool same_form(const Effect& a, const Effect& b) {
+  const auto same_number = [](const Coordinate& x, const Coordinate& y) {
+    return x.quantity == y.quantity && x.number == y.number;
+  };
+  return subject_of(a) == subject_of(b) && (a.onset > 0) == (b.onset > 0) &&
+         a.variant == b.variant &&
+         std::equal(a.coordinates.begin(), a.coordinates.end(), b.coordinates.begin(),
+                    b.coordinates.end(), same_number);
+}
 
-bool same_variant(const Effect& a, const Effect& b) {
-  if (!(a.subject == b.subject) || a.coordinates.size() != b.coordinates.size() ||
-      (a.onset > 0) != (b.onset > 0) || a.slips_once != b.slips_once)
-    return false;
-  for (std::size_t i = 0; i < a.coordinates.size(); ++i)
-    if (a.coordinates[i].name != b.coordinates[i].name) return false;
-  return true;
+void erase_at(std::vector<Effect>& effects, std::size_t index) {
+  effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 class Search {
@@ -41,17 +42,18 @@ class Search {
         trials_(problem, settings_, accepted_, [this] { report(); }) {}
 
   SearchResult run() {
-    for (const Effect& effect : problem_.clipping()) {
-      accepted_.push_back(effect);
-      named_.push_back({effect, kCertain, 1.0, {}});
-    }
+    for (const Cause* cause : causes::all())
+      for (const Effect& effect : cause->shown_by(problem_)) {
+        accepted_.push_back(effect);
+        named_.push_back({effect, kSeenInData, 1.0, {}});
+      }
     for (int round = 0; round < settings_.max_findings; ++round) {
       share_ = 0.1 + 0.8 * round / settings_.max_findings;
       report();
       if (!find_one()) break;
     }
     drop_superfluous();
-    undo_cancelled_scales();
+    rewrite();
     SearchResult result;
     result.fit = everything();
     for (std::size_t i = 0; i < accepted_.size(); ++i) {
@@ -69,38 +71,48 @@ class Search {
     if (settings_.progress) settings_.progress(share_);
   }
 
-  std::vector<Effect> shortlist() {
-    std::vector<CvFit>& nulls = nulls_;
-    nulls.clear();
-    for (int cv = 0; cv < problem_.model().cv_count; ++cv)
-      nulls.push_back(trials_.without({cv}).cvs.front());
-    std::vector<Effect> all = candidates(problem_, accepted_);
-    for (const CvFit& null : nulls) {
-      for (Effect& effect : disturbance_candidates(problem_, null))
-        all.push_back(std::move(effect));
-      for (Effect& effect : unnamed_candidates(problem_, accepted_, null))
-        all.push_back(std::move(effect));
+  /// All that may still be wrong, each cause's starts.
+  [[nodiscard]] std::vector<Effect> proposals() {
+    std::vector<Effect> all;
+    for (const Cause* cause : causes::all()) {
+      std::vector<Effect> mine;
+      cause->propose({problem_, accepted_, nulls_}, mine);
+      for (Effect& effect : mine) {
+        const bool open =
+            std::all_of(accepted_.begin(), accepted_.end(),
+                        [&](const Effect& accepted) { return cause->goes_with(accepted, effect); });
+        if (open) all.push_back(std::move(effect));
+      }
     }
-    Screening& screening = screening_.emplace(problem_, accepted_, nulls);
+    return all;
+  }
+
+  std::vector<Effect> shortlist() {
+    nulls_.clear();
+    for (int cv = 0; cv < problem_.model().cv_count; ++cv)
+      nulls_.push_back(trials_.without({cv}).cvs.front());
+    const std::vector<Effect> all = proposals();
+    Screening& screening = screening_.emplace(problem_, accepted_, nulls_);
     std::vector<double> scores;
     for (const Effect& effect : all) {
       report();
-      scores.push_back(screening.score(effect) - rarity(effect.subject.cause));
+      scores.push_back(screening.score(effect) - cause_of(effect).rarity());
     }
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
     std::vector<Effect> list;
-    std::map<Cause, int> of_cause;
+    std::map<const CauseName*, int> of_cause;
     for (const std::size_t i : order) {
       const auto repeats = std::count_if(list.begin(), list.end(), [&](const Effect& effect) {
-        return same_variant(effect, all[i]);
+        return same_form(effect, all[i]);
       });
-      if (repeats >= 2) continue;
-      const bool first_of_cause = of_cause[all[i].subject.cause] < 2 && scores[i] > -15.0;
-      if (scores[i] < -20.0 || (list.size() >= kShortlist && !first_of_cause)) continue;
-      ++of_cause[all[i].subject.cause];
+      if (repeats >= kStartsOfOneForm) continue;
+      int& likes = of_cause[&cause_of(all[i]).name()];
+      const bool first_of_cause = likes < kOfEachCause && scores[i] > kHopelessOfCause;
+      if (scores[i] < kHopeless || (list.size() >= kShortlist && !first_of_cause)) continue;
+      ++likes;
       list.push_back(all[i]);
     }
     return list;
@@ -109,28 +121,28 @@ class Search {
   bool find_one() {
     trials_.settle(last_.cvs.empty() ? nullptr : &last_);
     std::vector<Trial> trials;
-    for (const Effect& effect : shortlist()) trials.push_back(trials_.attempt(effect, 6));
+    for (const Effect& effect : shortlist()) trials.push_back(trials_.attempt(effect, kTrialSteps));
     if (trials.empty()) return false;
     std::sort(trials.begin(), trials.end(), more_probable);
-    try_valves(trials_, *screening_, trials);
+    look_closer(trials_, *screening_, trials);
     std::sort(trials.begin(), trials.end(), more_probable);
-    for (std::size_t i = 0; i < std::min<std::size_t>(6, trials.size()); ++i) {
-      if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - 60.0)
+    for (std::size_t i = 0; i < std::min(kRefined, trials.size()); ++i) {
+      if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - kOnsetWorthMoving)
         place_onset(trials_, trials[i]);
-      if (trials[i].odds > 0.5 * trials[0].odds) polish(trials_, trials[i]);
+      if (trials[i].odds > kWorthStepping * trials[0].odds) step_about(trials_, trials[i]);
     }
     std::sort(trials.begin(), trials.end(), more_probable);
     if (trials[0].odds < settings_.decisive) return false;
 
     // Once more with rows weighed as the best explanation's innovations ask for. A shock in the
-    // noise would vanish with a step fitted to it, so a step has to do without that row's help.
-    const bool step = trials[0].candidate.subject.kind == "step";
+    // noise would vanish with a jump fitted to it, so a jump has to do without that row's help.
+    const bool jump = trials[0].candidate.edit->jumps();
     const Fit weighing =
-        step ? trials_.without(touched(trials[0].candidate, problem_)) : trials[0].fit;
+        jump ? trials_.without(touched(trials[0].candidate, problem_)) : trials[0].fit;
     trials_.settle(&weighing);
     std::vector<Trial> again;
-    for (std::size_t i = 0; i < std::min<std::size_t>(8, trials.size()); ++i)
-      again.push_back(trials_.attempt(trials[i].candidate, 8));
+    for (std::size_t i = 0; i < std::min(kTriedAgain, trials.size()); ++i)
+      again.push_back(trials_.attempt(trials[i].candidate, kSecondTrialSteps));
     std::sort(again.begin(), again.end(), more_probable);
     if (again[0].odds < settings_.decisive) return false;
     accept(again);
@@ -143,8 +155,8 @@ class Search {
     named.evidence = best.odds;
     double total = 1.0 + std::exp(-0.5 * best.odds);
     for (std::size_t i = 1; i < trials.size(); ++i) {
-      const Subject& subject = trials[i].candidate.subject;
-      if (subject == best.candidate.subject) continue;
+      const Subject subject = subject_of(trials[i].candidate);
+      if (subject == subject_of(best.candidate)) continue;
       const bool known = std::any_of(named.rivals.begin(), named.rivals.end(),
                                      [&](const Rival& r) { return r.subject == subject; });
       if (known) continue;
@@ -159,80 +171,68 @@ class Search {
     std::vector<Effect> moved = best.fit.effects;
     for (Effect& effect : accepted_)
       for (const Effect& other : moved)
-        if (same_variant(effect, other)) effect = other;
+        if (same_form(effect, other)) effect = other;
     accepted_.push_back(best.candidate);
     last_ = best.fit;
     merge();
   }
 
-  /// A scale of a whole input together with a gain that takes it back in one CV says in two
-  /// findings what gains of the other CVs say too, with fewer channels wrong: those are meant.
-  void undo_cancelled_scales() {
-    for (std::size_t w = 0; w < accepted_.size(); ++w) {
-      if (accepted_[w].subject.cause != Cause::kInputScale) continue;
-      for (std::size_t g = 0; g < accepted_.size(); ++g) {
-        const Subject gain = accepted_[g].subject;
-        if (gain.cause != Cause::kGain || gain.input != accepted_[w].subject.input ||
-            accepted_[g].onset != accepted_[w].onset)
-          continue;
-        const double ratio = accepted_[w].value("gain_ratio", 1.0);
-        const double left = ratio * accepted_[g].value("gain_ratio", 1.0) - 1.0;
-        std::vector<int> others = touched(accepted_[w], problem_);
-        std::erase(others, gain.cv);
-        if (std::abs(left) > settings_.materiality.gain || others.empty() || others.size() > 2)
-          continue;
-        const std::vector<Effect> old_effects = accepted_;
-        const std::vector<Named> old_named = named_;
-        const double old_cost = everything().cost;
-        Effect effect = accepted_[g];
-        Named named = named_[w];
-        for (const std::size_t i : {std::max(w, g), std::min(w, g)}) {
-          accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(i));
-          named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(i));
-        }
-        for (const int cv : others) {
-          effect.subject.cv = cv;
-          effect.coordinates[0].value = ratio;
-          accepted_.push_back(effect);
-          named_.push_back(named);
-        }
-        const double worse = everything().cost - old_cost;
-        if (worse > settings_.decisive) {
-          accepted_ = old_effects;
-          named_ = old_named;
-          continue;
-        }
-        for (std::size_t i = named_.size() - others.size(); i < named_.size(); ++i)
-          named_[i].rivals = {{old_effects[w].subject, std::max(0.0, -worse), true}};
-        return;
-      }
+  /// Says what was accepted with fewer parts wrong, where a cause knows how and that explains the
+  /// data no worse.
+  void rewrite() {
+    for (std::size_t i = 0; i < accepted_.size(); ++i)
+      for (const Rewrite& rewrite :
+           cause_of(accepted_[i]).rewrites(i, accepted_, problem_, settings_.materiality))
+        if (take(rewrite, i)) return;
+  }
+
+  /// The effects that come in stand for the one at `mine`, which stays as their rival.
+  bool take(const Rewrite& rewrite, std::size_t mine) {
+    const std::vector<Effect> old_effects = accepted_;
+    const std::vector<Named> old_named = named_;
+    const double old_cost = everything().cost;
+    for (auto index = rewrite.without.rbegin(); index != rewrite.without.rend(); ++index) {
+      erase_at(accepted_, *index);
+      named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(*index));
     }
+    const std::size_t first_new = named_.size();
+    for (const Effect& effect : rewrite.with) {
+      accepted_.push_back(effect);
+      named_.push_back(old_named[mine]);
+    }
+    const double worse = everything().cost - old_cost;
+    if (worse > settings_.decisive) {
+      accepted_ = old_effects;
+      named_ = old_named;
+      return false;
+    }
+    for (std::size_t i = first_new; i < named_.size(); ++i)
+      named_[i].rivals = {{subject_of(old_effects[mine]), std::max(0.0, -worse), true}};
+    return true;
   }
 
   /// Errors of one channel found one after the other are one finding.
   void merge() {
-    const auto in_channel = [](Cause cause) {
-      return cause == Cause::kGain || cause == Cause::kDeadTime || cause == Cause::kTimeConstant ||
-             cause == Cause::kDynamics;
-    };
-    Effect& last = accepted_.back();
+    const Effect& last = accepted_.back();
+    const Cause* together = cause_of(last).together_with_others();
+    if (together == nullptr) return;
     for (std::size_t i = 0; i + 1 < accepted_.size(); ++i) {
       Effect& other = accepted_[i];
-      if (!in_channel(last.subject.cause) || !in_channel(other.subject.cause) ||
-          other.subject.cv != last.subject.cv || other.subject.input != last.subject.input ||
+      if (cause_of(other).together_with_others() != together || other.place != last.place ||
           other.onset != last.onset)
         continue;
       for (const Coordinate& coordinate : last.coordinates) {
-        const Coordinate* same = other.find(coordinate.name);
-        if (!same) {
+        const Coordinate* same = other.find(*coordinate.quantity);
+        if (same == nullptr) {
           other.coordinates.push_back(coordinate);
         } else {
-          auto& own = other.coordinates[static_cast<std::size_t>(same - other.coordinates.data())];
-          own.value = own.name == "gain_ratio" ? own.value * coordinate.value
-                                               : own.value + coordinate.value;
+          Coordinate& own =
+              other.coordinates[static_cast<std::size_t>(same - other.coordinates.data())];
+          own.value = own.quantity->form == Form::kPlain ? own.value * coordinate.value
+                                                         : own.value + coordinate.value;
         }
       }
-      if (other.coordinates.size() > 1) other.subject.cause = Cause::kDynamics;
+      if (other.coordinates.size() > 1) other.edit = together;
       named_[i].evidence += named_.back().evidence;
       accepted_.pop_back();
       named_.pop_back();
@@ -240,11 +240,13 @@ class Search {
     }
   }
 
-  Fit everything() {
+  [[nodiscard]] std::vector<int> all_cvs() const {
     std::vector<int> cvs(static_cast<std::size_t>(problem_.model().cv_count));
     std::iota(cvs.begin(), cvs.end(), 0);
-    return problem_.fit(accepted_, 0, cvs, 10);
+    return cvs;
   }
+
+  Fit everything() { return problem_.fit(accepted_, 0, all_cvs(), kJointSteps); }
 
   void drop_superfluous() {
     bool dropped = accepted_.size() > 1;
@@ -255,12 +257,11 @@ class Search {
         report();
         if (all.effects[i].certain) continue;
         std::vector<Effect> fewer = all.effects;
-        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
-        std::vector<int> cvs(static_cast<std::size_t>(problem_.model().cv_count));
-        std::iota(cvs.begin(), cvs.end(), 0);
-        const double odds = odds_for(all.effects[i], all, problem_.fit(fewer, 0, cvs, 8));
+        erase_at(fewer, i);
+        const double odds =
+            odds_for(all.effects[i], all, problem_.fit(fewer, 0, all_cvs(), kWithoutOneSteps));
         named_[i].evidence = odds;
-        const bool slow = may_pass_for_noise(all.effects[i].subject);
+        const bool slow = cause_of(all.effects[i]).may_pass_for_noise();
         if (odds >= (slow ? kWanderingNoise : settings_.decisive)) continue;
         accepted_ = std::move(fewer);
         named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(i));

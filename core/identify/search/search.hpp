@@ -8,6 +8,9 @@
 
 namespace mpm {
 
+/// Share of the work of a diagnosis that is done when all causes have been looked for.
+constexpr double kSearched = 0.9;
+
 struct SearchSettings {
   int max_findings = 6;
   /// 2 ln odds that a cause must have against the model without it, and against being one of many.
@@ -16,7 +19,7 @@ struct SearchSettings {
   Tolerances materiality = {0.05, 0.09, 0.45};
   /// Nor is what moves a CV by less than this share of its own s.d.
   double visible = 0.015;
-  /// Called at least once per fit; may throw to end the search at once.
+  /// Called at least once per fit with the share done; may throw to end the search at once.
   std::function<bool(double)> progress = {};
 };
 

@@ -3,24 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/identify/search/calibration.hpp"
 #include "core/identify/search/odds.hpp"
 
 namespace mpm {
-namespace {
-
-/// The fit with a cause that the noise could pass for speaks for it by this much more than would do
-/// otherwise.
-constexpr double kSettledNoise = 12.0;
-
-}  // namespace
-
-std::vector<int> touched(const Effect& effect, const Problem& problem) {
-  std::vector<int> cvs;
-  for (int cv = 0; cv < problem.model().cv_count; ++cv)
-    if (touches(effect, problem.model(), cv)) cvs.push_back(cv);
-  return cvs;
-}
-
 void Trials::settle(const Fit* fit) {
   without_.clear();
   problem_.settle(accepted_, fit);
@@ -60,7 +46,7 @@ Trial Trials::attempt(const Effect& candidate, int iterations) {
   // What is slow can hide in a noise model that is re-estimated without it: it then takes the noise
   // for a wandering one. So it also counts how the noise model with the cause judges the lack of
   // it.
-  if (may_pass_for_noise(candidate.subject) && trial.odds > kWanderingNoise)
+  if (cause_of(candidate).may_pass_for_noise() && trial.odds > kWanderingNoise)
     trial.odds = std::max(trial.odds, settled_odds(trial, cvs) - kSettledNoise);
   if (!material(trial)) trial.odds = std::min(trial.odds, 0.0);
   return trial;
@@ -72,30 +58,15 @@ double Trials::settled_odds(const Trial& trial, const std::vector<int>& cvs) {
   std::vector<Effect> others = trial.fit.effects;
   others.pop_back();
   return problem_.cost_with_noise_of(trial.fit, others) - rows - trial.fit.complexity -
-         trial.candidate.search_cost - rarity(trial.candidate.subject.cause);
+         trial.candidate.search_cost - cause_of(trial.candidate).rarity();
 }
 
 /// Whether anyone would care: an error of a channel beyond what a model may be wrong by, and for
 /// all others a visible share of what the CV does.
 bool Trials::material(const Trial& trial) {
-  const Effect& effect = trial.candidate;
-  const int gain = std::abs(effect.value("gain_ratio", 1.0) - 1.0) >= settings_.materiality.gain;
-  const int time_constant = std::abs(effect.value("log_time_constant_ratio", 0.0)) >=
-                            std::log(1.0 + settings_.materiality.log_time_constant);
-  const int dead_time =
-      std::abs(effect.value("dead_time_samples", 0.0)) >= settings_.materiality.dead_time_samples;
-  switch (effect.subject.cause) {
-    case Cause::kGain:
-    case Cause::kInputScale:
-    case Cause::kOutputScale:
-    case Cause::kTimeConstant:
-    case Cause::kDeadTime:
-      return gain + time_constant + dead_time > 0;
-    case Cause::kDynamics:
-      return gain + time_constant + dead_time > 1;
-    default:
-      break;
-  }
+  const std::optional<bool> matters =
+      cause_of(trial.candidate).matters(trial.candidate, settings_.materiality);
+  if (matters) return *matters;
   std::vector<Effect> without = trial.fit.effects;
   without.pop_back();
   for (const CvFit& state : trial.fit.cvs) {

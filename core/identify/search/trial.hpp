@@ -20,9 +20,6 @@ struct Trial {
 /// The most probable first.
 [[nodiscard]] inline bool more_probable(const Trial& a, const Trial& b) { return a.odds > b.odds; }
 
-/// The CVs that an effect touches, ascending.
-[[nodiscard]] std::vector<int> touched(const Effect& effect, const Problem& problem);
-
 /// Tries candidates beside what is accepted.
 class Trials {
  public:

@@ -1,4 +1,4 @@
-#include "core/identify/causes/square_waves.hpp"
+#include "core/identify/causes/square_wave_search.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,12 +17,6 @@ constexpr double kShortestPeriod = 16.0;  ///< rows
 constexpr double kFineRows = 3000.0;      ///< more rows than these are looked at in longer strides
 constexpr std::size_t kWaves = 4;         ///< of each onset
 constexpr std::array<double, 3> kOnsets = {0.0, 0.25, 0.5};
-
-struct Wave {
-  double gain = 0.0;                 ///< fall of the misfit over the noise's variance
-  double begin = 0.0, period = 0.0;  ///< rows
-  Index onset = 0;
-};
 
 /// How much of the innovations +1, -1, +1, ... explains, for any period and phase. What whitening
 /// makes of such a wave is a short pulse at each edge, so no edge may be missed by a row: all are
@@ -67,14 +61,14 @@ class MatchedFilter {
 };
 
 /// The best few, no two of nearly one period, and how many were looked at.
-std::vector<Wave> best_waves(const MatchedFilter& filter, Index samples, Index onset,
-                             std::size_t& looked_at) {
+std::vector<SquareWave> best_waves(const MatchedFilter& filter, Index samples, Index onset,
+                                   std::size_t& looked_at) {
   const auto length = static_cast<double>(samples - onset);
   const double stride = std::max(1.0, static_cast<double>(samples) / kFineRows);
-  std::vector<Wave> best;
+  std::vector<SquareWave> best;
   double period = kShortestPeriod * stride;
   while (period <= length / kFewestCycles) {
-    Wave wave{0.0, 0.0, period, onset};
+    SquareWave wave{0.0, 0.0, period, onset};
     const auto phases = static_cast<int>(std::ceil(0.5 * period / stride));
     for (int phase = 0; phase < phases; ++phase) {
       const double begin = static_cast<double>(onset) + phase * stride;
@@ -82,7 +76,7 @@ std::vector<Wave> best_waves(const MatchedFilter& filter, Index samples, Index o
       if (gain > wave.gain) wave.gain = gain, wave.begin = begin;
     }
     looked_at += static_cast<std::size_t>(phases);
-    const auto near = std::find_if(best.begin(), best.end(), [&](const Wave& other) {
+    const auto near = std::find_if(best.begin(), best.end(), [&](const SquareWave& other) {
       return std::abs(other.period / period - 1.0) < 0.02;
     });
     if (near != best.end()) {
@@ -91,7 +85,7 @@ std::vector<Wave> best_waves(const MatchedFilter& filter, Index samples, Index o
       best.push_back(wave);
     }
     std::sort(best.begin(), best.end(),
-              [](const Wave& a, const Wave& b) { return a.gain > b.gain; });
+              [](const SquareWave& a, const SquareWave& b) { return a.gain > b.gain; });
     if (best.size() > kWaves) best.pop_back();
     period += stride * period / length;  // the last edge by a row
   }
@@ -100,54 +94,14 @@ std::vector<Wave> best_waves(const MatchedFilter& filter, Index samples, Index o
 
 }  // namespace
 
-std::vector<Effect> square_waves(const Problem& problem, const CvFit& without) {
-  const Index samples = problem.samples();
-  const double sample_time = problem.surroundings().sample_time_s;
-  const MatchedFilter filter(problem.data(without.cv), without);
-  std::size_t looked_at = 0;
-  std::vector<Wave> waves;
+SquareWaves find_square_waves(const CvData& data, const CvFit& without) {
+  const Index samples = without.innovations.size();
+  const MatchedFilter filter(data, without);
+  SquareWaves found;
   for (const double share : kOnsets) {
-    const std::vector<Wave> some = best_waves(
-        filter, samples, static_cast<Index>(share * static_cast<double>(samples)), looked_at);
-    waves.insert(waves.end(), some.begin(), some.end());
-  }
-  const double sd =
-      std::max(1e-30, std::sqrt(without.residual.squaredNorm() / static_cast<double>(samples)));
-  std::vector<Effect> found;
-  for (const Wave& wave : waves) {
-    Effect effect;
-    effect.subject = {Cause::kOutputDisturbance, without.cv, -1, -1, "periodic"};
-    const double period = sample_time * wave.period;
-    const double slip = period * wave.period / static_cast<double>(samples);
-    effect.coordinates = {{"size", 0.0, 0.0, 2.0 * sd, 0.05 * sd, -1e12, 1e12},
-                          {"begin", sample_time * wave.begin, sample_time * wave.begin,
-                           0.25 * period, sample_time, -1e12, 1e12},
-                          {"period", period, period, 2.0 * slip, slip, 0.5 * period, 2.0 * period}};
-    effect.onset = wave.onset;
-    effect.search_cost =
-        cost_of(static_cast<std::size_t>(problem.model().cv_count)) + cost_of(looked_at);
-    found.push_back(std::move(effect));
-  }
-  return found;
-}
-
-bool is_square_wave(const Effect& effect) {
-  return effect.subject.kind == "periodic" && effect.find("period") != nullptr;
-}
-
-std::vector<Effect> other_edges(const Effect& effect, double reach, const Problem& problem) {
-  std::vector<Effect> found;
-  const double sample_time = problem.surroundings().sample_time_s;
-  const double cycles =
-      static_cast<double>(problem.samples()) * sample_time / effect.value("period", sample_time);
-  for (const double by : {-reach * sample_time, reach * sample_time}) {
-    Effect other = effect;
-    other.coordinates[1].value += by;
-    found.push_back(other);
-    // The period moves the last edges; those in the middle stay where they are.
-    other.coordinates[1].value = effect.coordinates[1].value - 0.5 * by;
-    other.coordinates[2].value += by / cycles;
-    found.push_back(std::move(other));
+    const std::vector<SquareWave> some = best_waves(
+        filter, samples, static_cast<Index>(share * static_cast<double>(samples)), found.looked_at);
+    found.waves.insert(found.waves.end(), some.begin(), some.end());
   }
   return found;
 }
