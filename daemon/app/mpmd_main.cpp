@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
+#include "daemon/host/version.hpp"
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/make_diagnosis.hpp"
+#include "daemon/live/monitor_service.hpp"
 #include "daemon/live/report_store.hpp"
-#include "daemon/log/logging.hpp"
-#include "daemon/monitoring/monitor_service.hpp"
-#include "daemon/service/signals.hpp"
-#include "daemon/service/version.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{500};  // with a diagnosis that is to end
@@ -38,7 +38,7 @@ struct Options {
   bool print_config = false;
   std::optional<int> domain;
   std::optional<std::string> partition;
-  ServiceOptions service;
+  live::ServiceOptions service;
   std::string state_folder = default_state_folder();
   std::string log_level = "info";
 };
@@ -62,7 +62,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--log-level", options.log_level, "what to log")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
-  app.set_version_flag("--version", version_text("mpmd"));
+  app.set_version_flag("--version", host::version_text("mpmd"));
   app.footer(
       "Examples:\n"
       "  mpmd --config /etc/mpm/shell.yaml\n"
@@ -94,15 +94,16 @@ int run(const Options& options) {
     return kBadInput;
   }
 
-  StopSignal stop;  // before any thread
-  set_up_logging(options.log_level);
-  spdlog::info("{} starts", version_text("mpmd"));
-  const ReportStore store(options.state_folder);
-  DiagnosisWorker worker([&store](const DiagnosisJob& job, const DiagnosisWorker::GoOn& go_on) {
-    return make_diagnosis(job, store, go_on);
-  });
+  host::StopSignal stop;  // before any thread
+  host::set_up_logging(options.log_level);
+  spdlog::info("{} starts", host::version_text("mpmd"));
+  const live::ReportStore store(options.state_folder);
+  live::DiagnosisWorker worker(
+      [&store](const live::DiagnosisJob& job, const live::DiagnosisWorker::GoOn& go_on) {
+        return live::make_diagnosis(job, store, go_on);
+      });
   {
-    MonitorService service(loaded.units, options.service, worker);
+    live::MonitorService service(loaded.units, options.service, worker);
     service.run([&] { return stop.received(); });
   }
   const bool idle = worker.stop(kPatience);
@@ -129,10 +130,10 @@ int parse_and_run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace mpm::daemon
+}  // namespace mpm::app
 
 int main(int argc, char** argv) {
-  using namespace mpm::daemon;
+  using namespace mpm::app;
   try {
     return parse_and_run(argc, argv);
   } catch (const std::exception& error) {

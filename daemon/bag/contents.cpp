@@ -1,10 +1,10 @@
-#include "daemon/recording/contents.hpp"
+#include "daemon/bag/contents.hpp"
 
 #include "config/finding.hpp"
+#include "daemon/bag/sample_stream.hpp"
 #include "daemon/mcap/printable.hpp"
-#include "daemon/recording/sample_stream.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 namespace {
 
 constexpr std::size_t kMostUnits = 10'000;
@@ -63,4 +63,4 @@ std::string names_of(const Contents& contents) {
   return text;
 }
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

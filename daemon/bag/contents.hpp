@@ -8,7 +8,7 @@
 
 #include "core/signal/frame.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 
 /// One kind of signals of a unit, as a recording knows it.
 struct RecordedKind {
@@ -41,4 +41,4 @@ using Contents = std::map<std::string, RecordedUnit, std::less<>>;
 /// "'a', 'b'", for messages.
 [[nodiscard]] std::string names_of(const Contents& contents);
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -1,4 +1,4 @@
-#include "daemon/recording/convert.hpp"
+#include "daemon/bag/convert.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,22 +6,22 @@
 #include <stdexcept>
 
 #include "config/finding.hpp"
-#include "daemon/io/replacement_file.hpp"
+#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/files/replacement_file.hpp"
 #include "daemon/mcap/file_sequence.hpp"
-#include "daemon/recording/mcap_recording.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& message) {
   throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
 }
 
-void count(const Frame& frame, const std::vector<io::Column>& columns, ConvertReport& report) {
+void count(const Frame& frame, const std::vector<files::Column>& columns, ConvertReport& report) {
   if (report.rows++ == 0) report.first_ns = report.last_ns = frame.source_time_ns;
   report.first_ns = std::min(report.first_ns, frame.source_time_ns);
   report.last_ns = std::max(report.last_ns, frame.source_time_ns);
-  for (const io::Column& column : columns) {
+  for (const files::Column& column : columns) {
     const SignalBlock& block = frame[column.kind];
     if (!std::isfinite(block.values(column.index))) {
       ++report.missing;
@@ -42,7 +42,7 @@ std::vector<bool> find_qualities(const std::string& input, const TableOptions& o
   while (table.frames->next(frame))
     for (std::size_t i = 0; i < needed.size(); ++i)
       needed[i] =
-          needed[i] || io::needs_quality(frame[table.columns[i].kind], table.columns[i].index);
+          needed[i] || files::needs_quality(frame[table.columns[i].kind], table.columns[i].index);
   return needed;
 }
 
@@ -65,17 +65,17 @@ ConvertReport convert(const std::string& input, const std::string& output,
   if (from_mcap && to_mcap) refuse(output, "both are MCAP files; there is nothing to convert");
   if (to_mcap && !options.unit)
     refuse(input, "give the unit file with --config: it tells which topic each tag belongs to");
-  std::optional<io::ReplacementFile> file;  // standard output is none
-  if (output != io::kStandardOutput) {
-    if (io::same_file(input, output)) refuse(output, "is the file that is read");
+  std::optional<files::ReplacementFile> file;  // standard output is none
+  if (output != files::kStandardOutput) {
+    if (files::same_file(input, output)) refuse(output, "is the file that is read");
     file.emplace(output);
   }
   const TableOptions table_options{options.unit ? &*options.unit : nullptr, options.unit_name,
                                    options.input_zone, to_mcap};
   ConvertReport report;
   try {
-    io::CsvOptions csv{options.layout, options.seconds, options.output_zone, {}};
-    if (!to_mcap && options.layout == io::CsvLayout::kWide)
+    files::CsvOptions csv{options.layout, options.seconds, options.output_zone, {}};
+    if (!to_mcap && options.layout == files::CsvLayout::kWide)
       csv.quality = find_qualities(input, table_options);
     const Table table = open_table(input, table_options);
     report.signals = table.columns.size();
@@ -83,7 +83,7 @@ ConvertReport convert(const std::string& input, const std::string& output,
       McapRecording writer(file->temporary(), table.unit, table.columns);
       copy(table, writer, report);
     } else {
-      io::CsvWriter writer(file ? file->temporary() : output, table.columns, std::move(csv));
+      files::CsvWriter writer(file ? file->temporary() : output, table.columns, std::move(csv));
       copy(table, writer, report);
       report.bytes = writer.bytes_written();
     }
@@ -100,4 +100,4 @@ ConvertReport convert(const std::string& input, const std::string& output,
   return report;
 }
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -6,17 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "daemon/recording/table.hpp"
+#include "daemon/bag/table.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 
 struct ConvertOptions {
   std::optional<config::UnitConfig> unit;
-  std::string unit_name;                            ///< see TableOptions
-  io::CsvLayout layout = io::CsvLayout::kWide;      ///< of a CSV output
-  bool seconds = false;                             ///< its times as seconds
-  std::shared_ptr<const io::TimeZone> input_zone;   ///< of local times; null = there may be none
-  std::shared_ptr<const io::TimeZone> output_zone;  ///< null = UTC
+  std::string unit_name;                               ///< see TableOptions
+  files::CsvLayout layout = files::CsvLayout::kWide;   ///< of a CSV output
+  bool seconds = false;                                ///< its times as seconds
+  std::shared_ptr<const files::TimeZone> input_zone;   ///< of local times; null = there may be none
+  std::shared_ptr<const files::TimeZone> output_zone;  ///< null = UTC
 };
 
 /// What went over and what did not.
@@ -38,4 +38,4 @@ struct ConvertReport {
 [[nodiscard]] ConvertReport convert(const std::string& input, const std::string& output,
                                     const ConvertOptions& options);
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -1,18 +1,18 @@
-#include "daemon/recording/info.hpp"
+#include "daemon/bag/info.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "config/finding.hpp"
-#include "daemon/io/csv_rows.hpp"
+#include "daemon/bag/kind_name.hpp"
+#include "daemon/bag/sample_stream.hpp"
+#include "daemon/files/csv/csv_rows.hpp"
 #include "daemon/mcap/file_sequence.hpp"
 #include "daemon/mcap/reader.hpp"
 #include "daemon/mcap/scan.hpp"
-#include "daemon/recording/kind_name.hpp"
-#include "daemon/recording/sample_stream.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 namespace {
 
 constexpr double kNsPerSecond = 1e9;
@@ -205,11 +205,11 @@ class RowClock {
   double step_ns_ = 0.0;
 };
 
-void inspect_csv(FileInfo& info, std::shared_ptr<const io::TimeZone> zone) {
-  io::CsvRows rows(info.path, std::move(zone));
+void inspect_csv(FileInfo& info, std::shared_ptr<const files::TimeZone> zone) {
+  files::CsvRows rows(info.path, std::move(zone));
   info.is_long = rows.is_long();
   info.delimiter = rows.delimiter();
-  for (const io::Column& column : rows.columns()) {
+  for (const files::Column& column : rows.columns()) {
     info.signals.emplace_back();
     info.signals.back().tag = column.tag;
   }
@@ -263,7 +263,8 @@ double TimeTally::rate_hz() const {
   return count > 1 && span_s > 0.0 ? static_cast<double>(count - 1) / span_s : 0.0;
 }
 
-FileInfo inspect(const std::vector<std::string>& paths, std::shared_ptr<const io::TimeZone> zone) {
+FileInfo inspect(const std::vector<std::string>& paths,
+                 std::shared_ptr<const files::TimeZone> zone) {
   FileInfo info;
   info.path = mcap::name_of(paths);
   info.is_mcap = mcap::is_recording(paths);
@@ -277,8 +278,8 @@ FileInfo inspect(const std::vector<std::string>& paths, std::shared_ptr<const io
   return info;
 }
 
-FileInfo inspect(const std::string& path, std::shared_ptr<const io::TimeZone> zone) {
+FileInfo inspect(const std::string& path, std::shared_ptr<const files::TimeZone> zone) {
   return inspect(std::vector{path}, std::move(zone));
 }
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

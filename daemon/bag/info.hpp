@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/signal/frame.hpp"
-#include "daemon/io/time_zone.hpp"
+#include "daemon/files/times/time_zone.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 
 /// Values of one signal by quality.
 struct SignalTally {
@@ -92,8 +92,8 @@ struct FileInfo {
 /// config::InputError where it is no data file at all; one that is torn is told as far as it goes.
 /// Local times of a CSV are those of `zone`; refused without one.
 [[nodiscard]] FileInfo inspect(const std::vector<std::string>& paths,
-                               std::shared_ptr<const io::TimeZone> zone = nullptr);
+                               std::shared_ptr<const files::TimeZone> zone = nullptr);
 [[nodiscard]] FileInfo inspect(const std::string& path,
-                               std::shared_ptr<const io::TimeZone> zone = nullptr);
+                               std::shared_ptr<const files::TimeZone> zone = nullptr);
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -1,15 +1,15 @@
-#include "daemon/recording/info_text.hpp"
+#include "daemon/bag/info_text.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdarg>
 #include <cstdio>
 
-#include "daemon/io/time_text.hpp"
+#include "daemon/bag/sample_stream.hpp"
+#include "daemon/files/times/time_text.hpp"
 #include "daemon/mcap/printable.hpp"
-#include "daemon/recording/sample_stream.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -21,8 +21,8 @@ Json span_json(const TimeTally& times) {
   Json json;
   json["count"] = times.count;
   if (times.count == 0) return json;
-  json["start"] = io::utc_text(times.first_ns);
-  json["end"] = io::utc_text(times.last_ns);
+  json["start"] = files::utc_text(times.first_ns);
+  json["end"] = files::utc_text(times.last_ns);
   json["duration_s"] = seconds(times.last_ns - times.first_ns);
   json["rate_hz"] = times.rate_hz();
   return json;
@@ -34,7 +34,7 @@ Json gaps_json(const TimeTally& times) {
   json["missing"] = times.missing;
   if (times.gaps == 0) return json;
   json["longest_s"] = seconds(times.longest_gap_ns);
-  json["longest_at"] = io::utc_text(times.longest_gap_at_ns);
+  json["longest_at"] = files::utc_text(times.longest_gap_at_ns);
   return json;
 }
 
@@ -43,7 +43,7 @@ Json order_json(const TimeTally& times) {
   json["count"] = times.out_of_order;
   if (times.out_of_order == 0) return json;
   json["farthest_back_s"] = seconds(times.farthest_back_ns);
-  json["farthest_back_at"] = io::utc_text(times.farthest_back_at_ns);
+  json["farthest_back_at"] = files::utc_text(times.farthest_back_at_ns);
   return json;
 }
 
@@ -114,7 +114,7 @@ std::string bytes_text(std::uint64_t bytes) {
 
 std::string span_text(const TimeTally& times) {
   if (times.count == 0) return "nothing";
-  return io::utc_text(times.first_ns) + " to " + io::utc_text(times.last_ns) + " (" +
+  return files::utc_text(times.first_ns) + " to " + files::utc_text(times.last_ns) + " (" +
          duration_text(seconds(times.last_ns - times.first_ns)) + ")";
 }
 
@@ -123,7 +123,7 @@ std::string gaps_text(const TimeTally& times) {
   return std::to_string(times.gaps) + (times.gaps == 1 ? " gap, " : " gaps, ") +
          std::to_string(times.missing) + " missing, the longest " +
          duration_text(seconds(times.longest_gap_ns)) + " at " +
-         io::utc_text(times.longest_gap_at_ns);
+         files::utc_text(times.longest_gap_at_ns);
 }
 
 std::string order_text(const TimeTally& times) {
@@ -131,7 +131,7 @@ std::string order_text(const TimeTally& times) {
   return "; " + std::to_string(times.out_of_order) + (times.out_of_order == 1 ? " row" : " rows") +
          " not later than the one before, the farthest back by " +
          duration_text(seconds(times.farthest_back_ns)) + " after " +
-         io::utc_text(times.farthest_back_at_ns);
+         files::utc_text(times.farthest_back_at_ns);
 }
 
 std::string signal_text(const SignalTally& signal) {
@@ -224,4 +224,4 @@ std::string to_text(const FileInfo& info) {
   return text + (info.is_mcap ? mcap_text(info) : csv_text(info));
 }
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -3,13 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "daemon/recording/info.hpp"
+#include "daemon/bag/info.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 
 /// For programs; docs/recording.md tells the keys.
 [[nodiscard]] nlohmann::ordered_json to_json(const FileInfo& info);
 /// For people.
 [[nodiscard]] std::string to_text(const FileInfo& info);
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -2,9 +2,9 @@
 
 #include "core/signal/frame.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 
 /// "mv" ... "aux".
 [[nodiscard]] const char* name_of(SignalKind kind);
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -1,8 +1,8 @@
-#include "daemon/record/lifecycle.hpp"
+#include "daemon/bag/lifecycle.hpp"
 
 #include <nlohmann/json.hpp>
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -62,4 +62,4 @@ std::optional<Lifecycle> parse_lifecycle(std::string_view text) {
   return std::nullopt;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -7,7 +7,7 @@
 
 #include "idl/raw_sample.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 inline constexpr const char* kLifecycleSuffix = "/_lifecycle";
 inline constexpr const char* kLifecycleSchema = "mpm.Lifecycle";
@@ -25,4 +25,4 @@ struct Lifecycle {
 /// The way back; nothing where the text is no such message.
 [[nodiscard]] std::optional<Lifecycle> parse_lifecycle(std::string_view text);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

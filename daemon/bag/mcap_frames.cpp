@@ -1,15 +1,15 @@
-#include "daemon/recording/mcap_frames.hpp"
+#include "daemon/bag/mcap_frames.hpp"
 
 #include <algorithm>
 
 #include "config/finding.hpp"
 #include "config/unit_layout.hpp"
-#include "daemon/io/aligning.hpp"
+#include "daemon/bag/contents.hpp"
+#include "daemon/bag/kind_name.hpp"
+#include "daemon/files/aligning.hpp"
 #include "daemon/mcap/printable.hpp"
-#include "daemon/recording/contents.hpp"
-#include "daemon/recording/kind_name.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& message) {
@@ -19,7 +19,7 @@ namespace {
 }  // namespace
 
 McapFrames::McapFrames(const std::vector<std::string>& paths, const config::UnitConfig& unit,
-                       io::Purpose purpose)
+                       files::Purpose purpose)
     : unit_(unit),
       purpose_(purpose),
       aligner_(unit.counts(), look_into(paths, purpose),
@@ -28,14 +28,14 @@ McapFrames::McapFrames(const std::vector<std::string>& paths, const config::Unit
                  ready_.push_back(frame);
                }),
       samples_(paths),
-      patience_ns_(io::frame_patience(unit).count()) {}
+      patience_ns_(files::frame_patience(unit).count()) {}
 
 // Which kinds to wait for: as the daemon does, but what is nowhere in the file will not come.
 std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::string>& paths,
-                                                         io::Purpose purpose) {
-  std::array<bool, kSignalKindCount> wanted = io::needed_kinds(unit_);
+                                                         files::Purpose purpose) {
+  std::array<bool, kSignalKindCount> wanted = files::needed_kinds(unit_);
   wanted[static_cast<std::size_t>(SignalKind::kAux)] = !unit_.aux.empty();
-  if (purpose == io::Purpose::kKeep)
+  if (purpose == files::Purpose::kKeep)
     for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
       wanted[kind] = unit_.counts().of(static_cast<SignalKind>(kind)) > 0;
   const Contents contents = survey(paths, [&](const Contents& so_far) {
@@ -51,7 +51,7 @@ std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::
     refuse(path, "holds no samples of unit '" + unit_.unit + "'" +
                      (contents.empty() ? "; it holds none of any unit"
                                        : "; its units are " + names_of(contents)));
-  if (purpose == io::Purpose::kJudge) check_needed(path, found->second);
+  if (purpose == files::Purpose::kJudge) check_needed(path, found->second);
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
     wanted[kind] = wanted[kind] && found->second.kinds[kind].seen;
   return wanted;
@@ -62,7 +62,8 @@ void McapFrames::check_needed(const std::string& path, const RecordedUnit& recor
   for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kDv})
     if (counts.of(kind) > 0 && !recorded[kind].seen)
       refuse(path, std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
-  const bool predicted = io::needed_kinds(unit_)[static_cast<std::size_t>(SignalKind::kPrediction)];
+  const bool predicted =
+      files::needed_kinds(unit_)[static_cast<std::size_t>(SignalKind::kPrediction)];
   if (!recorded[SignalKind::kPrediction].seen) {
     if (!unit_.has_model())
       refuse(path, "holds no mpm/prediction of unit '" + unit_.unit +
@@ -115,7 +116,7 @@ bool McapFrames::next(Frame& frame) {
       case SampleStream::Event::kEnd:
         done_ = true;
         // What the daemon would still wait for at the end is of use to somebody who wants all.
-        if (purpose_ == io::Purpose::kKeep)
+        if (purpose_ == files::Purpose::kKeep)
           aligner_.finish();
         else
           aligner_.expire();
@@ -140,11 +141,11 @@ void McapFrames::tell_counters() {
   tell(counters.wrong_length, " samples left out that have the wrong number of values");
   tell(counters.infinite, " values taken as missing: they are not finite");
   tell(counters.restarts, " restarts of the controller's count of intervals");
-  if (purpose_ != io::Purpose::kKeep) return;
+  if (purpose_ != files::Purpose::kKeep) return;
   tell(of_other_units_, " samples of other units left out");
   for (const auto& [topic, count] : samples_.others())
     notices_.push_back(std::to_string(count) + " messages on " + mcap::printable(topic) +
                        " left out: they hold no signals");
 }
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

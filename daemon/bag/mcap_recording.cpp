@@ -1,14 +1,14 @@
-#include "daemon/recording/mcap_recording.hpp"
+#include "daemon/bag/mcap_recording.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "config/unit_layout.hpp"
-#include "daemon/recording/kind_name.hpp"
-#include "daemon/recording/sample_stream.hpp"
+#include "daemon/bag/kind_name.hpp"
+#include "daemon/bag/sample_stream.hpp"
 #include "idl/topic_catalog.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 namespace {
 
 // No process waits for these messages, so a chunk may span any time.
@@ -29,10 +29,10 @@ dds_sequence_string borrowed(std::vector<std::string>& texts, std::vector<char*>
 }  // namespace
 
 McapRecording::McapRecording(const std::string& path, const config::UnitConfig& unit,
-                             const std::vector<io::Column>& columns)
+                             const std::vector<files::Column>& columns)
     : writer_(path, options()), unit_(unit) {
   const SignalCounts counts = unit.counts();
-  for (const io::Column& column : columns) {
+  for (const files::Column& column : columns) {
     std::vector<std::string>& tags = tags_[static_cast<std::size_t>(column.kind)];
     tags.resize(static_cast<std::size_t>(counts.of(column.kind)));
     tags[static_cast<std::size_t>(column.index)] = column.tag;
@@ -79,4 +79,4 @@ void McapRecording::write(const Frame& frame) {
   }
 }
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

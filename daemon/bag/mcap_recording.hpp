@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
-#include "daemon/io/column.hpp"
+#include "daemon/files/csv/column.hpp"
 #include "daemon/mcap/writer.hpp"
 #include "idl/cdr.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 
 /// Writes the frames of one unit as the recording that a bus would have given: its layouts and one
 /// sample per kind and control interval, each received when it was measured.
@@ -18,7 +18,7 @@ class McapRecording {
  public:
   /// `columns`: the signals that there are; a kind without any gets no topic.
   McapRecording(const std::string& path, const config::UnitConfig& unit,
-                const std::vector<io::Column>& columns);
+                const std::vector<files::Column>& columns);
 
   /// Throws std::invalid_argument for a time before 1970.
   void write(const Frame& frame);
@@ -39,4 +39,4 @@ class McapRecording {
   bool begun_ = false;
 };
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

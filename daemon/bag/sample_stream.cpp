@@ -1,11 +1,11 @@
-#include "daemon/recording/sample_stream.hpp"
+#include "daemon/bag/sample_stream.hpp"
 
 #include <algorithm>
 
 #include "config/finding.hpp"
 #include "daemon/mcap/printable.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 namespace {
 
 constexpr const char* kAuxTopic = "mpm/aux";
@@ -60,4 +60,4 @@ SampleStream::Event SampleStream::next() {
   return Event::kEnd;
 }
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -11,7 +11,7 @@
 #include "idl/cdr.hpp"
 #include "idl/sample_view.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 
 /// "mpm/mv" ... and, in files only, "mpm/aux".
 [[nodiscard]] const char* topic_of(SignalKind kind);
@@ -50,4 +50,4 @@ class SampleStream {
   std::map<std::string, std::uint64_t> others_;
 };
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -1,4 +1,4 @@
-#include "daemon/recording/table.hpp"
+#include "daemon/bag/table.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -6,13 +6,13 @@
 #include "config/finding.hpp"
 #include "config/suggest.hpp"
 #include "config/unit_layout.hpp"
-#include "daemon/io/csv_reader.hpp"
-#include "daemon/io/csv_rows.hpp"
+#include "daemon/bag/contents.hpp"
+#include "daemon/bag/mcap_frames.hpp"
+#include "daemon/files/csv/csv_reader.hpp"
+#include "daemon/files/csv/csv_rows.hpp"
 #include "daemon/mcap/file_sequence.hpp"
-#include "daemon/recording/contents.hpp"
-#include "daemon/recording/mcap_frames.hpp"
 
-namespace mpm::recording {
+namespace mpm::bag {
 namespace {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& message) {
@@ -21,8 +21,8 @@ namespace {
 
 /// The signals of the unit for which `holds(kind, index, tag)`.
 template <class Holds>
-std::vector<io::Column> columns_of(const config::UnitConfig& unit, Holds holds) {
-  std::vector<io::Column> columns;
+std::vector<files::Column> columns_of(const config::UnitConfig& unit, Holds holds) {
+  std::vector<files::Column> columns;
   for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
                                 SignalKind::kPrediction, SignalKind::kSetpoint, SignalKind::kAux}) {
     const std::vector<std::string> tags = tags_of(unit, kind);
@@ -86,7 +86,7 @@ Table open_mcap(const std::string& path, const TableOptions& options) {
       table.notices.push_back(std::string(topic_of(kind)) +
                               " left out: the unit file has no such signals");
   }
-  table.frames = std::make_unique<McapFrames>(std::vector{path}, table.unit, io::Purpose::kKeep);
+  table.frames = std::make_unique<McapFrames>(std::vector{path}, table.unit, files::Purpose::kKeep);
   return table;
 }
 
@@ -95,29 +95,30 @@ Table open_csv(const std::string& path, const TableOptions& options) {
   if (options.unit != nullptr && options.number) {
     table.unit = *options.unit;
     auto reader =
-        std::make_unique<io::CsvReader>(path, table.unit, options.zone, io::Purpose::kKeep);
+        std::make_unique<files::CsvReader>(path, table.unit, options.zone, files::Purpose::kKeep);
     table.columns = columns_of(table.unit, [&](SignalKind, std::size_t, const std::string& tag) {
       return reader->holds(tag);
     });
     table.frames = std::move(reader);
     return table;
   }
-  auto rows = std::make_unique<io::CsvRows>(path, options.zone);
+  auto rows = std::make_unique<files::CsvRows>(path, options.zone);
   table.columns = rows->columns();
   table.frames = std::move(rows);
   if (options.unit == nullptr) return table;
   // Only what the unit names; the frames keep all.
-  std::vector<io::Column> named;
+  std::vector<files::Column> named;
   std::vector<std::string> others;
-  for (const io::Column& column : columns_of(*options.unit, [](auto...) { return true; })) {
-    const auto found = std::find_if(table.columns.begin(), table.columns.end(),
-                                    [&](const io::Column& have) { return have.tag == column.tag; });
+  for (const files::Column& column : columns_of(*options.unit, [](auto...) { return true; })) {
+    const auto found =
+        std::find_if(table.columns.begin(), table.columns.end(),
+                     [&](const files::Column& have) { return have.tag == column.tag; });
     if (found != table.columns.end()) named.push_back(*found);
   }
   if (named.empty()) refuse(path, "holds no signal of unit '" + options.unit->unit + "'");
-  for (const io::Column& column : table.columns)
+  for (const files::Column& column : table.columns)
     if (std::none_of(named.begin(), named.end(),
-                     [&](const io::Column& taken) { return taken.tag == column.tag; }))
+                     [&](const files::Column& taken) { return taken.tag == column.tag; }))
       others.push_back(column.tag);
   if (!others.empty())
     table.notices.push_back("left out, since the unit file does not name them: " +
@@ -132,4 +133,4 @@ Table open_table(const std::string& path, const TableOptions& options) {
   return mcap::is_recording(path) ? open_mcap(path, options) : open_csv(path, options);
 }
 
-}  // namespace mpm::recording
+}  // namespace mpm::bag

@@ -1,10 +1,10 @@
-#include "daemon/topics/sample_json.hpp"
+#include "daemon/bus/sample_json.hpp"
 
 #include <array>
 
 #include "daemon/bus/output_samples.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -72,4 +72,4 @@ std::string yaml_text(const Json& json) {
   return lines;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -4,7 +4,7 @@
 
 #include "mpm.h"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 /// What a sample holds, for `mpm echo`. Status, alarms and health as the journal and `mpm watch
 /// --json` write them.
@@ -18,4 +18,4 @@ namespace mpm::daemon {
 /// The same as lines `name: value` for people, nested values indented.
 [[nodiscard]] std::string yaml_text(const nlohmann::ordered_json& json);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

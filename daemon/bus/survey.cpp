@@ -1,11 +1,11 @@
-#include "daemon/topics/survey.hpp"
+#include "daemon/bus/survey.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
 #include "idl/topic_catalog.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
 std::string joined(const std::set<std::string>& words) {
@@ -81,4 +81,4 @@ std::string to_text(const std::vector<TopicRow>& rows) {
   return text;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -10,7 +10,7 @@
 #include "idl/raw_reader.hpp"
 #include "idl/wait_set.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 /// A topic as seen on the bus.
 struct TopicRow {
@@ -42,4 +42,4 @@ class Survey {
 /// One line per topic below a heading; says so where there is none.
 [[nodiscard]] std::string to_text(const std::vector<TopicRow>& rows);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -1,10 +1,10 @@
-#include "daemon/topics/window_statistics.hpp"
+#include "daemon/bus/window_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 void WindowStatistics::add(double value) {
   if (values_.size() == window_) values_.pop_front();
@@ -32,4 +32,4 @@ double WindowStatistics::deviation() const {
   return std::sqrt(sum / static_cast<double>(values_.size()));
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <deque>
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 /// Mean, extremes and spread of the last values.
 class WindowStatistics {
@@ -25,4 +25,4 @@ class WindowStatistics {
   std::deque<double> values_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

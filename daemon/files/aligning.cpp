@@ -1,10 +1,10 @@
-#include "daemon/io/aligning.hpp"
+#include "daemon/files/aligning.hpp"
 
 #include <algorithm>
 
 #include "core/signal/aligner.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 std::array<bool, kSignalKindCount> needed_kinds(const config::UnitConfig& unit) {
   std::array<bool, kSignalKindCount> needed{};
@@ -27,4 +27,4 @@ std::chrono::nanoseconds frame_patience(const config::UnitConfig& unit) {
       std::chrono::seconds(2), std::chrono::duration_cast<std::chrono::nanoseconds>(lateness));
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -5,7 +5,7 @@
 
 #include "core/signal/frame.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// Frames of one unit in the order of a file, whatever its format.
 class FrameSource {
@@ -21,4 +21,4 @@ class FrameSource {
   [[nodiscard]] virtual const std::vector<std::string>& notices() const = 0;
 };
 
-}  // namespace mpm::io
+}  // namespace mpm::files

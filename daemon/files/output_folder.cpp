@@ -1,4 +1,4 @@
-#include "daemon/io/output_folder.hpp"
+#include "daemon/files/output_folder.hpp"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 
 #include "config/finding.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace fs = std::filesystem;
 
 OutputFolder::OutputFolder(const std::string& path) : path_(fs::absolute(path)) {
@@ -55,4 +55,4 @@ void OutputFolder::commit() {
   made_.clear();
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// Files that appear together or not at all: written under temporary names beside their places,
 /// renamed by commit(). What was not committed goes away, the folder too if it was made for it.
@@ -29,4 +29,4 @@ class OutputFolder {
   std::vector<std::pair<std::filesystem::path, std::filesystem::path>> files_;  ///< from, to
 };
 
-}  // namespace mpm::io
+}  // namespace mpm::files

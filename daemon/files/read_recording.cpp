@@ -1,4 +1,4 @@
-#include "daemon/io/read_recording.hpp"
+#include "daemon/files/read_recording.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,7 +6,7 @@
 
 #include "config/finding.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 // 160 MB as doubles; at 50 tags more than half a year of minutes.
@@ -127,4 +127,4 @@ std::string recording_problem(const Recording& recording, Eigen::Index needed) {
   return "no excitation: no MV or DV of the model moves, so nothing can be told about it";
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -5,9 +5,9 @@
 
 #include "config/unit_config.hpp"
 #include "core/identify/recording.hpp"
-#include "daemon/io/frame_source.hpp"
+#include "daemon/files/frame_source.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// A data file in memory, on the grid of the control intervals.
 struct RecordingFile {
@@ -27,4 +27,4 @@ struct RecordingFile {
 /// `needed` rows at least.
 [[nodiscard]] std::string recording_problem(const Recording& recording, Eigen::Index needed);
 
-}  // namespace mpm::io
+}  // namespace mpm::files

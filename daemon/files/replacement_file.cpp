@@ -1,10 +1,10 @@
-#include "daemon/io/replacement_file.hpp"
+#include "daemon/files/replacement_file.hpp"
 
 #include <unistd.h>
 
 #include "config/finding.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace fs = std::filesystem;
 
 ReplacementFile::ReplacementFile(const std::string& path) : path_(fs::absolute(path)) {
@@ -31,4 +31,4 @@ bool same_file(const std::string& a, const std::string& b) {
   return fs::equivalent(a, b, ignored);
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// A file that appears when it is whole, or not at all: written under a temporary name beside its
 /// place and renamed by commit(). An older file of that name stays until then.
@@ -27,4 +27,4 @@ class ReplacementFile {
 /// True where both are names of one file that exists.
 [[nodiscard]] bool same_file(const std::string& a, const std::string& b);
 
-}  // namespace mpm::io
+}  // namespace mpm::files

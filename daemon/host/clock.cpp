@@ -1,9 +1,9 @@
-#include "daemon/replay/clock.hpp"
+#include "daemon/host/clock.hpp"
 
 #include <chrono>
 #include <thread>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 std::int64_t SteadyClock::now() const {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -18,4 +18,4 @@ std::int64_t wall_time_ns() {
   return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

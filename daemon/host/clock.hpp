@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 /// The only time that recording and replay know; tests bring their own.
 class Clock {
@@ -28,4 +28,4 @@ class SteadyClock : public Clock {
 /// ns of UTC since 1970, for time stamps only.
 [[nodiscard]] std::int64_t wall_time_ns();
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

@@ -1,11 +1,11 @@
-#include "daemon/publish/interruptible_input.hpp"
+#include "daemon/host/interruptible_input.hpp"
 
 #include <poll.h>
 #include <unistd.h>
 
 #include <utility>
 
-namespace mpm::daemon {
+namespace mpm::host {
 namespace {
 
 constexpr int kLongestWait_ms = 100;
@@ -27,4 +27,4 @@ InterruptibleInput::int_type InterruptibleInput::underflow() {
   return traits_type::eof();
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

@@ -4,7 +4,7 @@
 #include <functional>
 #include <streambuf>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 /// A file descriptor as a stream buffer that ends when told to, even where nothing comes: the
 /// signals that stop us are blocked and interrupt no read.
@@ -22,4 +22,4 @@ class InterruptibleInput : public std::streambuf {
   std::array<char, 65536> bytes_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

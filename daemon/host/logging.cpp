@@ -1,4 +1,4 @@
-#include "daemon/log/logging.hpp"
+#include "daemon/host/logging.hpp"
 
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -9,7 +9,7 @@
 
 #include "idl/log.hpp"
 
-namespace mpm::daemon {
+namespace mpm::host {
 namespace {
 
 /// %L as syslog priority, see sd-daemon(3).
@@ -69,4 +69,4 @@ void set_up_logging(const std::string& level) {
   idl::set_log_handler(log_dds);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

@@ -1,11 +1,11 @@
-#include "daemon/service/low_priority.hpp"
+#include "daemon/host/low_priority.hpp"
 
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 void take_low_priority(const char* name) {
   pthread_setname_np(pthread_self(), name);
@@ -17,4 +17,4 @@ void take_low_priority(const char* name) {
   (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLowest);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

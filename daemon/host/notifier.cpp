@@ -1,10 +1,10 @@
-#include "daemon/service/notifier.hpp"
+#include "daemon/host/notifier.hpp"
 
 #include <systemd/sd-daemon.h>
 
 #include <cstdint>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 Notifier::Notifier() {
   std::uint64_t timeout_us = 0;
@@ -28,4 +28,4 @@ void Notifier::feed_watchdog(Clock::time_point now) {
   next_feed_ = now + watchdog_period_;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 /// Tells systemd how the service is; does nothing where there is no systemd. The watchdog is fed
 /// from the event loop, so that a hung loop is noticed.
@@ -23,4 +23,4 @@ class Notifier {
   std::string last_status_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

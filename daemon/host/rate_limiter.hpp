@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 /// Keeps one kind of message from flooding the log: the first few of each period pass, the first
 /// one of a later period tells how many did not.
@@ -42,4 +42,4 @@ class RateLimiter {
   std::uint64_t summary_ = 0;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

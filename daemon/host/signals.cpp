@@ -1,4 +1,4 @@
-#include "daemon/service/signals.hpp"
+#include "daemon/host/signals.hpp"
 
 #include <pthread.h>
 #include <sys/signalfd.h>
@@ -8,7 +8,7 @@
 #include <csignal>
 #include <system_error>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 StopSignal::StopSignal() {
   sigset_t stop;
@@ -28,4 +28,4 @@ bool StopSignal::received() {
   return received_;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 /// SIGTERM and SIGINT as something to ask for. Made before any thread starts, so that all threads
 /// inherit the blocked signals and none is interrupted.
@@ -19,4 +19,4 @@ class StopSignal {
   bool received_ = false;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

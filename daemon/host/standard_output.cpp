@@ -1,4 +1,4 @@
-#include "daemon/service/standard_output.hpp"
+#include "daemon/host/standard_output.hpp"
 
 #include <poll.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <iostream>
 
-namespace mpm::daemon {
+namespace mpm::host {
 namespace {
 
 bool reader_has_left() {
@@ -23,4 +23,4 @@ bool finish_standard_output() {
   return written || reader_has_left();
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

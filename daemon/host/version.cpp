@@ -1,10 +1,10 @@
-#include "daemon/service/version.hpp"
+#include "daemon/host/version.hpp"
 
 #include <dds/version.h>
 
 #include <Eigen/Core>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 std::string version_text(const std::string& program) {
   return program + " " MPM_VERSION " (Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." +
@@ -12,4 +12,4 @@ std::string version_text(const std::string& program) {
          ", Cyclone DDS " DDS_VERSION ")";
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

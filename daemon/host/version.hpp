@@ -2,9 +2,9 @@
 
 #include <string>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 /// "mpmd 0.1.0 (Eigen 3.4.0, Cyclone DDS 0.10.2)"
 [[nodiscard]] std::string version_text(const std::string& program);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

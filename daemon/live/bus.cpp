@@ -1,8 +1,8 @@
-#include "daemon/monitoring/bus.hpp"
+#include "daemon/live/bus.hpp"
 
 #include <spdlog/spdlog.h>
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 Bus::Bus(const idl::DomainOptions& options)
     : participant_(options),
@@ -48,4 +48,4 @@ void Bus::tick(Clock::time_point now) {
   for (const auto& [name, unit] : units_) unit->tick(now, unknown_unit_);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

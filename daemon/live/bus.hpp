@@ -7,11 +7,11 @@
 
 #include "config/unit_config.hpp"
 #include "daemon/bus/output_writers.hpp"
-#include "daemon/log/rate_limiter.hpp"
-#include "daemon/monitoring/unit_pipeline.hpp"
+#include "daemon/host/rate_limiter.hpp"
+#include "daemon/live/unit_pipeline.hpp"
 #include "idl/sample_readers.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 /// One DDS domain with the units that live on it. Reads the input topics and never writes them.
 class Bus {
@@ -37,10 +37,10 @@ class Bus {
   idl::Participant participant_;
   idl::SampleReaders samples_;
   idl::Reader<mpm_Layout> layouts_;
-  OutputWriters outputs_;
+  bus::OutputWriters outputs_;
   std::map<std::string, std::unique_ptr<UnitPipeline>, std::less<>> units_;
   std::uint64_t unknown_unit_ = 0;
-  RateLimiter unknown_limit_;
+  host::RateLimiter unknown_limit_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

@@ -7,7 +7,7 @@
 
 #include "daemon/report/records.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 /// JSON lines of every record, appended to a file; on disk (as far as the kernel) after each frame.
 class Journal {
@@ -17,8 +17,8 @@ class Journal {
 
   /// All channels after one frame, then the alarms that it changed. False if the file would not
   /// take it (full disk ...).
-  [[nodiscard]] bool write(const std::vector<ChannelRecord>& channels,
-                           const std::vector<AlarmRecord>& alarms);
+  [[nodiscard]] bool write(const std::vector<report::ChannelRecord>& channels,
+                           const std::vector<report::AlarmRecord>& alarms);
 
  private:
   struct Close {
@@ -28,4 +28,4 @@ class Journal {
   std::string lines_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

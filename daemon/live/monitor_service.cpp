@@ -1,4 +1,4 @@
-#include "daemon/monitoring/monitor_service.hpp"
+#include "daemon/live/monitor_service.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -6,7 +6,7 @@
 
 #include "daemon/bus/domain_options.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{200};
@@ -21,7 +21,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
   std::map<std::string, Bus*> bus_of;  // by its settings
   int asker = 0;
   for (const config::UnitConfig& unit : units) {
-    idl::DomainOptions domain = domain_options(unit.dds);
+    idl::DomainOptions domain = bus::domain_options(unit.dds);
     domain.use_environment = options.use_environment;
     Bus*& bus = bus_of[idl::domain_xml(domain)];
     if (bus == nullptr) {
@@ -57,7 +57,7 @@ std::string MonitorService::status() const {
   std::uint64_t units = 0, matching = 0, mismatching = 0, undetermined = 0, alarms = 0;
   for (const auto& bus : buses_) {
     for (const auto& [name, unit] : bus->units()) {
-      const HealthRecord& health = unit->health();
+      const report::HealthRecord& health = unit->health();
       ++units;
       matching += health.matching;
       mismatching += health.mismatching;
@@ -69,4 +69,4 @@ std::string MonitorService::status() const {
                      matching, mismatching, undetermined, alarms);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
-#include "daemon/monitoring/bus.hpp"
-#include "daemon/service/notifier.hpp"
+#include "daemon/host/notifier.hpp"
+#include "daemon/live/bus.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 struct ServiceOptions {
   std::string journal;           ///< file; empty: none
@@ -37,7 +37,7 @@ class MonitorService {
   std::optional<Journal> journal_;
   std::vector<std::unique_ptr<Bus>> buses_;  // one per distinct DDS setting
   idl::WaitSet wait_set_;
-  Notifier notifier_;
+  host::Notifier notifier_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

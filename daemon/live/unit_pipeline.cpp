@@ -1,4 +1,4 @@
-#include "daemon/monitoring/unit_pipeline.hpp"
+#include "daemon/live/unit_pipeline.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -9,19 +9,19 @@
 
 #include "config/unit_layout.hpp"
 #include "core/identify/diagnosis.hpp"
-#include "daemon/io/aligning.hpp"
+#include "daemon/files/aligning.hpp"
 #include "idl/topics.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 constexpr std::chrono::seconds kHealthPeriod{1};
 constexpr int kSilentSamples = 10;
 
-RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
-                                        std::chrono::seconds at_least) {
-  return std::max<RateLimiter::Clock::duration>(
-      at_least, std::chrono::duration_cast<RateLimiter::Clock::duration>(
+host::RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
+                                              std::chrono::seconds at_least) {
+  return std::max<host::RateLimiter::Clock::duration>(
+      at_least, std::chrono::duration_cast<host::RateLimiter::Clock::duration>(
                     std::chrono::duration<double>(sample_time_s * samples)));
 }
 
@@ -36,15 +36,15 @@ std::vector<std::string> tags_of(const config::UnitConfig& unit, std::string_vie
 
 }  // namespace
 
-UnitPipeline::UnitPipeline(const config::UnitConfig& config, const OutputWriters& outputs,
+UnitPipeline::UnitPipeline(const config::UnitConfig& config, const bus::OutputWriters& outputs,
                            Journal* journal, Clock::time_point now)
     : config_(config),
       outputs_(outputs),
       journal_(journal),
       monitor_(config),
-      aligner_(config.counts(), io::needed_kinds(config),
+      aligner_(config.counts(), files::needed_kinds(config),
                [this](const Frame& frame) { on_frame(frame); }),
-      patience_(io::frame_patience(config)),
+      patience_(files::frame_patience(config)),
       silence_(samples_or(config.sample_time_s, kSilentSamples, std::chrono::seconds(5))),
       now_(now),
       last_frame_(now),
@@ -67,8 +67,8 @@ void UnitPipeline::diagnose_with(DiagnosisWorker& worker, int asker) {
 
 // Tells "no alarm" from "no monitor", and clears what a daemon before this one left behind.
 void UnitPipeline::publish_initial_alarms() {
-  for (const ChannelRecord& channel : monitor_.channels()) {
-    AlarmRecord record;
+  for (const report::ChannelRecord& channel : monitor_.channels()) {
+    report::AlarmRecord record;
     record.unit = channel.unit;
     record.mv = channel.mv;
     record.cv = channel.cv;
@@ -110,9 +110,9 @@ void UnitPipeline::on_frame(const Frame& frame) {
   monitor_.push(frame);
 
   bool written = true;
-  for (const ChannelRecord& channel : monitor_.channels())
+  for (const report::ChannelRecord& channel : monitor_.channels())
     written = outputs_.write(channel) && written;
-  for (const AlarmRecord& alarm : monitor_.alarms()) {
+  for (const report::AlarmRecord& alarm : monitor_.alarms()) {
     written = outputs_.write(alarm) && written;
     spdlog::log(alarm.to == "active" ? spdlog::level::warn : spdlog::level::info,
                 "{}: {} -> {}: alarm {} at interval {} (p {:.1e}, gain error {:.3g})", alarm.unit,
@@ -141,7 +141,7 @@ void UnitPipeline::publish_diagnosis() {
   if (!outcome->file_problem.empty())
     spdlog::error("{}: the report could not be written: {}", config_.unit, outcome->file_problem);
   bool written = true;
-  for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
+  for (report::AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
     written = outputs_.write_state(alarm) && written;  // the alarm is as old as it was
     alarm.interval = outcome->interval;
     alarm.source_time_ns = outcome->time_ns;
@@ -188,7 +188,7 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit) {
   health_.unknown_unit = unknown_unit;
   health_.restarts = aligner.restarts;
   health_.undetermined = health_.matching = health_.mismatching = health_.active_alarms = 0;
-  for (const ChannelRecord& channel : monitor_.channels()) {
+  for (const report::ChannelRecord& channel : monitor_.channels()) {
     if (channel.verdict == "match")
       ++health_.matching;
     else if (channel.verdict == "mismatch")
@@ -226,4 +226,4 @@ void UnitPipeline::judge_health() {
     set("normal", "");
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

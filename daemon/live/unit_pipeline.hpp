@@ -8,13 +8,13 @@
 #include "config/unit_config.hpp"
 #include "core/signal/aligner.hpp"
 #include "daemon/bus/output_writers.hpp"
+#include "daemon/host/rate_limiter.hpp"
+#include "daemon/live/journal.hpp"
 #include "daemon/live/live_diagnosis.hpp"
-#include "daemon/log/rate_limiter.hpp"
-#include "daemon/monitoring/journal.hpp"
 #include "daemon/report/unit_monitor.hpp"
 #include "idl/sample_view.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 /// One unit from samples to outputs: aligner -> monitor -> records -> DDS and journal; and what its
 /// alarms are diagnosed to come from.
@@ -23,8 +23,8 @@ class UnitPipeline {
   using Clock = std::chrono::steady_clock;
 
   /// `journal` may be null. The others must outlive the pipeline.
-  UnitPipeline(const config::UnitConfig& config, const OutputWriters& outputs, Journal* journal,
-               Clock::time_point now);
+  UnitPipeline(const config::UnitConfig& config, const bus::OutputWriters& outputs,
+               Journal* journal, Clock::time_point now);
   /// From now on alarms are diagnosed, if the unit file wants that. `asker`: no other unit's.
   void diagnose_with(DiagnosisWorker& worker, int asker);
   UnitPipeline(const UnitPipeline&) = delete;  // the aligner's sink points here
@@ -36,7 +36,7 @@ class UnitPipeline {
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
   void tick(Clock::time_point now, std::uint64_t unknown_unit);
 
-  [[nodiscard]] const HealthRecord& health() const { return health_; }
+  [[nodiscard]] const report::HealthRecord& health() const { return health_; }
 
  private:
   void on_frame(const Frame& frame);
@@ -47,9 +47,9 @@ class UnitPipeline {
   void report_refused(const idl::SampleView& sample);
 
   config::UnitConfig config_;
-  const OutputWriters& outputs_;
+  const bus::OutputWriters& outputs_;
   Journal* journal_;
-  UnitMonitor monitor_;
+  report::UnitMonitor monitor_;
   Aligner aligner_;
   std::optional<LiveDiagnosis> diagnosis_;
   Clock::duration patience_;  // without a frame while something waits
@@ -58,10 +58,10 @@ class UnitPipeline {
   Clock::time_point last_frame_;
   Clock::time_point last_sample_;
   Clock::time_point next_health_;
-  HealthRecord health_;
+  report::HealthRecord health_;
   std::uint64_t incomplete_before_ = 0;  // at the last health
   std::string wrong_layout_;             // kinds whose layout differs; empty = none known
-  RateLimiter refused_limit_, output_limit_, journal_limit_;
+  host::RateLimiter refused_limit_, output_limit_, journal_limit_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

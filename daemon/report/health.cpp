@@ -1,6 +1,6 @@
-#include "daemon/bus/health.hpp"
+#include "daemon/report/health.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 nlohmann::ordered_json to_json(const HealthRecord& record) {
   return {{"record", "health"},
@@ -26,4 +26,4 @@ nlohmann::ordered_json to_json(const HealthRecord& record) {
           {"active_alarms", record.active_alarms}};
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

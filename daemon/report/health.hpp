@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// How the monitor of one unit fares; topic mpm/health, whose fields these are.
 struct HealthRecord {
@@ -32,4 +32,4 @@ struct HealthRecord {
 
 [[nodiscard]] nlohmann::ordered_json to_json(const HealthRecord& record);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

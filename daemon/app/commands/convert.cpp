@@ -1,15 +1,15 @@
-#include "daemon/commands/convert.hpp"
+#include "daemon/app/commands/convert.hpp"
 
 #include <iostream>
 #include <memory>
 #include <string>
 
 #include "config/load_unit.hpp"
-#include "daemon/commands/time_zone.hpp"
-#include "daemon/io/time_text.hpp"
-#include "daemon/recording/convert.hpp"
+#include "daemon/app/commands/time_zone.hpp"
+#include "daemon/bag/convert.hpp"
+#include "daemon/files/times/time_text.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 struct Options {
@@ -22,10 +22,10 @@ struct Options {
   std::string from_time_zone;
 };
 
-void tell(const Options& options, const recording::ConvertReport& report) {
-  std::ostream& out = options.output == io::kStandardOutput ? std::cerr : std::cout;
+void tell(const Options& options, const bag::ConvertReport& report) {
+  std::ostream& out = options.output == files::kStandardOutput ? std::cerr : std::cout;
   out << options.output << ": " << report.rows << " rows of " << report.signals << " signals from "
-      << io::utc_text(report.first_ns) << " to " << io::utc_text(report.last_ns) << "\n  "
+      << files::utc_text(report.first_ns) << " to " << files::utc_text(report.last_ns) << "\n  "
       << report.values << " values (" << report.uncertain << " uncertain, " << report.bad
       << " bad), " << report.missing << " missing; " << report.bytes << " bytes\n"
       << std::flush;
@@ -35,7 +35,7 @@ void tell(const Options& options, const recording::ConvertReport& report) {
 
 // 0, or 3 on bad input.
 int convert(const Options& options) {
-  recording::ConvertOptions wanted;
+  bag::ConvertOptions wanted;
   if (!options.config.empty()) {
     config::LoadResult loaded = config::load_unit(options.config);
     for (const config::Finding& finding : loaded.findings)
@@ -45,12 +45,12 @@ int convert(const Options& options) {
   }
   try {
     wanted.unit_name = options.unit;
-    wanted.layout = options.layout == "long" ? io::CsvLayout::kLong : io::CsvLayout::kWide;
+    wanted.layout = options.layout == "long" ? files::CsvLayout::kLong : files::CsvLayout::kWide;
     wanted.seconds = options.time_zone == "seconds";
     wanted.output_zone = zone_of(options.time_zone);
     wanted.input_zone =
         options.from_time_zone.empty() ? wanted.output_zone : zone_of(options.from_time_zone);
-    tell(options, recording::convert(options.input, options.output, wanted));
+    tell(options, bag::convert(options.input, options.output, wanted));
     return 0;
   } catch (const config::InputError& error) {
     std::cerr << error.what() << '\n';
@@ -93,4 +93,4 @@ void add_convert(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = convert(*options); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

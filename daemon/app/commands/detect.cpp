@@ -1,4 +1,4 @@
-#include "daemon/commands/detect.hpp"
+#include "daemon/app/commands/detect.hpp"
 
 #include <iostream>
 #include <memory>
@@ -8,14 +8,14 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
-#include "daemon/commands/time_zone.hpp"
+#include "daemon/app/commands/time_zone.hpp"
+#include "daemon/bag/open_recording.hpp"
+#include "daemon/live/journal.hpp"
 #include "daemon/mcap/file_sequence.hpp"
-#include "daemon/monitoring/journal.hpp"
-#include "daemon/recording/open_recording.hpp"
 #include "daemon/report/detect_report.hpp"
 #include "daemon/report/unit_monitor.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 struct DetectOptions {
@@ -28,9 +28,10 @@ struct DetectOptions {
   bool fail_on_mismatch = false;
 };
 
-DetectReport run(const config::UnitConfig& unit, io::FrameSource& source, Journal* journal) {
-  UnitMonitor monitor(unit);
-  DetectReport report;
+report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& source,
+                         live::Journal* journal) {
+  report::UnitMonitor monitor(unit);
+  report::DetectReport report;
   report.unit = unit.unit;
   Frame frame(unit.counts());
   while (source.next(frame)) {
@@ -69,11 +70,11 @@ int detect(const DetectOptions& options) {
       if (!report(scenario.findings)) return 3;
       loaded.config.monitor = scenario.scenario.monitor;
     }
-    const std::unique_ptr<io::FrameSource> frames =
-        recording::open_recording(options.data, loaded.config, zone_of(options.time_zone));
-    std::optional<Journal> journal;
+    const std::unique_ptr<files::FrameSource> frames =
+        bag::open_recording(options.data, loaded.config, zone_of(options.time_zone));
+    std::optional<live::Journal> journal;
     if (!options.journal.empty()) journal.emplace(options.journal);
-    const DetectReport report = run(loaded.config, *frames, journal ? &*journal : nullptr);
+    const report::DetectReport report = run(loaded.config, *frames, journal ? &*journal : nullptr);
     for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
     if (report.samples == 0)
       throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",
@@ -111,4 +112,4 @@ void add_detect(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = detect(*options); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

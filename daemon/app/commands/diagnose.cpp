@@ -1,4 +1,4 @@
-#include "daemon/commands/diagnose.hpp"
+#include "daemon/app/commands/diagnose.hpp"
 
 #include <fstream>
 #include <iostream>
@@ -10,19 +10,19 @@
 
 #include "config/load_unit.hpp"
 #include "core/identify/diagnosis.hpp"
-#include "daemon/closed_loop/compare_loops.hpp"
-#include "daemon/closed_loop/run_mpmsim.hpp"
-#include "daemon/commands/progress_bar.hpp"
-#include "daemon/commands/time_zone.hpp"
-#include "daemon/io/output_folder.hpp"
-#include "daemon/io/read_recording.hpp"
-#include "daemon/recording/open_recording.hpp"
-#include "daemon/report/diagnosis_report.hpp"
+#include "daemon/app/commands/progress_bar.hpp"
+#include "daemon/app/commands/time_zone.hpp"
+#include "daemon/bag/open_recording.hpp"
+#include "daemon/files/output_folder.hpp"
+#include "daemon/files/read_recording.hpp"
+#include "daemon/host/signals.hpp"
+#include "daemon/host/version.hpp"
+#include "daemon/report/closed_loop/compare_loops.hpp"
+#include "daemon/report/closed_loop/run_mpmsim.hpp"
+#include "daemon/report/diagnosis/diagnosis_report.hpp"
 #include "daemon/report/report_files.hpp"
-#include "daemon/service/signals.hpp"
-#include "daemon/service/version.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 struct DiagnoseOptions {
@@ -76,10 +76,11 @@ std::optional<config::UnitConfig> load(const std::string& file) {
 }
 
 Recording read(const std::string& file, const config::UnitConfig& unit,
-               const std::shared_ptr<const io::TimeZone>& zone, std::vector<std::string>& notices) {
-  const std::unique_ptr<io::FrameSource> frames = recording::open_recording(file, unit, zone);
-  const io::RecordingFile data = io::read_recording(*frames, unit, file);
-  const std::string problem = io::recording_problem(data.recording, needed_samples(unit.model));
+               const std::shared_ptr<const files::TimeZone>& zone,
+               std::vector<std::string>& notices) {
+  const std::unique_ptr<files::FrameSource> frames = bag::open_recording(file, unit, zone);
+  const files::RecordingFile data = files::read_recording(*frames, unit, file);
+  const std::string problem = files::recording_problem(data.recording, needed_samples(unit.model));
   if (!problem.empty()) refuse(file, problem);
   const std::string prefix = file + ": ";
   for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
@@ -92,14 +93,14 @@ Recording read(const std::string& file, const config::UnitConfig& unit,
   return data.recording;
 }
 
-DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
-  DiagnosisRun run;
+report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
+  report::DiagnosisRun run;
   run.unit = std::move(unit);
-  const std::shared_ptr<const io::TimeZone> zone = zone_of(options.time_zone);
+  const std::shared_ptr<const files::TimeZone> zone = zone_of(options.time_zone);
   run.recording = read(options.data, run.unit, zone, run.notices);
   if (!options.validate.empty())
     run.validation = read(options.validate, run.unit, zone, run.notices);
-  run.program = version_text("mpm");
+  run.program = host::version_text("mpm");
   run.command_line = command_line();
   run.config_file = options.config;
   run.data_file = options.data;
@@ -110,7 +111,8 @@ DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
 }
 
 /// False where the user stopped it.
-bool diagnose_run(const DiagnoseOptions& options, StopSignal& stop, DiagnosisRun& run) {
+bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
+                  report::DiagnosisRun& run) {
   ProgressBar bar(options.quiet);
   DiagnosisSettings settings;
   settings.mv_count = run.unit.counts().mv;
@@ -128,33 +130,35 @@ bool diagnose_run(const DiagnoseOptions& options, StopSignal& stop, DiagnosisRun
 }
 
 /// Nothing where none is wanted; the flag says whether the scenario is fit to be run.
-std::optional<LoopPlan> plan(const DiagnoseOptions& options, const config::UnitConfig& unit,
-                             bool& fit) {
+std::optional<report::LoopPlan> plan(const DiagnoseOptions& options, const config::UnitConfig& unit,
+                                     bool& fit) {
   fit = true;
   if (options.scenario.empty()) return std::nullopt;
   std::vector<config::Finding> findings;
-  std::optional<LoopPlan> result =
-      plan_loops(unit, options.config, options.scenario,
-                 options.seed_given ? std::optional(options.seed) : std::nullopt, findings);
+  std::optional<report::LoopPlan> result =
+      report::plan_loops(unit, options.config, options.scenario,
+                         options.seed_given ? std::optional(options.seed) : std::nullopt, findings);
   for (const config::Finding& finding : findings) std::cerr << config::format(finding) << '\n';
   fit = result.has_value();
   return result;
 }
 
 /// Empty, or why there is no comparison: a reason to fail, but not to lose the diagnosis.
-std::string add_closed_loop(const LoopPlan& loops, StopSignal& stop, DiagnosisRun& run) {
+std::string add_closed_loop(const report::LoopPlan& loops, host::StopSignal& stop,
+                            report::DiagnosisRun& run) {
   try {
     run.closed_loop =
-        compare_loops(loops, run.unit, run.diagnosis, [&stop] { return stop.received(); });
+        report::compare_loops(loops, run.unit, run.diagnosis, [&stop] { return stop.received(); });
     return {};
-  } catch (const SimulatorError& error) {
+  } catch (const report::SimulatorError& error) {
     return error.what();
   } catch (const config::InputError& error) {
     return error.what();
   }
 }
 
-void print(const DiagnoseOptions& options, const DiagnosisRun& run, const std::string& json) {
+void print(const DiagnoseOptions& options, const report::DiagnosisRun& run,
+           const std::string& json) {
   if (options.json)
     std::cout << json << std::flush;
   else if (!options.quiet)
@@ -165,14 +169,14 @@ void print(const DiagnoseOptions& options, const DiagnosisRun& run, const std::s
 
 // 0, 1 if something was found and that was to fail, 2 if it was stopped or the simulator failed.
 int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
-  io::OutputFolder folder(options.out);
+  files::OutputFolder folder(options.out);
   bool fit = false;
-  const std::optional<LoopPlan> loops = plan(options, unit, fit);
+  const std::optional<report::LoopPlan> loops = plan(options, unit, fit);
   if (!fit) return 3;
-  DiagnosisRun run = prepare(options, std::move(unit));
+  report::DiagnosisRun run = prepare(options, std::move(unit));
   if (!options.quiet)
     for (const std::string& notice : run.notices) std::cerr << notice << '\n';
-  StopSignal stop;
+  host::StopSignal stop;
   if (!diagnose_run(options, stop, run)) {
     std::cerr << "mpm: stopped; nothing was written\n";
     return 2;
@@ -180,7 +184,7 @@ int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
   const bool repaired = !run.diagnosis.findings.empty();
   const std::string failure =
       loops && repaired ? add_closed_loop(*loops, stop, run) : std::string();
-  const std::string json = write_reports(run, folder);
+  const std::string json = report::write_reports(run, folder);
   folder.commit();
   print(options, run, json);
   if (!failure.empty()) {
@@ -247,4 +251,4 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

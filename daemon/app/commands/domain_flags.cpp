@@ -1,6 +1,6 @@
-#include "daemon/commands/domain_flags.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 void add_domain_flags(CLI::App& command, idl::DomainOptions& domain) {
   command.add_option("--domain", domain.domain, "DDS domain")
@@ -15,4 +15,4 @@ void add_domain_flags(CLI::App& command, idl::DomainOptions& domain) {
                    "take the DDS settings from CYCLONEDDS_URI");
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

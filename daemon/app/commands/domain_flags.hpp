@@ -4,9 +4,9 @@
 
 #include "idl/participant.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 /// The options of every command that needs no unit file to find the bus.
 void add_domain_flags(CLI::App& command, idl::DomainOptions& domain);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -5,17 +5,17 @@
 #include <memory>
 #include <string>
 
-#include "daemon/commands/domain_flags.hpp"
-#include "daemon/commands/quantity.hpp"
-#include "daemon/commands/topics.hpp"
-#include "daemon/log/logging.hpp"
-#include "daemon/service/signals.hpp"
-#include "daemon/topics/sample_json.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/app/commands/topics.hpp"
+#include "daemon/bus/sample_json.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
 #include "idl/reader.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/wait_set.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -47,7 +47,7 @@ void print(const EchoOptions& options, const nlohmann::ordered_json& sample,
     std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
   } else if (info.valid_data) {
-    std::cout << yaml_text(sample) << "---\n";
+    std::cout << bus::yaml_text(sample) << "---\n";
   } else {
     std::cout << "# " << sample["unit"].get<std::string>() << ": " << state_name(info) << "\n---\n";
   }
@@ -57,8 +57,8 @@ void print(const EchoOptions& options, const nlohmann::ordered_json& sample,
 template <class T>
 int echo(const EchoOptions& options, const idl::KnownTopic& topic) {
   std::signal(SIGPIPE, SIG_IGN);  // the stream notices
-  StopSignal stop;
-  set_up_logging("warning");
+  host::StopSignal stop;
+  host::set_up_logging("warning");
   const idl::Participant participant(options.domain);
   idl::Reader<T> reader(participant, topic.name, topic.reader_qos());
   idl::WaitSet wait_set;
@@ -74,7 +74,7 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic) {
     const std::string unit = sample.unit == nullptr ? "" : sample.unit;
     if (unit.empty() || (!options.unit.empty() && unit != options.unit)) return;
     if (printed >= wanted) return;
-    print(options, json_of(sample), info);
+    print(options, bus::json_of(sample), info);
     if (info.valid_data) ++printed;
   };
   while (printed < wanted && std::cout.good() && !stop.received()) {
@@ -127,4 +127,4 @@ void add_echo(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = echo(*options); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

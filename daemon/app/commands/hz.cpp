@@ -6,18 +6,18 @@
 #include <optional>
 #include <string>
 
-#include "daemon/commands/domain_flags.hpp"
-#include "daemon/commands/quantity.hpp"
-#include "daemon/commands/topics.hpp"
-#include "daemon/log/logging.hpp"
-#include "daemon/service/signals.hpp"
-#include "daemon/topics/window_statistics.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/app/commands/topics.hpp"
+#include "daemon/bus/window_statistics.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
 #include "idl/discovery.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/wait_set.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -39,7 +39,7 @@ struct HzOptions {
 
 /// A topic of ours, or one whose writer describes its type.
 std::optional<idl::RawReader> open(const idl::Participant& participant, const std::string& name,
-                                   StopSignal& stop) {
+                                   host::StopSignal& stop) {
   if (const idl::KnownTopic* topic = idl::find_known_topic(name))
     return idl::RawReader(participant, name, *topic->type, topic->reader_qos());
   const idl::Discovery discovery(participant);
@@ -57,7 +57,7 @@ std::optional<idl::RawReader> open(const idl::Participant& participant, const st
   return std::nullopt;
 }
 
-void print(const HzOptions& options, Measure measure, const WindowStatistics& values) {
+void print(const HzOptions& options, Measure measure, const bus::WindowStatistics& values) {
   const double rate = values.mean() > 0.0 ? 1.0 / values.mean() : 0.0;
   const char* format =
       options.json ? (measure == Measure::kInterval
@@ -76,8 +76,8 @@ void print(const HzOptions& options, Measure measure, const WindowStatistics& va
 // 0, or 2 if too little came to tell, 3 if there is no such topic.
 int measure_topic(const HzOptions& options, Measure measure) {
   std::signal(SIGPIPE, SIG_IGN);  // the stream notices
-  StopSignal stop;
-  set_up_logging("warning");
+  host::StopSignal stop;
+  host::set_up_logging("warning");
   const idl::Participant participant(options.domain);
   std::optional<idl::RawReader> reader = open(participant, options.topic, stop);
   if (!reader) {
@@ -87,7 +87,7 @@ int measure_topic(const HzOptions& options, Measure measure) {
   }
   idl::WaitSet wait_set;
   wait_set.attach(reader->readable());
-  WindowStatistics values(options.window);
+  bus::WindowStatistics values(options.window);
   std::optional<Clock::time_point> last;
   bool fresh = false;
   const auto on_sample = [&](const idl::RawSample& sample) {
@@ -157,4 +157,4 @@ void add_delay(CLI::App& app, int& exit_code) {
       Measure::kDelay, exit_code);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -1,4 +1,4 @@
-#include "daemon/commands/info.hpp"
+#include "daemon/app/commands/info.hpp"
 
 #include <iostream>
 #include <memory>
@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "config/finding.hpp"
-#include "daemon/commands/time_zone.hpp"
-#include "daemon/recording/info_text.hpp"
+#include "daemon/app/commands/time_zone.hpp"
+#include "daemon/bag/info_text.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 // 0, or 3 on bad input. A torn file is no bad input here: that it is torn is the information.
 int run_info(const std::vector<std::string>& paths, const std::string& zone, bool json) {
   try {
-    const recording::FileInfo info = recording::inspect(paths, zone_of(zone));
+    const bag::FileInfo info = bag::inspect(paths, zone_of(zone));
     for (const std::string& notice : info.notices) std::cerr << info.path << ": " << notice << '\n';
     std::cout << (json ? to_json(info).dump(-1, ' ', false,
                                             nlohmann::ordered_json::error_handler_t::replace) +
@@ -52,4 +52,4 @@ void add_info(CLI::App& app, int& exit_code) {
       [paths, zone, json, &exit_code] { exit_code = run_info(*paths, *zone, *json); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -1,4 +1,4 @@
-#include "daemon/commands/progress_bar.hpp"
+#include "daemon/app/commands/progress_bar.hpp"
 
 #include <unistd.h>
 
@@ -6,7 +6,7 @@
 #include <iostream>
 #include <string>
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 ProgressBar::ProgressBar(bool quiet) : shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
 
@@ -24,4 +24,4 @@ void ProgressBar::show(double share) {
             << percent << " %" << std::flush;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

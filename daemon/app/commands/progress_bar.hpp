@@ -1,6 +1,6 @@
 #pragma once
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 /// A line on standard error that shows how far something is; nothing where that is no terminal.
 class ProgressBar {
@@ -17,4 +17,4 @@ class ProgressBar {
   int percent_ = -1;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -1,4 +1,4 @@
-#include "daemon/commands/publish.hpp"
+#include "daemon/app/commands/publish.hpp"
 
 #include <unistd.h>
 
@@ -9,15 +9,15 @@
 
 #include "config/load_unit.hpp"
 #include "config/unit_layout.hpp"
+#include "daemon/app/commands/quantity.hpp"
 #include "daemon/bus/domain_options.hpp"
-#include "daemon/commands/quantity.hpp"
-#include "daemon/log/logging.hpp"
-#include "daemon/publish/interruptible_input.hpp"
-#include "daemon/publish/line_frames.hpp"
-#include "daemon/service/signals.hpp"
+#include "daemon/files/csv/line_frames.hpp"
+#include "daemon/host/interruptible_input.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
 #include "idl/unit_publisher.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{200};
@@ -38,22 +38,22 @@ struct PublishOptions {
 /// A stream that owns its buffer.
 class StandardInput : public std::istream {
  public:
-  explicit StandardInput(StopSignal& stop)
+  explicit StandardInput(host::StopSignal& stop)
       : std::istream(nullptr), buffer_(STDIN_FILENO, [&stop] { return stop.received(); }) {
     rdbuf(&buffer_);
   }
 
  private:
-  InterruptibleInput buffer_;
+  host::InterruptibleInput buffer_;
 };
 
-LineFormat format_of(const std::string& name) {
-  if (name == "json") return LineFormat::kJson;
-  return name == "csv" ? LineFormat::kCsv : LineFormat::kAuto;
+files::LineFormat format_of(const std::string& name) {
+  if (name == "json") return files::LineFormat::kJson;
+  return name == "csv" ? files::LineFormat::kCsv : files::LineFormat::kAuto;
 }
 
 void wait_for_readers(const idl::UnitPublisher& publisher, const PublishOptions& options,
-                      StopSignal& stop) {
+                      host::StopSignal& stop) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(options.wait_readers_s));
@@ -64,12 +64,13 @@ void wait_for_readers(const idl::UnitPublisher& publisher, const PublishOptions&
               << " s; publishing all the same\n";
 }
 
-void tell_notices(LineFrames& lines) {
+void tell_notices(files::LineFrames& lines) {
   for (const std::string& notice : lines.take_notices()) std::cerr << notice << '\n';
 }
 
-int publish_lines(const PublishOptions& options, const config::UnitConfig& unit, StopSignal& stop) {
-  std::optional<LineFrames> first;
+int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
+                  host::StopSignal& stop) {
+  std::optional<files::LineFrames> first;
   try {
     first.emplace(std::make_unique<StandardInput>(stop), "stdin", format_of(options.format), unit);
   } catch (const config::InputError&) {
@@ -77,8 +78,8 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
     std::cerr << "mpm publish: stopped before the first line\n";
     return 0;
   }
-  LineFrames& lines = *first;
-  idl::DomainOptions domain = domain_options(unit.dds);
+  files::LineFrames& lines = *first;
+  idl::DomainOptions domain = bus::domain_options(unit.dds);
   domain.domain = options.domain.value_or(domain.domain);
   domain.partition = options.partition.value_or(domain.partition);
   domain.use_environment = options.use_environment;
@@ -121,8 +122,8 @@ int publish(const PublishOptions& options) {
   const config::LoadResult loaded = config::load_unit(options.config);
   for (const config::Finding& finding : loaded.findings) std::cerr << format(finding) << '\n';
   if (!loaded.ok()) return 3;
-  StopSignal stop;  // before any thread
-  set_up_logging("warning");
+  host::StopSignal stop;  // before any thread
+  host::set_up_logging("warning");
   try {
     return publish_lines(options, loaded.config, stop);
   } catch (const config::InputError& error) {
@@ -168,4 +169,4 @@ void add_publish(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = publish(*options); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -1,4 +1,4 @@
-#include "daemon/commands/quantity.hpp"
+#include "daemon/app/commands/quantity.hpp"
 
 #include <array>
 #include <charconv>
@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/commands/status_line.hpp"
+#include "daemon/app/commands/status_line.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 using Units = std::map<std::string, double>;
@@ -103,4 +103,4 @@ CLI::Validator factor_value() {
           "NUMBER"};
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

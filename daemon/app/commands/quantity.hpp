@@ -4,7 +4,7 @@
 #include <cstdint>
 
 /// What numbers of the command line may look like. Each makes of its text the plain number.
-namespace mpm::daemon {
+namespace mpm::app {
 
 /// A time in seconds, or with a unit: 90, 1.5h, 5min. Becomes seconds.
 [[nodiscard]] CLI::Validator time_value();
@@ -16,4 +16,4 @@ namespace mpm::daemon {
 /// A number that is finite and not negative.
 [[nodiscard]] CLI::Validator factor_value();
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

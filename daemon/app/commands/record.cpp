@@ -1,4 +1,4 @@
-#include "daemon/commands/record.hpp"
+#include "daemon/app/commands/record.hpp"
 
 #include <array>
 #include <cstdio>
@@ -9,15 +9,15 @@
 #include <string>
 
 #include "config/load_unit.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/app/commands/status_line.hpp"
+#include "daemon/bag/record/recorder.hpp"
 #include "daemon/bus/domain_options.hpp"
-#include "daemon/commands/domain_flags.hpp"
-#include "daemon/commands/quantity.hpp"
-#include "daemon/commands/status_line.hpp"
-#include "daemon/log/logging.hpp"
-#include "daemon/record/recorder.hpp"
-#include "daemon/service/signals.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -34,7 +34,7 @@ constexpr std::uint64_t kSmallestChunk = 1024, kLargestChunk = std::uint64_t{64}
 struct RecordOptions {
   std::string config;
   idl::DomainOptions domain;
-  RecorderOptions recorder;
+  bag::RecorderOptions recorder;
   std::uint64_t chunk_bytes = 1U << 20U;
   double chunk_age_s = 1.0;
   double max_duration_s = 0.0;
@@ -55,7 +55,7 @@ std::string seconds_text(double seconds) {
 /// Rates over the time since the last line.
 class Rates {
  public:
-  std::string text(const RecorderState& state, Clock::time_point now) {
+  std::string text(const bag::RecorderState& state, Clock::time_point now) {
     const double seconds = std::chrono::duration<double>(now - last_).count();
     const double samples = static_cast<double>(state.totals.samples - samples_) / seconds;
     const double bytes = static_cast<double>(state.totals.bytes - bytes_) / seconds;
@@ -66,8 +66,8 @@ class Rates {
     std::snprintf(rate.data(), rate.size(), "%.0f/s", samples);
     return summary(state) + "; now " + rate.data() + ", " + bytes_text(bytes) + "/s";
   }
-  [[nodiscard]] std::string summary(const RecorderState& state) const {
-    const RecordingTotals& totals = state.totals;
+  [[nodiscard]] std::string summary(const bag::RecorderState& state) const {
+    const bag::RecordingTotals& totals = state.totals;
     std::string text = seconds_text(std::chrono::duration<double>(Clock::now() - start_).count());
     text += "  " + std::to_string(totals.samples) + " samples  " +
             bytes_text(static_cast<double>(totals.bytes)) + "  " + std::to_string(state.dropped) +
@@ -85,9 +85,9 @@ class Rates {
   std::uint64_t samples_ = 0, bytes_ = 0;
 };
 
-int record(const RecordOptions& options, StopSignal& stop) {
+int record(const RecordOptions& options, host::StopSignal& stop) {
   const idl::Participant participant(options.domain);
-  Recorder recorder(participant, options.recorder);
+  bag::Recorder recorder(participant, options.recorder);
   StatusLine status;
   status.say("mpm record: recording to " + recorder.state().path);
   Rates rates;
@@ -106,12 +106,12 @@ int record(const RecordOptions& options, StopSignal& stop) {
       next_search = now + kSearchPeriod;
     }
     if (!status.due(now)) continue;
-    const RecorderState state = recorder.state();
+    const bag::RecorderState state = recorder.state();
     if (state.path != path) status.say("mpm record: going on in " + (path = state.path));
     status.show(rates.text(state, now));
   }
   recorder.finish();
-  const RecorderState state = recorder.state();
+  const bag::RecorderState state = recorder.state();
   status.say("mpm record: " + rates.summary(state) + "  " + state.path);
   if (state.totals.samples == 0 && state.dropped == 0)
     status.say(options.recorder.unit.empty()
@@ -130,13 +130,13 @@ int record(RecordOptions options) {
     for (const config::Finding& finding : loaded.findings) std::cerr << format(finding) << '\n';
     if (!loaded.ok()) return 3;
     const idl::DomainOptions given = options.domain;
-    options.domain = domain_options(loaded.config.dds);
+    options.domain = bus::domain_options(loaded.config.dds);
     if (given.domain != 0) options.domain.domain = given.domain;
     if (!given.partition.empty()) options.domain.partition = given.partition;
     options.domain.use_environment = given.use_environment;
     options.recorder.unit = loaded.config.unit;
   }
-  RecordingOptions& recording = options.recorder.recording;
+  bag::RecordingOptions& recording = options.recorder.recording;
   if (recording.quota_bytes > 0 && recording.max_size_bytes > recording.quota_bytes / 2) {
     std::cerr << "mpm record: error: --quota must hold two files of --max-size at least: one that "
                  "is full and the next\n";
@@ -146,8 +146,8 @@ int record(RecordOptions options) {
   recording.file.compression = compression_of(options.compression);
   recording.file.chunk_bytes = options.chunk_bytes;
   recording.file.chunk_age_ns = static_cast<std::int64_t>(options.chunk_age_s * kNsPerSecond);
-  StopSignal stop;  // before any thread
-  set_up_logging("warning");
+  host::StopSignal stop;  // before any thread
+  host::set_up_logging("warning");
   try {
     return record(options, stop);
   } catch (const std::invalid_argument& error) {
@@ -161,7 +161,7 @@ int record(RecordOptions options) {
 void add_record(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("record", "record what goes over the bus (MCAP)");
   const auto options = std::make_shared<RecordOptions>();
-  RecorderOptions& recorder = options->recorder;
+  bag::RecorderOptions& recorder = options->recorder;
   auto* config =
       command->add_option("-c,--config", options->config, "unit file: this unit, on its domain");
   command->add_option("--unit", recorder.unit, "only this unit (default: all)")->excludes(config);
@@ -206,4 +206,4 @@ void add_record(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = record(*options); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

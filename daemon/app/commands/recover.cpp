@@ -1,14 +1,14 @@
-#include "daemon/commands/recover.hpp"
+#include "daemon/app/commands/recover.hpp"
 
 #include <iostream>
 #include <memory>
 #include <string>
 
 #include "config/finding.hpp"
-#include "daemon/io/replacement_file.hpp"
+#include "daemon/files/replacement_file.hpp"
 #include "daemon/mcap/recover.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 /// night.mcap -> night.recovered.mcap
@@ -21,10 +21,10 @@ std::string default_output(const std::string& input) {
 // 0, or 3 on bad input.
 int run_recover(const std::string& input, const std::string& output) {
   try {
-    if (io::same_file(input, output))
+    if (files::same_file(input, output))
       throw config::InputError(
           {output, 0, 0, config::Severity::kError, "", "is the file that is read"});
-    io::ReplacementFile file(output);
+    files::ReplacementFile file(output);
     const mcap::RecoverReport report = mcap::recover(input, file.temporary());
     file.commit();
     for (const std::string& problem : report.problems)
@@ -60,4 +60,4 @@ void add_recover(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -1,4 +1,4 @@
-#include "daemon/commands/replay.hpp"
+#include "daemon/app/commands/replay.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,18 +13,18 @@
 #include <thread>
 
 #include "config/finding.hpp"
-#include "daemon/commands/domain_flags.hpp"
-#include "daemon/commands/quantity.hpp"
-#include "daemon/commands/status_line.hpp"
-#include "daemon/log/logging.hpp"
-#include "daemon/replay/keyboard.hpp"
-#include "daemon/replay/mcap_source.hpp"
-#include "daemon/replay/player.hpp"
-#include "daemon/replay/selection.hpp"
-#include "daemon/service/signals.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/app/commands/status_line.hpp"
+#include "daemon/bag/replay/keyboard.hpp"
+#include "daemon/bag/replay/mcap_source.hpp"
+#include "daemon/bag/replay/player.hpp"
+#include "daemon/bag/replay/selection.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
 #include "idl/raw_writer.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 using Steady = std::chrono::steady_clock;
@@ -40,7 +40,7 @@ struct ReplayOptions {
   std::vector<std::string> topics;
   std::vector<std::string> remap;
   idl::DomainOptions domain;
-  PlayerOptions player;
+  bag::PlayerOptions player;
   double start_offset_s = 0.0;
   double duration_s = 0.0;
   double wait_readers_s = 10.0;
@@ -86,7 +86,8 @@ std::set<std::string> topics_of(const ReplayOptions& options) {
 }
 
 // What is sent before a reader and its writer know each other is lost.
-void wait_for_readers(const Writers& writers, const ReplayOptions& options, StopSignal& stop) {
+void wait_for_readers(const Writers& writers, const ReplayOptions& options,
+                      host::StopSignal& stop) {
   if (options.wait_readers_s <= 0.0) return;
   const Steady::time_point end =
       Steady::now() + std::chrono::duration_cast<Steady::duration>(
@@ -104,7 +105,7 @@ void wait_for_readers(const Writers& writers, const ReplayOptions& options, Stop
   }
 }
 
-std::string progress_text(const PlayerState& state, std::int64_t length_ns) {
+std::string progress_text(const bag::PlayerState& state, std::int64_t length_ns) {
   std::array<char, 128> text{};
   std::snprintf(text.data(), text.size(), "%.1f",
                 static_cast<double>(state.recorded_ns) / kNsPerSecond);
@@ -127,7 +128,7 @@ std::string progress_text(const PlayerState& state, std::int64_t length_ns) {
 }
 
 /// Refuses what the recording calls a sample and is none.
-bool send(const Writers& writers, const McapSource& source, const ReplaySample& sample,
+bool send(const Writers& writers, const bag::McapSource& source, const bag::ReplaySample& sample,
           std::int64_t source_time_ns, const idl::SampleChange& change) {
   const auto writer = writers.find(sample.topic);
   if (writer == writers.end()) return true;
@@ -141,18 +142,18 @@ bool send(const Writers& writers, const McapSource& source, const ReplaySample& 
   return result == idl::WriteResult::kWritten;
 }
 
-int replay(const ReplayOptions& options, StopSignal& stop) {
+int replay(const ReplayOptions& options, host::StopSignal& stop) {
   if (options.files.empty()) throw std::invalid_argument("which recording? Give a file or folder");
-  McapSource source(options.files, topics_of(options));
-  PlayerOptions player_options = options.player;
+  bag::McapSource source(options.files, topics_of(options));
+  bag::PlayerOptions player_options = options.player;
   player_options.remap = parse_remap(options.remap);
   player_options.start_offset_ns = static_cast<std::int64_t>(options.start_offset_s * kNsPerSecond);
   player_options.duration_ns = static_cast<std::int64_t>(options.duration_s * kNsPerSecond);
-  check_selection(source, player_options);
+  bag::check_selection(source, player_options);
   for (const std::string& topic : options.topics)
     if (source.topics().count(topic) == 0)
       std::cerr << "mpm replay: the recording has no " << topic << '\n';
-  Keyboard keyboard;
+  bag::Keyboard keyboard;
   if (player_options.start_paused && !keyboard.there())
     throw std::invalid_argument("--start-paused: there is no terminal, so nobody could start it");
 
@@ -163,17 +164,17 @@ int replay(const ReplayOptions& options, StopSignal& stop) {
                                           idl::WriterPace::kLossless));
   wait_for_readers(writers, options, stop);
 
-  SteadyClock clock;
+  host::SteadyClock clock;
   StatusLine status;
   if (keyboard.there()) status.say("space pause, s or right step, + and - speed, q quit");
-  Player player(
+  bag::Player player(
       source, clock, player_options,
-      [&](const ReplaySample& sample, std::int64_t time_ns, const idl::SampleChange& change) {
+      [&](const bag::ReplaySample& sample, std::int64_t time_ns, const idl::SampleChange& change) {
         return send(writers, source, sample, time_ns, change);
       },
-      [&](const PlayerState& state) {
+      [&](const bag::PlayerState& state) {
         if (status.due(Steady::now())) status.show(progress_text(state, source.length_ns()));
-        return stop.received() ? Key::kQuit : keyboard.next();
+        return stop.received() ? bag::Key::kQuit : keyboard.next();
       });
   const bool sent = player.play();
   bool taken = sent;
@@ -186,8 +187,8 @@ int replay(const ReplayOptions& options, StopSignal& stop) {
 
 int replay(ReplayOptions options) {
   find_swallowed_files(options);
-  StopSignal stop;  // before any thread
-  set_up_logging("warning");
+  host::StopSignal stop;  // before any thread
+  host::set_up_logging("warning");
   try {
     return replay(options, stop);
   } catch (const config::InputError& error) {
@@ -204,7 +205,7 @@ int replay(ReplayOptions options) {
 void add_replay(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("replay", "publish recordings again, as they were");
   const auto options = std::make_shared<ReplayOptions>();
-  PlayerOptions& player = options->player;
+  bag::PlayerOptions& player = options->player;
   command->add_option("files", options->files, "recordings (*.mcap), or folders of them");
   command
       ->add_option("-r,--rate", player.rate,
@@ -246,4 +247,4 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = replay(*options); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 /// `mpm replay`: recordings back onto the bus.
 void add_replay(CLI::App& app, int& exit_code);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

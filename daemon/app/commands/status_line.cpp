@@ -1,4 +1,4 @@
-#include "daemon/commands/status_line.hpp"
+#include "daemon/app/commands/status_line.hpp"
 
 #include <unistd.h>
 
@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <iostream>
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 constexpr std::chrono::milliseconds kRewritePeriod{200};
@@ -54,4 +54,4 @@ std::string bytes_text(double bytes) {
   return text.data();
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

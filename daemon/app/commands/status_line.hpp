@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 /// What a long-running command has to tell, on standard error: one line that is rewritten on a
 /// terminal, a line now and then anywhere else.
@@ -32,4 +32,4 @@ class StatusLine {
 /// "12.3 MB"
 [[nodiscard]] std::string bytes_text(double bytes);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -1,6 +1,6 @@
-#include "daemon/commands/time_zone.hpp"
+#include "daemon/app/commands/time_zone.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 void add_time_zone(CLI::App& command, std::string& name) {
   command.add_option("--time-zone", name,
@@ -8,9 +8,9 @@ void add_time_zone(CLI::App& command, std::string& name) {
                      "refused)");
 }
 
-std::shared_ptr<const io::TimeZone> zone_of(const std::string& name) {
+std::shared_ptr<const files::TimeZone> zone_of(const std::string& name) {
   if (name.empty() || name == "utc" || name == "UTC" || name == "seconds") return nullptr;
-  return std::make_shared<io::TimeZone>(name);
+  return std::make_shared<files::TimeZone>(name);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -1,16 +1,16 @@
-#include "daemon/commands/topics.hpp"
+#include "daemon/app/commands/topics.hpp"
 
 #include <chrono>
 #include <iostream>
 #include <memory>
 
-#include "daemon/commands/domain_flags.hpp"
-#include "daemon/commands/quantity.hpp"
-#include "daemon/log/logging.hpp"
-#include "daemon/service/signals.hpp"
-#include "daemon/topics/survey.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/bus/survey.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{50};
@@ -23,18 +23,18 @@ struct TopicsOptions {
 
 int topics(const TopicsOptions& options) {
   using Clock = std::chrono::steady_clock;
-  StopSignal stop;
-  set_up_logging("warning");
+  host::StopSignal stop;
+  host::set_up_logging("warning");
   const idl::Participant participant(options.domain);
-  Survey survey(participant);
+  bus::Survey survey(participant);
   const Clock::time_point end =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options.duration_s));
   while (Clock::now() < end && !stop.received()) survey.listen(kLongestWait);
-  const std::vector<TopicRow> rows = survey.rows();
+  const std::vector<bus::TopicRow> rows = survey.rows();
   if (options.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const TopicRow& row : rows) list.push_back(to_json(row));
+    for (const bus::TopicRow& row : rows) list.push_back(to_json(row));
     std::cout << list.dump() << '\n';
   } else {
     std::cout << to_text(rows);
@@ -58,4 +58,4 @@ void add_topics(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = topics(*options); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

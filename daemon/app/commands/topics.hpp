@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 /// `mpm topics`: who reads and writes what on the bus.
 void add_topics(CLI::App& app, int& exit_code);
@@ -12,4 +12,4 @@ void add_echo(CLI::App& app, int& exit_code);
 void add_hz(CLI::App& app, int& exit_code);
 void add_delay(CLI::App& app, int& exit_code);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

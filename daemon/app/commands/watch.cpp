@@ -1,4 +1,4 @@
-#include "daemon/commands/watch.hpp"
+#include "daemon/app/commands/watch.hpp"
 
 #include <unistd.h>
 
@@ -8,14 +8,14 @@
 #include <memory>
 #include <string>
 
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
 #include "daemon/bus/output_readers.hpp"
-#include "daemon/commands/domain_flags.hpp"
-#include "daemon/commands/quantity.hpp"
-#include "daemon/log/logging.hpp"
-#include "daemon/service/signals.hpp"
-#include "daemon/watch/viewer.hpp"
+#include "daemon/bus/watch/viewer.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
 
-namespace mpm::daemon {
+namespace mpm::app {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{100};
@@ -30,9 +30,9 @@ struct WatchOptions {
   double for_s = 0.0;  // 0 = until interrupted
 };
 
-ViewMode mode_of(const WatchOptions& options) {
-  if (options.json) return ViewMode::kJson;
-  return isatty(STDOUT_FILENO) ? ViewMode::kTable : ViewMode::kLines;
+bus::ViewMode mode_of(const WatchOptions& options) {
+  if (options.json) return bus::ViewMode::kJson;
+  return isatty(STDOUT_FILENO) ? bus::ViewMode::kTable : bus::ViewMode::kLines;
 }
 
 bool wants_color(const WatchOptions& options) {
@@ -44,24 +44,24 @@ bool wants_color(const WatchOptions& options) {
 int watch(const WatchOptions& options) {
   using Clock = std::chrono::steady_clock;
   std::signal(SIGPIPE, SIG_IGN);  // has_reader() notices
-  StopSignal stop;
-  set_up_logging("warning");
+  host::StopSignal stop;
+  host::set_up_logging("warning");
   const idl::Participant participant(options.domain);
   // The table also shows the health; lines and JSON of alarms need nothing but alarms.
-  const ViewMode mode = mode_of(options);
-  OutputReaders readers(participant, options.alarms_only && mode != ViewMode::kTable
-                                         ? OutputReaders::Scope::kAlarms
-                                         : OutputReaders::Scope::kEverything);
+  const bus::ViewMode mode = mode_of(options);
+  bus::OutputReaders readers(participant, options.alarms_only && mode != bus::ViewMode::kTable
+                                              ? bus::OutputReaders::Scope::kAlarms
+                                              : bus::OutputReaders::Scope::kEverything);
   idl::WaitSet wait_set;
   readers.attach_to(wait_set);
-  Viewer viewer(mode, {wants_color(options), options.alarms_only}, options.unit);
+  bus::Viewer viewer(mode, {wants_color(options), options.alarms_only}, options.unit);
 
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(options.for_s));
   bool last_look = false;
   while (viewer.has_reader() && !stop.received()) {
     if (wait_set.wait(kLongestWait))
-      for (const Output& output : readers.take()) viewer.show(output);
+      for (const bus::Output& output : readers.take()) viewer.show(output);
     const Clock::time_point now = Clock::now();
     last_look = options.for_s > 0.0 && now >= end;
     viewer.tick(now);
@@ -93,4 +93,4 @@ void add_watch(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = watch(*options); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
-namespace mpm::daemon {
+namespace mpm::app {
 
 /// `mpm watch`: what the monitors say, live.
 void add_watch(CLI::App& app, int& exit_code);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::app

@@ -1,13 +1,13 @@
-#include "daemon/record/recorder.hpp"
+#include "daemon/bag/record/recorder.hpp"
 
 #include <algorithm>
 #include <exception>
 
-#include "daemon/replay/clock.hpp"
+#include "daemon/host/clock.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/topics.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 constexpr std::chrono::milliseconds kTick{200};
@@ -26,7 +26,7 @@ Recorder::Recorder(const idl::Participant& participant, const RecorderOptions& o
       discovery_(participant),
       unit_(options.unit),
       queue_(options.queue_bytes),
-      recording_(options.recording, wall_time_ns()) {
+      recording_(options.recording, host::wall_time_ns()) {
   for (const idl::KnownTopic& topic : idl::known_topics())
     if (options.topics.empty())
       add_reader(topic.name, *topic.type, topic.reader_qos(), description_of(topic));
@@ -73,7 +73,7 @@ void Recorder::poll(std::chrono::milliseconds longest) {
 
 int Recorder::take() {
   int count = 0;
-  const std::int64_t now_ns = wall_time_ns();
+  const std::int64_t now_ns = host::wall_time_ns();
   for (std::size_t topic = 0; topic < readers_.size(); ++topic) {
     const bool ours = idl::find_known_topic(readers_[topic].topic()) != nullptr;
     count += readers_[topic].take([&](idl::RawSample& sample) {
@@ -95,7 +95,7 @@ void Recorder::write_all() {
     while (queue_.pop(samples, kTick)) {
       const std::lock_guard lock(mutex_);
       for (written = 0; written < samples.size(); ++written) recording_.write(samples[written]);
-      recording_.tick(wall_time_ns());
+      recording_.tick(host::wall_time_ns());
     }
     const std::lock_guard lock(mutex_);
     recording_.finish();
@@ -132,4 +132,4 @@ RecorderState Recorder::state() const {
   return state;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

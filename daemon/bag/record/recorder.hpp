@@ -7,12 +7,12 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/record/recording.hpp"
+#include "daemon/bag/record/recording.hpp"
 #include "idl/discovery.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/wait_set.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 struct RecorderOptions {
   RecordingOptions recording;
@@ -75,4 +75,4 @@ class Recorder {
   std::thread writer_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

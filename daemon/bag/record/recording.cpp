@@ -1,11 +1,11 @@
-#include "daemon/record/recording.hpp"
+#include "daemon/bag/record/recording.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "daemon/record/lifecycle.hpp"
+#include "daemon/bag/lifecycle.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 // With a quota and no size for one file: so many files share it, and the oldest can go.
@@ -158,4 +158,4 @@ RecordingTotals Recording::totals() const {
   return totals;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "daemon/bag/record/recording_files.hpp"
+#include "daemon/bag/record/sample_queue.hpp"
 #include "daemon/mcap/writer.hpp"
-#include "daemon/record/recording_files.hpp"
-#include "daemon/record/sample_queue.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 struct RecordingOptions {
   std::string output;                ///< see RecordingFiles
@@ -104,4 +104,4 @@ class Recording {
   std::uint64_t saved_ = 0;        // samples before the open chunk
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

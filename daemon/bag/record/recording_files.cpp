@@ -1,4 +1,4 @@
-#include "daemon/record/recording_files.hpp"
+#include "daemon/bag/record/recording_files.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 constexpr std::string_view kExtension = ".mcap";
@@ -120,4 +120,4 @@ void RecordingFiles::make_room(std::uint64_t room) {
   }
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

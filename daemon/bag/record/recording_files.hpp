@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 /// Which files a recording becomes, and which of them have to go.
 ///
@@ -50,4 +50,4 @@ class RecordingFiles {
   std::uint64_t deleted_ = 0;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

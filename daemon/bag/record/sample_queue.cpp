@@ -1,8 +1,8 @@
-#include "daemon/record/sample_queue.hpp"
+#include "daemon/bag/record/sample_queue.hpp"
 
 #include <utility>
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 void SampleQueue::push(std::vector<RecordedSample>& samples) {
   {
@@ -41,4 +41,4 @@ std::uint64_t SampleQueue::dropped() const {
   return dropped_;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -9,7 +9,7 @@
 
 #include "idl/raw_sample.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 struct RecordedSample {
   std::size_t topic = 0;         ///< index of the recorder's topic
@@ -42,4 +42,4 @@ class SampleQueue {
   bool closed_ = false;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -1,9 +1,9 @@
-#include "daemon/replay/keyboard.hpp"
+#include "daemon/bag/replay/keyboard.hpp"
 
 #include <poll.h>
 #include <unistd.h>
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 // A byte that is there; 0 otherwise.
@@ -65,4 +65,4 @@ Key Keyboard::next() {
   }
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "daemon/replay/player.hpp"
+#include "daemon/bag/replay/player.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 /// Single keys from the terminal on standard input; none where it is no terminal. The terminal is
 /// as before afterwards.
@@ -25,4 +25,4 @@ class Keyboard {
   std::optional<termios> before_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -1,10 +1,10 @@
-#include "daemon/replay/loop_shift.hpp"
+#include "daemon/bag/replay/loop_shift.hpp"
 
 #include <algorithm>
 
 #include "idl/topic_catalog.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 void LoopShift::Span::add(std::int64_t value) {
   first = seen ? std::min(first, value) : value;
@@ -39,4 +39,4 @@ idl::SampleChange LoopShift::change_of(const std::string& unit) const {
   return {"", found->second.add_intervals, found->second.add_time_ns};
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "daemon/replay/replay_source.hpp"
+#include "daemon/bag/replay/replay_source.hpp"
 #include "idl/raw_writer.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 /// Makes the passes of a replay in a loop one long run. From pass to pass the interval numbers and
 /// times of each unit's samples go on, with one interval left out at the seam: what was before and
@@ -43,4 +43,4 @@ class LoopShift {
   std::int64_t time_shift_ns_ = 0;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

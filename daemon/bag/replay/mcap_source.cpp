@@ -1,11 +1,11 @@
-#include "daemon/replay/mcap_source.hpp"
+#include "daemon/bag/replay/mcap_source.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "config/finding.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 constexpr std::string_view kSuffix = kLifecycleSuffix;
@@ -74,4 +74,4 @@ void McapSource::fill(const mcap::Message& message, ReplaySample& sample) {
   sample.cdr = lifecycle_.key;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

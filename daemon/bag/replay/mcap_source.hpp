@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "daemon/bag/lifecycle.hpp"
+#include "daemon/bag/replay/replay_source.hpp"
 #include "daemon/mcap/file_sequence.hpp"
-#include "daemon/record/lifecycle.hpp"
-#include "daemon/replay/replay_source.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 /// Recordings as one: the samples of all files in the order of their log times.
 class McapSource : public ReplaySource {
@@ -39,4 +39,4 @@ class McapSource : public ReplaySource {
   Lifecycle lifecycle_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -1,10 +1,10 @@
-#include "daemon/replay/pacer.hpp"
+#include "daemon/bag/replay/pacer.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 // Rates may be tiny and recordings long: no overflow on the way back to ns.
@@ -42,4 +42,4 @@ void Pacer::take_reference(std::int64_t now) {
   now_ = now;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 /// When what was recorded at some time is due now. Holds one pair of equal moments, recorded and
 /// now, and takes a new one whenever the rate changes or the replay pauses or goes on, so that
@@ -35,4 +35,4 @@ class Pacer {
   bool paused_ = false;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

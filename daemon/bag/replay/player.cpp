@@ -1,12 +1,12 @@
-#include "daemon/replay/player.hpp"
+#include "daemon/bag/replay/player.hpp"
 
 #include <algorithm>
 #include <array>
 #include <utility>
 
-#include "daemon/replay/selection.hpp"
+#include "daemon/bag/replay/selection.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 constexpr std::int64_t kLongestSleepNs = 50'000'000;
@@ -28,7 +28,7 @@ double slower(double rate) {
 
 }  // namespace
 
-Player::Player(ReplaySource& source, Clock& clock, const PlayerOptions& options, Send send,
+Player::Player(ReplaySource& source, host::Clock& clock, const PlayerOptions& options, Send send,
                NextKey next_key)
     : source_(source),
       clock_(clock),
@@ -127,4 +127,4 @@ bool Player::handle(Key key) {
   return false;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
-#include "daemon/replay/clock.hpp"
-#include "daemon/replay/loop_shift.hpp"
-#include "daemon/replay/pacer.hpp"
-#include "daemon/replay/replay_source.hpp"
+#include "daemon/bag/replay/loop_shift.hpp"
+#include "daemon/bag/replay/pacer.hpp"
+#include "daemon/bag/replay/replay_source.hpp"
+#include "daemon/host/clock.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 struct PlayerOptions {
   double rate = 1.0;                 ///< 0 = no waiting
@@ -45,7 +45,7 @@ class Player {
   /// Asked before each sample and at least every 50 ms of waiting.
   using NextKey = std::function<Key(const PlayerState&)>;
 
-  Player(ReplaySource& source, Clock& clock, const PlayerOptions& options, Send send,
+  Player(ReplaySource& source, host::Clock& clock, const PlayerOptions& options, Send send,
          NextKey next_key);
 
   /// To the end, or until told to quit. False if `send` failed.
@@ -61,7 +61,7 @@ class Player {
   [[nodiscard]] bool handle(Key key);
 
   ReplaySource& source_;
-  Clock& clock_;
+  host::Clock& clock_;
   PlayerOptions options_;
   Send send_;
   NextKey next_key_;
@@ -73,4 +73,4 @@ class Player {
   bool sent_any_ = false;  // in this pass
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

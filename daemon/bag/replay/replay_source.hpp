@@ -7,7 +7,7 @@
 
 #include "idl/raw_sample.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 /// A sample of a recording; the views live until the next one is asked for.
 struct ReplaySample {
@@ -32,4 +32,4 @@ class ReplaySource {
   virtual void rewind() = 0;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

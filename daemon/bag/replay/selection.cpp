@@ -1,4 +1,4 @@
-#include "daemon/replay/selection.hpp"
+#include "daemon/bag/replay/selection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 using Units = std::set<std::string>;
@@ -65,4 +65,4 @@ void check_selection(ReplaySource& source, const PlayerOptions& options) {
   fail("no sample lies in the part that --start-offset and --duration choose");
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

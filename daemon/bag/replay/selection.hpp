@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <string>
 
-#include "daemon/replay/player.hpp"
-#include "daemon/replay/replay_source.hpp"
+#include "daemon/bag/replay/player.hpp"
+#include "daemon/bag/replay/replay_source.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 
 /// True where a sample of `unit`, so long after the recording's first one, is to be replayed.
 [[nodiscard]] bool selects(const PlayerOptions& options, std::int64_t since_ns,
@@ -16,4 +16,4 @@ namespace mpm::daemon {
 /// that it does not hold. Reads no more than that takes and leaves `source` at its first sample.
 void check_selection(ReplaySource& source, const PlayerOptions& options);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

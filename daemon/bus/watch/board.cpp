@@ -1,9 +1,9 @@
-#include "daemon/watch/board.hpp"
+#include "daemon/bus/watch/board.hpp"
 
 #include <algorithm>
 #include <cctype>
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
@@ -75,7 +75,7 @@ void Board::show(const LayoutRecord& layout) {
   order(*board);
 }
 
-void Board::show(const ChannelRecord& channel) {
+void Board::show(const report::ChannelRecord& channel) {
   UnitBoard* board = board_of(channel.unit);
   if (board == nullptr) return;
   board->gone = false;
@@ -96,9 +96,9 @@ void Board::show(const AlarmStateRecord& state) {
     board->alarms.erase({state.alarm.mv, state.alarm.cv});
 }
 
-void Board::show(const AlarmRecord&) {}  // the state follows each change
+void Board::show(const report::AlarmRecord&) {}  // the state follows each change
 
-void Board::show(const HealthRecord& health) {
+void Board::show(const report::HealthRecord& health) {
   UnitBoard* board = board_of(health.unit);
   if (board == nullptr) return;
   board->gone = false;
@@ -123,4 +123,4 @@ bool Board::any_alarm() const {
                      [](const auto& unit) { return !unit.second.alarms.empty(); });
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -8,7 +8,7 @@
 
 #include "daemon/bus/output_readers.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 /// "u2" before "u10".
 [[nodiscard]] bool natural_less(const std::string& a, const std::string& b);
@@ -17,10 +17,11 @@ namespace mpm::daemon {
 struct UnitBoard {
   std::vector<std::string> inputs;  ///< columns: MVs, then DVs
   std::vector<std::string> cvs;     ///< rows
-  std::map<std::pair<std::string, std::string>, ChannelRecord> channels;  ///< by (input, CV)
-  std::map<std::pair<std::string, std::string>, AlarmRecord> alarms;      ///< the active ones
-  std::map<std::string, std::vector<std::string>> layout;                 ///< by kind
-  HealthRecord health;
+  std::map<std::pair<std::string, std::string>, report::ChannelRecord>
+      channels;                                                               ///< by (input, CV)
+  std::map<std::pair<std::string, std::string>, report::AlarmRecord> alarms;  ///< the active ones
+  std::map<std::string, std::vector<std::string>> layout;                     ///< by kind
+  report::HealthRecord health;
   bool gone = false;  ///< its monitor left
   std::uint64_t samples = 0;
   std::int64_t last_interval = 0;
@@ -47,14 +48,14 @@ class Board {
  private:
   UnitBoard* board_of(const std::string& unit);
   void show(const LayoutRecord& layout);
-  void show(const ChannelRecord& channel);
+  void show(const report::ChannelRecord& channel);
   void show(const AlarmStateRecord& state);
-  void show(const AlarmRecord& change);
-  void show(const HealthRecord& health);
+  void show(const report::AlarmRecord& change);
+  void show(const report::HealthRecord& health);
   void show(const MonitorGone& gone);
 
   std::string unit_;
   std::map<std::string, UnitBoard> units_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -1,4 +1,4 @@
-#include "daemon/watch/render.hpp"
+#include "daemon/bus/watch/render.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -7,7 +7,7 @@
 #include <ctime>
 #include <vector>
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
 constexpr const char* kReset = "\x1b[0m";
@@ -42,12 +42,13 @@ std::string padded(const std::string& text, std::size_t width) {
   return text.size() >= width ? text : text + std::string(width - text.size(), ' ');
 }
 
-const ChannelRecord* find(const UnitBoard& board, const std::string& input, const std::string& cv) {
+const report::ChannelRecord* find(const UnitBoard& board, const std::string& input,
+                                  const std::string& cv) {
   const auto it = board.channels.find({input, cv});
   return it == board.channels.end() ? nullptr : &it->second;
 }
 
-std::string shout(const ChannelRecord& channel) {
+std::string shout(const report::ChannelRecord& channel) {
   std::string word = channel.verdict.empty() ? "-" : channel.verdict;
   return channel.alarm_active ? word + " !" : word;
 }
@@ -55,7 +56,7 @@ std::string shout(const ChannelRecord& channel) {
 std::size_t column_width(const UnitBoard& board, const std::string& input) {
   std::size_t width = input.size();
   for (const std::string& cv : board.cvs)
-    if (const ChannelRecord* channel = find(board, input, cv))
+    if (const report::ChannelRecord* channel = find(board, input, cv))
       width = std::max({width, shout(*channel).size(), channel->reason.size()});
   return width + 2;
 }
@@ -75,7 +76,7 @@ std::string matrix(const UnitBoard& board, const Painter& paint) {
     std::string reasons = "  " + std::string(first, ' ');
     bool any_reason = false;
     for (std::size_t i = 0; i < widths.size(); ++i) {
-      const ChannelRecord* channel = find(board, board.inputs[i], cv);
+      const report::ChannelRecord* channel = find(board, board.inputs[i], cv);
       verdicts += channel == nullptr
                       ? padded("", widths[i])
                       : paint(color_of(channel->verdict), padded(shout(*channel), widths[i]));
@@ -89,7 +90,7 @@ std::string matrix(const UnitBoard& board, const Painter& paint) {
 }
 
 std::string head(const std::string& name, const UnitBoard& board, const Painter& paint) {
-  const HealthRecord& health = board.health;
+  const report::HealthRecord& health = board.health;
   std::string text = paint(kBold, name) +
                      fmt::format("  {} samples, {:.1f}/s", board.samples, board.samples_per_s);
   if (health.source_time_ns != 0) text += ", data of " + utc(health.source_time_ns);
@@ -102,21 +103,21 @@ std::string head(const std::string& name, const UnitBoard& board, const Painter&
   return text;
 }
 
-std::string alarm_text(const AlarmRecord& alarm) {
+std::string alarm_text(const report::AlarmRecord& alarm) {
   return fmt::format("{} -> {}  since {}  p {:.1e}  gain error {:.3g}", alarm.mv, alarm.cv,
                      utc(alarm.source_time_ns), alarm.p_value, alarm.effect_size);
 }
 
 /// "gain_ratio 0.7 (0.68 to 0.72)", all of them.
-std::string numbers_text(const NamedCause& named) {
+std::string numbers_text(const report::NamedCause& named) {
   std::string text;
-  for (const CauseParameter& parameter : named.parameters)
+  for (const report::CauseParameter& parameter : named.parameters)
     text += fmt::format("{}{} {:.3g} ({:.3g} to {:.3g})", text.empty() ? "" : ", ", parameter.name,
                         parameter.value, parameter.low, parameter.high);
   return text;
 }
 
-std::string cause_text(const NamedCause& named) {
+std::string cause_text(const report::NamedCause& named) {
   if (named.cause.empty()) return "cause: not named";
   return fmt::format("cause: {}, {:.0f} % sure  {}", named.cause, 100.0 * named.confidence,
                      numbers_text(named));
@@ -141,7 +142,7 @@ std::string render(const Board& board, const RenderOptions& options) {
   return text.empty() ? "waiting for a monitor ...\n" : text;
 }
 
-std::string change_line(const ChannelRecord* before, const ChannelRecord& after) {
+std::string change_line(const report::ChannelRecord* before, const report::ChannelRecord& after) {
   const std::string old = before == nullptr ? "" : before->verdict;
   if (old == after.verdict && (before == nullptr || before->reason == after.reason)) return "";
   std::string line = fmt::format("{} {} {} -> {}: {}", utc(after.source_time_ns), after.unit,
@@ -151,7 +152,7 @@ std::string change_line(const ChannelRecord* before, const ChannelRecord& after)
   return line;
 }
 
-std::string change_line(const AlarmRecord& change) {
+std::string change_line(const report::AlarmRecord& change) {
   if (change.to == "diagnosed")
     return fmt::format("{} {} {} -> {}: {}. {}", utc(change.source_time_ns), change.unit, change.mv,
                        change.cv, cause_text(change.named), change.named.text);
@@ -160,10 +161,10 @@ std::string change_line(const AlarmRecord& change) {
                      change.p_value, change.effect_size);
 }
 
-std::string change_line(const HealthRecord& before, const HealthRecord& after) {
+std::string change_line(const report::HealthRecord& before, const report::HealthRecord& after) {
   if (before.state == after.state) return "";
   return fmt::format("{} {} health: {}{}", utc(after.source_time_ns), after.unit, after.state,
                      after.detail.empty() ? "" : " (" + after.detail + ")");
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "daemon/watch/board.hpp"
+#include "daemon/bus/watch/board.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 struct RenderOptions {
   bool color = true;
@@ -17,8 +17,10 @@ struct RenderOptions {
 
 /// What a log should say if `before` became `after`; empty if nothing that matters changed.
 /// `before` may be null.
-[[nodiscard]] std::string change_line(const ChannelRecord* before, const ChannelRecord& after);
-[[nodiscard]] std::string change_line(const AlarmRecord& change);
-[[nodiscard]] std::string change_line(const HealthRecord& before, const HealthRecord& after);
+[[nodiscard]] std::string change_line(const report::ChannelRecord* before,
+                                      const report::ChannelRecord& after);
+[[nodiscard]] std::string change_line(const report::AlarmRecord& change);
+[[nodiscard]] std::string change_line(const report::HealthRecord& before,
+                                      const report::HealthRecord& after);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -1,8 +1,8 @@
-#include "daemon/watch/viewer.hpp"
+#include "daemon/bus/watch/viewer.hpp"
 
 #include <cstdio>
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
 constexpr std::chrono::milliseconds kRedraw{250};
@@ -38,11 +38,11 @@ void Viewer::show(const Output& output) {
 }
 
 void Viewer::print_json(const Output& output) {
-  if (const auto* channel = std::get_if<ChannelRecord>(&output)) {
+  if (const auto* channel = std::get_if<report::ChannelRecord>(&output)) {
     if (!options_.alarms_only && board_.wanted(channel->unit)) print_line(to_json(*channel).dump());
-  } else if (const auto* alarm = std::get_if<AlarmRecord>(&output)) {
+  } else if (const auto* alarm = std::get_if<report::AlarmRecord>(&output)) {
     if (board_.wanted(alarm->unit)) print_line(to_json(*alarm).dump());
-  } else if (const auto* health = std::get_if<HealthRecord>(&output)) {
+  } else if (const auto* health = std::get_if<report::HealthRecord>(&output)) {
     if (!options_.alarms_only && board_.wanted(health->unit)) print_line(to_json(*health).dump());
   }
 }
@@ -52,23 +52,23 @@ void Viewer::print_change(const Output& output) {
     const auto it = board_.units().find(unit);
     return it == board_.units().end() ? nullptr : &it->second;
   };
-  if (const auto* alarm = std::get_if<AlarmRecord>(&output)) {
+  if (const auto* alarm = std::get_if<report::AlarmRecord>(&output)) {
     if (board_.wanted(alarm->unit)) print_line(change_line(*alarm));
     return;
   }
   if (options_.alarms_only) return;
-  if (const auto* channel = std::get_if<ChannelRecord>(&output)) {
+  if (const auto* channel = std::get_if<report::ChannelRecord>(&output)) {
     if (!board_.wanted(channel->unit)) return;
-    const ChannelRecord* before = nullptr;
+    const report::ChannelRecord* before = nullptr;
     if (const UnitBoard* board = board_of(channel->unit))
       if (const auto it = board->channels.find({channel->mv, channel->cv});
           it != board->channels.end())
         before = &it->second;
     print_line(change_line(before, *channel));
-  } else if (const auto* health = std::get_if<HealthRecord>(&output)) {
+  } else if (const auto* health = std::get_if<report::HealthRecord>(&output)) {
     if (!board_.wanted(health->unit)) return;
     const UnitBoard* board = board_of(health->unit);
-    print_line(change_line(board == nullptr ? HealthRecord{} : board->health, *health));
+    print_line(change_line(board == nullptr ? report::HealthRecord{} : board->health, *health));
   } else if (const auto* gone = std::get_if<MonitorGone>(&output)) {
     const UnitBoard* board = board_of(gone->unit);
     if (board != nullptr && !board->gone) print_line(gone->unit + " monitor gone");
@@ -93,4 +93,4 @@ void Viewer::draw(Clock::time_point now) {
 
 bool Viewer::has_reader() const { return std::ferror(stdout) == 0; }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -3,10 +3,10 @@
 #include <chrono>
 #include <string>
 
-#include "daemon/watch/board.hpp"
-#include "daemon/watch/render.hpp"
+#include "daemon/bus/watch/board.hpp"
+#include "daemon/bus/watch/render.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 enum class ViewMode {
   kTable,  ///< redrawn in place, for a terminal
@@ -40,4 +40,4 @@ class Viewer {
   Clock::time_point last_rate_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

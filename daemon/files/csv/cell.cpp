@@ -1,4 +1,4 @@
-#include "daemon/io/cell.hpp"
+#include "daemon/files/csv/cell.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <string>
 #include <system_error>
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
@@ -79,4 +79,4 @@ std::optional<Quality> parse_quality(std::string_view text) {
   }
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -6,7 +6,7 @@
 #include "core/signal/frame.hpp"
 
 /// What a cell of a data file says.
-namespace mpm::io {
+namespace mpm::files {
 
 /// A number (decimal point or, with `decimal_comma`, either), infinite where no double is as large,
 /// or NaN for the words that mean "no value" (empty, nan, Bad, No Data, I/O Timeout, ...). Nothing
@@ -20,4 +20,4 @@ namespace mpm::io {
 /// Without case, as file headers and words are compared.
 [[nodiscard]] bool same_word(std::string_view a, std::string_view b);
 
-}  // namespace mpm::io
+}  // namespace mpm::files

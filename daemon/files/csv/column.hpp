@@ -4,7 +4,7 @@
 
 #include "core/signal/frame.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// A signal of a table and where it stands in its frames.
 struct Column {
@@ -13,4 +13,4 @@ struct Column {
   int index = 0;
 };
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -1,10 +1,10 @@
-#include "daemon/io/csv_line.hpp"
+#include "daemon/files/csv/csv_line.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -117,4 +117,4 @@ char find_delimiter(std::string_view header) {
   return best;
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

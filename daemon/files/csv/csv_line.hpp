@@ -9,7 +9,7 @@
 #include "config/finding.hpp"
 
 /// Lines and cells of a text file with their places.
-namespace mpm::io {
+namespace mpm::files {
 
 struct Cell {
   std::string_view text;  ///< trimmed, without quotes
@@ -50,4 +50,4 @@ class LineReader {
 /// Of `;`, tab and comma the one that the header uses most; comma if none.
 [[nodiscard]] char find_delimiter(std::string_view header);
 
-}  // namespace mpm::io
+}  // namespace mpm::files

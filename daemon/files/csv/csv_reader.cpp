@@ -1,13 +1,13 @@
-#include "daemon/io/csv_reader.hpp"
+#include "daemon/files/csv/csv_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "config/finding.hpp"
-#include "daemon/io/cell.hpp"
+#include "daemon/files/csv/cell.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr std::size_t kRowsAhead = 200;
@@ -136,4 +136,4 @@ bool CsvReader::clock_stays_back(double at) {
   return true;
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

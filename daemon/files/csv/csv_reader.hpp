@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
-#include "daemon/io/frame_source.hpp"
-#include "daemon/io/row_source.hpp"
+#include "daemon/files/csv/row_source.hpp"
+#include "daemon/files/frame_source.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// Data files (interfaces: "Data file"): wide rows `time,<tag>,...` or long ones
 /// `tag,time,value,quality`, with comma, semicolon or tab, decimal point or comma. Memory stays
@@ -57,4 +57,4 @@ class CsvReader : public FrameSource {
   double phase_ = 0.0;      ///< of the file's clock against the numbering, intervals
 };
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -1,12 +1,12 @@
-#include "daemon/io/csv_rows.hpp"
+#include "daemon/files/csv/csv_rows.hpp"
 
 #include <algorithm>
 #include <unordered_set>
 #include <utility>
 
-#include "daemon/io/cell.hpp"
+#include "daemon/files/csv/cell.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr std::string_view kQualitySuffix = ".quality";
@@ -70,4 +70,4 @@ CsvRows::CsvRows(const std::string& path, std::shared_ptr<const TimeZone> zone)
 
 bool CsvRows::next(Frame& frame) { return rows_->next(frame); }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

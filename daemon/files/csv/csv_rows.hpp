@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
-#include "daemon/io/column.hpp"
-#include "daemon/io/frame_source.hpp"
-#include "daemon/io/row_source.hpp"
+#include "daemon/files/csv/column.hpp"
+#include "daemon/files/csv/row_source.hpp"
+#include "daemon/files/frame_source.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// The rows of a data file as they stand there: no unit has to know its tags and no sample time
 /// its rows. The frames have no interval numbers.
@@ -35,4 +35,4 @@ class CsvRows : public FrameSource {
   std::vector<std::string> notices_;
 };
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -1,4 +1,4 @@
-#include "daemon/io/csv_writer.hpp"
+#include "daemon/files/csv/csv_writer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "daemon/io/time_text.hpp"
+#include "daemon/files/times/time_text.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr std::size_t kBufferBytes = 1U << 20U;
@@ -144,4 +144,4 @@ void CsvWriter::finish() {
   if (!out_) throw std::runtime_error(path_ + ": cannot be written to");
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "daemon/io/column.hpp"
-#include "daemon/io/time_zone.hpp"
+#include "daemon/files/csv/column.hpp"
+#include "daemon/files/times/time_zone.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 enum class CsvLayout { kWide, kLong };
 
@@ -58,4 +58,4 @@ class CsvWriter {
 /// True where an empty cell would not tell the quality: of a value that is there, not good.
 [[nodiscard]] bool needs_quality(const SignalBlock& block, int index);
 
-}  // namespace mpm::io
+}  // namespace mpm::files

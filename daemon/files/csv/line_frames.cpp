@@ -1,4 +1,4 @@
-#include "daemon/publish/line_frames.hpp"
+#include "daemon/files/csv/line_frames.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <set>
 
 #include "config/finding.hpp"
-#include "daemon/io/cell.hpp"
-#include "daemon/io/row_source.hpp"
-#include "daemon/io/time_text.hpp"
+#include "daemon/files/csv/cell.hpp"
+#include "daemon/files/csv/row_source.hpp"
+#include "daemon/files/times/time_text.hpp"
 
-namespace mpm::daemon {
+namespace mpm::files {
 namespace {
 
 constexpr double kNsPerSecond = 1e9;
@@ -39,17 +39,17 @@ namespace {
 class CsvRows : public LineFrames::Rows {
  public:
   /// `lines` stands on the header.
-  CsvRows(io::LineReader lines, const config::UnitConfig& unit,
+  CsvRows(LineReader lines, const config::UnitConfig& unit,
           std::array<bool, kSignalKindCount>& absent)
       : lines_(std::move(lines)), tags_(unit) {
-    const io::CsvFormat format{io::find_delimiter(lines_.text())};
-    std::vector<io::Cell> header;
+    const CsvFormat format{find_delimiter(lines_.text())};
+    std::vector<Cell> header;
     lines_.split(format.delimiter, header);
-    if (io::is_long_header(header))
+    if (is_long_header(header))
       lines_.fail(1,
                   "rows `tag,time,value` cannot be published as they come: convert them to "
                   "`time,<tag>,...` first");
-    rows_ = io::read_wide(lines_, format, header, tags_, unit.counts(), notices);
+    rows_ = read_wide(lines_, format, header, tags_, unit.counts(), notices);
     const auto seen = [this](const std::string& tag) { return !tag.empty() && tags_.seen(tag); };
     absent[static_cast<std::size_t>(SignalKind::kSetpoint)] =
         std::none_of(unit.cv.begin(), unit.cv.end(),
@@ -63,26 +63,26 @@ class CsvRows : public LineFrames::Rows {
   }
 
  private:
-  io::LineReader lines_;
-  io::TagTable tags_;
-  std::unique_ptr<io::RowSource> rows_;
+  LineReader lines_;
+  TagTable tags_;
+  std::unique_ptr<RowSource> rows_;
 };
 
 class JsonRows : public LineFrames::Rows {
  public:
   /// `lines` stands on the first object.
-  JsonRows(io::LineReader lines, const config::UnitConfig& unit)
+  JsonRows(LineReader lines, const config::UnitConfig& unit)
       : lines_(std::move(lines)), tags_(unit), counts_(unit.counts()) {}
 
   [[nodiscard]] bool next(Frame& frame, std::optional<std::int64_t>& interval) override {
     if (!std::exchange(on_line_, false) && !lines_.next()) return false;
     const nlohmann::json line = parse();
     if (!line.is_object()) lines_.fail(1, "is no JSON object");
-    io::clear(frame, counts_);
+    clear(frame, counts_);
     const auto time = line.find("time");
     if (time == line.end()) lines_.fail(1, "has no \"time\"");
     std::string problem;
-    const std::optional<std::int64_t> time_ns = io::parse_time(text_of(*time), problem);
+    const std::optional<std::int64_t> time_ns = parse_time(text_of(*time), problem);
     if (!time_ns) fail_at("time", "\"time\": " + quoted(text_of(*time)) + " " + problem);
     frame.source_time_ns = *time_ns;
     for (const auto& [name, value] : line.items()) {
@@ -139,9 +139,9 @@ class JsonRows : public LineFrames::Rows {
   }
 
   void read_member(const std::string& name, const nlohmann::json& value, Frame& frame) {
-    if (const io::Slot* slot = tags_.find(name)) {
+    if (const Slot* slot = tags_.find(name)) {
       const std::optional<double> number =
-          value.is_null() ? io::parse_value("", false) : io::parse_value(text_of(value), false);
+          value.is_null() ? parse_value("", false) : parse_value(text_of(value), false);
       if (!number) fail_at(name, quoted(name) + ": " + shown(value) + " is no number");
       frame[slot->kind].values(slot->index) = *number;
       Quality& quality = quality_of(frame, *slot);
@@ -157,9 +157,9 @@ class JsonRows : public LineFrames::Rows {
   // Members come in the order of their names, so a quality follows its value; no value stays bad.
   void read_quality(const std::string& name, const nlohmann::json& value, std::size_t suffix,
                     Frame& frame) {
-    const io::Slot* slot = tags_.find(name.substr(0, suffix));
+    const Slot* slot = tags_.find(name.substr(0, suffix));
     if (slot == nullptr) return;
-    const std::optional<Quality> said = io::parse_quality(text_of(value));
+    const std::optional<Quality> said = parse_quality(text_of(value));
     if (!said)
       fail_at(name, quoted(name) + ": " + shown(value) +
                         " is no quality: good, uncertain, bad or an OPC code");
@@ -167,12 +167,12 @@ class JsonRows : public LineFrames::Rows {
     quality = std::max(quality, *said);
   }
 
-  static Quality& quality_of(Frame& frame, const io::Slot& slot) {
+  static Quality& quality_of(Frame& frame, const Slot& slot) {
     return frame[slot.kind].quality[static_cast<std::size_t>(slot.index)];
   }
 
-  io::LineReader lines_;
-  io::TagTable tags_;
+  LineReader lines_;
+  TagTable tags_;
   SignalCounts counts_;
   std::set<std::string> told_;
   bool on_line_ = true;
@@ -183,7 +183,7 @@ class JsonRows : public LineFrames::Rows {
 LineFrames::LineFrames(std::unique_ptr<std::istream> input, const std::string& name,
                        LineFormat format, const config::UnitConfig& unit)
     : sample_time_s_(unit.sample_time_s) {
-  io::LineReader lines(std::move(input), name);
+  LineReader lines(std::move(input), name);
   if (!lines.next()) lines.fail(1, 1, "nothing came");
   const std::size_t first = lines.text().find_first_not_of(" \t");
   if (format == LineFormat::kAuto)
@@ -207,4 +207,4 @@ bool LineFrames::next(Frame& frame) {
 
 std::vector<std::string> LineFrames::take_notices() { return std::exchange(rows_->notices, {}); }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::files

@@ -10,7 +10,7 @@
 #include "config/unit_config.hpp"
 #include "core/signal/frame.hpp"
 
-namespace mpm::daemon {
+namespace mpm::files {
 
 enum class LineFormat { kAuto, kJson, kCsv };
 
@@ -45,4 +45,4 @@ class LineFrames {
   std::int64_t first_ns_ = 0;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::files

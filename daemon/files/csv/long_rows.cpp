@@ -4,10 +4,10 @@
 #include <map>
 #include <optional>
 
-#include "daemon/io/cell.hpp"
-#include "daemon/io/row_source.hpp"
+#include "daemon/files/csv/cell.hpp"
+#include "daemon/files/csv/row_source.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 struct LongColumns {
@@ -195,4 +195,4 @@ std::unique_ptr<RowSource> read_long(LineReader& lines, const CsvFormat& format,
   return std::make_unique<LongRows>(lines, format, header, tags, counts, notices);
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -1,13 +1,13 @@
-#include "daemon/io/row_source.hpp"
+#include "daemon/files/csv/row_source.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "daemon/io/cell.hpp"
+#include "daemon/files/csv/cell.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 void ReadTally::tell(std::vector<std::string>& notices) const {
   if (not_finite > 0)
@@ -78,4 +78,4 @@ bool check_width(const LineReader& lines, const std::vector<Cell>& cells, std::s
   return true;
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/signal/frame.hpp"
-#include "daemon/io/csv_line.hpp"
-#include "daemon/io/local_times.hpp"
-#include "daemon/io/tag_table.hpp"
+#include "daemon/files/csv/csv_line.hpp"
+#include "daemon/files/csv/tag_table.hpp"
+#include "daemon/files/times/local_times.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// The layout of a data file, found from its header.
 struct CsvFormat {
@@ -72,4 +72,4 @@ void clear(Frame& frame, const SignalCounts& counts);
 [[nodiscard]] bool check_width(const LineReader& lines, const std::vector<Cell>& cells,
                                std::size_t width, std::vector<std::string>& notices);
 
-}  // namespace mpm::io
+}  // namespace mpm::files

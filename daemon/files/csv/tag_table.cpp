@@ -1,8 +1,8 @@
-#include "daemon/io/tag_table.hpp"
+#include "daemon/files/csv/tag_table.hpp"
 
 #include "config/suggest.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 TagTable::TagTable(const config::UnitConfig& unit, Purpose purpose)
     : unit_(unit), purpose_(purpose) {
@@ -96,4 +96,4 @@ std::vector<std::string> TagTable::notices() const {
   return notices;
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

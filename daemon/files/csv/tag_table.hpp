@@ -8,7 +8,7 @@
 #include "config/unit_config.hpp"
 #include "core/signal/frame.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// Where a tag's values go in a frame.
 struct Slot {
@@ -46,4 +46,4 @@ class TagTable {
   std::vector<std::string> ignored_;  ///< in the order of the file
 };
 
-}  // namespace mpm::io
+}  // namespace mpm::files

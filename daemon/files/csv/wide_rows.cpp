@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "config/suggest.hpp"
-#include "daemon/io/cell.hpp"
-#include "daemon/io/row_source.hpp"
+#include "daemon/files/csv/cell.hpp"
+#include "daemon/files/csv/row_source.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr std::string_view kQualitySuffix = ".quality";
@@ -169,4 +169,4 @@ std::unique_ptr<RowSource> read_wide(LineReader& lines, const CsvFormat& format,
   return std::make_unique<WideRows>(lines, format, header, tags, counts, notices);
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

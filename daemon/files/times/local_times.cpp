@@ -1,8 +1,8 @@
-#include "daemon/io/local_times.hpp"
+#include "daemon/files/times/local_times.hpp"
 
-#include "daemon/io/time_text.hpp"
+#include "daemon/files/times/time_text.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
@@ -52,4 +52,4 @@ std::string LocalTimes::notice() const {
          " has twice; they are taken in the order of the rows";
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

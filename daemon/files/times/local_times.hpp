@@ -7,9 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/io/time_zone.hpp"
+#include "daemon/files/times/time_zone.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// Turns the time cells of a file into moments. Local times need a zone; in the hour that a clock
 /// shows twice the order of the rows decides: the earlier moment, unless the row before it is past
@@ -40,4 +40,4 @@ class LocalTimes {
   std::uint64_t twice_ = 0;
 };
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -1,4 +1,4 @@
-#include "daemon/io/time_text.hpp"
+#include "daemon/files/times/time_text.hpp"
 
 #include <array>
 #include <chrono>
@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <limits>
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr std::int64_t kLatestNs = std::numeric_limits<std::int64_t>::max() / 2;
@@ -250,4 +250,4 @@ std::string seconds_text(std::int64_t time_ns) {
   return sign + std::to_string(whole) + fraction_text(fraction);
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// A time cell: decimal seconds (point or comma, exact to the nanosecond) or ISO 8601 with a zone
 /// (`Z`, `+hh:mm`, `UTC`). In ns, the latter since 1970. Where it is none, `problem` says why.
@@ -27,4 +27,4 @@ struct LocalTime {
 /// Decimal seconds, exact.
 [[nodiscard]] std::string seconds_text(std::int64_t time_ns);
 
-}  // namespace mpm::io
+}  // namespace mpm::files

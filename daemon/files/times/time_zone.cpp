@@ -1,4 +1,4 @@
-#include "daemon/io/time_zone.hpp"
+#include "daemon/files/times/time_zone.hpp"
 
 #include <cstdlib>
 #include <ctime>
@@ -6,7 +6,7 @@
 
 #include "config/finding.hpp"
 
-namespace mpm::io {
+namespace mpm::files {
 namespace {
 
 constexpr std::int64_t kDay = 86400;
@@ -57,4 +57,4 @@ TimeZone::Moments TimeZone::moments(std::int64_t local_s) const {
   return moments;
 }
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace mpm::io {
+namespace mpm::files {
 
 /// A zone of the time zone database, e.g. Europe/Berlin. For programs of one thread: it sets the
 /// process's own zone.
@@ -29,4 +29,4 @@ class TimeZone {
   std::string name_;
 };
 
-}  // namespace mpm::io
+}  // namespace mpm::files

@@ -1,15 +1,15 @@
-#include "daemon/closed_loop/compare_loops.hpp"
+#include "daemon/report/closed_loop/compare_loops.hpp"
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
-#include "daemon/closed_loop/loop_tally.hpp"
-#include "daemon/closed_loop/run_mpmsim.hpp"
-#include "daemon/io/csv_reader.hpp"
-#include "daemon/report/extended_unit.hpp"
+#include "daemon/files/csv/csv_reader.hpp"
+#include "daemon/report/closed_loop/loop_tally.hpp"
+#include "daemon/report/closed_loop/run_mpmsim.hpp"
+#include "daemon/report/diagnosis/extended_unit.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 constexpr int kSamples = 3000;
@@ -47,7 +47,7 @@ void run_once(const LoopPlan& plan, const config::UnitConfig& unit, const std::s
   if (!controller_file.empty())
     arguments.insert(arguments.end(), {"--controller-model", controller_file});
   run_mpmsim(plan.program, arguments, kLongestRun, stopped);
-  io::CsvReader reader(csv, unit);
+  files::CsvReader reader(csv, unit);
   Frame frame(unit.counts());
   while (reader.next(frame)) tally.add(frame);
 }
@@ -103,4 +103,4 @@ ClosedLoop compare_loops(const LoopPlan& plan, const config::UnitConfig& unit,
   return result;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

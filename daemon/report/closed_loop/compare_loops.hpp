@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "config/scenario_config.hpp"
-#include "daemon/report/diagnosis_run.hpp"
+#include "daemon/report/diagnosis/diagnosis_run.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// What to compare two controller models on.
 struct LoopPlan {
@@ -36,4 +36,4 @@ struct LoopPlan {
                                        const Diagnosis& diagnosis,
                                        const std::function<bool()>& stopped);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

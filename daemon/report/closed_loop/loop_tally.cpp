@@ -1,11 +1,11 @@
-#include "daemon/closed_loop/loop_tally.hpp"
+#include "daemon/report/closed_loop/loop_tally.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 /// A solver stops this close to a limit, as a share of the range.
@@ -72,4 +72,4 @@ double LoopTally::at_limit(int mv) const {
   return sum.count > 0.0 ? sum.sum / sum.count : 0.0;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -6,7 +6,7 @@
 #include "config/unit_config.hpp"
 #include "core/signal/frame.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// The limits that hold in a scenario: the unit file's with the scenario's over them.
 [[nodiscard]] std::vector<config::MvLimits> limits_in(const config::UnitConfig& unit,
@@ -33,4 +33,4 @@ class LoopTally {
   std::vector<Sum> resting_;  ///< one per MV; sum counts samples at a limit
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

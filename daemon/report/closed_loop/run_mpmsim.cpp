@@ -1,4 +1,4 @@
-#include "daemon/closed_loop/run_mpmsim.hpp"
+#include "daemon/report/closed_loop/run_mpmsim.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -15,7 +15,7 @@
 
 extern char** environ;
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{20};
@@ -111,4 +111,4 @@ void run_mpmsim(const std::string& program, const std::vector<std::string>& argu
   throw SimulatorError("mpmsim failed" + (line.empty() ? std::string() : ": " + line));
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// The simulator could not be run; what() is for the user.
 class SimulatorError : public std::runtime_error {
@@ -23,4 +23,4 @@ class SimulatorError : public std::runtime_error {
 void run_mpmsim(const std::string& program, const std::vector<std::string>& arguments,
                 std::chrono::seconds limit, const std::function<bool()>& stopped);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

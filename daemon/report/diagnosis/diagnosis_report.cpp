@@ -1,12 +1,12 @@
-#include "daemon/report/diagnosis_report.hpp"
+#include "daemon/report/diagnosis/diagnosis_report.hpp"
 
 #include <cstdio>
 
-#include "daemon/report/explain.hpp"
-#include "daemon/report/number_text.hpp"
-#include "daemon/report/signal_names.hpp"
+#include "daemon/report/diagnosis/explain.hpp"
+#include "daemon/report/diagnosis/number_text.hpp"
+#include "daemon/report/diagnosis/signal_names.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -261,4 +261,4 @@ std::string to_text(const DiagnosisRun& run) {
   return text;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

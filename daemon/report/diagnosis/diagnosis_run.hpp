@@ -10,7 +10,7 @@
 #include "core/identify/recording.hpp"
 
 /// All that the reports of `mpm diagnose` are made from.
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// How well the MPC controls with the unit file's model and with the extended one, on the same
 /// simulated plant, over all seeds together.
@@ -47,4 +47,4 @@ struct DiagnosisRun {
   std::vector<std::string> notices;  ///< on the data
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -1,4 +1,4 @@
-#include "daemon/report/explain.hpp"
+#include "daemon/report/diagnosis/explain.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -6,10 +6,10 @@
 #include <string_view>
 
 #include "core/model/linear_model.hpp"
-#include "daemon/report/number_text.hpp"
-#include "daemon/report/signal_names.hpp"
+#include "daemon/report/diagnosis/number_text.hpp"
+#include "daemon/report/diagnosis/signal_names.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 const Parameter* find(const Finding& finding, std::string_view name) {
@@ -393,4 +393,4 @@ std::string parameter_unit(const DiagnosisRun& run, const Subject& subject,
   return {};
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "daemon/report/diagnosis_run.hpp"
+#include "daemon/report/diagnosis/diagnosis_run.hpp"
 
 /// A diagnosis in plain sentences for operators and engineers.
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// The verdict in one sentence, and what belongs to it in some more; the latter may be empty.
 [[nodiscard]] std::string verdict_headline(const DiagnosisRun& run);
@@ -25,4 +25,4 @@ namespace mpm::daemon {
 
 [[nodiscard]] const char* name_of(DiagnosisVerdict verdict);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -1,4 +1,4 @@
-#include "daemon/report/extended_unit.hpp"
+#include "daemon/report/diagnosis/extended_unit.hpp"
 
 #include <algorithm>
 #include <sstream>
@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
-#include "daemon/report/explain.hpp"
+#include "daemon/report/diagnosis/explain.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 constexpr std::size_t kLineWidth = 96;
@@ -100,4 +100,4 @@ std::string extended_yaml(const DiagnosisRun& run) {
   return out.str();
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "daemon/report/diagnosis_run.hpp"
+#include "daemon/report/diagnosis/diagnosis_run.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// The unit with the extended model: aux signals that the model now takes are DVs, in the order of
 /// the model's inputs.
@@ -20,4 +20,4 @@ namespace mpm::daemon {
 /// std::logic_error where that would not load back.
 [[nodiscard]] std::string extended_yaml(const DiagnosisRun& run);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -1,11 +1,11 @@
-#include "daemon/report/number_text.hpp"
+#include "daemon/report/diagnosis/number_text.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 std::string number_text(double value, int digits) {
   if (std::isnan(value)) return "-";
@@ -49,4 +49,4 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -3,7 +3,7 @@
 #include <string>
 
 /// Numbers as people read them.
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// `digits` significant ones, no exponent between 1e-4 and 1e7, no trailing zeros; "-" for NaN.
 [[nodiscard]] std::string number_text(double value, int digits = 3);
@@ -14,4 +14,4 @@ namespace mpm::daemon {
 /// True where clock_text() writes a date.
 [[nodiscard]] bool is_date(double seconds);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -1,8 +1,8 @@
-#include "daemon/report/signal_names.hpp"
+#include "daemon/report/diagnosis/signal_names.hpp"
 
-#include "daemon/report/number_text.hpp"
+#include "daemon/report/diagnosis/number_text.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 std::string with_unit(double value, const std::string& unit) {
@@ -59,4 +59,4 @@ std::string SignalNames::in_source(double value, const Subject& subject) const {
   return with_unit(value, source_unit(subject));
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -5,7 +5,7 @@
 #include "config/unit_config.hpp"
 #include "core/identify/diagnosis.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// Tags and engineering units for the indices of a diagnosis. Inputs beyond the model's own are the
 /// aux signals that the extended model takes.
@@ -35,4 +35,4 @@ class SignalNames {
   std::vector<int> new_inputs_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

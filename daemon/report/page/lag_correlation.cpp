@@ -1,10 +1,10 @@
-#include "daemon/report/lag_correlation.hpp"
+#include "daemon/report/page/lag_correlation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 constexpr std::size_t kOrder = 20;
@@ -102,4 +102,4 @@ LagCorrelation lag_correlation(const std::vector<double>& input,
   return result;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

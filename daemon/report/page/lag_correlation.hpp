@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// How a residual goes with an input some samples earlier.
 struct LagCorrelation {
@@ -18,4 +18,4 @@ struct LagCorrelation {
                                              const std::vector<double>& residual, int first_lag,
                                              int last_lag);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -1,4 +1,4 @@
-#include "daemon/report/model_views.hpp"
+#include "daemon/report/page/model_views.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 
 #include "core/model/linear_model.hpp"
 #include "core/model/static_blocks.hpp"
-#include "daemon/report/signal_names.hpp"
+#include "daemon/report/diagnosis/signal_names.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 constexpr int kPoints = 300;          // of a step response
@@ -311,4 +311,4 @@ std::vector<CurveView> curve_views(const DiagnosisRun& run) {
   return curves;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

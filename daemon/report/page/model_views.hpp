@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "daemon/report/diagnosis_run.hpp"
+#include "daemon/report/diagnosis/diagnosis_run.hpp"
 
 /// What a model does, for comparing the unit file's with the extended one.
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// Answer of one CV to a step of one input from the operating point, per unit of the input.
 struct StepView {
@@ -31,4 +31,4 @@ struct CurveView {
 /// Of every static block and of every channel with a nonlinear state in which the models differ.
 [[nodiscard]] std::vector<CurveView> curve_views(const DiagnosisRun& run);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

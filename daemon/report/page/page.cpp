@@ -1,8 +1,8 @@
-#include "daemon/report/page.hpp"
+#include "daemon/report/page/page.hpp"
 
 #include <string_view>
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 // Written by page/embed.cmake from the files of the same names.
 extern const std::string_view kPageHtml;
@@ -66,4 +66,4 @@ std::string page_html(const nlohmann::ordered_json& data) {
   return page.append(rest);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

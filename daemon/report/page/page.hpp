@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// report.html: one page that needs nothing else, with `data` (of page_data()) inside it.
 [[nodiscard]] std::string page_html(const nlohmann::ordered_json& data);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -1,4 +1,4 @@
-#include "daemon/report/page_data.hpp"
+#include "daemon/report/page/page_data.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,15 +8,15 @@
 #include <numeric>
 
 #include "core/model/linear_model.hpp"
-#include "daemon/report/diagnosis_report.hpp"
-#include "daemon/report/lag_correlation.hpp"
-#include "daemon/report/model_views.hpp"
-#include "daemon/report/number_text.hpp"
-#include "daemon/report/residual_views.hpp"
-#include "daemon/report/signal_names.hpp"
-#include "daemon/report/spectrum.hpp"
+#include "daemon/report/diagnosis/diagnosis_report.hpp"
+#include "daemon/report/diagnosis/number_text.hpp"
+#include "daemon/report/diagnosis/signal_names.hpp"
+#include "daemon/report/page/lag_correlation.hpp"
+#include "daemon/report/page/model_views.hpp"
+#include "daemon/report/page/residual_views.hpp"
+#include "daemon/report/page/spectrum.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -335,4 +335,4 @@ nlohmann::ordered_json page_data(const DiagnosisRun& run) {
   return json;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

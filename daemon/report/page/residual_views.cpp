@@ -1,11 +1,11 @@
-#include "daemon/report/residual_views.hpp"
+#include "daemon/report/page/residual_views.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 }
@@ -95,4 +95,4 @@ std::vector<double> thinned(const std::vector<double>& values, std::size_t every
   return result;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -3,7 +3,7 @@
 #include <vector>
 
 /// Where a residual is large: over time and over the operating range. Unknown values are NaN.
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// Root mean square of the known values; NaN where there is none.
 [[nodiscard]] double rms(const double* values, std::size_t count);
@@ -29,4 +29,4 @@ struct LevelView {
 /// The `every` that keeps `samples` values within `points`; 1 = all.
 [[nodiscard]] std::size_t thinning(std::size_t samples, std::size_t points);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

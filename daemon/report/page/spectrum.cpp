@@ -1,4 +1,4 @@
-#include "daemon/report/spectrum.hpp"
+#include "daemon/report/page/spectrum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 using Complex = std::complex<double>;
@@ -110,4 +110,4 @@ Spectrum welch(const std::vector<double>& values, double sample_time_s) {
   return on_log_scale(power, 1.0 / (static_cast<double>(length) * sample_time_s));
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

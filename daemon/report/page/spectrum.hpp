@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// Power spectral density over frequencies spaced evenly on a log scale.
 struct Spectrum {
@@ -15,4 +15,4 @@ struct Spectrum {
 /// windows with more than a fifth of them are left out. Empty where no window is left.
 [[nodiscard]] Spectrum welch(const std::vector<double>& values, double sample_time_s);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report
