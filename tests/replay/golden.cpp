@@ -38,7 +38,7 @@ struct Case {
   std::string kind;  ///< `verdicts`, `diagnoses` or `recordings`
   std::string name;
   std::string unit;  ///< file in config
-  std::string data;  ///< a scenario, or a recording
+  std::string data;  ///< a scenario, of `scenarios` here or of config, or a recording
   int seed = 0;
   int samples = 0;
   std::string unseen = {};  ///< a second recording, for validation; empty = none
@@ -61,6 +61,13 @@ const std::array kCases = {
     Case{"diagnoses", "sticking_valve", "plants/shell3x3", "sticking_valve", 14, 2400},
     Case{"diagnoses", "unmodelled_input", "plants/shell3x3_ambient", "unmodelled_input", 15, 2400},
     Case{"diagnoses", "two_causes", "plants/shell3x3", "two_causes", 16, 2400},
+    Case{"diagnoses", "wrong_actuator", "plants/shell3x3", "wrong_actuator", 17, 2400},
+    Case{"diagnoses", "wrong_sensor", "plants/shell3x3", "wrong_sensor", 18, 2400},
+    Case{"diagnoses", "slow_and_late", "plants/shell3x3", "slow_and_late", 19, 2400},
+    Case{"diagnoses", "becomes_slow", "plants/shell3x3", "becomes_slow", 20, 1500},
+    Case{"diagnoses", "bent_valve", "plants/shell3x3", "quadratic_valve", 21, 2400},
+    Case{"diagnoses", "two_steps", "plants/shell3x3", "lagged_step", 22, 2400},
+    Case{"diagnoses", "drifting_sensor", "plants/shell3x3", "ramp", 23, 2400},
     Case{"recordings", "heating_lamp", "cases/heating_lamp", "heating_lamp"},
     Case{"recordings", "cascaded_tanks", "cases/cascaded_tanks", "cascaded_tanks", 0, 0,
          "cascaded_tanks_val"},
@@ -75,9 +82,10 @@ void run_or_throw(const std::vector<std::string>& arguments, const TemporaryFold
 std::string unit_file(const Case& item) { return MPM_SOURCE_DIR "/config/" + item.unit + ".yaml"; }
 
 void simulate(const Case& item, const TemporaryFolder& folder) {
-  run_or_throw({"mpmsim", "--config", unit_file(item), "--scenario", item.data, "--seed",
-                std::to_string(item.seed), "--samples", std::to_string(item.samples), "--csv",
-                folder.file("run.csv")},
+  const std::string own = MPM_SOURCE_DIR "/tests/replay/scenarios/" + item.data + ".yaml";
+  run_or_throw({"mpmsim", "--config", unit_file(item), "--scenario",
+                std::filesystem::exists(own) ? own : item.data, "--seed", std::to_string(item.seed),
+                "--samples", std::to_string(item.samples), "--csv", folder.file("run.csv")},
                folder);
 }
 
