@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
@@ -11,6 +9,7 @@
 
 #include "config/load_unit.hpp"
 #include "daemon/files/csv/csv_reader.hpp"
+#include "tests/cases/recordings.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {
@@ -127,33 +126,13 @@ const std::vector<Case>& cases() {
   return kCases;
 }
 
-/// The recordings of one folder, cut to the cases' needs; empty where there are none.
-class Recordings {
- public:
-  Recordings() {
-    const char* set = std::getenv("MPM_DATA_DIR");
-    const std::string folder = set != nullptr ? set : kSource + "/../shared/data";
-    if (!std::filesystem::is_directory(folder)) {
-      problem_ = "no recordings in " + folder + "; MPM_DATA_DIR names their folder";
-      return;
-    }
-    const std::string command = "PYTHONDONTWRITEBYTECODE=1 python3 '" + kSource +
-                                "/docs/cases/prepare.py' '" + folder + "' '" + cut_.file("") + "'";
-    if (std::system(command.c_str()) != 0) problem_ = "not to be cut: " + command;
-  }
-
-  /// The cut recording's file; nothing, and a loud word, where it is not there.
-  [[nodiscard]] std::optional<std::string> find(const std::string& name) const {
-    const std::string file = cut_.file(name + ".csv");
-    if (std::filesystem::exists(file)) return file;
-    WARN("SKIPPED: " << name << ": " << (problem_.empty() ? "not in the folder" : problem_));
-    return std::nullopt;
-  }
-
- private:
-  TemporaryFolder cut_;
-  std::string problem_;
-};
+/// The cut recording's file; nothing, and a loud word, where it is not there.
+std::optional<std::string> find(const Recordings& recordings, const std::string& name) {
+  std::string file = recordings.find(name);
+  if (!file.empty()) return file;
+  WARN(recordings.skipped(name));
+  return std::nullopt;
+}
 
 bool is_about(const nlohmann::json& finding, const Named& named) {
   const auto matches = [&finding](const char* key, const std::string& wanted) {
@@ -202,7 +181,7 @@ TEST_CASE("The cases' recordings are read to the last row") {
     const config::LoadResult unit =
         config::load_unit(kSource + "/config/cases/" + one.unit + ".yaml");
     REQUIRE(unit.findings.empty());
-    const std::optional<std::string> file = recordings.find(one.recording);
+    const std::optional<std::string> file = find(recordings, one.recording);
     if (!file) continue;
     files::CsvReader reader(*file, unit.config);
     Frame frame;
@@ -221,14 +200,14 @@ TEST_CASE("A measured plant's fault is named and its repair carries over") {
   const Recordings recordings;
   for (const Case& one : cases()) {
     CAPTURE(one);
-    const std::optional<std::string> file = recordings.find(one.recording);
+    const std::optional<std::string> file = find(recordings, one.recording);
     if (!file) continue;
     const TemporaryFolder folder;
     std::vector<std::string> command = {
         "mpm",    "diagnose", "--config", kSource + "/config/cases/" + one.unit + ".yaml",
         "--data", *file,      "--out",    folder.file("report")};
     if (!one.unseen.empty()) {
-      const std::optional<std::string> unseen = recordings.find(one.unseen);
+      const std::optional<std::string> unseen = find(recordings, one.unseen);
       if (!unseen) continue;
       command.insert(command.end(), {"--validate", *unseen});
     }

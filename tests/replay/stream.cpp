@@ -10,24 +10,14 @@
 #include <sstream>
 #include <vector>
 
+#include "tests/replay/text_hash.hpp"
+
 namespace mpm::test {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kEvery = 300;  // samples
-
-// FNV-1a.
-std::string hash_of(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : text) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 1099511628211ULL;
-  }
-  std::array<char, 17> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(hash));
-  return digits.data();
-}
 
 std::string channel_of(const Json& record) {
   return record["mv"].get<std::string>() + " -> " + record["cv"].get<std::string>();

@@ -1,0 +1,89 @@
+#include "core/identify/causes/step_moments.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr Index kRows = 500;
+
+/// Coloured noise of variance 1 in its innovations, and `added`.
+test::KnownCv residual_with(const VectorXd& added, std::uint64_t stream) {
+  const double a = 0.8;
+  return test::known_cv(test::autoregressive(test::white(stream, kRows), a) + added,
+                        VectorXd::Constant(1, a));
+}
+
+VectorXd step(Index onset, double size, double time_constant = 0.0) {
+  return VectorXd::NullaryExpr(kRows, [&](Index k) {
+    if (k < onset) return 0.0;
+    const double since = static_cast<double>(k - onset);
+    return time_constant > 0.0 ? size * (1.0 - std::exp(-since / time_constant)) : size;
+  });
+}
+
+// Hidden by the test at a row that it knows. Whitened by 1 - 0.8 q^-1, a step of 8 is a pulse of 8
+// beside noise of 1.
+TEST_CASE("the row of a hidden step comes first") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto onset = static_cast<Index>(40 + 20 * seed);
+    CAPTURE(seed, onset);
+    const test::KnownCv cv = residual_with(step(onset, 8.0), seed);
+    const std::vector<Index> moments = step_moments(cv.data, cv.fit, 0.0, 3);
+    REQUIRE(moments.size() == 3);
+    CHECK(moments[0] == onset);
+    // Down counts as much as up.
+    const test::KnownCv down = residual_with(step(onset, -8.0), seed);
+    CHECK(step_moments(down.data, down.fit, 0.0, 1) == std::vector<Index>{onset});
+  }
+}
+
+// Whitened, a lagged step has no edge: what is told is where, to within a part of its lag.
+TEST_CASE("the row of a lagged step is found where its lag is known") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto onset = static_cast<Index>(60 + 15 * seed);
+    CAPTURE(seed, onset);
+    const test::KnownCv cv = residual_with(step(onset, 25.0, 12.0), seed);
+    const std::vector<Index> moments = step_moments(cv.data, cv.fit, 12.0, 2);
+    REQUIRE_FALSE(moments.empty());
+    CHECK(std::abs(moments[0] - onset) <= 4);
+  }
+}
+
+// White noise and two steps: the gain of a step from row k on is (sum of the rest)^2 / its length,
+// by least squares. Here by brute force over all rows.
+TEST_CASE("without a noise model the moments are those of a least-squares step") {
+  test::KnownCv cv = test::known_cv(test::white(7, 200), VectorXd());
+  double best = 0.0;
+  Index best_row = 0;
+  for (Index k = 5; k + 5 < 200; ++k) {
+    const double gain = std::pow(cv.fit.residual.tail(200 - k).sum(), 2) / double(200 - k);
+    if (gain > best) best = gain, best_row = k;
+  }
+  CHECK(step_moments(cv.data, cv.fit, 0.0, 1) == std::vector<Index>{best_row});
+}
+
+TEST_CASE("moments are as many as asked for, apart, and not at the ends") {
+  const test::KnownCv cv = residual_with(step(250, 8.0), 3);
+  const std::vector<Index> moments = step_moments(cv.data, cv.fit, 0.0, 8);
+  REQUIRE(moments.size() == 8);
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    CHECK(moments[i] >= 5);
+    CHECK(moments[i] + 5 < kRows);
+    for (std::size_t j = 0; j < i; ++j) CHECK(std::abs(moments[i] - moments[j]) >= 4);
+  }
+  const test::KnownCv silent = test::known_cv(VectorXd::Zero(100), VectorXd());
+  CHECK(step_moments(silent.data,
+                     {silent.fit.cv, {}, {}, silent.fit.residual, silent.fit.innovations, 1.0}, 0.0,
+                     8)
+            .empty());
+}
+
+}  // namespace
+}  // namespace mpm
