@@ -2,9 +2,10 @@
 
 #include <cstdio>
 
+#include "core/identify/causes/cause.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
-#include "daemon/report/diagnosis/number_text.hpp"
-#include "daemon/report/diagnosis/signal_names.hpp"
+#include "daemon/report/diagnosis/names_of.hpp"
 
 namespace mpm::report {
 namespace {
@@ -15,35 +16,27 @@ Json tag_or_null(const std::string& tag) { return tag.empty() ? Json(nullptr) : 
 
 /// Keys that say what a finding or a rival is about.
 Json subject_json(const Subject& subject, const SignalNames& names) {
+  const Place& place = subject.place;
   // What a model leaves out may be an input of other channels of it: then both keys name it.
-  const bool by_tag = subject.aux >= 0 || subject.cause == Cause::kUnmodelledInput;
+  const bool by_tag = place.aux >= 0 || subject.cause->names_its_source();
   return {
-      {"cause", name_of(subject.cause)},
-      {"cv", tag_or_null(subject.cv >= 0 ? names.cv(subject.cv) : "")},
-      {"mv", tag_or_null(subject.input >= 0 && subject.aux < 0 ? names.input(subject.input) : "")},
-      {"tag", tag_or_null(by_tag ? names.source(subject) : "")}};
+      {"cause", subject.cause->name().text},
+      {"cv", tag_or_null(place.cv >= 0 ? names.cv(place.cv).tag : "")},
+      {"mv", tag_or_null(place.input >= 0 && place.aux < 0 ? names.input(place.input).tag : "")},
+      {"tag", tag_or_null(by_tag ? names.source(place).tag : "")}};
 }
 
-/// What the contract calls the word that goes with a cause.
-const char* kind_key(Cause cause) {
-  switch (cause) {
-    case Cause::kOutputDisturbance:
-      return "shape";
-    case Cause::kStateNonlinearity:
-      return "term";
-    default:
-      return "kind";
-  }
+void add_kind(const Cause& cause, Json& json) {
+  if (*cause.kind() != '\0') json[cause.name().kind_key] = cause.kind();
 }
 
 Json parameters_json(const Finding& finding) {
+  const Cause& cause = *finding.subject.cause;
   Json json = Json::object();
-  const Subject& subject = finding.subject;
-  if (!subject.kind.empty()) json[kind_key(subject.cause)] = subject.kind;
-  for (const Parameter& parameter : finding.parameters) json[parameter.name] = parameter.value;
-  const bool wants_onset =
-      subject.cause == Cause::kOutputDisturbance || subject.cause == Cause::kNoise;
-  if (wants_onset && finding.onset_s && !json.contains("onset")) json["onset"] = *finding.onset_s;
+  add_kind(cause, json);
+  for (const Parameter& parameter : finding.parameters) json[parameter.name()] = parameter.value;
+  if (cause.has_onset_parameter() && finding.onset_s && !json.contains("onset"))
+    json["onset"] = *finding.onset_s;
   return json;
 }
 
@@ -53,7 +46,7 @@ Json interval_json(const Parameter& parameter) {
 
 Json rival_json(const DiagnosisRun& run, const Rival& rival, const SignalNames& names) {
   Json json = subject_json(rival.subject, names);
-  if (!rival.subject.kind.empty()) json[kind_key(rival.subject.cause)] = rival.subject.kind;
+  add_kind(*rival.subject.cause, json);
   json["worse"] = rival.worse;
   json["inseparable"] = rival.inseparable;
   json["text"] = rival_text(run, rival);
@@ -61,14 +54,16 @@ Json rival_json(const DiagnosisRun& run, const Rival& rival, const SignalNames& 
 }
 
 Json finding_json(const DiagnosisRun& run, const Finding& finding) {
-  const SignalNames names(run.unit, run.diagnosis);
+  const SignalNames names = names_of(run);
   Json json = subject_json(finding.subject, names);
+  json["title"] = finding.subject.cause->name().title;
   json["parameters"] = parameters_json(finding);
   json["interval"] = Json::object();
   json["units"] = Json::object();
   for (const Parameter& parameter : finding.parameters) {
-    json["interval"][parameter.name] = interval_json(parameter);
-    json["units"][parameter.name] = parameter_unit(run, finding.subject, parameter.name);
+    json["interval"][parameter.name()] = interval_json(parameter);
+    json["units"][parameter.name()] =
+        names.unit_text(parameter.quantity->unit, finding.subject.place);
   }
   json["confidence"] = finding.confidence;
   json["onset"] = finding.onset_s ? Json(*finding.onset_s) : Json(nullptr);
@@ -106,32 +101,32 @@ Json scores_json(const DiagnosisRun& run) {
 }
 
 Json channels_json(const DiagnosisRun& run) {
-  const SignalNames names(run.unit, run.diagnosis);
+  const SignalNames names = names_of(run);
   Json json = Json::array();
   for (const ChannelEstimate& channel : run.diagnosis.channels) {
-    Json entry{{"cv", names.cv(channel.cv)}, {"mv", names.input(channel.input)}};
-    const auto add = [&entry](const char* name, const Parameter& parameter) {
-      entry["parameters"][name] = parameter.value;
-      entry["interval"][name] = interval_json(parameter);
-    };
-    add("gain_ratio", channel.gain_ratio);
-    add("time_constant_ratio", channel.time_constant_ratio);
-    add("dead_time_error", channel.dead_time_error);
+    Json entry{{"cv", names.cv(channel.cv).tag}, {"mv", names.input(channel.input).tag}};
+    for (const Parameter* parameter :
+         {&channel.gain_ratio, &channel.time_constant_ratio, &channel.dead_time_error}) {
+      entry["parameters"][parameter->name()] = parameter->value;
+      entry["interval"][parameter->name()] = interval_json(*parameter);
+    }
     json.push_back(std::move(entry));
   }
   return json;
 }
 
 Json unexplained_json(const DiagnosisRun& run) {
-  const SignalNames names(run.unit, run.diagnosis);
+  const SignalNames names = names_of(run);
   Json json = Json::array();
-  for (const Unexplained& left : run.diagnosis.unexplained)
-    json.push_back({{"cv", names.cv(left.cv)},
-                    {"mv", tag_or_null(left.input >= 0 ? names.input(left.input) : "")},
-                    {"manner", left.manner.empty() ? Json(nullptr) : Json(left.manner)},
+  for (const Unexplained& left : run.diagnosis.unexplained) {
+    const Place& place = left.subject.place;
+    json.push_back({{"cv", names.cv(place.cv).tag},
+                    {"mv", tag_or_null(place.input >= 0 ? names.input(place.input).tag : "")},
+                    {"manner", left.subject.cause->kind()},
                     {"p_value", left.p_value},
                     {"share", left.share},
                     {"text", unexplained_text(run, left)}});
+  }
   return json;
 }
 
@@ -156,14 +151,15 @@ Json closed_loop_json(const DiagnosisRun& run) {
 }
 
 std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
-  std::string text = SignalNames(run.unit, run.diagnosis).subject(finding.subject);
+  const SignalNames names = names_of(run);
+  std::string text = names.subject(finding.subject);
   text +=
       "  (confidence " +
       (finding.confidence > 0.999 ? std::string("> 0.999") : number_text(finding.confidence, 2)) +
       ")\n     " + explain(run, finding) + '\n';
   for (const Parameter& parameter : finding.parameters) {
-    const std::string unit = parameter_unit(run, finding.subject, parameter.name);
-    text += "     " + parameter.name + " " + number_text(parameter.value) + "  [" +
+    const std::string unit = names.unit_text(parameter.quantity->unit, finding.subject.place);
+    text += "     " + parameter.name() + " " + number_text(parameter.value) + "  [" +
             interval_text(parameter.low, parameter.high) + "]" + (unit.empty() ? "" : " " + unit) +
             '\n';
   }
@@ -253,7 +249,7 @@ std::string to_text(const DiagnosisRun& run) {
     text += "\n  " + std::to_string(++number) + ". " + finding_text(run, finding);
   for (const Finding& finding : diagnosis.refused)
     text += "\n  refused, for its repair did not carry over: " +
-            SignalNames(run.unit, run.diagnosis).subject(finding.subject) + '\n';
+            names_of(run).subject(finding.subject) + '\n';
   for (const Unexplained& left : diagnosis.unexplained)
     text += "\n  " + unexplained_text(run, left) + '\n';
   if (!diagnosis.scores.empty()) text += score_table(run);

@@ -19,10 +19,6 @@ namespace mpm::report {
 [[nodiscard]] std::string rival_text(const DiagnosisRun& run, const Rival& rival);
 [[nodiscard]] std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left);
 
-/// What a value of the parameter means: unit, or "x model". Empty where unknown.
-[[nodiscard]] std::string parameter_unit(const DiagnosisRun& run, const Subject& subject,
-                                         const std::string& parameter);
-
 [[nodiscard]] const char* name_of(DiagnosisVerdict verdict);
 
 }  // namespace mpm::report

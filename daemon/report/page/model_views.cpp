@@ -6,7 +6,7 @@
 
 #include "core/model/linear_model.hpp"
 #include "core/model/static_blocks.hpp"
-#include "daemon/report/diagnosis/signal_names.hpp"
+#include "daemon/report/diagnosis/names_of.hpp"
 
 namespace mpm::report {
 namespace {
@@ -174,9 +174,9 @@ void add_input_curve(const DiagnosisRun& run, int input, const std::string& titl
   curve.before = sweep(before, at_rest, curve.x);
   curve.after = sweep(after, at_rest, curve.x);
   if (curve.before == curve.after) return;
-  const SignalNames names(run.unit, run.diagnosis);
+  const SignalNames names = names_of(run);
   curve.title = title;
-  curve.x_label = names.input(input);
+  curve.x_label = names.input(input).tag;
   curve.y_label = "acts like";
   curves.push_back(std::move(curve));
 }
@@ -195,7 +195,7 @@ void add_output_curve(const DiagnosisRun& run, int cv, std::vector<CurveView>& c
     curve.after.push_back(apply_output_block(block(extended), at_rest, x - at_rest));
   }
   if (curve.before == curve.after || curve.x.front() == curve.x.back()) return;
-  const std::string& tag = SignalNames(run.unit, run.diagnosis).cv(cv);
+  const std::string& tag = names_of(run).cv(cv).tag;
   curve.title = "what " + tag + " reads";
   curve.x_label = tag + " of the linear part";
   curve.y_label = tag;
@@ -237,10 +237,10 @@ void add_steady_curve(const DiagnosisRun& run, int cv, int input, std::vector<Cu
   if (curve.x.front() == curve.x.back()) return;
   curve.before = steady_curve(run.unit.model, cv, input, curve.x);
   curve.after = steady_curve(extended, cv, input, curve.x);
-  const SignalNames names(run.unit, run.diagnosis);
-  curve.title = names.cv(cv) + " at rest";
-  curve.x_label = names.input(input);
-  curve.y_label = names.cv(cv);
+  const SignalNames names = names_of(run);
+  curve.title = names.cv(cv).tag + " at rest";
+  curve.x_label = names.input(input).tag;
+  curve.y_label = names.cv(cv).tag;
   curves.push_back(std::move(curve));
 }
 
@@ -289,19 +289,20 @@ std::vector<StepView> step_views(const DiagnosisRun& run, int cv) {
 std::vector<CurveView> curve_views(const DiagnosisRun& run) {
   const ModelSpec& model = run.unit.model;
   const ModelSpec& extended = run.diagnosis.extended;
-  const SignalNames names(run.unit, run.diagnosis);
+  const SignalNames names = names_of(run);
   std::vector<CurveView> curves;
   for (int input = 0; input < extended.input_count; ++input)
-    add_input_curve(run, input, "what " + names.input(input) + " does",
+    add_input_curve(run, input, "what " + names.input(input).tag + " does",
                     block_of(model.input_blocks, input), block_of(extended.input_blocks, input),
                     curves);
   for (const ChannelSpec& channel : extended.channels) {
     const ChannelSpec* own = channel_of(model, channel.cv, channel.input);
     const std::optional<InputBlock> before = own == nullptr ? std::nullopt : own->input_block;
     if (before || channel.input_block)
-      add_input_curve(run, channel.input,
-                      "what " + names.input(channel.input) + " does to " + names.cv(channel.cv),
-                      before, channel.input_block, curves);
+      add_input_curve(
+          run, channel.input,
+          "what " + names.input(channel.input).tag + " does to " + names.cv(channel.cv).tag, before,
+          channel.input_block, curves);
   }
   for (int cv = 0; cv < extended.cv_count; ++cv) {
     add_output_curve(run, cv, curves);

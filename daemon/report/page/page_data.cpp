@@ -8,9 +8,10 @@
 #include <numeric>
 
 #include "core/model/linear_model.hpp"
+#include "core/text/number_text.hpp"
+#include "daemon/report/diagnosis/clock_text.hpp"
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
-#include "daemon/report/diagnosis/number_text.hpp"
-#include "daemon/report/diagnosis/signal_names.hpp"
+#include "daemon/report/diagnosis/names_of.hpp"
 #include "daemon/report/page/lag_correlation.hpp"
 #include "daemon/report/page/model_views.hpp"
 #include "daemon/report/page/residual_views.hpp"
@@ -230,10 +231,8 @@ Json correlation_json(const std::string& tag, const Series& input, const CvSerie
 Json steps_json(const DiagnosisRun& run, const SignalNames& names, int cv) {
   Json json = Json::array();
   for (const StepView& view : step_views(run, cv)) {
-    Subject from;
-    from.input = view.input;
-    json.push_back({{"input", names.input(view.input)},
-                    {"input_unit", names.source_unit(from)},
+    json.push_back({{"input", names.input(view.input).tag},
+                    {"input_unit", names.input(view.input).unit},
                     {"size", number_text(view.size)},
                     {"step", view.spacing_s},
                     {"before", rounded(view.before)},
@@ -247,12 +246,12 @@ Json steps_json(const DiagnosisRun& run, const SignalNames& names, int cv) {
 /// True where a finding is about this CV, or about all of them.
 bool concerns(const Diagnosis& diagnosis, int cv) {
   const auto here = [cv](const Finding& each) {
-    return each.subject.cv == cv || each.subject.cv < 0;
+    return each.subject.place.cv == cv || each.subject.place.cv < 0;
   };
   return std::any_of(diagnosis.findings.begin(), diagnosis.findings.end(), here) ||
          std::any_of(diagnosis.refused.begin(), diagnosis.refused.end(), here) ||
          std::any_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(),
-                     [cv](const Unexplained& each) { return each.cv == cv; });
+                     [cv](const Unexplained& each) { return each.subject.place.cv == cv; });
 }
 
 int longest_lag(const DiagnosisRun& run, std::size_t samples) {
@@ -262,7 +261,7 @@ int longest_lag(const DiagnosisRun& run, std::size_t samples) {
 }
 
 Json cv_json(const DiagnosisRun& run, const std::vector<DataSet>& sets, int cv) {
-  const SignalNames names(run.unit, run.diagnosis);
+  const SignalNames names = names_of(run);
   const config::CvSignal& signal = run.unit.cv.at(static_cast<std::size_t>(cv));
   const bool found = concerns(run.diagnosis, cv);
   Json json{{"tag", signal.tag},
@@ -280,25 +279,21 @@ Json cv_json(const DiagnosisRun& run, const std::vector<DataSet>& sets, int cv) 
   json["correlations"] = Json::array();
   const int lags = longest_lag(run, series.measured.size());
   for (int input = 0; input < run.diagnosis.extended.input_count; ++input) {
-    Subject from;
-    from.input = input;
     Series values = input_series(run, shown, input);
     drop(values, shown.settled);
     json["levels"].push_back(
-        level_json(names.input(input), names.source_unit(from), values, series));
-    json["correlations"].push_back(correlation_json(names.input(input), values, series, lags));
+        level_json(names.input(input).tag, names.input(input).unit, values, series));
+    json["correlations"].push_back(correlation_json(names.input(input).tag, values, series, lags));
   }
   json["steps"] = found ? steps_json(run, names, cv) : Json::array();
   return json;
 }
 
 Json inputs_json(const DiagnosisRun& run, const std::vector<DataSet>& sets) {
-  const SignalNames names(run.unit, run.diagnosis);
+  const SignalNames names = names_of(run);
   Json json = Json::array();
   for (int input = 0; input < run.diagnosis.extended.input_count; ++input) {
-    Subject from;
-    from.input = input;
-    Json entry{{"tag", names.input(input)}, {"unit", names.source_unit(from)}};
+    Json entry{{"tag", names.input(input).tag}, {"unit", names.input(input).unit}};
     entry["new"] = input >= run.unit.model.input_count;
     entry["sets"] = Json::array();
     for (const DataSet& set : sets)
