@@ -7,13 +7,31 @@
 
 /// The table of causes, a row each; the file of that name holds all there is to it. What is
 /// proposed, said, drawn and scored goes through this table alone.
-#define MPM_CAUSES(row)                                                                        \
-  row(gain) row(dead_time) row(time_constant) row(dynamics) row(input_scale) row(output_scale) \
-      row(input_polynomial) row(input_saturation) row(deadband) row(stiction)                  \
-          row(output_saturation) row(unmodelled_input) row(step_disturbance)                   \
-              row(drift_disturbance) row(periodic_disturbance) row(noise) row(cubic_stiffness) \
-                  row(square_root_outflow) row(unnamed_product) row(unnamed_swing)             \
-                      row(unnamed_direction)
+// clang-format off
+#define MPM_CAUSES(row)      \
+  row(gain)                  \
+  row(dead_time)             \
+  row(time_constant)         \
+  row(dynamics)              \
+  row(input_scale)           \
+  row(output_scale)          \
+  row(input_polynomial)      \
+  row(input_saturation)      \
+  row(deadband)              \
+  row(stiction)              \
+  row(output_saturation)     \
+  row(unmodelled_input)      \
+  row(step_disturbance)      \
+  row(drift_disturbance)     \
+  row(periodic_disturbance)  \
+  row(noise)                 \
+  row(cubic_stiffness)       \
+  row(square_root_outflow)   \
+  row(coulomb_friction)      \
+  row(unnamed_product)       \
+  row(unnamed_swing)         \
+  row(unnamed_direction)
+// clang-format on
 
 namespace mpm::causes {
 

@@ -13,13 +13,14 @@ bool StateNonlinearity::settles_channel(const Effect& mine) const {
   return mine.find(kGainRatio) != nullptr;
 }
 
-std::vector<StatePlace> StateNonlinearity::state_places(const Outlook& outlook) {
+std::vector<StatePlace> StateNonlinearity::state_places(const Outlook& outlook, bool integrating) {
   const Recording& recording = outlook.recording();
   std::vector<StatePlace> places;
   for (const ChannelSpec& channel : outlook.model().channels) {
     if (channel.input >= outlook.inputs()) continue;
     const auto* transfer = std::get_if<TransferFunction>(&channel.dynamics);
-    if ((transfer != nullptr && transfer->integrating) || !has_own_gain(channel)) continue;
+    if (!has_own_gain(channel)) continue;
+    if (transfer != nullptr && transfer->integrating && !integrating) continue;
     const std::optional<Spread> input = spread_of(recording.inputs.col(channel.input));
     const std::optional<Spread> cv = spread_of(recording.cvs.col(channel.cv));
     if (input && cv) places.push_back({&channel, *input, *cv});

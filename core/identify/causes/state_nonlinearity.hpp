@@ -23,8 +23,9 @@ class StateNonlinearity : public Cause {
   [[nodiscard]] bool settles_channel(const Effect& mine) const override;
 
  protected:
-  /// The model's channels that settle and are not tanks yet.
-  [[nodiscard]] static std::vector<StatePlace> state_places(const Outlook& outlook);
+  /// The model's channels that are not tanks yet, those that never settle too if asked for.
+  [[nodiscard]] static std::vector<StatePlace> state_places(const Outlook& outlook,
+                                                            bool integrating = false);
   /// What a term is picked from.
   [[nodiscard]] static double members_cost(const Outlook& outlook);
 };

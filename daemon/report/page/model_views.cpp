@@ -195,7 +195,7 @@ void add_output_curve(const DiagnosisRun& run, int cv, std::vector<CurveView>& c
     curve.after.push_back(apply_output_block(block(extended), at_rest, x - at_rest));
   }
   if (curve.before == curve.after || curve.x.front() == curve.x.back()) return;
-  const std::string& tag = names_of(run).cv(cv).tag;
+  const std::string tag = names_of(run).cv(cv).tag;
   curve.title = "what " + tag + " reads";
   curve.x_label = tag + " of the linear part";
   curve.y_label = tag;
