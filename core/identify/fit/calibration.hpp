@@ -1,10 +1,56 @@
 #pragma once
 
-/// Numbers that decide how a fit goes, none of which a user sets. Shares and counts are judged from
-/// what they mean; where they were tried, any value within a factor of two does.
+#include <Eigen/Core>
+
+/// Numbers that decide how a fit goes, none of which a user sets. Judged from what they mean, and
+/// unchanged since `mpm_hidden` was first scored (docs/validation.md); the priors are with the
+/// causes.
 namespace mpm {
 
+// Gauss-Newton.
+inline constexpr int kMostHalvings = 3;            ///< of a step
+inline constexpr double kWorthAnotherStep = 0.02;  ///< fall of the misfit, -2 ln of likelihood
+inline constexpr double kNoMovement = 1e-4;        ///< prior s.d.
+inline constexpr double kLeastVariance = 1e-30;    ///< of innovations: an exact fit stays finite
+
+// Small errors that are fitted beside any effect.
+inline constexpr double kSmallRatioStep = 0.01;     ///< of finite differences, of gain and time
+inline constexpr double kSmallDeadTimeStep = 0.25;  ///< samples
+/// A CV's level is uncertain by its misfit, at least by this share of what it moves.
+inline constexpr double kLeastLevel = 1e-6;
+/// Its first state by its first errors, at least by this share, and by so many of its moves in a
+/// row: noise alone is off by a few.
+inline constexpr double kLeastFirstState = 1e-3;
+inline constexpr double kMovesOfNoise = 5.0;
+/// Rows in which a jump looks like a shock of the noise.
+inline constexpr Eigen::Index kShockRows = 3;
+
+// Rows' weights (row_weights.hpp).
+inline constexpr Eigen::Index kHalfWindow = 150;  ///< rows
+inline constexpr Eigen::Index kFewestInWindow = 30;
+inline constexpr double kClip = 3.0;      ///< s.d. beyond which a row counts less
+inline constexpr double kQuietest = 0.1;  ///< of the usual s.d.: no stretch weighs more
+
+// A plateau (plateau.hpp).
+inline constexpr std::size_t kFewestForPlateau = 100;  ///< known values
+inline constexpr std::size_t kPlateauRows = 8;         ///< that share a value, at least
+inline constexpr double kPlateauShare = 0.005;         ///< of the samples, at least
+inline constexpr std::size_t kPlateauOthers = 10;      ///< values next to it
+inline constexpr std::size_t kPlateauExcess = 5;       ///< times as many as share any of those
 /// Two values of a plateau differ by no more than this share of what the CV moves.
 inline constexpr double kPlateauTie = 1e-9;
+
+// The first state (initial_state.hpp).
+inline constexpr double kOtherDecay = 1.2;        ///< time constants that differ by this ratio
+inline constexpr int kFirstRows = 5;              ///< whose errors say how far off it is
+inline constexpr Eigen::Index kDecayRows = 20;    ///< that the decays are fitted to, at least
+inline constexpr Eigen::Index kDecayQuarter = 4;  ///< and at most this part of the data
+
+// Step responses of a state space (channel_edit.hpp).
+inline constexpr double kSettledShare = 1e-6;  ///< still to come
+inline constexpr int kLongestResponse = 5000;  ///< samples
+
+/// Of a sample: two moments are the same.
+inline constexpr double kSameMoment = 1e-6;
 
 }  // namespace mpm

@@ -6,6 +6,7 @@
 #include <complex>
 #include <type_traits>
 
+#include "core/identify/fit/calibration.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {
@@ -157,11 +158,10 @@ double slowest_of_cv_s(const ModelSpec& model, int cv, double least_samples) {
 
 ModelSpec in_channels(const ModelSpec& model) {
   if (!model.state_space) return model;
-  constexpr double kSettled = 1e-6;
   ModelSpec result = model;
   result.state_space.reset();
   const LinearModel simulator(model);
-  const int length = simulator.settling_samples(kSettled, 5000) + 2;
+  const int length = simulator.settling_samples(kSettledShare, kLongestResponse) + 2;
   for (int cv = 0; cv < model.cv_count; ++cv) {
     for (int input = 0; input < model.input_count; ++input) {
       const Eigen::VectorXd pulse = simulator.impulse_response(cv, input, length);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/problem.hpp"
 
 namespace mpm {
@@ -11,9 +12,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMostHalvings = 3;
-constexpr double kNoFall = 0.02;      ///< of the misfit, that is worth another step
-constexpr double kNoMovement = 1e-4;  ///< prior s.d.
 constexpr double kTiny = 1e-300;
 
 double prior_units(const Coordinate& c) { return (c.value - c.prior_mean) / c.prior_sd; }
@@ -67,7 +65,7 @@ class Problem::Fitting {
       origin = effects_;
       origin_states = states_;
       const double movement = move();
-      if (movement < kNoMovement || (iteration > 1 && before - misfit < kNoFall)) break;
+      if (movement < kNoMovement || (iteration > 1 && before - misfit < kWorthAnotherStep)) break;
     }
     // A start that is no model at all stays at infinite cost.
     for (const Effect& effect : best.effects) best.cost += effect.search_cost;

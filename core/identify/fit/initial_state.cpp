@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 
 namespace mpm {
@@ -29,16 +30,15 @@ std::vector<double> decay_times(const ModelSpec& model, int cv) {
   std::vector<double> picked;
   if (all.empty()) return picked;
   for (const std::size_t place : {std::size_t{0}, all.size() / 2, all.size() - 1})
-    if (picked.empty() || all[place] > 1.2 * picked.back()) picked.push_back(all[place]);
+    if (picked.empty() || all[place] > kOtherDecay * picked.back()) picked.push_back(all[place]);
   return picked;
 }
 
 double first_error(const Eigen::Ref<const VectorXd>& simulated,
                    const Eigen::Ref<const VectorXd>& measured) {
-  constexpr int kFew = 5;
   double sum = 0.0;
   int count = 0;
-  for (Index k = 0; k < measured.size() && count < kFew; ++k) {
+  for (Index k = 0; k < measured.size() && count < kFirstRows; ++k) {
     const double error = measured(k) - simulated(k);
     if (std::isfinite(error)) sum += error * error, ++count;
   }
@@ -50,10 +50,10 @@ VectorXd start_on_data(const Eigen::Ref<const VectorXd>& simulated,
                        const std::vector<double>& decay_times) {
   const double scale = first_error(simulated, measured);
   const auto decays = static_cast<Index>(decay_times.size());
-  const Index rows =
-      std::min(measured.size() / 4,
-               std::max<Index>(20, decays > 0 ? static_cast<Index>(decay_times.back()) : 0));
-  if (!(scale > 0.0) || decays == 0 || rows < 5) return simulated;
+  const Index rows = std::min(
+      measured.size() / kDecayQuarter,
+      std::max<Index>(kDecayRows, decays > 0 ? static_cast<Index>(decay_times.back()) : 0));
+  if (!(scale > 0.0) || decays == 0 || rows < kFirstRows) return simulated;
   const auto decay = [&](Index k, Index i) {
     return std::exp(-static_cast<double>(k) / decay_times[static_cast<std::size_t>(i)]);
   };

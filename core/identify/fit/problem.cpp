@@ -21,7 +21,7 @@ double spread(const VectorXd& values, const VectorXd& known) {
   const double count = std::max(1.0, known.sum());
   const double mean = values.dot(known) / count;
   return std::sqrt(
-      std::max(1e-30, ((values.array() - mean).square() * known.array()).sum() / count));
+      std::max(kLeastVariance, ((values.array() - mean).square() * known.array()).sum() / count));
 }
 
 }  // namespace
@@ -90,7 +90,7 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
   // A level far beyond what the simulation is off by would make any noise look like a wandering
   // one, and a wandering one leaves the level free.
   const double off =
-      std::max(1e-6 * scale, misfit.norm() / std::sqrt(std::max(1.0, data.known.sum())));
+      std::max(kLeastLevel * scale, misfit.norm() / std::sqrt(std::max(1.0, data.known.sum())));
   add({}, VectorXd::Constant(samples, off));
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
     const ChannelSpec& channel = model.channels[c];
@@ -100,16 +100,16 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
       changed.channels[c] = edited(channel, error, model.sample_time_s);
       return (simulator_.cv(changed, cv) - base) / step;
     };
-    constexpr double kStep = 0.01;
     const auto small = [&](const Quantity& what, double sd, const VectorXd& derivative) {
       add({channel.input, &what, sd}, sd * derivative);
     };
-    small(kGainRatio, tolerances_.gain, difference({1.0 + kStep, 1.0, 0.0}, kStep));
+    small(kGainRatio, tolerances_.gain,
+          difference({1.0 + kSmallRatioStep, 1.0, 0.0}, kSmallRatioStep));
     small(kTimeConstantRatio, tolerances_.log_time_constant,
-          difference({1.0, std::exp(kStep), 0.0}, kStep));
+          difference({1.0, std::exp(kSmallRatioStep), 0.0}, kSmallRatioStep));
     if (std::holds_alternative<TransferFunction>(channel.dynamics))
       small(kDeadTimeError, tolerances_.dead_time_samples,
-            difference({1.0, 1.0, 0.25 * model.sample_time_s}, 0.25));
+            difference({1.0, 1.0, kSmallDeadTimeStep * model.sample_time_s}, kSmallDeadTimeStep));
   }
   // A first state that is off by more than it shows would explain whatever one wants.
   // Noise alone is off by a few times what it moves by in a row.
@@ -117,7 +117,8 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
       std::sqrt((misfit.tail(samples - 1) - misfit.head(samples - 1)).squaredNorm() /
                 static_cast<double>(samples));
   const double first =
-      std::max({1e-3 * scale, first_error(base, recording().cvs.col(cv)), 5.0 * moves});
+      std::max({kLeastFirstState * scale, first_error(base, recording().cvs.col(cv)),
+                kMovesOfNoise * moves});
   for (const double decay : decay_times(model, cv))
     add({}, VectorXd::NullaryExpr(samples, [&](Index k) {
           return first * std::exp(-static_cast<double>(k) / decay);
@@ -128,7 +129,6 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
 }
 
 VectorXd Problem::with_shocks(const CvFit& state, const std::vector<Effect>& effects) {
-  constexpr Index kRows = 3;
   VectorXd innovations = state.innovations;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const Effect& effect = effects[i];
@@ -137,7 +137,7 @@ VectorXd Problem::with_shocks(const CvFit& state, const std::vector<Effect>& eff
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     const VectorXd step =
         state.noise.apply(simulate(effects, state.cv) - simulate(others, state.cv));
-    const Index rows = std::min(kRows, samples() - effect.onset);
+    const Index rows = std::min(kShockRows, samples() - effect.onset);
     innovations.segment(effect.onset, rows) += step.segment(effect.onset, rows);
   }
   return innovations;
@@ -211,7 +211,8 @@ void Problem::update(CvFit& state, const VectorXd& simulated, const MatrixXd& nu
   state.innovations = state.noise.apply(state.residual);
   const double variance =
       state.innovations.cwiseAbs2().dot(data.weights) / std::max(1.0, data.rows);
-  state.variance = variance < 1e-30 ? 1e-30 : variance;  // stays NaN where the model is none
+  state.variance =
+      variance < kLeastVariance ? kLeastVariance : variance;  // stays NaN where the model is none
 }
 
 double Problem::cost_with_noise_of(const Fit& fit, const std::vector<Effect>& effects) {

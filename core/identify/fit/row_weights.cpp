@@ -4,14 +4,14 @@
 #include <cmath>
 #include <vector>
 
+#include "core/identify/fit/calibration.hpp"
+
 namespace mpm {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index kHalfWindow = 150;
-constexpr double kClip = 3.0;
 /// Median of |x| of a normal variable, in s.d.
 constexpr double kMedian = 0.6744897501960817;
 
@@ -35,7 +35,8 @@ void reweigh(const Eigen::Ref<const VectorXd>& innovations, VectorXd& weights) {
     const Index end = std::min(rows, centre + kHalfWindow);
     for (Index k = begin; k < end; ++k)
       if (weights(k) > 0.0) window.push_back(std::abs(innovations(k)));
-    scales.push_back(window.size() < 30 ? 0.0 : median(window) / kMedian);
+    scales.push_back(
+        static_cast<Index>(window.size()) < kFewestInWindow ? 0.0 : median(window) / kMedian);
   }
   double usual = 0.0;
   {
@@ -47,7 +48,7 @@ void reweigh(const Eigen::Ref<const VectorXd>& innovations, VectorXd& weights) {
   }
   if (!(usual > 0.0)) return;
   for (double& scale : scales)
-    if (!(scale > 0.1 * usual)) scale = scale > 0.0 ? 0.1 * usual : usual;
+    if (!(scale > kQuietest * usual)) scale = scale > 0.0 ? kQuietest * usual : usual;
   double total = 0.0, count = 0.0;
   for (Index k = 0; k < rows; ++k) {
     if (weights(k) == 0.0) continue;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/initial_state.hpp"
 #include "core/model/disturbance.hpp"
@@ -178,7 +179,7 @@ VectorXd Simulator::cv(const ModelSpec& model, int cv) {
     for (Index k = 0; k < samples; ++k)
       sum(k) +=
           disturbance_at(term, recording_->start_s + static_cast<double>(k) * model.sample_time_s,
-                         1e-6 * model.sample_time_s);
+                         kSameMoment * model.sample_time_s);
   }
   const double origin = model.output_origin(cv);
   const std::optional<OutputBlock>& block = model.output_blocks[static_cast<std::size_t>(cv)];
