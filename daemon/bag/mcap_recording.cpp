@@ -6,6 +6,7 @@
 #include "config/unit_layout.hpp"
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/bag/sample_stream.hpp"
+#include "idl/layout_sample.hpp"
 #include "idl/topic_catalog.hpp"
 
 namespace mpm::bag {
@@ -16,14 +17,6 @@ mcap::WriterOptions options() {
   mcap::WriterOptions options;
   options.chunk_age_ns = std::numeric_limits<std::int64_t>::max();
   return options;
-}
-
-/// Borrows `texts`; `pointers` is the memory of the result.
-dds_sequence_string borrowed(std::vector<std::string>& texts, std::vector<char*>& pointers) {
-  pointers.clear();
-  for (std::string& text : texts) pointers.push_back(text.data());
-  const auto count = static_cast<std::uint32_t>(texts.size());
-  return {count, count, pointers.data(), false};
 }
 
 }  // namespace
@@ -50,16 +43,9 @@ void McapRecording::write_layouts(std::int64_t time_ns) {
   for (std::size_t k = 0; k < kSignalKindCount; ++k) {
     if (!channels_[k]) continue;
     const auto kind = static_cast<SignalKind>(k);
-    std::vector<std::string> units = engineering_units_of(unit_, kind);
-    std::string kind_text = name_of(kind);
-    std::vector<char*> tag_pointers, unit_pointers;
-    mpm_Layout layout{};
-    layout.unit = unit_.unit.data();
-    layout.kind = kind_text.data();
-    layout.sample_time_s = unit_.sample_time_s;
-    layout.tags = borrowed(tags_[k], tag_pointers);
-    layout.engineering_units = borrowed(units, unit_pointers);
-    writer_.write(layouts_, time_ns, time_ns, layouts.encode(layout));
+    const SignalLayout signals{tags_[k], engineering_units_of(unit_, kind)};
+    const idl::LayoutSample layout(unit_.unit, name_of(kind), unit_.sample_time_s, signals);
+    writer_.write(layouts_, time_ns, time_ns, layouts.encode(layout.get()));
   }
 }
 

@@ -16,8 +16,14 @@ forbid core 'dds/|yaml-cpp|spdlog|CLI/|nlohmann|systemd|iostream|fstream|filesys
 forbid config 'dds/|spdlog|CLI/|systemd|idl/|sim/|daemon/|tests/'
 forbid idl 'yaml-cpp|spdlog|CLI/|nlohmann|systemd|config/|sim/|daemon/|tests/'
 forbid sim 'yaml-cpp|dds/|systemd|daemon/|tests/'
-forbid daemon 'yaml-cpp|sim/|tests/'
+forbid daemon 'yaml-cpp|dds/|sim/|tests/'
 for folder in files mcap report; do forbid daemon/$folder 'idl/|mpm\.h|spdlog|systemd'; done
+
+if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \
+  --include='*.hpp' --include='*.cpp'; then
+  echo "Cyclone's names stay in idl" >&2
+  status=1
+fi
 
 # Inside daemon, from the ground up: a folder, and those whose headers it may include besides its own.
 # Whatever stands here may be included only further down. Its first name is the files' namespace.

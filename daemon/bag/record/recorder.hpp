@@ -51,8 +51,8 @@ class Recorder {
   [[nodiscard]] const std::set<std::string>& not_found() const { return not_found_; }
 
  private:
-  void add_reader(const std::string& topic, const dds_topic_descriptor_t& type, const idl::Qos& qos,
-                  const RecordedTopic& description);
+  void add_known(const idl::KnownTopic& topic);
+  void add_reader(idl::RawReader reader, const RecordedTopic& description);
   /// Returns how many samples there were.
   int take();
   void write_all();
