@@ -20,8 +20,8 @@ SignalKind kind_by_name(std::string_view name, bool& known) {
 
 }  // namespace
 
-Contents survey(const std::vector<std::string>& paths,
-                const std::function<bool(const Contents&)>& enough) {
+Contents contents_of(const std::vector<std::string>& paths,
+                     const std::function<bool(const Contents&)>& enough) {
   Contents contents;
   SampleStream stream(paths);
   const auto unit_of = [&](std::string_view name) -> RecordedUnit& {

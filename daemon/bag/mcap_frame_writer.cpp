@@ -1,4 +1,4 @@
-#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/bag/mcap_frame_writer.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -21,8 +21,8 @@ mcap::WriterOptions options() {
 
 }  // namespace
 
-McapRecording::McapRecording(const std::string& path, const config::UnitConfig& unit,
-                             const std::vector<files::Column>& columns)
+McapFrameWriter::McapFrameWriter(const std::string& path, const config::UnitConfig& unit,
+                                 const std::vector<files::Column>& columns)
     : writer_(path, options()), unit_(unit) {
   const SignalCounts counts = unit.counts();
   for (const files::Column& column : columns) {
@@ -38,7 +38,7 @@ McapRecording::McapRecording(const std::string& path, const config::UnitConfig& 
       channels_[k] = writer_.add_channel(sample, topic_of(static_cast<SignalKind>(k)), "cdr");
 }
 
-void McapRecording::write_layouts(std::int64_t time_ns) {
+void McapFrameWriter::write_layouts(std::int64_t time_ns) {
   idl::CdrEncoder<mpm_Layout> layouts;
   for (std::size_t k = 0; k < kSignalKindCount; ++k) {
     if (!channels_[k]) continue;
@@ -49,7 +49,7 @@ void McapRecording::write_layouts(std::int64_t time_ns) {
   }
 }
 
-void McapRecording::write(const Frame& frame) {
+void McapFrameWriter::write(const Frame& frame) {
   // A row that goes back in time keeps its place: it was received after the one before.
   log_time_ns_ = begun_ ? std::max(log_time_ns_, frame.source_time_ns) : frame.source_time_ns;
   if (!begun_) write_layouts(log_time_ns_);
