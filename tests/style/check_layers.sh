@@ -57,11 +57,11 @@ report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
 report files report/diagnosis report/page
 bus report
-bus/watch bus
+bus/watch files/times bus
 bag files/times files files/csv mcap
-bag/record host mcap bag
+bag/record host files/times mcap bag
 bag/replay host mcap bag
-live host files report/diagnosis report bus
+live host files/times files report/diagnosis report bus
 app/commands host files/times files files/csv mcap report/diagnosis report/closed_loop report bus bus/watch bag bag/record bag/replay live
 app host live app/commands
 TABLE
