@@ -14,6 +14,7 @@ constexpr int kStatusDepth = 1024;
 constexpr int kStatusReaderLimit = 262144;
 // Alarm changes per channel that a late joiner gets to see.
 constexpr int kEventDepth = 64;
+constexpr int kForeignDepth = 4096;
 
 Qos reliable(dds_duration_t max_blocking_time) {
   Qos qos(dds_create_qos());
@@ -71,5 +72,12 @@ Qos channel_status_writer_qos() { return transient_local(kStatusDepth, 1); }
 Qos channel_status_reader_qos() { return transient_local_reader(kStatusReaderLimit); }
 Qos alarm_event_writer_qos() { return transient_local(kEventDepth, kEventDepth); }
 Qos alarm_event_reader_qos() { return transient_local_reader(kStatusReaderLimit); }
+
+Qos foreign_reader_qos() {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kForeignDepth);
+  return qos;
+}
 
 }  // namespace mpm::idl

@@ -30,4 +30,8 @@ enum class WriterPace {
 [[nodiscard]] Qos alarm_event_writer_qos();
 [[nodiscard]] Qos alarm_event_reader_qos();
 
+/// A reader of what others write: matches any writer, and drops the oldest samples of an instance
+/// where it cannot follow.
+[[nodiscard]] Qos foreign_reader_qos();
+
 }  // namespace mpm::idl

@@ -16,17 +16,6 @@ namespace {
 constexpr std::size_t kBatch = 256;
 constexpr std::uint32_t kDisposeFlag = 1, kUnregisterFlag = 2;  // of a serdata's statusinfo
 
-InstanceState state_of(const dds_sample_info_t& info) {
-  switch (info.instance_state) {
-    case DDS_IST_NOT_ALIVE_DISPOSED:
-      return InstanceState::kDisposed;
-    case DDS_IST_NOT_ALIVE_NO_WRITERS:
-      return InstanceState::kNoWriters;
-    default:
-      return InstanceState::kAlive;
-  }
-}
-
 void copy(const ddsi_serdata* data, std::vector<std::byte>& bytes) {
   bytes.resize(ddsi_serdata_size(data));
   ddsi_serdata_to_ser(data, 0, bytes.size(), bytes.data());
@@ -101,9 +90,17 @@ static_assert(offsetof(mpm_Sample, unit) == 0 && offsetof(mpm_Layout, unit) == 0
 
 }  // namespace
 
+RawReader::RawReader(const Participant& participant, const KnownTopic& topic)
+    : RawReader(participant, topic.name, *topic.type, topic.reader_qos()) {}
+
+RawReader::RawReader(const Participant& participant, const std::string& topic,
+                     const DiscoveredType& type)
+    : RawReader(participant, topic, *type, foreign_reader_qos()) {}
+
 RawReader::RawReader(const Participant& participant, const std::string& topic,
                      const dds_topic_descriptor_t& type, const Qos& qos)
     : name_(topic),
+      type_name_(type.m_typename),
       topic_(dds_create_topic(participant.get(), &type, topic.c_str(), nullptr, nullptr),
              "topic " + topic),
       reader_(dds_create_reader(participant.get(), topic_.get(), qos.get(), nullptr),
@@ -116,19 +113,19 @@ int RawReader::take(const std::function<void(RawSample&)>& on_sample) {
   const dds_return_t count =
       dds_takecdr(reader_.get(), data.data(), kBatch, infos.data(), DDS_ANY_STATE);
   for (std::size_t i = 0; static_cast<dds_return_t>(i) < count; ++i) {
-    const InstanceState state = state_of(infos[i]);
+    const SampleInfo info = info_of(infos[i]);
     const auto pass_on = [&](const ddsi_serdata* bytes, bool valid) {
       copy(bytes, sample_.cdr);
-      sample_.source_time_ns = infos[i].source_timestamp;
-      sample_.state = valid ? InstanceState::kAlive : state;
+      sample_.source_time_ns = info.source_time_ns;
+      sample_.state = valid ? InstanceState::kAlive : info.state;
       sample_.valid = valid;
       on_sample(sample_);
     };
-    pass_on(data[i], infos[i].valid_data);
+    pass_on(data[i], info.valid);
     // An end that came while data was waiting shows in the data's state only. Where the batch is
     // full more data of the instance may follow, and its last sample will show the same.
     const bool last = infos[i].sample_rank == 0 && (i + 1 < kBatch);
-    if (infos[i].valid_data && last && state != InstanceState::kAlive) {
+    if (info.valid && last && info.state != InstanceState::kAlive) {
       ddsi_serdata* key = ddsi_serdata_to_untyped(data[i]);
       pass_on(key, false);
       ddsi_serdata_unref(key);

@@ -4,19 +4,20 @@
 #include <string>
 #include <vector>
 
+#include "idl/discovery.hpp"
 #include "idl/entity.hpp"
 #include "idl/participant.hpp"
-#include "idl/qos.hpp"
 #include "idl/raw_sample.hpp"
+#include "idl/topic_catalog.hpp"
 
 namespace mpm::idl {
 
 /// Reads one topic without looking into its samples.
 class RawReader {
  public:
-  /// `type` needs to live during the call only.
-  RawReader(const Participant& participant, const std::string& topic,
-            const dds_topic_descriptor_t& type, const Qos& qos);
+  RawReader(const Participant& participant, const KnownTopic& topic);
+  /// A topic that is not ours. `type` needs to live during the call only.
+  RawReader(const Participant& participant, const std::string& topic, const DiscoveredType& type);
 
   /// Takes one batch and calls `on_sample` for each sample, which may be moved from. Samples come
   /// instance by instance, within one in the order of writing. Returns how many were taken.
@@ -28,9 +29,13 @@ class RawReader {
   /// For a WaitSet: true as long as there is something to take.
   [[nodiscard]] dds_entity_t readable() const { return readable_.get(); }
   [[nodiscard]] const std::string& topic() const { return name_; }
+  [[nodiscard]] const std::string& type_name() const { return type_name_; }
 
  private:
-  std::string name_;
+  RawReader(const Participant& participant, const std::string& topic,
+            const dds_topic_descriptor_t& type, const Qos& qos);
+
+  std::string name_, type_name_;
   Entity topic_;
   Entity reader_;
   Entity readable_;

@@ -7,18 +7,14 @@
 #include <string>
 #include <vector>
 
-namespace mpm::idl {
+#include "idl/sample_info.hpp"
 
-/// What a sample says of its instance.
-enum class InstanceState { kAlive, kDisposed, kNoWriters };
+namespace mpm::idl {
 
 /// One sample as it was on the wire: CDR with its 4-byte encapsulation header, in the byte order of
 /// this machine.
-struct RawSample {
-  std::vector<std::byte> cdr;       ///< all of the sample; of an instance that is gone only its key
-  std::int64_t source_time_ns = 0;  ///< when it was written, UTC since 1970
-  InstanceState state = InstanceState::kAlive;
-  bool valid = true;  ///< false: it only says that the state changed
+struct RawSample : SampleInfo {
+  std::vector<std::byte> cdr;  ///< all of the sample; of an instance that is gone only its key
 };
 
 /// The key `unit` of a sample (or of a key) of one of our types: the first string in it. Empty

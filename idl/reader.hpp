@@ -6,6 +6,7 @@
 #include "idl/entity.hpp"
 #include "idl/participant.hpp"
 #include "idl/qos.hpp"
+#include "idl/sample_info.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::idl {
@@ -25,9 +26,9 @@ class Reader {
         samples_(static_cast<std::size_t>(batch)),
         infos_(static_cast<std::size_t>(batch)) {}
 
-  /// Takes a batch and calls `on_sample(const T&, const dds_sample_info_t&)` for each sample. Where
-  /// `info.valid_data` is false only the keys are set: the instance changed its state. Samples come
-  /// instance by instance, within one in the order of writing. Returns how many were taken.
+  /// Takes a batch and calls `on_sample(const T&, const SampleInfo&)` for each sample. Where
+  /// `info.valid` is false only the keys are set. Samples come instance by instance, within one in
+  /// the order of writing. Returns how many were taken.
   template <class Callback>
   int take_with_info(Callback&& on_sample) {
     samples_[0] = nullptr;  // lend them, do not copy
@@ -37,15 +38,15 @@ class Reader {
     if (count <= 0) return 0;
     const Loan loan{reader_.get(), samples_.data(), count};
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-      on_sample(*static_cast<const T*>(samples_[i]), infos_[i]);
+      on_sample(*static_cast<const T*>(samples_[i]), info_of(infos_[i]));
     return count;
   }
 
   /// Same for those who only want values: `on_sample(const T&)`.
   template <class Callback>
   int take(Callback&& on_sample) {
-    return take_with_info([&](const T& sample, const dds_sample_info_t& info) {
-      if (info.valid_data) on_sample(sample);
+    return take_with_info([&](const T& sample, const SampleInfo& info) {
+      if (info.valid) on_sample(sample);
     });
   }
 

@@ -2,6 +2,7 @@
 
 #include <thread>
 
+#include "idl/layout_sample.hpp"
 #include "idl/sample_view.hpp"
 
 namespace mpm::idl {
@@ -11,17 +12,6 @@ using Clock = std::chrono::steady_clock;
 
 std::chrono::nanoseconds left_until(Clock::time_point deadline) {
   return std::max(deadline - Clock::now(), Clock::duration::zero());
-}
-
-// Borrows `texts`; `pointers` is the memory of the result.
-dds_sequence_string borrowed(const std::vector<std::string>& texts, std::size_t count,
-                             std::vector<char*>& pointers) {
-  static char empty[] = "";
-  pointers.assign(count, empty);
-  for (std::size_t i = 0; i < texts.size() && i < count; ++i)
-    pointers[i] = const_cast<char*>(texts[i].c_str());
-  const auto length = static_cast<std::uint32_t>(count);
-  return {length, length, pointers.data(), false};
 }
 
 }  // namespace
@@ -39,14 +29,8 @@ void UnitPublisher::write_layout() const {
   for (const SignalKind kind : kTopicKinds) {
     const SignalLayout& signals = layout_[kind];
     if (signals.tags.empty()) continue;
-    std::vector<char*> tags, units;
-    mpm_Layout sample{};
-    sample.unit = const_cast<char*>(layout_.unit.c_str());
-    sample.kind = const_cast<char*>(kind_name(kind));
-    sample.sample_time_s = layout_.sample_time_s;
-    sample.tags = borrowed(signals.tags, signals.tags.size(), tags);
-    sample.engineering_units = borrowed(signals.engineering_units, signals.tags.size(), units);
-    if (!layout_writer_.write(sample)) throw Error("DDS: cannot write the layout");
+    const LayoutSample sample(layout_.unit, kind_name(kind), layout_.sample_time_s, signals);
+    if (!layout_writer_.write(sample.get())) throw Error("DDS: cannot write the layout");
   }
 }
 

@@ -3,15 +3,12 @@
 #include "config/finding.hpp"
 #include "daemon/bag/sample_stream.hpp"
 #include "daemon/mcap/printable.hpp"
+#include "idl/layout_sample.hpp"
 
 namespace mpm::bag {
 namespace {
 
 constexpr std::size_t kMostUnits = 10'000;
-
-std::vector<std::string> texts_of(const dds_sequence_string& texts) {
-  return {texts._buffer, texts._buffer + texts._length};
-}
 
 SignalKind kind_by_name(std::string_view name, bool& known) {
   known = true;
@@ -23,8 +20,8 @@ SignalKind kind_by_name(std::string_view name, bool& known) {
 
 }  // namespace
 
-Contents survey(const std::vector<std::string>& paths,
-                const std::function<bool(const Contents&)>& enough) {
+Contents contents_of(const std::vector<std::string>& paths,
+                     const std::function<bool(const Contents&)>& enough) {
   Contents contents;
   SampleStream stream(paths);
   const auto unit_of = [&](std::string_view name) -> RecordedUnit& {
@@ -44,8 +41,8 @@ Contents survey(const std::vector<std::string>& paths,
       if (!known) continue;
       RecordedUnit& unit = unit_of(stream.layout().unit);
       unit.sample_time_s = stream.layout().sample_time_s;
-      unit[kind].tags = texts_of(stream.layout().tags);
-      unit[kind].engineering_units = texts_of(stream.layout().engineering_units);
+      unit[kind].tags = idl::texts_of(stream.layout().tags);
+      unit[kind].engineering_units = idl::texts_of(stream.layout().engineering_units);
       continue;
     }
     RecordedKind& kind = unit_of(stream.sample().unit)[stream.sample().kind];

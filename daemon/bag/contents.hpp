@@ -35,8 +35,8 @@ using Contents = std::map<std::string, RecordedUnit, std::less<>>;
 
 /// What units MCAP files hold. Reads on until `enough(contents)` or the end. Throws
 /// config::InputError where the file cannot be read.
-[[nodiscard]] Contents survey(const std::vector<std::string>& paths,
-                              const std::function<bool(const Contents&)>& enough);
+[[nodiscard]] Contents contents_of(const std::vector<std::string>& paths,
+                                   const std::function<bool(const Contents&)>& enough);
 
 /// "'a', 'b'", for messages.
 [[nodiscard]] std::string names_of(const Contents& contents);

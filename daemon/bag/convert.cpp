@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "config/finding.hpp"
-#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/bag/mcap_frame_writer.hpp"
 #include "daemon/files/replacement_file.hpp"
 #include "daemon/mcap/file_sequence.hpp"
 
@@ -80,7 +80,7 @@ ConvertReport convert(const std::string& input, const std::string& output,
     const Table table = open_table(input, table_options);
     report.signals = table.columns.size();
     if (to_mcap) {
-      McapRecording writer(file->temporary(), table.unit, table.columns);
+      McapFrameWriter writer(file->temporary(), table.unit, table.columns);
       copy(table, writer, report);
     } else {
       files::CsvWriter writer(file ? file->temporary() : output, table.columns, std::move(csv));

@@ -38,7 +38,7 @@ std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::
   if (purpose == files::Purpose::kKeep)
     for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
       wanted[kind] = unit_.counts().of(static_cast<SignalKind>(kind)) > 0;
-  const Contents contents = survey(paths, [&](const Contents& so_far) {
+  const Contents contents = contents_of(paths, [&](const Contents& so_far) {
     const auto found = so_far.find(unit_.unit);
     if (found == so_far.end()) return false;
     for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)

@@ -1,23 +1,13 @@
 #include "daemon/bag/sample_stream.hpp"
 
-#include <algorithm>
-
 #include "config/finding.hpp"
 #include "daemon/mcap/printable.hpp"
+#include "idl/layout_sample.hpp"
 
 namespace mpm::bag {
 namespace {
 
 constexpr const char* kAuxTopic = "mpm/aux";
-
-bool complete(const mpm_Layout& layout) {
-  const auto all = [](const dds_sequence_string& texts) {
-    return std::all_of(texts._buffer, texts._buffer + texts._length,
-                       [](const char* text) { return text != nullptr; });
-  };
-  return layout.unit != nullptr && layout.kind != nullptr && all(layout.tags) &&
-         all(layout.engineering_units);
-}
 
 }  // namespace
 
@@ -52,7 +42,7 @@ SampleStream::Event SampleStream::next() {
     }
     if (channel.topic == idl::kLayoutTopic) {
       layout_ = cdr ? layouts_.decode(message_.data) : nullptr;
-      if (layout_ == nullptr || !complete(*layout_)) refuse("mpm::Layout");
+      if (layout_ == nullptr || !idl::complete(*layout_)) refuse("mpm::Layout");
       return Event::kLayout;
     }
     ++others_[channel.topic];

@@ -65,7 +65,7 @@ config::UnitConfig unit_of(const std::string& path, const std::string& name,
 }
 
 Table open_mcap(const std::string& path, const TableOptions& options) {
-  const Contents contents = survey({path}, [](const Contents&) { return false; });
+  const Contents contents = contents_of({path}, [](const Contents&) { return false; });
   const std::string wanted = options.unit != nullptr ? options.unit->unit : options.unit_name;
   if (contents.empty()) refuse(path, "holds no samples of any unit");
   if (wanted.empty() && contents.size() > 1)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "daemon/bus/output_samples.hpp"
+#include "idl/layout_sample.hpp"
 
 namespace mpm::bus {
 namespace {
@@ -13,11 +14,8 @@ constexpr int kStatusBatch = 16384;
 constexpr int kEventBatch = 4096;
 
 LayoutRecord record_of(const mpm_Layout& layout) {
-  LayoutRecord record{
-      layout.unit == nullptr ? "" : layout.unit, layout.kind == nullptr ? "" : layout.kind, {}};
-  for (std::uint32_t i = 0; i < layout.tags._length; ++i)
-    record.tags.emplace_back(layout.tags._buffer[i] == nullptr ? "" : layout.tags._buffer[i]);
-  return record;
+  return {layout.unit == nullptr ? "" : layout.unit, layout.kind == nullptr ? "" : layout.kind,
+          idl::texts_of(layout.tags)};
 }
 
 }  // namespace
@@ -47,25 +45,25 @@ void OutputReaders::add(std::int64_t written_ns, Output output) {
 const std::vector<Output>& OutputReaders::take() {
   taken_.clear();
   // In this order, so that of what one frame caused the channels are never behind the alarms.
-  const auto on_health = [this](const mpm_Health& sample, const dds_sample_info_t& info) {
-    if (info.valid_data)
-      add(info.source_timestamp, record_of(sample));
+  const auto on_health = [this](const mpm_Health& sample, const idl::SampleInfo& info) {
+    if (info.valid)
+      add(info.source_time_ns, record_of(sample));
     else if (sample.unit != nullptr)
-      add(info.source_timestamp, MonitorGone{sample.unit});
+      add(info.source_time_ns, MonitorGone{sample.unit});
   };
   if (health_) health_->take_with_info(on_health);
-  alarm_event_.take_with_info([this](const mpm_AlarmEvent& sample, const dds_sample_info_t& info) {
-    if (info.valid_data) add(info.source_timestamp, record_of(sample));
+  alarm_event_.take_with_info([this](const mpm_AlarmEvent& sample, const idl::SampleInfo& info) {
+    if (info.valid) add(info.source_time_ns, record_of(sample));
   });
-  alarm_.take_with_info([this](const mpm_Alarm& sample, const dds_sample_info_t& info) {
-    if (info.valid_data) add(info.source_timestamp, AlarmStateRecord{record_of(sample)});
+  alarm_.take_with_info([this](const mpm_Alarm& sample, const idl::SampleInfo& info) {
+    if (info.valid) add(info.source_time_ns, AlarmStateRecord{record_of(sample)});
   });
-  const auto on_status = [this](const mpm_ChannelStatus& sample, const dds_sample_info_t& info) {
-    if (info.valid_data) add(info.source_timestamp, record_of(sample));
+  const auto on_status = [this](const mpm_ChannelStatus& sample, const idl::SampleInfo& info) {
+    if (info.valid) add(info.source_time_ns, record_of(sample));
   };
   if (channel_status_) channel_status_->take_with_info(on_status);
-  const auto on_layout = [this](const mpm_Layout& sample, const dds_sample_info_t& info) {
-    if (info.valid_data) add(0, record_of(sample));  // first: it orders the rest
+  const auto on_layout = [this](const mpm_Layout& sample, const idl::SampleInfo& info) {
+    if (info.valid) add(0, record_of(sample));  // first: it orders the rest
   };
   if (layout_) layout_->take_with_info(on_layout);
   std::stable_sort(taken_.begin(), taken_.end(),

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "daemon/bus/output_samples.hpp"
+#include "idl/layout_sample.hpp"
 
 namespace mpm::bus {
 namespace {
@@ -10,12 +11,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const char* text(const char* string) { return string == nullptr ? "" : string; }
-
-Json texts(const dds_sequence_string& sequence) {
-  Json json = Json::array();
-  for (std::uint32_t i = 0; i < sequence._length; ++i) json.push_back(text(sequence._buffer[i]));
-  return json;
-}
 
 const char* quality_name(std::uint8_t code) {
   static constexpr std::array kNames = {"good", "uncertain", "bad"};
@@ -57,8 +52,8 @@ Json json_of(const mpm_Layout& sample) {
   return {{"unit", text(sample.unit)},
           {"kind", text(sample.kind)},
           {"sample_time_s", sample.sample_time_s},
-          {"tags", texts(sample.tags)},
-          {"engineering_units", texts(sample.engineering_units)}};
+          {"tags", idl::texts_of(sample.tags)},
+          {"engineering_units", idl::texts_of(sample.engineering_units)}};
 }
 
 Json json_of(const mpm_ChannelStatus& sample) { return to_json(record_of(sample)); }

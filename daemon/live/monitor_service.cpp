@@ -18,17 +18,17 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
                                const ServiceOptions& options, DiagnosisWorker& worker) {
   if (!options.journal.empty()) journal_.emplace(options.journal);
   const Clock::time_point now = Clock::now();
-  std::map<std::string, Bus*> bus_of;  // by its settings
+  std::map<std::string, Domain*> domain_of;  // by its settings
   int asker = 0;
   for (const config::UnitConfig& unit : units) {
-    idl::DomainOptions domain = bus::domain_options(unit.dds);
-    domain.use_environment = options.use_environment;
-    Bus*& bus = bus_of[idl::domain_xml(domain)];
-    if (bus == nullptr) {
-      bus = buses_.emplace_back(std::make_unique<Bus>(domain)).get();
-      bus->attach_to(wait_set_);
+    idl::DomainOptions settings = bus::domain_options(unit.dds);
+    settings.use_environment = options.use_environment;
+    Domain*& domain = domain_of[idl::domain_xml(settings)];
+    if (domain == nullptr) {
+      domain = domains_.emplace_back(std::make_unique<Domain>(settings)).get();
+      domain->attach_to(wait_set_);
     }
-    bus->add_unit(unit, journal_ ? &*journal_ : nullptr, now).diagnose_with(worker, asker++);
+    domain->add_unit(unit, journal_ ? &*journal_ : nullptr, now).diagnose_with(worker, asker++);
     spdlog::info("{}: watching {} channels on domain {}{}", unit.unit,
                  unit.counts().inputs() * unit.counts().cv, unit.dds.domain,
                  unit.dds.partition.empty() ? "" : ", partition " + unit.dds.partition);
@@ -41,9 +41,9 @@ void MonitorService::run(const std::function<bool()>& stop) {
   while (!stop()) {
     const bool readable = wait_set_.wait(kLongestWait);
     const Clock::time_point now = Clock::now();
-    for (const auto& bus : buses_) {
-      if (readable) bus->poll(now);
-      bus->tick(now);
+    for (const auto& domain : domains_) {
+      if (readable) domain->poll(now);
+      domain->tick(now);
     }
     notifier_.feed_watchdog(now);
     if (now < next_status) continue;
@@ -55,8 +55,8 @@ void MonitorService::run(const std::function<bool()>& stop) {
 
 std::string MonitorService::status() const {
   std::uint64_t units = 0, matching = 0, mismatching = 0, undetermined = 0, alarms = 0;
-  for (const auto& bus : buses_) {
-    for (const auto& [name, unit] : bus->units()) {
+  for (const auto& domain : domains_) {
+    for (const auto& [name, unit] : domain->units()) {
       const report::HealthRecord& health = unit->health();
       ++units;
       matching += health.matching;

@@ -8,7 +8,7 @@
 
 #include "config/unit_config.hpp"
 #include "daemon/host/notifier.hpp"
-#include "daemon/live/bus.hpp"
+#include "daemon/live/domain.hpp"
 
 namespace mpm::live {
 
@@ -35,7 +35,7 @@ class MonitorService {
   [[nodiscard]] std::string status() const;
 
   std::optional<Journal> journal_;
-  std::vector<std::unique_ptr<Bus>> buses_;  // one per distinct DDS setting
+  std::vector<std::unique_ptr<Domain>> domains_;  // one per distinct DDS setting
   idl::WaitSet wait_set_;
   host::Notifier notifier_;
 };

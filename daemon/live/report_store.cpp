@@ -4,11 +4,11 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <regex>
 #include <vector>
 
+#include "daemon/files/times/time_text.hpp"
 #include "daemon/report/report_files.hpp"
 
 namespace mpm::live {
@@ -35,14 +35,10 @@ void prune(const fs::path& unit, const fs::path& newest, std::size_t kept) {
 std::string time_folder(std::int64_t time_ns) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const auto part = ((time_ns % kSecond) + kSecond) % kSecond;
-  const std::time_t seconds = (time_ns - part) / kSecond;
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  std::array<char, 40> text{};
-  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%S", &parts);
-  std::string name = text.data();
+  std::string name = files::formatted_utc((time_ns - part) / kSecond, "%Y%m%dT%H%M%S");
   const auto milliseconds = static_cast<int>(part / 1'000'000);
   if (milliseconds > 0) {
+    std::array<char, 16> text{};
     std::snprintf(text.data(), text.size(), ".%03d", milliseconds);
     name += text.data();
   }

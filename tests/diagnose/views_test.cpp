@@ -1,13 +1,10 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numbers>
-#include <random>
 
 #include "daemon/report/diagnosis/number_text.hpp"
-#include "daemon/report/page/lag_correlation.hpp"
 #include "daemon/report/page/model_views.hpp"
 #include "daemon/report/page/residual_views.hpp"
-#include "daemon/report/page/spectrum.hpp"
 #include "tests/diagnose/sample_run.hpp"
 
 namespace mpm::test {
@@ -16,64 +13,6 @@ namespace {
 using namespace mpm::report;
 
 const double kNaN = std::nan("");
-
-std::vector<double> white(std::size_t count, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<double> values(count);
-  for (double& value : values) {  // near enough to a normal with variance 1
-    value = -6.0;
-    for (int i = 0; i < 12; ++i) value += static_cast<double>(random()) / 4294967296.0;
-  }
-  return values;
-}
-
-TEST_CASE("the spectrum of white noise is flat at twice variance times sample time") {
-  const double sample_time = 5.0;
-  const Spectrum spectrum = welch(white(20'000, 3), sample_time);
-  REQUIRE(spectrum.frequency.size() > 10);
-  CHECK(spectrum.frequency.back() < 0.5 / sample_time + 1e-12);
-  for (std::size_t i = 4; i < spectrum.density.size(); ++i)
-    CHECK(spectrum.density[i] == Approx(2.0 * sample_time).epsilon(0.35));
-}
-
-TEST_CASE("a sine stands at its own frequency, and gaps do not hide it") {
-  std::vector<double> values(4096);
-  for (std::size_t k = 0; k < values.size(); ++k)
-    values[k] = 7.0 + std::sin(2.0 * std::numbers::pi * static_cast<double>(k) / 16.0);
-  for (std::size_t k = 100; k < 130; ++k) values[k] = kNaN;
-  const Spectrum spectrum = welch(values, 1.0);
-  const auto peak = std::max_element(spectrum.density.begin(), spectrum.density.end());
-  const auto at = static_cast<std::size_t>(peak - spectrum.density.begin());
-  CHECK(spectrum.frequency[at] == Approx(1.0 / 16.0).epsilon(0.1));
-}
-
-TEST_CASE("no spectrum comes of too few or unknown values") {
-  CHECK(welch({}, 1.0).frequency.empty());
-  CHECK(welch(std::vector<double>(31, 1.0), 1.0).frequency.empty());
-  CHECK(welch(std::vector<double>(500, kNaN), 1.0).frequency.empty());
-}
-
-TEST_CASE("the lag correlation shows when a residual follows an input, and only then") {
-  const std::vector<double> shocks = white(6'000, 5), noise = white(6'000, 6);
-  std::vector<double> input(shocks.size()), residual(shocks.size());
-  for (std::size_t k = 1; k < input.size(); ++k) input[k] = 0.9 * input[k - 1] + shocks[k];
-  for (std::size_t k = 0; k < input.size(); ++k)
-    residual[k] = noise[k] + (k >= 4 ? 0.5 * input[k - 4] : 0.0);
-  residual[2'000] = kNaN;
-  const LagCorrelation result = lag_correlation(input, residual, -10, 20);
-  REQUIRE(result.values.size() == 31);
-  CHECK(result.bound == Approx(2.0 / std::sqrt(6'000.0)).epsilon(0.02));
-  int beyond = 0;
-  for (int lag = -10; lag <= 20; ++lag) {
-    const double value = result.values[static_cast<std::size_t>(lag + 10)];
-    if (lag == 4)
-      CHECK(value > 8.0 * result.bound);
-    else
-      beyond += std::abs(value) > result.bound ? 1 : 0;
-  }
-  CHECK(beyond <= 5);
-  CHECK(lag_correlation(std::vector<double>(500, 2.0), noise, 0, 5).values.empty());
-}
 
 TEST_CASE("blocks and levels know what is unknown") {
   CHECK(block_rms({3.0, 3.0, kNaN, 4.0, kNaN}, 2).at(0) == 3.0);

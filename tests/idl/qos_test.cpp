@@ -82,11 +82,11 @@ TEST_CASE("a daemon that ends leaves its last word, marked as nobody's") {
   Reader<mpm_Health> reader(viewer, kHealthTopic, health_qos());
   bool heard = false, alone = false;
   const auto look = [&] {
-    reader.take_with_info([&](const mpm_Health& health, const dds_sample_info_t& info) {
+    reader.take_with_info([&](const mpm_Health& health, const SampleInfo& info) {
       CHECK(std::string(health.unit) == "unit");
-      if (info.valid_data) heard = true;
-      if (info.instance_state == DDS_IST_NOT_ALIVE_NO_WRITERS) alone = true;
-      CHECK(info.instance_state != DDS_IST_NOT_ALIVE_DISPOSED);
+      if (info.valid) heard = true;
+      if (info.state == InstanceState::kNoWriters) alone = true;
+      CHECK(info.state != InstanceState::kDisposed);
     });
   };
   {

@@ -39,7 +39,7 @@ TEST_CASE("raw samples keep bytes and time stamps on their way through a recordi
   const KnownTopic& topic = known("mpm/mv");
 
   Writer<mpm_Sample> writer(live, topic.name, sample_writer_qos(WriterPace::kLossless));
-  RawReader raw(recorder, topic.name, *topic.type, topic.reader_qos());
+  RawReader raw(recorder, topic);
   REQUIRE(eventually([&] { return writer.matched_readers() > 0 && raw.matched_writers() > 0; }));
   std::array<double, 2> values{1.5, -2.5};
   for (int k = 0; k < 5; ++k) REQUIRE(writer.write(sample_of_unit("reactor", k, values)));
@@ -57,7 +57,7 @@ TEST_CASE("raw samples keep bytes and time stamps on their way through a recordi
   CHECK(unit_of(recorded[5].cdr) == "reactor");
 
   const RawWriter again(replayer, topic, WriterPace::kLossless);
-  RawReader second(fresh, topic.name, *topic.type, topic.reader_qos());
+  RawReader second(fresh, topic);
   REQUIRE(eventually([&] { return again.matched_readers() > 0; }));
   REQUIRE(again.greet(std::chrono::seconds(10)));
   for (std::size_t i = 0; i < 5; ++i)
@@ -78,7 +78,7 @@ TEST_CASE("raw samples keep bytes and time stamps on their way through a recordi
 TEST_CASE("a raw sample can be sent on under another unit, interval and time") {
   const Participant here(test_domain("raw_change")), there(test_domain("raw_change"));
   Writer<mpm_Sample> writer(here, "mpm/cv", sample_writer_qos(WriterPace::kLossless));
-  RawReader raw(here, "mpm/cv", *known("mpm/cv").type, known("mpm/cv").reader_qos());
+  RawReader raw(here, known("mpm/cv"));
   std::array<double, 2> values{1.5, -2.5};
   REQUIRE(writer.write(sample_of_unit("a", 7, values)));
   const RawSample recorded = take_all(raw, 1).front();
@@ -90,15 +90,15 @@ TEST_CASE("a raw sample can be sent on under another unit, interval and time") {
   REQUIRE(again.write(recorded.cdr, 1234, {"a longer name", 100, 5'000}) == WriteResult::kWritten);
   bool seen = false;
   REQUIRE(eventually([&] {
-    reader.take_with_info([&](const mpm_Sample& sample, const dds_sample_info_t& info) {
-      if (!info.valid_data) return;
+    reader.take_with_info([&](const mpm_Sample& sample, const SampleInfo& info) {
+      if (!info.valid) return;
       seen = true;
       CHECK(std::string(sample.unit) == "a longer name");
       CHECK(sample.interval == 107);
       CHECK(sample.source_time_ns == 7'000'005'000);
       CHECK(sample.values._length == 2);
       CHECK(sample.values._buffer[1] == -2.5);
-      CHECK(info.source_timestamp == 1234);
+      CHECK(info.source_time_ns == 1234);
     });
     return seen;
   }));
@@ -122,9 +122,9 @@ TEST_CASE("every known topic can be read and written raw, and has its IDL") {
   for (const KnownTopic& topic : known_topics()) {
     CAPTURE(topic.name);
     const RawWriter writer(participant, topic, WriterPace::kLossless);
-    RawReader reader(participant, topic.name, *topic.type, topic.reader_qos());
+    const RawReader reader(participant, topic);
     CHECK(writer.matched_readers() == 1);
-    const std::string name = topic.type->m_typename;
+    const std::string name = reader.type_name();
     const std::string record = "struct " + name.substr(name.rfind(':') + 1) + " {";
     CHECK(idl_text().find(record) != std::string_view::npos);
   }
@@ -150,7 +150,9 @@ TEST_CASE("discovery lists others' endpoints and can ask for a type") {
 
   const DiscoveredType type = discovery.type_of("site/health");
   REQUIRE(type);
-  RawReader raw(here, "site/health", *type, late_joiner_reader_qos());
+  RawReader raw(here, "site/health", type);
+  CHECK(raw.type_name() == "mpm::Health");
+  REQUIRE(eventually([&] { return writer.matched_readers() > 0 && raw.matched_writers() > 0; }));
   mpm_Health health{};
   char unit[] = "far";
   health.unit = unit;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/bag/mcap_frame_writer.hpp"
 #include "daemon/mcap/writer.hpp"
 #include "tests/mcap/bench.hpp"
 
@@ -42,7 +42,8 @@ TEST_CASE("Values that no double holds are counted; what is almost zero stays") 
 TEST_CASE("Infinite values of a recording are counted, missing ones are not") {
   Bench bench;
   {
-    bag::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, {{"u", SignalKind::kMv, 0}});
+    bag::McapFrameWriter writer(bench.folder.file("a.mcap"), bench.unit,
+                                {{"u", SignalKind::kMv, 0}});
     Frame frame(bench.unit.counts());
     for (const double value :
          {1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
@@ -76,7 +77,7 @@ TEST_CASE("Tags and topics that the unit does not have are named") {
   CHECK(told(bench.convert("a.csv", "b.csv", bench.with_unit()),
              "left out, since the unit file does not name them: other"));
   {
-    bag::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
+    bag::McapFrameWriter writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
     Frame frame(bench.unit.counts());
     writer.write(frame);
     writer.finish();

@@ -10,7 +10,7 @@
 #include "config/load_unit.hpp"
 #include "daemon/bag/convert.hpp"
 #include "daemon/bag/info_text.hpp"
-#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/bag/mcap_frame_writer.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
 #include "daemon/mcap/writer.hpp"
@@ -60,7 +60,7 @@ std::vector<Frame> any_frames(const config::UnitConfig& unit, int count) {
 TEST_CASE("MCAP, CSV, MCAP, CSV: not a bit is lost, in either layout and any zone") {
   Bench bench;
   {
-    bag::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
+    bag::McapFrameWriter writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
     for (const Frame& frame : any_frames(bench.unit, 700)) writer.write(frame);
     writer.finish();
   }
@@ -186,8 +186,8 @@ TEST_CASE("Of several units the one of the unit file is taken") {
   // Two recordings in one: the second unit has other values.
   config::UnitConfig other = bench.unit;
   other.unit = "other";
-  bag::McapRecording a(bench.folder.file("a.mcap"), bench.unit, all_columns());
-  bag::McapRecording b(bench.folder.file("b.mcap"), other, all_columns());
+  bag::McapFrameWriter a(bench.folder.file("a.mcap"), bench.unit, all_columns());
+  bag::McapFrameWriter b(bench.folder.file("b.mcap"), other, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) {
     a.write(frame);
     b.write(frame);
@@ -257,7 +257,7 @@ TEST_CASE("Info tells a CSV's step, gaps and qualities, and a torn recording's t
   CHECK(info.signals[1].missing == 1);
   CHECK(to_json(info)["gaps"]["longest_at"] == "1970-01-01T00:00:20Z");
 
-  bag::McapRecording a(bench.folder.file("a.mcap"), bench.unit, all_columns());
+  bag::McapFrameWriter a(bench.folder.file("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
   a.finish();
   const std::string bytes = bench.text("a.mcap");
@@ -293,7 +293,7 @@ TEST_CASE("The programs: exit codes, files, messages") {
     return run(arguments, bench.folder.file("out"), bench.folder.file("err")).value_or(-1);
   };
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 300)) a.write(frame);
   a.finish();
   CHECK(mpm({"info", path("a.mcap"), "--json"}) == 0);
@@ -321,7 +321,7 @@ TEST_CASE("The programs: exit codes, files, messages") {
 TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell beside it") {
   Bench bench;
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
   a.finish();
   REQUIRE(run({"mpm", "convert", path("a.mcap"), path("a.csv")}, path("out"), path("err")) == 0);
@@ -336,7 +336,7 @@ TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell b
 TEST_CASE("what standard output does not take is a failure") {
   Bench bench;
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
   a.finish();
   for (const std::vector<std::string>& arguments :
@@ -356,7 +356,7 @@ TEST_CASE("what standard output does not take is a failure") {
 TEST_CASE("mpm recover never writes over the file that it mends") {
   Bench bench;
   const std::string file = bench.folder.file("torn.mcap");
-  bag::McapRecording writer(file, bench.unit, all_columns());
+  bag::McapFrameWriter writer(file, bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) writer.write(frame);
   writer.finish();
   const std::string torn = read_file(file).substr(0, read_file(file).size() - 50);

@@ -41,6 +41,7 @@ TEST_CASE("CRC-32 of the check string is the published one") {
   CHECK(mcap::crc32({}) == 0);
   mcap::Crc32 pieces;
   pieces.add(bytes_of("1234"));
+  pieces.add({});
   pieces.add(bytes_of("56789"));
   CHECK(pieces.value() == 0xCBF43926U);
 }

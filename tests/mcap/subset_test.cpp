@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/bag/mcap_frame_writer.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
 #include "tests/mcap/bench.hpp"
 #include "tests/mcap/files.hpp"
@@ -12,7 +12,7 @@ namespace {
 /// Values of every signal that the row has, two of them not good.
 void write_recording(const Bench& bench, const std::string& name,
                      const std::vector<files::Column>& columns) {
-  bag::McapRecording writer(bench.folder.file(name), bench.unit, columns);
+  bag::McapFrameWriter writer(bench.folder.file(name), bench.unit, columns);
   for (int k = 0; k < 40; ++k) {
     Frame frame(bench.unit.counts());
     for (SignalBlock& block : frame.blocks) {

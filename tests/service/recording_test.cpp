@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/bag/lifecycle.hpp"
-#include "daemon/bag/record/recording.hpp"
+#include "daemon/bag/record/recording_writer.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
 #include "idl/cdr.hpp"
 #include "tests/system/process.hpp"
@@ -151,7 +151,7 @@ TEST_CASE("split files are whole by themselves and lose nothing between them") {
   options.max_size_bytes = 20'000;
   options.file.chunk_bytes = 4096;
   options.file.compression = mcap::Compression::kNone;
-  Recording recording(options, kStart);
+  RecordingWriter recording(options, kStart);
   const std::size_t mv = recording.add_topic({"mpm/mv", "mpm::Sample", "text", 0, true});
   const std::size_t layout = recording.add_topic({"mpm/layout", "mpm::Layout", "text", 2, false});
   recording.write(layout_of(layout, "mv", 5.0));
@@ -197,7 +197,7 @@ TEST_CASE("an interval that all topics of a unit lack is missing once") {
   const test::TemporaryFolder folder;
   RecordingOptions options;
   options.output = folder.file("run.mcap");
-  Recording recording(options, kStart);
+  RecordingWriter recording(options, kStart);
   const std::size_t mv = recording.add_topic({"mpm/mv", "mpm::Sample", "text", 0, true});
   const std::size_t cv = recording.add_topic({"mpm/cv", "mpm::Sample", "text", 0, true});
   for (std::int64_t k = 0; k < 20; ++k) {
@@ -215,7 +215,7 @@ TEST_CASE("a recording is split by time even where nothing comes") {
   RecordingOptions options;
   options.output = folder.file("run.mcap");
   options.max_duration_ns = 60 * kSecond;
-  Recording recording(options, kStart);
+  RecordingWriter recording(options, kStart);
   recording.tick(kStart + 59 * kSecond);
   CHECK(recording.path() == folder.file("run-0001.mcap"));
   recording.tick(kStart + 60 * kSecond);

@@ -16,8 +16,14 @@ forbid core 'dds/|yaml-cpp|spdlog|CLI/|nlohmann|systemd|iostream|fstream|filesys
 forbid config 'dds/|spdlog|CLI/|systemd|idl/|sim/|daemon/|tests/'
 forbid idl 'yaml-cpp|spdlog|CLI/|nlohmann|systemd|config/|sim/|daemon/|tests/'
 forbid sim 'yaml-cpp|dds/|systemd|daemon/|tests/'
-forbid daemon 'yaml-cpp|sim/|tests/'
+forbid daemon 'yaml-cpp|dds/|sim/|tests/'
 for folder in files mcap report; do forbid daemon/$folder 'idl/|mpm\.h|spdlog|systemd'; done
+
+if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \
+  --include='*.hpp' --include='*.cpp'; then
+  echo "Cyclone's names stay in idl" >&2
+  status=1
+fi
 
 # Inside daemon, from the ground up: a folder, and those whose headers it may include besides its own.
 # Whatever stands here may be included only further down. Its first name is the files' namespace.
@@ -51,11 +57,11 @@ report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
 report files report/diagnosis report/page
 bus report
-bus/watch bus
+bus/watch files/times bus
 bag files/times files files/csv mcap
-bag/record host mcap bag
+bag/record host files/times mcap bag
 bag/replay host mcap bag
-live host files report/diagnosis report bus
+live host files/times files report/diagnosis report bus
 app/commands host files/times files files/csv mcap report/diagnosis report/closed_loop report bus bus/watch bag bag/record bag/replay live
 app host live app/commands
 TABLE

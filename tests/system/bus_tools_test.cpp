@@ -102,9 +102,8 @@ struct Corner {
     const bool complete = idl::eventually(
         [&] {
           inputs.take([](const idl::SampleView&) {});
-          reader.take_with_info([&](const mpm_Sample& sample, const dds_sample_info_t& info) {
-            if (info.valid_data)
-              seen.push_back({sample.unit, sample.interval, info.source_timestamp});
+          reader.take_with_info([&](const mpm_Sample& sample, const idl::SampleInfo& info) {
+            if (info.valid) seen.push_back({sample.unit, sample.interval, info.source_time_ns});
           });
           return seen.size() >= expected;
         },

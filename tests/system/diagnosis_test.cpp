@@ -54,15 +54,15 @@ class Latencies {
         events_(participant, idl::kAlarmEventTopic, idl::alarm_event_reader_qos()) {}
 
   void take() {
-    samples_.take_with_info([this](const mpm_Sample& sample, const dds_sample_info_t& info) {
-      if (info.valid_data) written_[sample.interval] = info.source_timestamp;
+    samples_.take_with_info([this](const mpm_Sample& sample, const idl::SampleInfo& info) {
+      if (info.valid) written_[sample.interval] = info.source_time_ns;
     });
-    status_.take_with_info([this](const mpm_ChannelStatus& status, const dds_sample_info_t& info) {
-      if (info.valid_data) judged_.emplace(status.interval, info.source_timestamp);
+    status_.take_with_info([this](const mpm_ChannelStatus& status, const idl::SampleInfo& info) {
+      if (info.valid) judged_.emplace(status.interval, info.source_time_ns);
     });
-    events_.take_with_info([this](const mpm_AlarmEvent& event, const dds_sample_info_t& info) {
-      if (!info.valid_data || event.to != std::string("diagnosed")) return;
-      diagnosed_.emplace_back(event.interval, info.source_timestamp);
+    events_.take_with_info([this](const mpm_AlarmEvent& event, const idl::SampleInfo& info) {
+      if (!info.valid || event.to != std::string("diagnosed")) return;
+      diagnosed_.emplace_back(event.interval, info.source_time_ns);
     });
   }
   /// In ms; `during` a diagnosis or while there is none.

@@ -32,21 +32,21 @@ struct EchoOptions {
   double duration_s = 0.0;  // 0 = until interrupted
 };
 
-const char* state_name(const dds_sample_info_t& info) {
-  return info.instance_state == DDS_IST_NOT_ALIVE_DISPOSED ? "disposed" : "no_writers";
+const char* state_name(const idl::SampleInfo& info) {
+  return info.state == idl::InstanceState::kDisposed ? "disposed" : "no_writers";
 }
 
 void print(const EchoOptions& options, const nlohmann::ordered_json& sample,
-           const dds_sample_info_t& info) {
+           const idl::SampleInfo& info) {
   if (options.json) {
-    nlohmann::ordered_json line{{"topic", options.topic}, {"written_ns", info.source_timestamp}};
-    if (info.valid_data)
+    nlohmann::ordered_json line{{"topic", options.topic}, {"written_ns", info.source_time_ns}};
+    if (info.valid)
       line["sample"] = sample;
     else
       line.update({{"state", state_name(info)}, {"unit", sample["unit"]}});
     std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
-  } else if (info.valid_data) {
+  } else if (info.valid) {
     std::cout << bus::yaml_text(sample) << "---\n";
   } else {
     std::cout << "# " << sample["unit"].get<std::string>() << ": " << state_name(info) << "\n---\n";
@@ -70,12 +70,12 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic) {
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options.duration_s));
   std::uint64_t printed = 0;
-  const auto on_sample = [&](const T& sample, const dds_sample_info_t& info) {
+  const auto on_sample = [&](const T& sample, const idl::SampleInfo& info) {
     const std::string unit = sample.unit == nullptr ? "" : sample.unit;
     if (unit.empty() || (!options.unit.empty() && unit != options.unit)) return;
     if (printed >= wanted) return;
     print(options, bus::json_of(sample), info);
-    if (info.valid_data) ++printed;
+    if (info.valid) ++printed;
   };
   while (printed < wanted && std::cout.good() && !stop.received()) {
     if (wait_set.wait(kLongestWait)) reader.take_with_info(on_sample);

@@ -41,17 +41,13 @@ struct HzOptions {
 std::optional<idl::RawReader> open(const idl::Participant& participant, const std::string& name,
                                    host::StopSignal& stop) {
   if (const idl::KnownTopic* topic = idl::find_known_topic(name))
-    return idl::RawReader(participant, name, *topic->type, topic->reader_qos());
+    return idl::RawReader(participant, *topic);
   const idl::Discovery discovery(participant);
   const Clock::time_point end = Clock::now() + kFindTime;
   const idl::WaitSet nothing;
   while (Clock::now() < end && !stop.received()) {
-    if (const idl::DiscoveredType type = discovery.type_of(name)) {
-      const idl::Qos qos(dds_create_qos());
-      dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);  // matches any writer
-      dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 4096);
-      return idl::RawReader(participant, name, *type, qos);
-    }
+    if (const idl::DiscoveredType type = discovery.type_of(name))
+      return idl::RawReader(participant, name, type);
     (void)nothing.wait(kLongestWait);
   }
   return std::nullopt;

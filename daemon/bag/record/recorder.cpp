@@ -11,11 +11,10 @@ namespace mpm::bag {
 namespace {
 
 constexpr std::chrono::milliseconds kTick{200};
-constexpr int kForeignDepth = 4096;  // samples that wait per instance of a topic not ours
 constexpr std::size_t kLayoutKeys = 2;
 
-RecordedTopic description_of(const idl::KnownTopic& topic) {
-  return {topic.name, topic.type->m_typename, std::string(idl::idl_text()),
+RecordedTopic description_of(const idl::KnownTopic& topic, const std::string& type_name) {
+  return {topic.name, type_name, std::string(idl::idl_text()),
           topic.name == std::string_view(idl::kLayoutTopic) ? kLayoutKeys : 0, topic.input};
 }
 
@@ -28,11 +27,10 @@ Recorder::Recorder(const idl::Participant& participant, const RecorderOptions& o
       queue_(options.queue_bytes),
       recording_(options.recording, host::wall_time_ns()) {
   for (const idl::KnownTopic& topic : idl::known_topics())
-    if (options.topics.empty())
-      add_reader(topic.name, *topic.type, topic.reader_qos(), description_of(topic));
+    if (options.topics.empty()) add_known(topic);
   for (const std::string& name : options.topics) {
     if (const idl::KnownTopic* topic = idl::find_known_topic(name))
-      add_reader(name, *topic->type, topic->reader_qos(), description_of(*topic));
+      add_known(*topic);
     else
       not_found_.insert(name);
   }
@@ -44,9 +42,14 @@ Recorder::~Recorder() {
   if (writer_.joinable()) writer_.join();
 }
 
-void Recorder::add_reader(const std::string& topic, const dds_topic_descriptor_t& type,
-                          const idl::Qos& qos, const RecordedTopic& description) {
-  readers_.emplace_back(participant_, topic, type, qos);
+void Recorder::add_known(const idl::KnownTopic& topic) {
+  idl::RawReader reader(participant_, topic);
+  const RecordedTopic description = description_of(topic, reader.type_name());
+  add_reader(std::move(reader), description);
+}
+
+void Recorder::add_reader(idl::RawReader reader, const RecordedTopic& description) {
+  readers_.push_back(std::move(reader));
   wait_set_.attach(readers_.back().readable());
   const std::lock_guard lock(mutex_);
   recording_.add_topic(description);
@@ -59,10 +62,9 @@ void Recorder::look_for_topics() {
       ++name;
       continue;
     }
-    const idl::Qos qos(dds_create_qos());
-    dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);  // matches any writer
-    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kForeignDepth);
-    add_reader(*name, *type, qos, {*name, type->m_typename, "", 0, false});
+    idl::RawReader reader(participant_, *name, type);
+    const RecordedTopic description{*name, reader.type_name(), "", 0, false};
+    add_reader(std::move(reader), description);
     name = not_found_.erase(name);
   }
 }

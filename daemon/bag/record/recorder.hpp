@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/bag/record/recording.hpp"
+#include "daemon/bag/record/recording_writer.hpp"
 #include "idl/discovery.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/wait_set.hpp"
@@ -33,7 +33,7 @@ struct RecorderState {
 /// never slows down the process that is recorded.
 class Recorder {
  public:
-  /// Throws as Recording does.
+  /// Throws as RecordingWriter does.
   Recorder(const idl::Participant& participant, const RecorderOptions& options);
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -51,8 +51,8 @@ class Recorder {
   [[nodiscard]] const std::set<std::string>& not_found() const { return not_found_; }
 
  private:
-  void add_reader(const std::string& topic, const dds_topic_descriptor_t& type, const idl::Qos& qos,
-                  const RecordedTopic& description);
+  void add_known(const idl::KnownTopic& topic);
+  void add_reader(idl::RawReader reader, const RecordedTopic& description);
   /// Returns how many samples there were.
   int take();
   void write_all();
@@ -69,7 +69,7 @@ class Recorder {
 
   SampleQueue queue_;
   mutable std::mutex mutex_;  // of the next three
-  Recording recording_;
+  RecordingWriter recording_;
   std::string problem_;
   std::uint64_t unwritten_ = 0;  // samples that came too late for the file after a problem
   std::thread writer_;

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
-#include <ctime>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -12,18 +11,15 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/files/times/time_text.hpp"
+
 namespace mpm::bag {
 namespace {
 
 constexpr std::string_view kExtension = ".mcap";
 
 std::string time_name(std::int64_t time_ns) {
-  const auto seconds = static_cast<std::time_t>(time_ns / 1'000'000'000);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "mpm-%Y%m%dT%H%M%SZ", &utc);
-  return text.data();
+  return files::formatted_utc(time_ns / 1'000'000'000, "mpm-%Y%m%dT%H%M%SZ");
 }
 
 // mpm-YYYYMMDDThhmmssZ

@@ -3,9 +3,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
-#include <ctime>
 #include <vector>
+
+#include "daemon/files/times/time_text.hpp"
 
 namespace mpm::bus {
 namespace {
@@ -25,12 +25,7 @@ struct Painter {
 
 std::string utc(std::int64_t time_ns) {
   if (time_ns == 0) return "-";  // before the first sample
-  const std::time_t seconds = time_ns / 1'000'000'000;
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text.data();
+  return files::formatted_utc(time_ns / 1'000'000'000, "%Y-%m-%dT%H:%M:%SZ");
 }
 
 const char* color_of(const std::string& verdict) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <limits>
 
 namespace mpm::files {
@@ -241,6 +242,14 @@ std::string utc_text(std::int64_t time_ns, int offset_s) {
   size = std::snprintf(text.data(), text.size(), "%c%02d:%02d", offset_s < 0 ? '-' : '+',
                        minutes / 60, minutes % 60);
   return result.append(text.data(), static_cast<std::size_t>(size));
+}
+
+std::string formatted_utc(std::int64_t utc_s, const char* format) {
+  const std::time_t time = utc_s;
+  std::tm parts{};
+  gmtime_r(&time, &parts);
+  std::array<char, 64> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), format, &parts)};
 }
 
 std::string seconds_text(std::int64_t time_ns) {

@@ -24,6 +24,8 @@ struct LocalTime {
 
 /// ISO 8601 with `Z`, or with the zone's offset from UTC in s. Fractions as needed, exact.
 [[nodiscard]] std::string utc_text(std::int64_t time_ns, int offset_s = 0);
+/// A whole second of UTC since 1970, as strftime's `format` says; at most 63 letters.
+[[nodiscard]] std::string formatted_utc(std::int64_t utc_s, const char* format);
 /// Decimal seconds, exact.
 [[nodiscard]] std::string seconds_text(std::int64_t time_ns);
 

@@ -8,14 +8,14 @@
 #include <numeric>
 
 #include "core/model/linear_model.hpp"
+#include "core/statistics/cross_correlation.hpp"
+#include "core/statistics/spectrum.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/report/diagnosis/clock_text.hpp"
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
 #include "daemon/report/diagnosis/names_of.hpp"
-#include "daemon/report/page/lag_correlation.hpp"
 #include "daemon/report/page/model_views.hpp"
 #include "daemon/report/page/residual_views.hpp"
-#include "daemon/report/page/spectrum.hpp"
 
 namespace mpm::report {
 namespace {
@@ -218,8 +218,8 @@ Json correlation_json(const std::string& tag, const Series& input, const CvSerie
   const int group = (longest_lag + kLagGroups - 1) / kLagGroups;
   const int last = kLagGroups * group;
   const int first = 1 - last / 3 / group * group;
-  const LagCorrelation before = lag_correlation(input, series.residual_before, first, last);
-  const LagCorrelation after = lag_correlation(input, series.residual_after, first, last);
+  const CrossCorrelation before = cross_correlation(input, series.residual_before, first, last);
+  const CrossCorrelation after = cross_correlation(input, series.residual_after, first, last);
   return {{"tag", tag},
           {"first_lag", first + 0.5 * (group - 1)},
           {"group", group},

@@ -1,4 +1,4 @@
-#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/bag/mcap_frame_writer.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -6,6 +6,7 @@
 #include "config/unit_layout.hpp"
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/bag/sample_stream.hpp"
+#include "idl/layout_sample.hpp"
 #include "idl/topic_catalog.hpp"
 
 namespace mpm::bag {
@@ -18,18 +19,10 @@ mcap::WriterOptions options() {
   return options;
 }
 
-/// Borrows `texts`; `pointers` is the memory of the result.
-dds_sequence_string borrowed(std::vector<std::string>& texts, std::vector<char*>& pointers) {
-  pointers.clear();
-  for (std::string& text : texts) pointers.push_back(text.data());
-  const auto count = static_cast<std::uint32_t>(texts.size());
-  return {count, count, pointers.data(), false};
-}
-
 }  // namespace
 
-McapRecording::McapRecording(const std::string& path, const config::UnitConfig& unit,
-                             const std::vector<files::Column>& columns)
+McapFrameWriter::McapFrameWriter(const std::string& path, const config::UnitConfig& unit,
+                                 const std::vector<files::Column>& columns)
     : writer_(path, options()), unit_(unit) {
   const SignalCounts counts = unit.counts();
   for (const files::Column& column : columns) {
@@ -45,25 +38,18 @@ McapRecording::McapRecording(const std::string& path, const config::UnitConfig& 
       channels_[k] = writer_.add_channel(sample, topic_of(static_cast<SignalKind>(k)), "cdr");
 }
 
-void McapRecording::write_layouts(std::int64_t time_ns) {
+void McapFrameWriter::write_layouts(std::int64_t time_ns) {
   idl::CdrEncoder<mpm_Layout> layouts;
   for (std::size_t k = 0; k < kSignalKindCount; ++k) {
     if (!channels_[k]) continue;
     const auto kind = static_cast<SignalKind>(k);
-    std::vector<std::string> units = engineering_units_of(unit_, kind);
-    std::string kind_text = name_of(kind);
-    std::vector<char*> tag_pointers, unit_pointers;
-    mpm_Layout layout{};
-    layout.unit = unit_.unit.data();
-    layout.kind = kind_text.data();
-    layout.sample_time_s = unit_.sample_time_s;
-    layout.tags = borrowed(tags_[k], tag_pointers);
-    layout.engineering_units = borrowed(units, unit_pointers);
-    writer_.write(layouts_, time_ns, time_ns, layouts.encode(layout));
+    const SignalLayout signals{tags_[k], engineering_units_of(unit_, kind)};
+    const idl::LayoutSample layout(unit_.unit, name_of(kind), unit_.sample_time_s, signals);
+    writer_.write(layouts_, time_ns, time_ns, layouts.encode(layout.get()));
   }
 }
 
-void McapRecording::write(const Frame& frame) {
+void McapFrameWriter::write(const Frame& frame) {
   // A row that goes back in time keeps its place: it was received after the one before.
   log_time_ns_ = begun_ ? std::max(log_time_ns_, frame.source_time_ns) : frame.source_time_ns;
   if (!begun_) write_layouts(log_time_ns_);

@@ -14,11 +14,11 @@ namespace mpm::bag {
 
 /// Writes the frames of one unit as the recording that a bus would have given: its layouts and one
 /// sample per kind and control interval, each received when it was measured.
-class McapRecording {
+class McapFrameWriter {
  public:
   /// `columns`: the signals that there are; a kind without any gets no topic.
-  McapRecording(const std::string& path, const config::UnitConfig& unit,
-                const std::vector<files::Column>& columns);
+  McapFrameWriter(const std::string& path, const config::UnitConfig& unit,
+                  const std::vector<files::Column>& columns);
 
   /// Throws std::invalid_argument for a time before 1970.
   void write(const Frame& frame);

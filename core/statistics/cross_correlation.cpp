@@ -1,10 +1,10 @@
-#include "daemon/report/page/lag_correlation.hpp"
+#include "core/statistics/cross_correlation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace mpm::report {
+namespace mpm {
 namespace {
 
 constexpr std::size_t kOrder = 20;
@@ -71,11 +71,11 @@ std::vector<double> filtered(const std::vector<double>& x, const std::vector<dou
 
 }  // namespace
 
-LagCorrelation lag_correlation(const std::vector<double>& input,
-                               const std::vector<double>& residual, int first_lag, int last_lag) {
-  LagCorrelation result;
+CrossCorrelation cross_correlation(std::span<const double> input, std::span<const double> residual,
+                                   int first_lag, int last_lag) {
+  CrossCorrelation result;
   result.first_lag = first_lag;
-  std::vector<double> x = input, e = residual;
+  std::vector<double> x(input.begin(), input.end()), e(residual.begin(), residual.end());
   centre(x);
   centre(e);
   const Moments movement = moments(x);
@@ -102,4 +102,4 @@ LagCorrelation lag_correlation(const std::vector<double>& input,
   return result;
 }
 
-}  // namespace mpm::report
+}  // namespace mpm

@@ -14,11 +14,11 @@
 namespace mpm::live {
 
 /// One DDS domain with the units that live on it. Reads the input topics and never writes them.
-class Bus {
+class Domain {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit Bus(const idl::DomainOptions& options);
+  explicit Domain(const idl::DomainOptions& options);
 
   UnitPipeline& add_unit(const config::UnitConfig& unit, Journal* journal, Clock::time_point now);
   void attach_to(idl::WaitSet& wait_set) const;

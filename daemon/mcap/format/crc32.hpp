@@ -6,14 +6,14 @@
 
 namespace mpm::mcap {
 
-/// CRC-32 as in Ethernet and zip (reflected polynomial 0xEDB88320), fed piece by piece.
+/// CRC-32 as in Ethernet and zip, fed piece by piece.
 class Crc32 {
  public:
   void add(ByteView bytes);
-  [[nodiscard]] std::uint32_t value() const { return ~state_; }
+  [[nodiscard]] std::uint32_t value() const { return value_; }
 
  private:
-  std::uint32_t state_ = 0xFFFFFFFFU;
+  std::uint32_t value_ = 0;
 };
 
 [[nodiscard]] std::uint32_t crc32(ByteView bytes);

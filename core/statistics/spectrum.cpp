@@ -1,4 +1,4 @@
-#include "daemon/report/page/spectrum.hpp"
+#include "core/statistics/spectrum.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace mpm::report {
+namespace mpm {
 namespace {
 
 using Complex = std::complex<double>;
@@ -92,7 +92,7 @@ Spectrum on_log_scale(const std::vector<double>& power, double spacing) {
 
 }  // namespace
 
-Spectrum welch(const std::vector<double>& values, double sample_time_s) {
+Spectrum welch(std::span<const double> values, double sample_time_s) {
   const std::size_t length = window_length(values.size());
   std::vector<Complex> window(length);
   std::vector<double> power(length / 2 + 1, 0.0);
@@ -110,4 +110,4 @@ Spectrum welch(const std::vector<double>& values, double sample_time_s) {
   return on_log_scale(power, 1.0 / (static_cast<double>(length) * sample_time_s));
 }
 
-}  // namespace mpm::report
+}  // namespace mpm

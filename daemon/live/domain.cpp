@@ -1,27 +1,27 @@
-#include "daemon/live/bus.hpp"
+#include "daemon/live/domain.hpp"
 
 #include <spdlog/spdlog.h>
 
 namespace mpm::live {
 
-Bus::Bus(const idl::DomainOptions& options)
+Domain::Domain(const idl::DomainOptions& options)
     : participant_(options),
       samples_(participant_),
       layouts_(participant_, idl::kLayoutTopic, idl::layout_qos()),
       outputs_(participant_) {}
 
-UnitPipeline& Bus::add_unit(const config::UnitConfig& unit, Journal* journal,
-                            Clock::time_point now) {
+UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, Journal* journal,
+                               Clock::time_point now) {
   auto pipeline = std::make_unique<UnitPipeline>(unit, outputs_, journal, now);
   return *(units_[unit.unit] = std::move(pipeline));
 }
 
-void Bus::attach_to(idl::WaitSet& wait_set) const {
+void Domain::attach_to(idl::WaitSet& wait_set) const {
   samples_.attach_to(wait_set);
   wait_set.attach(layouts_.readable());
 }
 
-void Bus::poll(Clock::time_point now) {
+void Domain::poll(Clock::time_point now) {
   layouts_.take([this](const mpm_Layout& layout) {
     if (layout.unit == nullptr || layout.kind == nullptr) return;
     if (const auto it = units_.find(std::string_view(layout.unit)); it != units_.end())
@@ -35,7 +35,7 @@ void Bus::poll(Clock::time_point now) {
   });
 }
 
-void Bus::report_unknown(std::string_view unit, Clock::time_point now) {
+void Domain::report_unknown(std::string_view unit, Clock::time_point now) {
   ++unknown_unit_;
   if (!unknown_limit_.admit(now)) return;
   spdlog::warn("sample of unit '{}', which no unit file describes; ignored{}", unit,
@@ -44,7 +44,7 @@ void Bus::report_unknown(std::string_view unit, Clock::time_point now) {
                    : fmt::format(" ({} more like this before)", unknown_limit_.held_back()));
 }
 
-void Bus::tick(Clock::time_point now) {
+void Domain::tick(Clock::time_point now) {
   for (const auto& [name, unit] : units_) unit->tick(now, unknown_unit_);
 }
 

@@ -1,4 +1,4 @@
-#include "daemon/bag/record/recording.hpp"
+#include "daemon/bag/record/recording_writer.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -31,19 +31,19 @@ mcap::ByteView bytes_of(const std::string& text) {
 
 }  // namespace
 
-Recording::Recording(const RecordingOptions& options, std::int64_t now_ns)
+RecordingWriter::RecordingWriter(const RecordingOptions& options, std::int64_t now_ns)
     : options_(with_size(options)),
       files_(options_.output, options_.max_size_bytes > 0 || options_.max_duration_ns > 0,
              options_.quota_bytes, now_ns) {
   open(now_ns);
 }
 
-std::size_t Recording::add_topic(RecordedTopic topic) {
+std::size_t RecordingWriter::add_topic(RecordedTopic topic) {
   topics_.push_back(std::move(topic));
   return topics_.size() - 1;
 }
 
-void Recording::open(std::int64_t now_ns) {
+void RecordingWriter::open(std::int64_t now_ns) {
   // The last chunk may go beyond the size, and the indexes come on top.
   files_.make_room(options_.max_size_bytes + options_.max_size_bytes / 4 +
                    options_.file.chunk_bytes);
@@ -61,7 +61,7 @@ void Recording::open(std::int64_t now_ns) {
   }
 }
 
-void Recording::close() {
+void RecordingWriter::close() {
   writer_->finish();
   const std::uint64_t bytes = writer_->bytes_written();
   writer_.reset();
@@ -69,7 +69,7 @@ void Recording::close() {
   files_.finished(path_, bytes);
 }
 
-void Recording::rotate_if_due(std::int64_t now_ns) {
+void RecordingWriter::rotate_if_due(std::int64_t now_ns) {
   const bool full =
       options_.max_size_bytes > 0 && writer_->bytes_written() >= options_.max_size_bytes;
   const bool old = options_.max_duration_ns > 0 && now_ns - opened_ns_ >= options_.max_duration_ns;
@@ -78,7 +78,7 @@ void Recording::rotate_if_due(std::int64_t now_ns) {
   open(now_ns);
 }
 
-void Recording::write(const RecordedSample& sample) {
+void RecordingWriter::write(const RecordedSample& sample) {
   rotate_if_due(sample.log_time_ns);
   if (!sample.sample.valid) return put_lifecycle(sample);
   look_for_gap(sample);
@@ -91,18 +91,18 @@ void Recording::write(const RecordedSample& sample) {
   saved_ = totals_.samples - (writer_->has_open_chunk() ? 1 : 0);
 }
 
-void Recording::put(const RecordedSample& sample) {
+void RecordingWriter::put(const RecordedSample& sample) {
   writer_->write(channel_of(sample.topic), sample.log_time_ns, sample.sample.source_time_ns,
                  sample.sample.cdr);
 }
 
-void Recording::put_lifecycle(const RecordedSample& sample) {
+void RecordingWriter::put_lifecycle(const RecordedSample& sample) {
   const std::string text = lifecycle_text(sample.sample);
   writer_->write(lifecycle_channel_of(sample.topic), sample.log_time_ns,
                  sample.sample.source_time_ns, bytes_of(text));
 }
 
-mcap::ChannelId Recording::channel_of(std::size_t index) {
+mcap::ChannelId RecordingWriter::channel_of(std::size_t index) {
   mcap::ChannelId& channel = channels_[index].samples;
   if (channel != 0) return channel;
   const RecordedTopic& topic = topics_[index];
@@ -113,7 +113,7 @@ mcap::ChannelId Recording::channel_of(std::size_t index) {
   return channel;
 }
 
-mcap::ChannelId Recording::lifecycle_channel_of(std::size_t index) {
+mcap::ChannelId RecordingWriter::lifecycle_channel_of(std::size_t index) {
   mcap::ChannelId& channel = channels_[index].lifecycle;
   if (channel != 0) return channel;
   mcap::SchemaId& schema = schemas_[kLifecycleSchema];
@@ -123,7 +123,7 @@ mcap::ChannelId Recording::lifecycle_channel_of(std::size_t index) {
 }
 
 // Says what DDS does not: that a writer had thrown samples away before this reader had them.
-void Recording::look_for_gap(const RecordedSample& sample) {
+void RecordingWriter::look_for_gap(const RecordedSample& sample) {
   if (!topics_[sample.topic].counts_intervals) return;
   const std::optional<idl::SampleStamp> stamp = idl::stamp_of(sample.sample.cdr);
   if (!stamp) return;
@@ -138,20 +138,20 @@ void Recording::look_for_gap(const RecordedSample& sample) {
   unit.missing = topic.missing;
 }
 
-void Recording::tick(std::int64_t now_ns) {
+void RecordingWriter::tick(std::int64_t now_ns) {
   writer_->close_old_chunk(now_ns);
   rotate_if_due(now_ns);
 }
 
-void Recording::finish() {
+void RecordingWriter::finish() {
   if (writer_) close();
 }
 
-std::uint64_t Recording::unsaved() const {
+std::uint64_t RecordingWriter::unsaved() const {
   return writer_ && writer_->has_open_chunk() ? totals_.samples - saved_ : 0;
 }
 
-RecordingTotals Recording::totals() const {
+RecordingTotals RecordingWriter::totals() const {
   RecordingTotals totals = totals_;
   if (writer_) totals.bytes += writer_->bytes_written();
   totals.deleted = files_.deleted();

@@ -47,11 +47,11 @@ struct RecordingTotals {
 /// A sample goes to the channel of its topic as the CDR that it was; log time is when it was
 /// received, publish time its DDS source time. That an instance ended goes to `<topic>/_lifecycle`
 /// as JSON, with the key's CDR in hexadecimal: MCAP itself has no place for it.
-class Recording {
+class RecordingWriter {
  public:
   /// `now_ns`: UTC since 1970, as all times here. Throws std::runtime_error where a file cannot be
   /// written, std::invalid_argument where there is one already.
-  Recording(const RecordingOptions& options, std::int64_t now_ns);
+  RecordingWriter(const RecordingOptions& options, std::int64_t now_ns);
 
   /// Returns the index for RecordedSample.
   std::size_t add_topic(RecordedTopic topic);
