@@ -44,17 +44,17 @@ ChangeScan::ChangeScan(const RegressionShape& shape)
   moments_.reserve(kMoments);
 }
 
-std::optional<ChangePoint> ChangeScan::scan(const ChannelTest& test, int cv) {
-  const int span = test.span(cv);
+std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, int cv) {
+  const int span = detector.span(cv);
   if (span < 2 * kMoments) return std::nullopt;
   moments_.clear();  // ages at which a part ends, newest first
   for (int m = 1; m < kMoments; ++m) moments_.push_back(m * span / kMoments);
-  pass(test, cv, true, true, after_with_);
-  pass(test, cv, true, false, after_without_);
-  pass(test, cv, false, true, before_with_);
+  pass(detector, cv, true, true, after_with_);
+  pass(detector, cv, true, false, after_without_);
+  pass(detector, cv, false, true, before_with_);
   const double constant = whole_.residual_square(0);
-  const double freedom = test.memory(cv).rows - shape_.columns();
-  pass(test, cv, false, false, before_without_);
+  const double freedom = detector.memory(cv).rows - shape_.columns();
+  pass(detector, cv, false, false, before_without_);
   if (!(constant > 0.0) || freedom <= 0.0) return std::nullopt;
 
   const double inputs = shape_.inputs * shape_.block();
@@ -87,7 +87,7 @@ std::optional<ChangePoint> ChangeScan::scan(const ChannelTest& test, int cv) {
     bar = other;
   }
   if (best.samples == 0) return std::nullopt;
-  if (best.kind != ChangeKind::kEnded) name_input(test, cv, best);
+  if (best.kind != ChangeKind::kEnded) name_input(detector, cv, best);
   // The rows between the change and the nearest moment looked at fit neither side of an end; twice
   // as many parameters hide them, and then find nothing in all that came since.
   const bool over = best.kind == ChangeKind::kOther && end.samples > 0 && best.p_value > kNothing;
@@ -95,19 +95,19 @@ std::optional<ChangePoint> ChangeScan::scan(const ChannelTest& test, int cv) {
 }
 
 // The input that alone explains the rows since the change best, and its F on these rows alone: with
-// rows clipped as leniently as above and as strictly as in the test, the larger p. A burst of noise
-// passes the first, hardly both.
-void ChangeScan::name_input(const ChannelTest& test, int cv, ChangePoint& change) {
-  const InputFit lenient = best_input(test, cv, change.samples, false);
-  const InputFit strict = best_input(test, cv, change.samples, true);
+// rows clipped as leniently as above and as strictly as in the detector, the larger p. A burst of
+// noise passes the first, hardly both.
+void ChangeScan::name_input(const MismatchDetector& detector, int cv, ChangePoint& change) {
+  const InputFit lenient = best_input(detector, cv, change.samples, false);
+  const InputFit strict = best_input(detector, cv, change.samples, true);
   change.input = lenient.input;
   change.p_value = std::max(lenient.p_value, strict.p_value);
 }
 
-ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int samples,
+ChangeScan::InputFit ChangeScan::best_input(const MismatchDetector& detector, int cv, int samples,
                                             bool strict) {
   const int block = shape_.block();
-  const RegressionHistory& history = test.history();
+  const RegressionHistory& history = detector.history();
   double least = std::numeric_limits<double>::infinity();
   double nothing = 0.0;
   int rows = 0;
@@ -117,7 +117,8 @@ ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int
     factor.clear();
     rows = 0;
     for (int age = samples - 1; age >= 0; --age) {
-      const double weight = strict ? test.row_weight(cv, age) : test.lenient_weight(cv, age);
+      const double weight =
+          strict ? detector.row_weight(cv, age) : detector.lenient_weight(cv, age);
       if (!(weight > 0.0)) continue;
       double* row = next_row(factor);
       history.fill_lead_in(age, row);
@@ -143,13 +144,13 @@ ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int
 }
 
 // parts[m] holds the rows younger than moments_[m] (newest first) or at least as old.
-void ChangeScan::pass(const ChannelTest& test, int cv, bool newest_first, bool with_inputs,
+void ChangeScan::pass(const MismatchDetector& detector, int cv, bool newest_first, bool with_inputs,
                       std::vector<Part>& parts) {
   GivensQr& factor = with_inputs ? whole_ : lead_in_;
   factor.clear();
-  const RegressionHistory& history = test.history();
+  const RegressionHistory& history = detector.history();
   const int first = with_inputs ? shape_.inputs * shape_.block() : 0;
-  const int span = test.span(cv);
+  const int span = detector.span(cv);
   int rows = 0;
   const auto store_at = [&](int age) {
     const auto found = std::find(moments_.begin(), moments_.end(), age);
@@ -160,7 +161,7 @@ void ChangeScan::pass(const ChannelTest& test, int cv, bool newest_first, bool w
   for (int step = 0; step < span; ++step) {
     const int age = newest_first ? step : span - 1 - step;
     if (newest_first) store_at(age);
-    const double weight = test.lenient_weight(cv, age);
+    const double weight = detector.lenient_weight(cv, age);
     if (weight > 0.0) {
       double* row = next_row(factor);
       if (with_inputs) history.fill_inputs(age, row);

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/mismatch/channel_test.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 
 namespace mpm {
 
@@ -33,7 +33,7 @@ class ChangeScan {
  public:
   explicit ChangeScan(const RegressionShape& shape);
 
-  [[nodiscard]] std::optional<ChangePoint> scan(const ChannelTest& test, int cv);
+  [[nodiscard]] std::optional<ChangePoint> scan(const MismatchDetector& detector, int cv);
 
  private:
   /// What a part of the rows leaves once the inputs' blocks are eliminated (or, where the inputs
@@ -49,14 +49,15 @@ class ChangeScan {
   }
   static constexpr int kFewestFreedom = 15;
 
-  void pass(const ChannelTest& test, int cv, bool newest_first, bool with_inputs,
+  void pass(const MismatchDetector& detector, int cv, bool newest_first, bool with_inputs,
             std::vector<Part>& parts);
   struct InputFit {
     int input = -1;
     double p_value = 1.0;
   };
-  void name_input(const ChannelTest& test, int cv, ChangePoint& change);
-  [[nodiscard]] InputFit best_input(const ChannelTest& test, int cv, int samples, bool strict);
+  void name_input(const MismatchDetector& detector, int cv, ChangePoint& change);
+  [[nodiscard]] InputFit best_input(const MismatchDetector& detector, int cv, int samples,
+                                    bool strict);
   void store(const GivensQr& factor, int first, int rows, Part& part) const;
   [[nodiscard]] double joined(const Part& a, const Part& b);
 

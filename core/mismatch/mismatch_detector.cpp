@@ -1,4 +1,4 @@
-#include "core/mismatch/channel_test.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,9 +39,10 @@ constexpr int kSlideParts = 8;
 
 }  // namespace
 
-ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryLength>& memories,
-                         int remembered, int patience, const LinearModel& model,
-                         std::vector<MaterialityLimits> limits)
+MismatchDetector::MismatchDetector(const RegressionShape& shape,
+                                   const std::vector<MemoryLength>& memories, int remembered,
+                                   int patience, const LinearModel& model,
+                                   std::vector<MaterialityLimits> limits)
     : shape_(shape),
       lengths_(memories),
       remembered_(remembered),
@@ -52,11 +53,11 @@ ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryL
       weighed_(shape.columns() + 1, patience),
       previews_(static_cast<std::size_t>(patience)) {
   ages_.reserve(previews_.size());
-  if (memories.empty()) throw std::invalid_argument("the channel test needs a memory");
+  if (memories.empty()) throw std::invalid_argument("the mismatch detector needs a memory");
   for (const MemoryLength& length : memories) {
     if (!(length.lambda > 0.0 && length.lambda <= 1.0) || length.window < 0 ||
         length.window + length.window / kSlideParts > remembered)
-      throw std::invalid_argument("impossible memory of the channel test");
+      throw std::invalid_argument("impossible memory of the mismatch detector");
     for (int j = 0; j < shape.cvs; ++j) {
       memories_.emplace_back(shape.columns());
       slides_.push_back(0);
@@ -70,8 +71,8 @@ ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryL
   }
 }
 
-void ChannelTest::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
-                         const Eigen::Ref<const Eigen::VectorXd>& residuals) {
+void MismatchDetector::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
+                              const Eigen::Ref<const Eigen::VectorXd>& residuals) {
   history_.push(inputs, residuals);
   for (int j = 0; j < shape_.cvs; ++j) {
     Response& response = responses_[index(j)];
@@ -83,7 +84,7 @@ void ChannelTest::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
   }
 }
 
-void ChannelTest::skip(std::int64_t missing) {
+void MismatchDetector::skip(std::int64_t missing) {
   for (int j = 0; j < shape_.cvs; ++j) fold(j);
   history_.skip(missing);
   for (int j = 0; j < shape_.cvs; ++j) {
@@ -96,18 +97,18 @@ void ChannelTest::skip(std::int64_t missing) {
   }
 }
 
-int ChannelTest::patience(int cv) const {
+int MismatchDetector::patience(int cv) const {
   return memories_[at(cv, 0)].rows >= kTogether * shape_.columns() ? rows_.capacity() : 1;
 }
 
-void ChannelTest::fold(int cv) {
+void MismatchDetector::fold(int cv) {
   Response& response = responses_[index(cv)];
   if (response.waiting > 0) take(cv, std::min(response.waiting, response.span) - 1, 0);
   response.waiting = 0;
 }
 
 // The rows that wait of these ages (oldest >= newest), as many as fit into a batch.
-void ChannelTest::take(int cv, int oldest, int newest) {
+void MismatchDetector::take(int cv, int oldest, int newest) {
   const Response& response = responses_[index(cv)];
   LagWindow& weights = weight_windows_[index(cv)];
   const int columns = shape_.columns();
@@ -152,7 +153,7 @@ void ChannelTest::take(int cv, int oldest, int newest) {
 }
 
 // Weight of the row of which this is known before it is taken; follows the noise level.
-double ChannelTest::weigh(int cv, const GivensQr::Preview& preview, bool together) {
+double MismatchDetector::weigh(int cv, const GivensQr::Preview& preview, bool together) {
   Response& response = responses_[index(cv)];
   double weight = 1.0 / response.scale;
   const double leverage = preview.leverage * weight * weight;
@@ -180,7 +181,7 @@ double ChannelTest::weigh(int cv, const GivensQr::Preview& preview, bool togethe
 
 // The first rows come as they are; once they are twice as many as the columns they give the first
 // estimate of the noise level, by which they are then divided like all that follow.
-void ChannelTest::begin_scale(int cv) {
+void MismatchDetector::begin_scale(int cv) {
   const RegressionMemory& first = memories_[at(cv, 0)];
   const int columns = shape_.columns();
   if (first.rows < 2 * columns) return;
@@ -200,7 +201,7 @@ void ChannelTest::begin_scale(int cv) {
   }
 }
 
-void ChannelTest::slide(int cv, int memory) {
+void MismatchDetector::slide(int cv, int memory) {
   const int window = lengths_[static_cast<std::size_t>(memory)].window;
   if (window == 0 || responses_[index(cv)].span <= window) return;
   if (++slides_[at(cv, memory)] < window / kSlideParts) return;
@@ -210,7 +211,7 @@ void ChannelTest::slide(int cv, int memory) {
 }
 
 // From the rows as they were weighed.
-void ChannelTest::refill(int cv, int memory, int samples) {
+void MismatchDetector::refill(int cv, int memory, int samples) {
   RegressionMemory& target = memories_[at(cv, memory)];
   const double lambda = lengths_[static_cast<std::size_t>(memory)].lambda;
   target.clear();
@@ -231,7 +232,7 @@ void ChannelTest::refill(int cv, int memory, int samples) {
 }
 
 // Rows are weighed anew: what was surprising under what is now forgotten may be usual after it.
-void ChannelTest::start_afresh(int cv, int samples) {
+void MismatchDetector::start_afresh(int cv, int samples) {
   fold(cv);
   Response& response = responses_[index(cv)];
   response.span = std::min(samples, response.span);
@@ -252,7 +253,7 @@ void ChannelTest::start_afresh(int cv, int samples) {
   }
 }
 
-void ChannelTest::evaluate(int cv, int memory) {
+void MismatchDetector::evaluate(int cv, int memory) {
   fold(cv);
   evaluator_.evaluate(cv, memories_[at(cv, memory)],
                       &evidence_[at(cv, memory) * static_cast<std::size_t>(shape_.inputs)]);

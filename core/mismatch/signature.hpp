@@ -6,9 +6,9 @@
 
 namespace mpm {
 
-/// The regressors of one input in the channel test: u(k-1..k-L) and tails s_t(k-L-1) with poles
-/// r_t. Turns a pulse response into coefficients on them: exact up to lag L, beyond it the step
-/// response is fitted by the tails' step responses (least squares over eight slowest time
+/// The regressors of one input in the mismatch detector: u(k-1..k-L) and tails s_t(k-L-1) with
+/// poles r_t. Turns a pulse response into coefficients on them: exact up to lag L, beyond it the
+/// step response is fitted by the tails' step responses (least squares over eight slowest time
 /// constants).
 class BlockBasis {
  public:

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "core/mismatch/change_scan.hpp"
-#include "core/mismatch/channel_test.hpp"
 #include "core/mismatch/lagged_correlation.hpp"
 #include "core/mismatch/mean_line.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/derived_settings.hpp"
@@ -79,11 +79,11 @@ struct Monitor::State {
         correlation({signal_counts.inputs(), signal_counts.cv, settings.controlling_lags,
                      settings.first_lag, settings.last_lag, settings.correlation},
                     settings.lambda),
-        test({signal_counts.inputs(), signal_counts.cv, settings.fir_lags, settings.residual_order,
-              settings.tail_poles},
-             settings.memories, settings.remembered, settings.evaluation_stride, model,
-             settings.materiality),
-        scan(test.shape()) {
+        detector({signal_counts.inputs(), signal_counts.cv, settings.fir_lags,
+                  settings.residual_order, settings.tail_poles},
+                 settings.memories, settings.remembered, settings.evaluation_stride, model,
+                 settings.materiality),
+        scan(detector.shape()) {
     const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
     status.resize(channels);
     transitions.reserve(channels);
@@ -158,7 +158,7 @@ struct Monitor::State {
   std::vector<InputMotion> motions;        // per input
   LaggedCorrelation correlation;
   bool correlated = false;  // correlations and their peaks know the last sample
-  ChannelTest test;
+  MismatchDetector detector;
   ChangeScan scan;
   std::vector<Cv> cvs;
   std::vector<ChannelStatus> status;
@@ -182,7 +182,7 @@ void Monitor::State::follow_predictions() {
     if (!cv.predicted && screen.predicted(j)) {
       cv.predicted = true;
       cv.settling = 0;
-      if (samples > 0) test.start_afresh(j, 0);
+      if (samples > 0) detector.start_afresh(j, 0);
     }
     // Without any model only the control system can predict.
     simulates =
@@ -261,7 +261,7 @@ void Monitor::State::simulate() {
 void Monitor::State::pass_gap(std::int64_t missing) {
   counters.missing += static_cast<std::uint64_t>(missing);
   correlation.close_window();
-  test.skip(missing);
+  detector.skip(missing);
   for (Cv& cv : cvs) cv.unknown_run += missing;
   if (!model_started) return;
   for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, settings.settling_samples); ++k)
@@ -272,11 +272,11 @@ void Monitor::State::pass_gap(std::int64_t missing) {
 
 void Monitor::State::take_sample() {
   ++samples;
-  test.update(inputs, residuals);
+  detector.update(inputs, residuals);
   bool used = false;
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
-    const bool took = test.took_row(j);
+    const bool took = detector.took_row(j);
     used = used || took;
     cv.without_row = took ? 0 : cv.without_row + 1;
     const double spiked = screen.spikes(j) > cv.spikes ? 1.0 : 0.0;
@@ -303,13 +303,13 @@ void Monitor::State::evaluate() {
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
     const bool due = (samples + j * stride / counts.cv) % stride == 0;
-    if (due) test.fold(j);
-    if (cv.alarms.isolating() || !test.memory(j).ready()) cv.judged = false;
-    cv.evaluated = (due || !cv.judged) && test.memory(j).ready();
+    if (due) detector.fold(j);
+    if (cv.alarms.isolating() || !detector.memory(j).ready()) cv.judged = false;
+    cv.evaluated = (due || !cv.judged) && detector.memory(j).ready();
     if (!cv.evaluated) continue;
     cv.judged = true;
-    for (int m = 0; m < test.memory_count(); ++m)
-      if (test.memory(j, m).ready()) test.evaluate(j, m);
+    for (int m = 0; m < detector.memory_count(); ++m)
+      if (detector.memory(j, m).ready()) detector.evaluate(j, m);
   }
 }
 
@@ -353,7 +353,7 @@ void Monitor::State::take_frame(const Frame& frame) {
       of(j).alarms.hold();
       continue;
     }
-    of(j).alarms.update(j, of(j).evaluated, test, scan, settings.alarm, [&](int input) {
+    of(j).alarms.update(j, of(j).evaluated, detector, scan, settings.alarm, [&](int input) {
       transitions.push_back({j, input, of(j).alarms.state(input)});
     });
   }
@@ -373,7 +373,7 @@ void Monitor::State::judge() {
 
 void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   ChannelStatus& channel = status[index(cv, input)];
-  const RegressionMemory& memory = test.memory(cv);
+  const RegressionMemory& memory = detector.memory(cv);
   const CvAlarms& alarms = of(cv).alarms;
   channel.effective_samples = memory.effective_rows();
   channel.confounder = -1;
@@ -399,7 +399,7 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
                                         : Reason::kWarmingUp;
     return;
   }
-  const ChannelEvidence& evidence = test.evidence(cv, input);
+  const ChannelEvidence& evidence = detector.evidence(cv, input);
   channel.p_value = evidence.p_value;
   channel.p_value_material = evidence.p_value_material;
   channel.statistic = evidence.statistic;
@@ -435,7 +435,7 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
 }
 
 Reason Monitor::State::why_not_excited(int cv, int input) {
-  const ChannelEvidence& evidence = test.evidence(cv, input);
+  const ChannelEvidence& evidence = detector.evidence(cv, input);
   const bool all_still = std::all_of(motions.begin(), motions.begin() + counts.mv,
                                      [](const InputMotion& motion) { return motion.still(); });
   if (all_still && input < counts.mv) return Reason::kControllerOff;
