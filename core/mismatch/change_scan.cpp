@@ -9,20 +9,11 @@
 namespace mpm {
 namespace {
 
-// Moments looked at.
-constexpr int kMoments = 100;
+using calibration::change_scan::kMargin;
+using calibration::change_scan::kMoments;
 
-// Rows that a factor takes together.
+// Rows that a factor takes together: speed only.
 constexpr int kBatchRows = 32;
-
-// By how many sigma^2 a change must beat no change: chance gives a few.
-constexpr double kMargin = 20.0;
-
-// What `inputs` more parameters gain by chance is chi-square; this many s.d. above its mean.
-constexpr double kDeviations = 6.0;
-
-// Above this p-value no input explains anything since a change.
-constexpr double kNothing = 1e-3;
 
 }  // namespace
 
@@ -58,7 +49,8 @@ std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, in
   if (!(constant > 0.0) || freedom <= 0.0) return std::nullopt;
 
   const double inputs = shape_.inputs * shape_.block();
-  const double chance = inputs + kDeviations * std::sqrt(2.0 * inputs);
+  const double chance =
+      inputs + calibration::change_scan::kChanceDeviations * std::sqrt(2.0 * inputs);
   const double per_square = freedom / constant;
   // The gain, where it can exceed `least` at all: joining the parts only leaves more.
   const auto gain_of = [&](const Part& after, const Part& before, double least) {
@@ -80,7 +72,7 @@ std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, in
   if (end.gain > best.gain) best = end;
   double bar = best.gain + chance;
   for (std::size_t m = 0; m < moments_.size(); ++m) {
-    if (moments_[m] < 2 * shape_.columns()) continue;
+    if (moments_[m] < calibration::change_scan::kRowsPerColumn * shape_.columns()) continue;
     const double other = gain_of(after_with_[m], before_with_[m], bar);
     if (other <= bar) continue;
     best = {ChangeKind::kOther, moments_[m], other};
@@ -90,7 +82,8 @@ std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, in
   if (best.kind != ChangeKind::kEnded) name_input(detector, cv, best);
   // The rows between the change and the nearest moment looked at fit neither side of an end; twice
   // as many parameters hide them, and then find nothing in all that came since.
-  const bool over = best.kind == ChangeKind::kOther && end.samples > 0 && best.p_value > kNothing;
+  const bool over = best.kind == ChangeKind::kOther && end.samples > 0 &&
+                    best.p_value > calibration::change_scan::kNothingPValue;
   return over ? end : best;
 }
 
@@ -137,7 +130,7 @@ ChangeScan::InputFit ChangeScan::best_input(const MismatchDetector& detector, in
     best.input = input;
   }
   const int freedom = rows - shape_.lead_in() - block;
-  if (freedom < kFewestFreedom || !(least > 0.0)) return best;
+  if (freedom < calibration::change_scan::kFewestFreedom || !(least > 0.0)) return best;
   const double statistic = (nothing - least) / block / (least / freedom);
   best.p_value = std::min(1.0, shape_.inputs * f_upper_tail(statistic, block, freedom));
   return best;

@@ -7,35 +7,14 @@
 namespace mpm {
 namespace {
 
-// Rows over which the noise level is followed, and the error in s.d. beyond which a row is trusted
-// less (about 300 rows and 3 s.d. keep both calibration and power).
-constexpr double kScaleRows = 300.0;
-constexpr double kClip = 3.0;
-
-// Shares of clipped rows from which on tails are somewhat and very heavy (normal: 0.3 %). With
-// heavy tails the same evidence takes more rows: of 528, p < 0.01 came in 10 % of healthy channels.
-constexpr double kNormalClipped = 0.008;
-constexpr double kHeavyClipped = 0.02;
-// A CV is taken to have heavy tails until its rows say otherwise; so many rows stand behind that.
-constexpr double kPriorRows = 200.0;
-
-constexpr double kRecentRows = 100.0;
-constexpr double kLastingRows = 2000.0;
-
-// While there are fewer rows per column each one teaches the next what to expect: their prediction
-// errors would have too much in common if they were taken together.
-constexpr int kTogether = 10;
+namespace heavy_tails = calibration::heavy_tails;
+using calibration::row_weights::kClip;
+using calibration::row_weights::kLastingRows;
+using calibration::row_weights::kNoiseRows;
+using calibration::row_weights::kRecentRows;
 
 // Weight of a row that waits for its own.
 constexpr double kWaiting = -1.0;
-
-// A row that says more of a direction hardly seen before than of the noise: of rows that wait
-// together, all say the same, so they do not move what is known of the noise.
-constexpr double kNewDirection = 1.0;
-
-// A sliding window is rebuilt each time it has grown by this part: never a row is taken out of a
-// factor, which would lose digits after an outlier.
-constexpr int kSlideParts = 8;
 
 }  // namespace
 
@@ -56,7 +35,7 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
   if (memories.empty()) throw std::invalid_argument("the mismatch detector needs a memory");
   for (const MemoryLength& length : memories) {
     if (!(length.lambda > 0.0 && length.lambda <= 1.0) || length.window < 0 ||
-        length.window + length.window / kSlideParts > remembered)
+        length.window + length.window / calibration::sliding_window::kParts > remembered)
       throw std::invalid_argument("impossible memory of the mismatch detector");
     for (int j = 0; j < shape.cvs; ++j) {
       memories_.emplace_back(shape.columns());
@@ -64,7 +43,7 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
     }
   }
   responses_.resize(static_cast<std::size_t>(shape.cvs));
-  for (Response& response : responses_) response.clipped_share = kHeavyClipped;
+  for (Response& response : responses_) response.clipped_share = heavy_tails::kFullShare;
   for (int j = 0; j < shape.cvs; ++j) {
     weight_windows_.emplace_back(remembered);
     scale_windows_.emplace_back(remembered);
@@ -98,7 +77,10 @@ void MismatchDetector::skip(std::int64_t missing) {
 }
 
 int MismatchDetector::patience(int cv) const {
-  return memories_[at(cv, 0)].rows >= kTogether * shape_.columns() ? rows_.capacity() : 1;
+  return memories_[at(cv, 0)].rows >=
+                 calibration::row_weights::kTogetherRowsPerColumn * shape_.columns()
+             ? rows_.capacity()
+             : 1;
 }
 
 void MismatchDetector::fold(int cv) {
@@ -160,12 +142,13 @@ double MismatchDetector::weigh(int cv, const GivensQr::Preview& preview, bool to
   const double error = std::abs(preview.error) * weight / std::sqrt(1.0 + leverage);  // in s.d.
   const double clipped = std::min(error, kClip);
   if (error > clipped) weight *= clipped / error;
-  const bool new_direction = together && leverage > kNewDirection;
+  const bool new_direction = together && leverage > calibration::row_weights::kNewDirectionLeverage;
   response.square_rows += 1.0;
   response.clipped_share +=
       ((error > kClip && !new_direction ? 1.0 : 0.0) - response.clipped_share) /
-      std::min(kPriorRows + response.square_rows, kLastingRows);
-  const double heavy = (response.clipped_share - kNormalClipped) / (kHeavyClipped - kNormalClipped);
+      std::min(heavy_tails::kPriorRows + response.square_rows, kLastingRows);
+  const double heavy = (response.clipped_share - heavy_tails::kFromShare) /
+                       (heavy_tails::kFullShare - heavy_tails::kFromShare);
   for (int m = 0; m < memory_count(); ++m)
     memories_[at(cv, m)].heavy_tails = std::clamp(heavy, 0.0, 1.0);
   if (new_direction) return weight;
@@ -174,7 +157,7 @@ double MismatchDetector::weigh(int cv, const GivensQr::Preview& preview, bool to
       (square - response.recent_square) / std::min(response.square_rows, kRecentRows);
   response.lasting_square +=
       (square - response.lasting_square) / std::min(response.square_rows, kLastingRows);
-  response.scale_rows = std::min(response.scale_rows + 1.0, kScaleRows);
+  response.scale_rows = std::min(response.scale_rows + 1.0, kNoiseRows);
   response.scale *= std::sqrt(1.0 + (clipped * clipped - 1.0) / response.scale_rows);
   return weight;
 }
@@ -184,14 +167,14 @@ double MismatchDetector::weigh(int cv, const GivensQr::Preview& preview, bool to
 void MismatchDetector::begin_scale(int cv) {
   const RegressionMemory& first = memories_[at(cv, 0)];
   const int columns = shape_.columns();
-  if (first.rows < 2 * columns) return;
+  if (first.rows < calibration::row_weights::kFirstRowsPerColumn * columns) return;
   const double freedom = first.freedom();
   const double mean_square = first.factor.residual_square(0) / first.weight_sum *
                              (freedom + columns) / std::max(freedom, 1.0);
   if (!(mean_square > 0.0)) return;
   Response& response = responses_[index(cv)];
   response.scale = std::sqrt(mean_square);
-  response.scale_rows = std::min(std::max(freedom, 1.0), kScaleRows);
+  response.scale_rows = std::min(std::max(freedom, 1.0), kNoiseRows);
   response.scaled = true;
   for (int m = 0; m < memory_count(); ++m) memories_[at(cv, m)].factor.scale(1.0 / response.scale);
   for (int age = 0; age < response.span; ++age) {
@@ -201,10 +184,12 @@ void MismatchDetector::begin_scale(int cv) {
   }
 }
 
+// The window is rebuilt now and then: never a row is taken out of a factor, which would lose digits
+// after an outlier.
 void MismatchDetector::slide(int cv, int memory) {
   const int window = lengths_[static_cast<std::size_t>(memory)].window;
   if (window == 0 || responses_[index(cv)].span <= window) return;
-  if (++slides_[at(cv, memory)] < window / kSlideParts) return;
+  if (++slides_[at(cv, memory)] < window / calibration::sliding_window::kParts) return;
   slides_[at(cv, memory)] = 0;
   fold(cv);
   refill(cv, memory, window);
@@ -243,7 +228,7 @@ void MismatchDetector::start_afresh(int cv, int samples) {
   if (response.span == 0) return;
   response.scale = scale_windows_[index(cv)].window()[response.span - 1];
   response.square_rows = response.recent_square = response.lasting_square = 0.0;
-  response.clipped_share = kNormalClipped;
+  response.clipped_share = heavy_tails::kFromShare;
   for (int age = response.span - 1; age >= 0; --age)
     if (row_weight(cv, age) > 0.0) weight_windows_[index(cv)].set(age, kWaiting);
   for (int oldest = response.span - 1; oldest >= 0;) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/channel_evaluator.hpp"
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/regression_history.hpp"
@@ -89,7 +90,9 @@ class MismatchDetector {
   /// The same with rows clipped at 6 instead of 3 s.d.: after a change many rows surprise, and they
   /// are what tells of it.
   [[nodiscard]] double lenient_weight(int cv, int age) const {
-    return std::min(2.0 * row_weight(cv, age), 1.0 / scale_windows_[index(cv)].window()[age]);
+    constexpr double kLenience =
+        calibration::row_weights::kLenientClip / calibration::row_weights::kClip;
+    return std::min(kLenience * row_weight(cv, age), 1.0 / scale_windows_[index(cv)].window()[age]);
   }
 
  private:

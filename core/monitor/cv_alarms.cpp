@@ -2,22 +2,12 @@
 
 #include <algorithm>
 
+#include "core/monitor/calibration.hpp"
+
 namespace mpm {
 namespace {
 
-// Samples between two searches for a change; fewer where the errors are very much larger than
-// usual.
-constexpr std::int64_t kBetweenScans = 100;
-constexpr std::int64_t kBetweenUrgentScans = 20;
-constexpr double kUrgent = 2.0;  // surprise
-
-// A change is looked for once an error is this likely, or the last 100 one-step errors are this
-// much larger than usual: while a memory spans the change, its p-value is slow to fall.
-constexpr double kSuspicious = 1e-5;
-constexpr double kSurprise = 1.3;
-
-// A change is certain where its p-value, of the likeliest moment and input, is below this.
-constexpr double kCertain = 1e-9;
+namespace change_search = calibration::change_search;
 
 // Of all memories that say something.
 struct Evidence {
@@ -42,19 +32,14 @@ Evidence combined(int cv, int input, const MismatchDetector& detector) {
   return evidence;
 }
 
-// That the error matters may be a little less certain than that there is one: to raise an alarm it
-// must have at most this p-value.
-constexpr double kMaterial = 1e-3;
-
-// An alarm stays while its error is significant at this level and might matter.
-constexpr double kSignificant = 0.05;
-
 // What the condition looks at: to raise, that there is an error, and that it matters; to clear,
 // that it does not matter, or is not there.
 double condition_p(const Evidence& evidence, AlarmState state) {
   if (state == AlarmState::kCleared)
-    return evidence.material < kMaterial ? evidence.any : std::max(evidence.any, evidence.material);
-  const bool stays = evidence.any < kSignificant && !evidence.harmless;
+    return evidence.material < calibration::alarms::kMattersPValue
+               ? evidence.any
+               : std::max(evidence.any, evidence.material);
+  const bool stays = evidence.any < calibration::alarms::kStaysPValue && !evidence.harmless;
   return stays ? 0.0 : evidence.material;
 }
 
@@ -91,8 +76,9 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
     const bool changed = conditions_[i].update(condition_p(evidence, before), limits);
     risen = risen || (changed && before == AlarmState::kCleared);
   }
-  const bool urgent = detector.surprise(cv) > kUrgent;
-  const bool due = evaluated && since_scan_ >= (urgent ? kBetweenUrgentScans : kBetweenScans);
+  const bool urgent = detector.surprise(cv) > change_search::kUrgentSurprise;
+  const bool due = evaluated && since_scan_ >= (urgent ? change_search::kBetweenUrgent
+                                                       : change_search::kBetween);
   const bool suspicious =
       due && (something_wrong(cv, quiet, detector) || memories_disagree(cv, detector, limits));
   if (!risen && !suspicious) return;
@@ -114,7 +100,8 @@ std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, MismatchDet
   detector.fold(cv);
   std::optional<ChangePoint> change = scan.scan(detector, cv);
   const bool ended = change && change->kind == ChangeKind::kEnded && any();
-  const bool certain = change && (risen || ended || change->p_value < kCertain);
+  const bool certain =
+      change && (risen || ended || change->p_value < change_search::kCertainPValue);
   if (!certain) change.reset();
   return change;
 }
@@ -131,10 +118,11 @@ void CvAlarms::settle(int cv, const MismatchDetector& detector, const Condition:
 }
 
 bool CvAlarms::something_wrong(int cv, bool quiet, const MismatchDetector& detector) const {
-  if (detector.surprise(cv) > kSurprise) return true;
+  if (detector.surprise(cv) > change_search::kSuspiciousSurprise) return true;
   if (!quiet) return false;
   for (std::size_t i = 0; i < conditions_.size(); ++i)
-    if (combined(cv, static_cast<int>(i), detector).any < kSuspicious) return true;
+    if (combined(cv, static_cast<int>(i), detector).any < change_search::kSuspiciousPValue)
+      return true;
   return false;
 }
 

@@ -16,7 +16,7 @@ struct DerivedSettings {
   int remembered = 0;                          ///< samples that a CV can start afresh from
   int evaluation_stride = 1;                   ///< samples from one evaluation of a CV to the next
   std::vector<MaterialityLimits> materiality;  ///< per channel, input-major
-  double false_alarm_rate = 0.01;
+  double false_alarm_rate = 0.0;
   double gain_error_of_interest = 0.0;
   CorrelationKind correlation = CorrelationKind::kLaggedPartial;
   ThresholdKind threshold = ThresholdKind::kFTest;

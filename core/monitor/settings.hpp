@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/correlation_kind.hpp"
 
 namespace mpm {
@@ -14,9 +15,9 @@ enum class ThresholdKind {
 
 /// Errors up to which a model is good enough: larger ones alarm.
 struct MaterialitySettings {
-  double gain = 0.05;           ///< relative to the model's
-  double time_constant = 0.10;  ///< relative to the model's
-  double dead_time_s = 0.0;     ///< 0 = half a sample time
+  double gain = calibration::materiality::kGain;                   ///< relative to the model's
+  double time_constant = calibration::materiality::kTimeConstant;  ///< relative to the model's
+  double dead_time_s = 0.0;                                        ///< 0 = half a sample time
 };
 
 /// The same of one channel, in place of the unit's.
