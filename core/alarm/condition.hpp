@@ -13,10 +13,10 @@ enum class AlarmState : unsigned char { kCleared, kActive };
 class Condition {
  public:
   struct Limits {
-    double raise_below = 1e-7;
-    double clear_above = 1e-3;  ///< >= raise_below
-    int on_delay = 10;          ///< samples, >= 1
-    int off_delay = 60;         ///< samples, >= 1
+    double raise_below = 0.0;  ///< p-value
+    double clear_above = 1.0;  ///< p-value, >= raise_below
+    int on_delay = 1;          ///< samples, >= 1
+    int off_delay = 1;         ///< samples, >= 1
   };
 
   /// Takes one sample's p-value; true where the state changed.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/mismatch/calibration.hpp"
+
 namespace mpm {
 namespace {
 
@@ -31,7 +33,8 @@ void solve_free(const Eigen::Matrix3d& r, const Eigen::Vector3d& c, const std::a
         column -= share * basis[s];
       }
     const double own = column.norm();
-    if (!(own > 1e-12 * size)) {  // explained by the others: not free after all
+    if (!(own > calibration::rounding::kFreeShare *
+                    size)) {  // explained by the others: not free after all
       x(k) = 0.0;
       triangle.col(count).setZero();
       continue;

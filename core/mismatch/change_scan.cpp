@@ -9,20 +9,11 @@
 namespace mpm {
 namespace {
 
-// Moments looked at.
-constexpr int kMoments = 100;
+using calibration::change_scan::kMargin;
+using calibration::change_scan::kMoments;
 
-// Rows that a factor takes together.
+// Rows that a factor takes together: speed only.
 constexpr int kBatchRows = 32;
-
-// By how many sigma^2 a change must beat no change: chance gives a few.
-constexpr double kMargin = 20.0;
-
-// What `inputs` more parameters gain by chance is chi-square; this many s.d. above its mean.
-constexpr double kDeviations = 6.0;
-
-// Above this p-value no input explains anything since a change.
-constexpr double kNothing = 1e-3;
 
 }  // namespace
 
@@ -44,21 +35,22 @@ ChangeScan::ChangeScan(const RegressionShape& shape)
   moments_.reserve(kMoments);
 }
 
-std::optional<ChangePoint> ChangeScan::scan(const ChannelTest& test, int cv) {
-  const int span = test.span(cv);
+std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, int cv) {
+  const int span = detector.span(cv);
   if (span < 2 * kMoments) return std::nullopt;
   moments_.clear();  // ages at which a part ends, newest first
   for (int m = 1; m < kMoments; ++m) moments_.push_back(m * span / kMoments);
-  pass(test, cv, true, true, after_with_);
-  pass(test, cv, true, false, after_without_);
-  pass(test, cv, false, true, before_with_);
+  pass(detector, cv, true, true, after_with_);
+  pass(detector, cv, true, false, after_without_);
+  pass(detector, cv, false, true, before_with_);
   const double constant = whole_.residual_square(0);
-  const double freedom = test.memory(cv).rows - shape_.columns();
-  pass(test, cv, false, false, before_without_);
+  const double freedom = detector.memory(cv).rows - shape_.columns();
+  pass(detector, cv, false, false, before_without_);
   if (!(constant > 0.0) || freedom <= 0.0) return std::nullopt;
 
   const double inputs = shape_.inputs * shape_.block();
-  const double chance = inputs + kDeviations * std::sqrt(2.0 * inputs);
+  const double chance =
+      inputs + calibration::change_scan::kChanceDeviations * std::sqrt(2.0 * inputs);
   const double per_square = freedom / constant;
   // The gain, where it can exceed `least` at all: joining the parts only leaves more.
   const auto gain_of = [&](const Part& after, const Part& before, double least) {
@@ -80,34 +72,35 @@ std::optional<ChangePoint> ChangeScan::scan(const ChannelTest& test, int cv) {
   if (end.gain > best.gain) best = end;
   double bar = best.gain + chance;
   for (std::size_t m = 0; m < moments_.size(); ++m) {
-    if (moments_[m] < 2 * shape_.columns()) continue;
+    if (moments_[m] < calibration::change_scan::kRowsPerColumn * shape_.columns()) continue;
     const double other = gain_of(after_with_[m], before_with_[m], bar);
     if (other <= bar) continue;
     best = {ChangeKind::kOther, moments_[m], other};
     bar = other;
   }
   if (best.samples == 0) return std::nullopt;
-  if (best.kind != ChangeKind::kEnded) name_input(test, cv, best);
+  if (best.kind != ChangeKind::kEnded) name_input(detector, cv, best);
   // The rows between the change and the nearest moment looked at fit neither side of an end; twice
   // as many parameters hide them, and then find nothing in all that came since.
-  const bool over = best.kind == ChangeKind::kOther && end.samples > 0 && best.p_value > kNothing;
+  const bool over = best.kind == ChangeKind::kOther && end.samples > 0 &&
+                    best.p_value > calibration::change_scan::kNothingPValue;
   return over ? end : best;
 }
 
 // The input that alone explains the rows since the change best, and its F on these rows alone: with
-// rows clipped as leniently as above and as strictly as in the test, the larger p. A burst of noise
-// passes the first, hardly both.
-void ChangeScan::name_input(const ChannelTest& test, int cv, ChangePoint& change) {
-  const InputFit lenient = best_input(test, cv, change.samples, false);
-  const InputFit strict = best_input(test, cv, change.samples, true);
+// rows clipped as leniently as above and as strictly as in the detector, the larger p. A burst of
+// noise passes the first, hardly both.
+void ChangeScan::name_input(const MismatchDetector& detector, int cv, ChangePoint& change) {
+  const InputFit lenient = best_input(detector, cv, change.samples, false);
+  const InputFit strict = best_input(detector, cv, change.samples, true);
   change.input = lenient.input;
   change.p_value = std::max(lenient.p_value, strict.p_value);
 }
 
-ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int samples,
+ChangeScan::InputFit ChangeScan::best_input(const MismatchDetector& detector, int cv, int samples,
                                             bool strict) {
   const int block = shape_.block();
-  const RegressionHistory& history = test.history();
+  const RegressionHistory& history = detector.history();
   double least = std::numeric_limits<double>::infinity();
   double nothing = 0.0;
   int rows = 0;
@@ -117,7 +110,8 @@ ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int
     factor.clear();
     rows = 0;
     for (int age = samples - 1; age >= 0; --age) {
-      const double weight = strict ? test.row_weight(cv, age) : test.lenient_weight(cv, age);
+      const double weight =
+          strict ? detector.row_weight(cv, age) : detector.lenient_weight(cv, age);
       if (!(weight > 0.0)) continue;
       double* row = next_row(factor);
       history.fill_lead_in(age, row);
@@ -136,20 +130,20 @@ ChangeScan::InputFit ChangeScan::best_input(const ChannelTest& test, int cv, int
     best.input = input;
   }
   const int freedom = rows - shape_.lead_in() - block;
-  if (freedom < kFewestFreedom || !(least > 0.0)) return best;
+  if (freedom < calibration::change_scan::kFewestFreedom || !(least > 0.0)) return best;
   const double statistic = (nothing - least) / block / (least / freedom);
   best.p_value = std::min(1.0, shape_.inputs * f_upper_tail(statistic, block, freedom));
   return best;
 }
 
 // parts[m] holds the rows younger than moments_[m] (newest first) or at least as old.
-void ChangeScan::pass(const ChannelTest& test, int cv, bool newest_first, bool with_inputs,
+void ChangeScan::pass(const MismatchDetector& detector, int cv, bool newest_first, bool with_inputs,
                       std::vector<Part>& parts) {
   GivensQr& factor = with_inputs ? whole_ : lead_in_;
   factor.clear();
-  const RegressionHistory& history = test.history();
+  const RegressionHistory& history = detector.history();
   const int first = with_inputs ? shape_.inputs * shape_.block() : 0;
-  const int span = test.span(cv);
+  const int span = detector.span(cv);
   int rows = 0;
   const auto store_at = [&](int age) {
     const auto found = std::find(moments_.begin(), moments_.end(), age);
@@ -160,7 +154,7 @@ void ChangeScan::pass(const ChannelTest& test, int cv, bool newest_first, bool w
   for (int step = 0; step < span; ++step) {
     const int age = newest_first ? step : span - 1 - step;
     if (newest_first) store_at(age);
-    const double weight = test.lenient_weight(cv, age);
+    const double weight = detector.lenient_weight(cv, age);
     if (weight > 0.0) {
       double* row = next_row(factor);
       if (with_inputs) history.fill_inputs(age, row);

@@ -3,7 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/mismatch/channel_test.hpp"
+#include "core/mismatch/calibration.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 
 namespace mpm {
 
@@ -24,7 +25,7 @@ struct ChangePoint {
 ///     to the rows after a moment (began), to those before it (ended), or twice, before and after,
 ///
 /// the constant and the residuals' own lags in common. The first two have as many parameters as "no
-/// change" and must beat it by kMargin; the last has all blocks once more and must beat these by
+/// change" and must beat it by a margin; the last has all blocks once more and must beat these by
 /// what that many could gain by chance (Andrews 1993, on the likelihood ratio over all moments);
 /// where it wins but no input explains anything since then, it is an end, if that too beats "no
 /// change".
@@ -33,7 +34,7 @@ class ChangeScan {
  public:
   explicit ChangeScan(const RegressionShape& shape);
 
-  [[nodiscard]] std::optional<ChangePoint> scan(const ChannelTest& test, int cv);
+  [[nodiscard]] std::optional<ChangePoint> scan(const MismatchDetector& detector, int cv);
 
  private:
   /// What a part of the rows leaves once the inputs' blocks are eliminated (or, where the inputs
@@ -45,18 +46,19 @@ class ChangeScan {
   };
   /// Residual variance; 0 where the rows are too few to tell.
   [[nodiscard]] static double variance_of(const Part& part) {
-    return part.freedom >= kFewestFreedom ? part.square / part.freedom : 0.0;
+    return part.freedom >= calibration::change_scan::kFewestFreedom ? part.square / part.freedom
+                                                                    : 0.0;
   }
-  static constexpr int kFewestFreedom = 15;
 
-  void pass(const ChannelTest& test, int cv, bool newest_first, bool with_inputs,
+  void pass(const MismatchDetector& detector, int cv, bool newest_first, bool with_inputs,
             std::vector<Part>& parts);
   struct InputFit {
     int input = -1;
     double p_value = 1.0;
   };
-  void name_input(const ChannelTest& test, int cv, ChangePoint& change);
-  [[nodiscard]] InputFit best_input(const ChannelTest& test, int cv, int samples, bool strict);
+  void name_input(const MismatchDetector& detector, int cv, ChangePoint& change);
+  [[nodiscard]] InputFit best_input(const MismatchDetector& detector, int cv, int samples,
+                                    bool strict);
   void store(const GivensQr& factor, int first, int rows, Part& part) const;
   [[nodiscard]] double joined(const Part& a, const Part& b);
 

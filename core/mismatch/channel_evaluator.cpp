@@ -7,38 +7,15 @@
 #include <stdexcept>
 
 #include "core/mismatch/box_least_squares.hpp"
+#include "core/mismatch/calibration.hpp"
 #include "core/regression/rotation.hpp"
 #include "core/statistics/f_distribution.hpp"
+#include "core/statistics/normal.hpp"
 
 namespace mpm {
 namespace {
 
-// A column of which less than this share (relative s.d.) is its own is held at that share: the
-// variances of everything that depends on it then come out huge instead of meaningless.
-constexpr double kOwnShare = 1e-7;
-
-// Above this own share of every column the regression's coefficients are worth reading.
-constexpr double kSeparable = 1e-3;
-
-// Room for the usual errors of a channel, and the share of one that must be its own to count.
-constexpr int kMostUsualErrors = 8;
-constexpr double kIndependent = 1e-6;
-
-// The other inputs mask this one where they make its gain's s.d. this many times larger.
-constexpr double kMasked = 2.0;
-
-// In a regression on its own past F is too large on few rows, by a factor that falls with
-// columns / freedom (Bartlett 1937 on such factors): the residuals' lags come out too fast, and
-// what moves slowly seems too certain. Fitted on seeds that no study scores; see
-// docs/validation.md.
-constexpr double kUsualBartlett = 1.35;
-constexpr double kBlockBartlett = 0.26;
-
-// Below this p-value errors of gain, time constant and dead time do not explain what is seen.
-constexpr double kUnusual = 1e-3;
-
-// One-sided 95 % of a normal estimate, s.d.
-constexpr double kConfident = 1.645;
+using calibration::rounding::kIndependentShare;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -83,7 +60,7 @@ double beyond_limit(const Estimate& estimate, double limit, double freedom) {
 }
 
 bool surely_within(const Estimate& estimate, double limit) {
-  return std::abs(estimate.value) + kConfident * estimate.deviation < limit;
+  return std::abs(estimate.value) + kNormalOneSided95 * estimate.deviation < limit;
 }
 
 }  // namespace
@@ -135,10 +112,10 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
   estimate_.setZero(all);
   coefficients_.setZero(shape.columns());
   direction_.setZero(block_, shape.inputs);
-  usual_.setZero(block_, kMostUsualErrors);
-  usual_generators_.setZero(kMostUsualErrors, kGenerators);
-  usual_whitened_.setZero(kMostUsualErrors);
-  reduced_basis_.setZero(std::max(block_, kMostUsualErrors), 3);
+  usual_.setZero(block_, kUsualErrors);
+  usual_generators_.setZero(kUsualErrors, kGenerators);
+  usual_whitened_.setZero(kUsualErrors);
+  reduced_basis_.setZero(std::max(block_, kUsualErrors), 3);
   generators_.setZero(block_, kGenerators);
   beta_.setZero(block_);
   whitened_.setZero(block_);
@@ -154,8 +131,8 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
                           (freedom + memory.factor.columns()) / freedom;
   const double inflated = variance * memory.weight_square / memory.weight_sum;
   const double per_freedom = memory.factor.columns() / freedom;
-  const Scale scale{inflated * (1.0 + kUsualBartlett * per_freedom),
-                    inflated * (1.0 + kBlockBartlett * per_freedom), freedom};
+  const Scale scale{inflated * (1.0 + calibration::few_rows::kDirected * per_freedom),
+                    inflated * (1.0 + calibration::few_rows::kBlock * per_freedom), freedom};
   for (int i = 0; i < shape_.inputs; ++i) {
     evidence[i] = ChannelEvidence{};
     const auto norms = norms_.segment(i * block_, block_);
@@ -168,7 +145,8 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
     }
   }
   for (int i = 0; i < shape_.inputs; ++i)
-    if (evidence[i].excitation_index > kMasked * evidence[i].excitation_index_alone)
+    if (evidence[i].excitation_index >
+        calibration::confounding::kMasked * evidence[i].excitation_index_alone)
       find_confounder(i, evidence[i]);
 }
 
@@ -191,7 +169,9 @@ void ChannelEvaluator::read_factor(int cv, const GivensQr& factor) {
   // on the residual lags alone: a loop without excitation makes inputs a function of residuals.
   double least_share = 1.0;
   for (int c = 0; c < all; ++c) least_share = std::min(least_share, triangle_(c, c));
-  factor.solve(0, least_share > kSeparable ? shape_.columns() : lead_in_, coefficients_);
+  factor.solve(0,
+               least_share > calibration::rounding::kSeparableShare ? shape_.columns() : lead_in_,
+               coefficients_);
   own_lags_ = coefficients_.data() + 1 + cv * shape_.residual_order;
   residual_norm_ = factor.centred_norm(1 + cv * shape_.residual_order);
 }
@@ -251,7 +231,7 @@ void ChannelEvaluator::judge_usual_errors(const Channel& channel, const Scale& s
     for (int pass = 0; pass < 2; ++pass)  // twice is enough (Kahan; Parlett 1980)
       for (int c = 0; c < usual_rank_; ++c) beta_ -= usual_.col(c).dot(beta_) * usual_.col(c);
     const double after = beta_.norm();
-    if (!(after > kIndependent * before)) continue;
+    if (!(after > kIndependentShare * before)) continue;
     usual_.col(usual_rank_) = beta_ / after;
     const double part = usual_.col(usual_rank_).dot(whitened_);
     explained += part * part;
@@ -289,7 +269,7 @@ ChannelEvaluator::Reduced ChannelEvaluator::reduce(const Eigen::Ref<const Eigen:
         q -= share * reduced_basis_.col(b).head(rows);
       }
     const double own = q.norm();
-    if (own > kIndependent * before) {
+    if (own > kIndependentShare * before) {
       reduced.r(column, column) = own;
       q /= own;
       reduced.c(column) = q.dot(target);
@@ -323,7 +303,8 @@ void ChannelEvaluator::judge_materiality(const Channel& channel, const Scale& sc
   }
   const int free = block_ - 3;
   evidence.usual =
-      free > 0 && f_upper_tail(nearest / (free * scale.variance), free, scale.freedom) > kUnusual;
+      free > 0 && f_upper_tail(nearest / (free * scale.variance), free, scale.freedom) >
+                      calibration::usual_errors::kUnusualPValue;
   if (!evidence.usual) {
     judge_unusual(channel.limits, scale, evidence);
     return;
@@ -427,7 +408,8 @@ void ChannelEvaluator::invert_triangle() {
         project_row(inverse_row(c) + c, out + c, static_cast<std::size_t>(padded_ - c),
                     triangle_(i, c));
       const bool moves = i < all && norms_(i) > 0.0;
-      const double inverse = moves ? 1.0 / std::max(triangle_(i, i), kOwnShare) : 1.0;
+      const double inverse =
+          moves ? 1.0 / std::max(triangle_(i, i), calibration::rounding::kOwnShare) : 1.0;
       for (int k = i + 1; k < padded_; ++k) out[k] *= inverse;
       out[i] = i < all ? inverse : 0.0;
     }

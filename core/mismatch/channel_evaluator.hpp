@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/regression_history.hpp"
 #include "core/mismatch/signature.hpp"
@@ -40,17 +41,16 @@ struct RegressionMemory {
     return weight_square > 0.0 ? weight_sum * weight_sum / weight_square : 0.0;
   }
   [[nodiscard]] double freedom() const { return effective_rows() - factor.columns(); }
-  /// Enough rows for the evidence to mean anything: with four per column p < 1e-4 still comes seven
-  /// times too often, with five as often as it should. `heavy_tails`, 0..1, asks for more.
+  /// Enough rows for the evidence to mean anything. `heavy_tails`, 0..1, asks for more.
   [[nodiscard]] double needed_rows() const {
-    return (kRowsPerColumn + kMoreRowsPerColumn * heavy_tails) * factor.columns();
+    return (calibration::rows_needed::kPerColumn +
+            calibration::rows_needed::kMorePerColumn * heavy_tails) *
+           factor.columns();
   }
   [[nodiscard]] bool ready() const {
     return rows >= needed_rows() && freedom() >= factor.columns();
   }
   double heavy_tails = 0.0;
-  static constexpr double kRowsPerColumn = 5.0;
-  static constexpr double kMoreRowsPerColumn = 20.0;
 };
 
 /// Reads off a CV's factor what the data say about each of its channels.

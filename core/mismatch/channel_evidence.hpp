@@ -2,13 +2,16 @@
 
 #include <limits>
 
+#include "core/mismatch/calibration.hpp"
+
 namespace mpm {
 
-/// Errors of a channel's model that do not matter. Larger ones are material.
+/// Errors of a channel's model that do not matter, gain and time constant relative to the model's,
+/// all > 0. Larger ones are material.
 struct MaterialityLimits {
-  double gain = 0.05;              ///< relative to the model's gain, > 0
-  double time_constant = 0.10;     ///< relative to the model's, > 0
-  double dead_time_samples = 0.5;  ///< > 0
+  double gain = calibration::materiality::kGain;
+  double time_constant = calibration::materiality::kTimeConstant;
+  double dead_time_samples = calibration::materiality::kDeadTimeSamples;
 };
 
 /// An estimate with its standard deviation; the s.d. is infinite where nothing is known.

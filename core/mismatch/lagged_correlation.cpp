@@ -5,13 +5,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/mismatch/calibration.hpp"
+
 namespace mpm {
 namespace {
-
-// An input whose own movement (residual sum of squares given the others) is below this fraction of
-// its total carries rounding noise only: relative s.d. 1e-9, well above eps and well below any
-// collinearity that double precision can still resolve.
-constexpr double kOwnMovement = 1e-18;
 
 constexpr double kTiny = std::numeric_limits<double>::min();
 
@@ -96,7 +93,7 @@ void LaggedCorrelation::evaluate() {
     const double* squares = factors.residual_squares(block);
     const double* products = factors.residual_products(block);
     const double own = squares[0];
-    defined_[s] = own > kOwnMovement * totals_[s] && own > 0.0;
+    defined_[s] = own > calibration::rounding::kOwnMovementSquare * totals_[s] && own > 0.0;
     for (int j = 0; j < shape_.cvs; ++j) {
       auto out = correlations_.col(i * shape_.cvs + j);
       if (!defined_[s]) {

@@ -22,11 +22,11 @@ namespace mpm {
 class LaggedCorrelation {
  public:
   struct Shape {
-    int inputs = 1;             ///< m >= 1
-    int cvs = 1;                ///< n >= 1
-    int controlling_lags = 40;  ///< g >= 0; without meaning for kPartial and kConventional
-    int first_lag = -10;
-    int last_lag = 20;  ///< >= max(first_lag, 0)
+    int inputs = 1;            ///< m >= 1
+    int cvs = 1;               ///< n >= 1
+    int controlling_lags = 0;  ///< g >= 0; without meaning for kPartial and kConventional
+    int first_lag = 0;
+    int last_lag = 0;  ///< >= max(first_lag, 0)
     CorrelationKind kind = CorrelationKind::kLaggedPartial;
   };
 

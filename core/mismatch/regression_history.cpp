@@ -5,13 +5,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/mismatch/calibration.hpp"
+
 namespace mpm {
-namespace {
 
-// Unknown residuals in a row that are interpolated.
-constexpr int kInterpolated = 2;
-
-}  // namespace
+using calibration::gaps::kInterpolated;
 
 RegressionHistory::RegressionHistory(const RegressionShape& shape, int depth)
     : shape_(shape),

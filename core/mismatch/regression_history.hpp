@@ -14,8 +14,8 @@ namespace mpm {
 struct RegressionShape {
   int inputs = 1;
   int cvs = 1;
-  int fir_lags = 20;               ///< L >= 1
-  int residual_order = 8;          ///< p >= 1
+  int fir_lags = 1;                ///< L >= 1
+  int residual_order = 1;          ///< p >= 1
   std::vector<double> tail_poles;  ///< r_t in (0, 1); at least one
 
   [[nodiscard]] int block() const { return fir_lags + static_cast<int>(tail_poles.size()); }

@@ -5,11 +5,18 @@
 
 namespace mpm {
 
+using calibration::usual_errors::kDelayShifts;
+using calibration::usual_errors::kTailFitFewest;
+using calibration::usual_errors::kTailFitMost;
+using calibration::usual_errors::kTailFitTimeConstants;
+using calibration::usual_errors::kTimeConstantStep;
+
 BlockBasis::BlockBasis(int fir_lags, std::vector<double> tail_poles)
     : fir_lags_(fir_lags), tail_poles_(std::move(tail_poles)) {
   const double slowest_pole = *std::max_element(tail_poles_.begin(), tail_poles_.end());
   slowest_ = -1.0 / std::log(slowest_pole);
-  beyond_ = std::clamp(static_cast<int>(8.0 * slowest_), 50, 20000);
+  beyond_ =
+      std::clamp(static_cast<int>(kTailFitTimeConstants * slowest_), kTailFitFewest, kTailFitMost);
   Eigen::MatrixXd steps(beyond_, static_cast<Eigen::Index>(tail_poles_.size()));
   for (Eigen::Index t = 0; t < steps.cols(); ++t)
     for (int l = 0; l < beyond_; ++l)
@@ -58,21 +65,22 @@ Eigen::VectorXd shifted(const Eigen::VectorXd& pulse, int by) {
 std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse) {
   const int length = static_cast<int>(pulse.size());
   // Step response stretched about the end of the dead time, by linear interpolation.
-  constexpr double kStretch = 0.1;
   int start = 0;
   while (start + 1 < length && pulse(start + 1) == 0.0) ++start;
   Eigen::VectorXd step(length);
   double sum = 0.0;
   for (int l = 0; l < length; ++l) step(l) = sum += pulse(l);
   const auto stretched = [&](int l) {
-    const double at = l <= start ? l : start + (l - start) / (1.0 + kStretch);
+    const double at = l <= start ? l : start + (l - start) / (1.0 + kTimeConstantStep);
     const int below = std::min(static_cast<int>(at), length - 2);
     return step(below) + (at - below) * (step(below + 1) - step(below));
   };
   Eigen::VectorXd slower = Eigen::VectorXd::Zero(length);
   for (int l = 1; l < length; ++l)
-    slower(l) = (stretched(l) - stretched(l - 1) - pulse(l)) / std::log(1.0 + kStretch);
-  return {pulse, slower, shifted(pulse, -2), shifted(pulse, 2), shifted(pulse, 6)};
+    slower(l) = (stretched(l) - stretched(l - 1) - pulse(l)) / std::log(1.0 + kTimeConstantStep);
+  std::vector<Eigen::VectorXd> errors = {pulse, slower};
+  for (const int shift : kDelayShifts) errors.push_back(shifted(pulse, shift));
+  return errors;
 }
 
 }  // namespace mpm

@@ -4,11 +4,13 @@
 #include <Eigen/QR>
 #include <vector>
 
+#include "core/mismatch/calibration.hpp"
+
 namespace mpm {
 
-/// The regressors of one input in the channel test: u(k-1..k-L) and tails s_t(k-L-1) with poles
-/// r_t. Turns a pulse response into coefficients on them: exact up to lag L, beyond it the step
-/// response is fitted by the tails' step responses (least squares over eight slowest time
+/// The regressors of one input in the mismatch detector: u(k-1..k-L) and tails s_t(k-L-1) with
+/// poles r_t. Turns a pulse response into coefficients on them: exact up to lag L, beyond it the
+/// step response is fitted by the tails' step responses (least squares over eight slowest time
 /// constants).
 class BlockBasis {
  public:
@@ -51,6 +53,8 @@ class Signature {
 /// Pulse responses of the errors a channel usually has, for its own pulse response: its gain (the
 /// response itself), its time constants (derivative by their logarithm), its dead time (2 samples
 /// earlier, 2 and 6 later). As many values as `pulse`.
+inline constexpr int kUsualErrors =
+    2 + static_cast<int>(calibration::usual_errors::kDelayShifts.size());
 [[nodiscard]] std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse);
 
 }  // namespace mpm

@@ -58,8 +58,8 @@ struct ChannelStatus {
   Verdict verdict = Verdict::kUndetermined;
   Reason reason = Reason::kWarmingUp;
   int confounder = -1;               ///< input index, for kCollinear; -1 otherwise
-  double p_value = 1.0;              ///< of the channel test, 0..1
-  double statistic = 0.0;            ///< F of the channel test; |correlation| with the mean line
+  double p_value = 1.0;              ///< of the F test of the channel, 0..1
+  double statistic = 0.0;            ///< its F; |correlation| with the mean line
   double threshold = 0.0;            ///< of the statistic, where the verdict turns to mismatch
   double partial_correlation = 0.0;  ///< where its magnitude is largest for lags >= 1; (3.15), or
                                      ///< the kind that the settings name

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/model/calibration.hpp"
+
 namespace mpm {
 namespace {
 
@@ -22,7 +24,7 @@ void check(const DiscreteFilter& filter) {
   if (!std::all_of(filter.numerator.begin(), filter.numerator.end(), finite) ||
       !std::all_of(filter.denominator.begin(), filter.denominator.end(), finite))
     throw std::invalid_argument("filter: coefficients must be finite");
-  if (filter.delay_samples < 0 || filter.delay_samples > 1000000)
+  if (filter.delay_samples < 0 || filter.delay_samples > calibration::kLongestDeadTime)
     throw std::invalid_argument("filter: delay must be in 0 .. 1e6 samples");
 }
 
@@ -34,15 +36,15 @@ ChannelFacts facts_of(const FilterChannel& filter) {
   result.order = order;
   result.dead_time = filter.delay;
   for (Index i = 0; i < b.size() && b(i) == 0.0; ++i) result.dead_time += 1.0;
-  constexpr double kUnitTolerance = 1e-9;
-  result.integrating = std::abs(a.sum()) <= kUnitTolerance * a.cwiseAbs().sum();
+  result.integrating = std::abs(a.sum()) <= calibration::model_rounding::kSame * a.cwiseAbs().sum();
   double radius = 0.0;
   if (order > 0) {
     MatrixXd companion = MatrixXd::Zero(order, order);
     companion.row(0) = -a.tail(order).transpose();
     companion.bottomLeftCorner(order - 1, order - 1).setIdentity();
     for (const std::complex<double>& pole : companion.eigenvalues()) {
-      if (result.integrating && std::abs(pole - 1.0) < 1e-6) continue;
+      if (result.integrating && std::abs(pole - 1.0) < calibration::model_rounding::kSameRoot)
+        continue;
       if (std::abs(pole) >= 1.0) result.unstable = true;
       radius = std::max(radius, std::abs(pole));
     }

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/model/calibration.hpp"
+
 namespace mpm {
 namespace {
 
@@ -33,7 +35,8 @@ ChannelFacts facts_of(const std::vector<double>& steps) {
         return std::abs(left) < std::abs(right);
       }));
   std::size_t first = 1;
-  while (first + 1 < steps.size() && std::abs(steps[first]) <= 1e-3 * size) ++first;
+  while (first + 1 < steps.size() && std::abs(steps[first]) <= calibration::kNotBegun * size)
+    ++first;
   result.dead_time = static_cast<double>(first - 1);
   std::size_t last_far = first - 1;
   for (std::size_t i = first; i < steps.size(); ++i)

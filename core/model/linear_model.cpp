@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/model/calibration.hpp"
 #include "core/model/disturbance.hpp"
 #include "core/model/input_history.hpp"
 #include "core/model/model_definition.hpp"
@@ -18,14 +19,16 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+namespace watched = calibration::settling_horizon;
 using BoolMatrix = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// The unit-step response of one channel stays within `tolerance` from the returned sample on.
 int settling_of(LinearModel& channel, const ChannelFacts& facts, double tolerance, int limit) {
   if (facts.unstable) return limit;
   const auto order = static_cast<double>(facts.order);
-  const double horizon = facts.dead_time + 10.0 +
-                         facts.slowest * (10.0 + 5.0 * order + 2.0 * std::log1p(1.0 / tolerance));
+  const double horizon = facts.dead_time + watched::kSamples +
+                         facts.slowest * (watched::kTimeConstants + watched::kPerOrder * order +
+                                          watched::kPerLogTolerance * std::log1p(1.0 / tolerance));
   const int length = horizon < limit ? static_cast<int>(horizon) : limit;
   channel.reset();
   const VectorXd unit = VectorXd::Ones(1);
@@ -120,8 +123,8 @@ void LinearModel::State::compute_output() {
 }
 
 void LinearModel::State::add_disturbances() {
-  // Seconds since 1970 as a double are good to 0.2 us.
-  const double tolerance_s = 1e-4 * definition->spec.sample_time_s;
+  const double tolerance_s =
+      calibration::model_rounding::kSameInstant * definition->spec.sample_time_s;
   const double now_s = time_s();
   for (const DisturbanceTerm& disturbance : definition->spec.disturbances)
     linear_output(disturbance.cv) += disturbance_at(disturbance, now_s, tolerance_s);

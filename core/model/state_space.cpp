@@ -9,13 +9,15 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/model/calibration.hpp"
+
 namespace mpm {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kUnitTolerance = 1e-9;
+using calibration::model_rounding::kSame;
 
 /// Sets `slowest` and `unstable`; true where an eigenvalue is 1.
 bool judge_poles(const MatrixXd& transition, StateSpaceFacts& facts) {
@@ -23,7 +25,7 @@ bool judge_poles(const MatrixXd& transition, StateSpaceFacts& facts) {
   double radius = 0.0;
   bool has_integrator = false;
   for (Index i = 0; i < poles.size(); ++i) {
-    if (std::abs(poles(i) - 1.0) < kUnitTolerance)
+    if (std::abs(poles(i) - 1.0) < kSame)
       has_integrator = true;
     else if (std::abs(poles(i)) >= 1.0)
       facts.unstable = true;
@@ -38,8 +40,8 @@ bool judge_poles(const MatrixXd& transition, StateSpaceFacts& facts) {
 MatrixXd integrator_projector(const MatrixXd& difference) {
   const MatrixXd squared = difference * difference;  // index 2 covers double integrators
   Eigen::FullPivLU<MatrixXd> right(squared), left(squared.transpose());
-  right.setThreshold(kUnitTolerance);
-  left.setThreshold(kUnitTolerance);
+  right.setThreshold(kSame);
+  left.setThreshold(kSame);
   const MatrixXd right_basis = right.kernel();
   const MatrixXd left_basis = left.kernel();
   const MatrixXd overlap = left_basis.transpose() * right_basis;
@@ -80,8 +82,8 @@ StateSpaceFacts analyse_state_space(const StateSpaceSpec& system) {
   const double scale = 1.0 + system.b.cwiseAbs().maxCoeff() * system.c.cwiseAbs().maxCoeff();
   for (Index cv = 0; cv < slope.rows(); ++cv) {
     for (Index input = 0; input < slope.cols(); ++input) {
-      const bool doubled = std::abs(growth(cv, input)) > kUnitTolerance * scale;
-      if (!doubled && std::abs(slope(cv, input)) <= kUnitTolerance * scale) continue;
+      const bool doubled = std::abs(growth(cv, input)) > kSame * scale;
+      if (!doubled && std::abs(slope(cv, input)) <= kSame * scale) continue;
       facts.integrating(cv, input) = true;
       facts.gain(cv, input) =
           doubled ? std::copysign(std::numeric_limits<double>::infinity(), -growth(cv, input))
@@ -99,7 +101,7 @@ std::vector<ChannelFacts> channel_facts(const StateSpaceSpec& system,
   std::vector<ChannelFacts> result(static_cast<std::size_t>(cvs * inputs));
 
   // Dead time of a channel: steps until its response to a pulse first differs from zero.
-  const double scale = 1e-9 * (1.0 + system.b.cwiseAbs().sum() * system.c.cwiseAbs().sum());
+  const double scale = kSame * (1.0 + system.b.cwiseAbs().sum() * system.c.cwiseAbs().sum());
   MatrixXd states = system.b;
   MatrixXd pulse = system.c * system.b + system.d;
   for (Index step = 0; step <= order; ++step) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/model/calibration.hpp"
 #include "core/model/zero_order_hold.hpp"
 
 namespace mpm {
@@ -16,16 +17,11 @@ constexpr double kMiddle = 0.5 * (1.0 - kGamma);
 constexpr double kFirst = -0.25 * (6.0 * kGamma * kGamma - 16.0 * kGamma + 1.0);
 constexpr double kSecond = 0.25 * (6.0 * kGamma * kGamma - 20.0 * kGamma + 5.0);
 
-// Steps per fastest time constant. Errors of a level: 1e-6, and up to 2e-4 for a while after a tank
-// has run empty or begun to overflow. A tank much faster than the sample
-// time follows its inflow: L-stability makes finer steps needless there.
-constexpr double kStepsPerTimeConstant = 20.0;
-constexpr double kMostSteps = 200.0;
-
-// Below this level the root bends sharply and a tank that fills again is of order 1.5 only: its
-// steps are parted.
-constexpr double kNearlyEmpty = 0.05;
-constexpr int kParts = 8;
+using calibration::model_rounding::kSame;
+using calibration::tanks::kMostSteps;
+using calibration::tanks::kNearlyEmpty;
+using calibration::tanks::kParts;
+using calibration::tanks::kStepsPerTimeConstant;
 
 void check(const TankChain& tanks, double input_origin, double output_origin,
            double sample_time_s) {
@@ -45,7 +41,8 @@ void check(const TankChain& tanks, double input_origin, double output_origin,
     throw std::invalid_argument("tanks: overflow levels must be above 1, the operating point");
   if (!(tanks.spill >= 0.0 && tanks.spill <= 1.0))
     throw std::invalid_argument("tanks: spill must be in 0 .. 1");
-  if (!(tanks.dead_time_s >= 0.0 && tanks.dead_time_s / sample_time_s < 1e6))
+  if (!(tanks.dead_time_s >= 0.0 &&
+        tanks.dead_time_s / sample_time_s < calibration::kLongestDeadTime))
     throw std::invalid_argument("dead time must be in 0 .. 1e6 samples");
 }
 
@@ -119,7 +116,7 @@ DescribedTanks make_tank_channel(int cv, int source, const TankChain& tanks, dou
   const double fastest_s =
       *std::min_element(tanks.time_constants_s.begin(), tanks.time_constants_s.end());
   const auto piece = [&](double duration_s) {
-    const double steps = std::ceil(kStepsPerTimeConstant * duration_s / fastest_s - 1e-9);
+    const double steps = std::ceil(kStepsPerTimeConstant * duration_s / fastest_s - kSame);
     return TankChannel::Piece{
         duration_s, duration_s > 0.0 ? static_cast<int>(std::clamp(steps, 1.0, kMostSteps)) : 0};
   };

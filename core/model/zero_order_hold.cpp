@@ -4,8 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/model/calibration.hpp"
+
 namespace mpm {
 namespace {
+
+using calibration::model_rounding::kWholeSample;
 
 /// The lags in series behind the held input as one matrix: z = (u, x1, .., xn),
 /// z_i' = inflow_i z_{i-1} - outflow_i z_i. Row 0 is the input, which does not move.
@@ -83,7 +87,8 @@ void check(const TransferFunction& channel, double sample_time_s) {
   if (!std::isfinite(channel.gain)) throw std::invalid_argument("gain must be finite");
   if (!std::all_of(channel.time_constants_s.begin(), channel.time_constants_s.end(), positive))
     throw std::invalid_argument("time constants must be positive");
-  if (!(channel.dead_time_s >= 0.0 && channel.dead_time_s / sample_time_s < 1e6))
+  if (!(channel.dead_time_s >= 0.0 &&
+        channel.dead_time_s / sample_time_s < calibration::kLongestDeadTime))
     throw std::invalid_argument("dead time must be in 0 .. 1e6 samples");
   if (!std::isfinite(channel.lead_s)) throw std::invalid_argument("lead must be finite");
   if (channel.lead_s != 0.0 && channel.time_constants_s.empty() && !channel.integrating)
@@ -93,14 +98,13 @@ void check(const TransferFunction& channel, double sample_time_s) {
 }  // namespace
 
 SampledDelay sampled_delay(double dead_time_s, double sample_time_s) {
-  constexpr double kWholeTolerance = 1e-9;
   const double delay = dead_time_s / sample_time_s;
   double whole = std::floor(delay);
   double fraction = delay - whole;
-  if (fraction > 1.0 - kWholeTolerance) {
+  if (fraction > 1.0 - kWholeSample) {
     whole += 1.0;
     fraction = 0.0;
-  } else if (fraction < kWholeTolerance) {
+  } else if (fraction < kWholeSample) {
     fraction = 0.0;
   }
   return {static_cast<int>(whole), fraction};

@@ -2,22 +2,12 @@
 
 #include <algorithm>
 
+#include "core/monitor/calibration.hpp"
+
 namespace mpm {
 namespace {
 
-// Samples between two searches for a change; fewer where the errors are very much larger than
-// usual.
-constexpr std::int64_t kBetweenScans = 100;
-constexpr std::int64_t kBetweenUrgentScans = 20;
-constexpr double kUrgent = 2.0;  // surprise
-
-// A change is looked for once an error is this likely, or the last 100 one-step errors are this
-// much larger than usual: while a memory spans the change, its p-value is slow to fall.
-constexpr double kSuspicious = 1e-5;
-constexpr double kSurprise = 1.3;
-
-// A change is certain where its p-value, of the likeliest moment and input, is below this.
-constexpr double kCertain = 1e-9;
+namespace change_search = calibration::change_search;
 
 // Of all memories that say something.
 struct Evidence {
@@ -26,35 +16,30 @@ struct Evidence {
   bool harmless = true;   // the long memory is sure that the error is within the limits
 };
 
-Evidence combined(int cv, int input, const ChannelTest& test) {
+Evidence combined(int cv, int input, const MismatchDetector& detector) {
   Evidence evidence;
   int ready = 0;
-  for (int m = 0; m < test.memory_count(); ++m) {
-    if (!test.memory(cv, m).ready()) continue;
+  for (int m = 0; m < detector.memory_count(); ++m) {
+    if (!detector.memory(cv, m).ready()) continue;
     ++ready;
-    const ChannelEvidence& channel = test.evidence(cv, input, m);
+    const ChannelEvidence& channel = detector.evidence(cv, input, m);
     evidence.material = std::min(evidence.material, channel.p_value_material);
     evidence.any = std::min(evidence.any, channel.p_value);
   }
-  evidence.harmless = test.evidence(cv, input).harmless;
+  evidence.harmless = detector.evidence(cv, input).harmless;
   evidence.material = std::min(1.0, ready * evidence.material);
   evidence.any = std::min(1.0, ready * evidence.any);
   return evidence;
 }
 
-// That the error matters may be a little less certain than that there is one: to raise an alarm it
-// must have at most this p-value.
-constexpr double kMaterial = 1e-3;
-
-// An alarm stays while its error is significant at this level and might matter.
-constexpr double kSignificant = 0.05;
-
 // What the condition looks at: to raise, that there is an error, and that it matters; to clear,
 // that it does not matter, or is not there.
 double condition_p(const Evidence& evidence, AlarmState state) {
   if (state == AlarmState::kCleared)
-    return evidence.material < kMaterial ? evidence.any : std::max(evidence.any, evidence.material);
-  const bool stays = evidence.any < kSignificant && !evidence.harmless;
+    return evidence.material < calibration::alarms::kMattersPValue
+               ? evidence.any
+               : std::max(evidence.any, evidence.material);
+  const bool stays = evidence.any < calibration::alarms::kStaysPValue && !evidence.harmless;
   return stays ? 0.0 : evidence.material;
 }
 
@@ -70,35 +55,36 @@ void CvAlarms::hold() {
   for (Condition& condition : conditions_) condition.hold();
 }
 
-void CvAlarms::step(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
+void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
                     const Condition::Limits& limits) {
   ++since_scan_;
-  if (!test.memory(cv).ready()) {
+  if (!detector.memory(cv).ready()) {
     hold();
     return;
   }
   if (isolating_) {
     if (!evaluated) return;
     isolating_ = false;
-    settle(cv, test, limits);
+    settle(cv, detector, limits);
     return;
   }
   const bool quiet = !any();
   bool risen = false;
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     const AlarmState before = conditions_[i].state();
-    const Evidence evidence = combined(cv, static_cast<int>(i), test);
+    const Evidence evidence = combined(cv, static_cast<int>(i), detector);
     const bool changed = conditions_[i].update(condition_p(evidence, before), limits);
     risen = risen || (changed && before == AlarmState::kCleared);
   }
-  const bool urgent = test.surprise(cv) > kUrgent;
-  const bool due = evaluated && since_scan_ >= (urgent ? kBetweenUrgentScans : kBetweenScans);
+  const bool urgent = detector.surprise(cv) > change_search::kUrgentSurprise;
+  const bool due = evaluated && since_scan_ >= (urgent ? change_search::kBetweenUrgent
+                                                       : change_search::kBetween);
   const bool suspicious =
-      due && (something_wrong(cv, quiet, test) || memories_disagree(cv, test, limits));
+      due && (something_wrong(cv, quiet, detector) || memories_disagree(cv, detector, limits));
   if (!risen && !suspicious) return;
-  const std::optional<ChangePoint> change = find_change(cv, risen, test, scan);
+  const std::optional<ChangePoint> change = find_change(cv, risen, detector, scan);
   if (!change) return;
-  test.start_afresh(cv, change->samples);
+  detector.start_afresh(cv, change->samples);
   isolating_ = true;
   change_p_value_ = change->p_value;
   if (!quiet || change->kind == ChangeKind::kEnded) return;
@@ -108,20 +94,21 @@ void CvAlarms::step(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
                                                             : AlarmState::kCleared);
 }
 
-std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, ChannelTest& test,
+std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, MismatchDetector& detector,
                                                  ChangeScan& scan) {
   since_scan_ = 0;
-  test.fold(cv);
-  std::optional<ChangePoint> change = scan.scan(test, cv);
+  detector.fold(cv);
+  std::optional<ChangePoint> change = scan.scan(detector, cv);
   const bool ended = change && change->kind == ChangeKind::kEnded && any();
-  const bool certain = change && (risen || ended || change->p_value < kCertain);
+  const bool certain =
+      change && (risen || ended || change->p_value < change_search::kCertainPValue);
   if (!certain) change.reset();
   return change;
 }
 
-void CvAlarms::settle(int cv, const ChannelTest& test, const Condition::Limits& limits) {
+void CvAlarms::settle(int cv, const MismatchDetector& detector, const Condition::Limits& limits) {
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
-    const Evidence evidence = combined(cv, static_cast<int>(i), test);
+    const Evidence evidence = combined(cv, static_cast<int>(i), detector);
     const AlarmState before = conditions_[i].state();
     if (before == AlarmState::kActive && condition_p(evidence, before) > limits.clear_above)
       conditions_[i].set(AlarmState::kCleared);
@@ -130,21 +117,22 @@ void CvAlarms::settle(int cv, const ChannelTest& test, const Condition::Limits& 
   }
 }
 
-bool CvAlarms::something_wrong(int cv, bool quiet, const ChannelTest& test) const {
-  if (test.surprise(cv) > kSurprise) return true;
+bool CvAlarms::something_wrong(int cv, bool quiet, const MismatchDetector& detector) const {
+  if (detector.surprise(cv) > change_search::kSuspiciousSurprise) return true;
   if (!quiet) return false;
   for (std::size_t i = 0; i < conditions_.size(); ++i)
-    if (combined(cv, static_cast<int>(i), test).any < kSuspicious) return true;
+    if (combined(cv, static_cast<int>(i), detector).any < change_search::kSuspiciousPValue)
+      return true;
   return false;
 }
 
-bool CvAlarms::memories_disagree(int cv, const ChannelTest& test,
+bool CvAlarms::memories_disagree(int cv, const MismatchDetector& detector,
                                  const Condition::Limits& limits) const {
-  for (int m = 1; m < test.memory_count(); ++m) {
-    if (!test.memory(cv, m).ready()) continue;
+  for (int m = 1; m < detector.memory_count(); ++m) {
+    if (!detector.memory(cv, m).ready()) continue;
     for (std::size_t i = 0; i < conditions_.size(); ++i) {
-      const ChannelEvidence& fast = test.evidence(cv, static_cast<int>(i), m);
-      const ChannelEvidence& lasting = test.evidence(cv, static_cast<int>(i));
+      const ChannelEvidence& fast = detector.evidence(cv, static_cast<int>(i), m);
+      const ChannelEvidence& lasting = detector.evidence(cv, static_cast<int>(i));
       const bool active = conditions_[i].state() == AlarmState::kActive;
       if (active && fast.p_value_material > limits.clear_above &&
           lasting.p_value_material < limits.clear_above)

@@ -6,7 +6,7 @@
 
 #include "core/alarm/condition.hpp"
 #include "core/mismatch/change_scan.hpp"
-#include "core/mismatch/channel_test.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 
 namespace mpm {
 
@@ -29,11 +29,11 @@ class CvAlarms {
   /// After each sample; `evaluated`: the CV's evidence is new. Calls `changed(input)` for each
   /// alarm that rose or cleared.
   template <class Changed>
-  void update(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
+  void update(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
               const Condition::Limits& limits, Changed changed) {
     before_.clear();
     for (const Condition& condition : conditions_) before_.push_back(condition.state());
-    step(cv, evaluated, test, scan, limits);
+    step(cv, evaluated, detector, scan, limits);
     for (std::size_t i = 0; i < conditions_.size(); ++i)
       if (conditions_[i].state() != before_[i]) changed(static_cast<int>(i));
   }
@@ -49,13 +49,14 @@ class CvAlarms {
   [[nodiscard]] double change_p_value() const { return change_p_value_; }
 
  private:
-  void step(int cv, bool evaluated, ChannelTest& test, ChangeScan& scan,
+  void step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
             const Condition::Limits& limits);
-  void settle(int cv, const ChannelTest& test, const Condition::Limits& limits);
-  [[nodiscard]] bool something_wrong(int cv, bool quiet, const ChannelTest& test) const;
-  [[nodiscard]] bool memories_disagree(int cv, const ChannelTest& test,
+  void settle(int cv, const MismatchDetector& detector, const Condition::Limits& limits);
+  [[nodiscard]] bool something_wrong(int cv, bool quiet, const MismatchDetector& detector) const;
+  [[nodiscard]] bool memories_disagree(int cv, const MismatchDetector& detector,
                                        const Condition::Limits& limits) const;
-  [[nodiscard]] std::optional<ChangePoint> find_change(int cv, bool risen, ChannelTest& test,
+  [[nodiscard]] std::optional<ChangePoint> find_change(int cv, bool risen,
+                                                       MismatchDetector& detector,
                                                        ChangeScan& scan);
 
   std::vector<Condition> conditions_;

@@ -3,30 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/monitor/calibration.hpp"
+
 namespace mpm {
 namespace {
 
-// Effective samples, (1 + lambda) / (1 - lambda), of the default memory.
-constexpr double kEffectiveSamples = 4000.0;
-constexpr double kFastEffectiveSamples = 1000.0;
-
-// An evaluation costs as much as several rows and what it says changes slowly: for 88 columns every
-// eighth sample.
-constexpr double kColumnsPerStride = 11.0;
-constexpr int kLongestStride = 30;
-
-// An error in the dead time must stay inside the pulse lags: this many samples beyond the longest.
-constexpr int kDeadTimeMargin = 13;
-constexpr int kFewestFirLags = 20;
-constexpr int kMostFirLags = 60;
-
-constexpr int kResidualOrder = 8;
-
-// Dead-time error that does not matter, samples.
-constexpr double kDeadTimeLimit = 0.5;
-
-// Slowest time constants after which what a wrong start left behind is below 1 %.
-constexpr double kSettlingTimeConstants = 5.0;
+namespace memories = calibration::memories;
+namespace evaluation = calibration::evaluation;
+namespace regression_shape = calibration::regression_shape;
 
 int samples(double seconds, double sample_time_s, int otherwise) {
   return seconds > 0.0 ? std::max(1, static_cast<int>(std::lround(seconds / sample_time_s)))
@@ -38,10 +22,6 @@ double forgetting(double effective_samples) {
   return (effective_samples - 1.0) / (effective_samples + 1.0);
 }
 
-// Memories of fewer rows than these per column could hardly tell the columns apart.
-constexpr double kLongRowsPerColumn = 15.0;
-constexpr double kFastRowsPerColumn = 8.0;
-
 void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
                      DerivedSettings& derived) {
   const double columns =
@@ -51,25 +31,28 @@ void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
     const double wanted = memory_s > 0.0 ? 2.0 * memory_s / spec.sample_time_s : otherwise;
     return std::max(wanted, rows_per_column * columns);
   };
-  const double lasting = effective(monitor.memory_s, kEffectiveSamples, kLongRowsPerColumn);
-  const double fast = effective(monitor.fast_memory_s, kFastEffectiveSamples, kFastRowsPerColumn);
+  const double lasting =
+      effective(monitor.memory_s, memories::kEffectiveSamples, memories::kRowsPerColumn);
+  const double fast = effective(monitor.fast_memory_s, memories::kFastEffectiveSamples,
+                                memories::kFastRowsPerColumn);
   derived.lambda = forgetting(lasting);
   if (monitor.sliding_window)
     derived.memories.push_back({1.0, static_cast<int>(lasting)});
   else
     derived.memories.push_back({derived.lambda, 0});
   if (fast < lasting) derived.memories.push_back({forgetting(fast), 0});
-  derived.remembered = static_cast<int>(std::ceil(1.2 * lasting));
-  derived.evaluation_stride =
-      std::clamp(static_cast<int>(columns / kColumnsPerStride), 1, kLongestStride);
+  derived.remembered = static_cast<int>(std::ceil(memories::kRememberedShare * lasting));
+  derived.evaluation_stride = std::clamp(static_cast<int>(columns / evaluation::kColumnsPerStride),
+                                         1, evaluation::kLongestStride);
 }
 
 void derive_materiality(const ModelSpec& spec, const MonitorSettings& monitor,
                         DerivedSettings& derived) {
   const auto limits = [&](const MaterialitySettings& settings) {
-    return MaterialityLimits{
-        settings.gain, settings.time_constant,
-        settings.dead_time_s > 0.0 ? settings.dead_time_s / spec.sample_time_s : kDeadTimeLimit};
+    return MaterialityLimits{settings.gain, settings.time_constant,
+                             settings.dead_time_s > 0.0
+                                 ? settings.dead_time_s / spec.sample_time_s
+                                 : calibration::materiality::kDeadTimeSamples};
   };
   derived.materiality.assign(static_cast<std::size_t>(spec.input_count * spec.cv_count),
                              limits(monitor.materiality));
@@ -94,29 +77,31 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
   derived.controlling_lags = monitor.controlling_lags;
   derived.first_lag = monitor.first_lag;
   derived.last_lag = monitor.last_lag;
-  derived.fir_lags = monitor.fir_lags > 0
-                         ? monitor.fir_lags
-                         : std::clamp(static_cast<int>(std::ceil(dead_time)) + kDeadTimeMargin,
-                                      kFewestFirLags, kMostFirLags);
-  derived.residual_order = monitor.residual_order > 0 ? monitor.residual_order : kResidualOrder;
+  derived.fir_lags =
+      monitor.fir_lags > 0
+          ? monitor.fir_lags
+          : std::clamp(static_cast<int>(std::ceil(dead_time)) + regression_shape::kDeadTimeMargin,
+                       regression_shape::kFewestFirLags, regression_shape::kMostFirLags);
+  derived.residual_order =
+      monitor.residual_order > 0 ? monitor.residual_order : regression_shape::kResidualOrder;
 
-  // One tail with the slowest time constant, and further ones, each four times faster, as long as
-  // they are slower than the pulse lags can show.
   double tail = monitor.tail_s > 0.0 ? monitor.tail_s / sample_time_s : slowest;
   do {
     derived.tail_poles.push_back(std::exp(-1.0 / tail));
-    tail /= 4.0;
-  } while (tail >= 2.0 * derived.fir_lags);
+    tail /= regression_shape::kTailRatio;
+  } while (tail >= regression_shape::kSlowerThanLags * derived.fir_lags);
 
   derive_memories(spec, monitor, derived);
 
   derive_materiality(spec, monitor, derived);
-  derived.settling_samples =
-      static_cast<int>(std::ceil(kSettlingTimeConstants * slowest + dead_time));
+  derived.settling_samples = static_cast<int>(
+      std::ceil(calibration::simulation::kSettlingTimeConstants * slowest + dead_time));
   derived.alarm.raise_below = alarms.raise_p_value;
   derived.alarm.clear_above = alarms.clear_p_value;
-  derived.alarm.on_delay = samples(alarms.on_delay_s, sample_time_s, 10);
-  derived.alarm.off_delay = samples(alarms.off_delay_s, sample_time_s, 60);
+  derived.alarm.on_delay =
+      samples(alarms.on_delay_s, sample_time_s, calibration::alarms::kOnDelaySamples);
+  derived.alarm.off_delay =
+      samples(alarms.off_delay_s, sample_time_s, calibration::alarms::kOffDelaySamples);
   return derived;
 }
 

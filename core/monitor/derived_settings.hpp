@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/alarm/condition.hpp"
-#include "core/mismatch/channel_test.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/settings.hpp"
 
@@ -12,11 +12,11 @@ namespace mpm {
 /// Settings with every "derive" filled in, in samples.
 struct DerivedSettings {
   double lambda = 1.0;                         ///< forgetting factor of the partial correlations
-  std::vector<MemoryLength> memories;          ///< of the channel test: long, fast
+  std::vector<MemoryLength> memories;          ///< of the mismatch detector: long, fast
   int remembered = 0;                          ///< samples that a CV can start afresh from
   int evaluation_stride = 1;                   ///< samples from one evaluation of a CV to the next
   std::vector<MaterialityLimits> materiality;  ///< per channel, input-major
-  double false_alarm_rate = 0.01;
+  double false_alarm_rate = 0.0;
   double gain_error_of_interest = 0.0;
   CorrelationKind correlation = CorrelationKind::kLaggedPartial;
   ThresholdKind threshold = ThresholdKind::kFTest;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/monitor/calibration.hpp"
+
 namespace mpm {
 
 /// How one input has moved lately: the share of samples at which it had stood still for long, and
@@ -17,11 +19,11 @@ class InputMotion {
     } else {
       const bool same = value == last_;
       const double range = high_ - low_;
-      const double reach = 1e-6 * range;
+      const double reach = calibration::input_motion::kAtEnd * range;
       run_ = same ? run_ + 1 : 0;
       const bool at_end = same && range > 0.0 && (value <= low_ + reach || value >= high_ - reach);
       const double step = std::max(step_, 1.0 / (samples_ + 1.0));
-      still_ += step * ((run_ >= kLongRun ? 1.0 : 0.0) - still_);
+      still_ += step * ((run_ >= calibration::input_motion::kStillSamples ? 1.0 : 0.0) - still_);
       at_end_ += step * ((at_end ? 1.0 : 0.0) - at_end_);
       low_ = std::min(low_, value);
       high_ = std::max(high_, value);
@@ -30,12 +32,12 @@ class InputMotion {
     ++samples_;
   }
 
-  [[nodiscard]] bool still() const { return still_ > kMostly; }
-  [[nodiscard]] bool at_limit() const { return at_end_ > kMostly; }
+  [[nodiscard]] bool still() const { return still_ > calibration::input_motion::kMostOfTheTime; }
+  [[nodiscard]] bool at_limit() const {
+    return at_end_ > calibration::input_motion::kMostOfTheTime;
+  }
 
  private:
-  static constexpr double kMostly = 0.5;
-  static constexpr int kLongRun = 60;  // samples
   double step_;
   double samples_ = 0.0;
   int run_ = 0;

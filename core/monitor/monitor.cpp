@@ -5,48 +5,28 @@
 #include <limits>
 
 #include "core/mismatch/change_scan.hpp"
-#include "core/mismatch/channel_test.hpp"
 #include "core/mismatch/lagged_correlation.hpp"
 #include "core/mismatch/mean_line.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 #include "core/model/linear_model.hpp"
+#include "core/monitor/calibration.hpp"
 #include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/derived_settings.hpp"
 #include "core/monitor/input_motion.hpp"
 #include "core/statistics/f_distribution.hpp"
+#include "core/statistics/normal.hpp"
 
 namespace mpm {
 namespace {
 
-// s.d. that the smallest visible error must exceed: root of the noncentrality at which a test of
-// 6 degrees of freedom at level 0.0011 has 95 % power.
-constexpr double kVisible = 5.8;
-
-// Where the excitation is too poor to trust the calibration, only overwhelming evidence counts
-// (times the usual rate), and none at all where even an error of this many gains would not show.
-constexpr double kOverwhelming = 1e-6;
-constexpr double kBlind = 100.0;
+namespace visibility = calibration::visibility;
+namespace bad_data = calibration::bad_data;
 
 // Different degrees of freedom that channels' tests can have; room for them is made up front.
 constexpr std::size_t kMostTests = 32;
 
-// Unknown values of a signal in a row that may be taken as unchanged.
-constexpr std::int64_t kHeld = 5;
-
-// A CV's data are bad while more than this share of its samples give no row (over the memory of
-// the noise level, 300 samples), and while no row has come for as long as an input's pulse lags.
-constexpr double kMostlyBad = 0.5;
-constexpr double kShareStep = 1.0 / 300.0;
-
-// Values that an instrument falsifies are not missing at random (it clips what is large): of more
-// than this share of them, over 1000 samples, no verdict is drawn.
-constexpr double kMuchImplausible = 0.1;
-constexpr double kImplausibleStep = 1.0 / 1000.0;
-
-// Where spikes are found more often than this, others side by side pass the screen unseen.
-constexpr double kMuchSpiky = 0.003;
-
-// Of a 95 % interval, s.d.
-constexpr double kInterval = 1.96;
+constexpr double kShareStep = 1.0 / bad_data::kShareSamples;
+constexpr double kImplausibleStep = 1.0 / bad_data::kImplausibleSamples;
 
 std::vector<bool> channels_of(const LinearModel& model, const DerivedSettings& settings) {
   std::vector<bool> acts;
@@ -79,18 +59,18 @@ struct Monitor::State {
         correlation({signal_counts.inputs(), signal_counts.cv, settings.controlling_lags,
                      settings.first_lag, settings.last_lag, settings.correlation},
                     settings.lambda),
-        test({signal_counts.inputs(), signal_counts.cv, settings.fir_lags, settings.residual_order,
-              settings.tail_poles},
-             settings.memories, settings.remembered, settings.evaluation_stride, model,
-             settings.materiality),
-        scan(test.shape()) {
+        detector({signal_counts.inputs(), signal_counts.cv, settings.fir_lags,
+                  settings.residual_order, settings.tail_poles},
+                 settings.memories, settings.remembered, settings.evaluation_stride, model,
+                 settings.materiality),
+        scan(detector.shape()) {
     const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
     status.resize(channels);
     transitions.reserve(channels);
     thresholds.reserve(kMostTests);
     for (int j = 0; j < counts.cv; ++j) cvs.emplace_back(counts.inputs());
     for (int i = 0; i < counts.inputs(); ++i) {
-      motions.emplace_back(settings.remembered / 4.0);
+      motions.emplace_back(settings.remembered * calibration::input_motion::kMemoryShare);
       unknown_runs.push_back(0);
     }
     has_model = std::find(acts.begin(), acts.end(), true) != acts.end();
@@ -127,7 +107,8 @@ struct Monitor::State {
   void take_sample();
   [[nodiscard]] bool implausible(int cv) const {
     const Cv& state = cvs[static_cast<std::size_t>(cv)];
-    return state.implausible_share > kMuchImplausible || state.spike_share > kMuchSpiky;
+    return state.implausible_share > bad_data::kImplausibleShare ||
+           state.spike_share > bad_data::kSpikyShare;
   }
   void evaluate();
   void judge();
@@ -158,7 +139,7 @@ struct Monitor::State {
   std::vector<InputMotion> motions;        // per input
   LaggedCorrelation correlation;
   bool correlated = false;  // correlations and their peaks know the last sample
-  ChannelTest test;
+  MismatchDetector detector;
   ChangeScan scan;
   std::vector<Cv> cvs;
   std::vector<ChannelStatus> status;
@@ -182,7 +163,7 @@ void Monitor::State::follow_predictions() {
     if (!cv.predicted && screen.predicted(j)) {
       cv.predicted = true;
       cv.settling = 0;
-      if (samples > 0) test.start_afresh(j, 0);
+      if (samples > 0) detector.start_afresh(j, 0);
     }
     // Without any model only the control system can predict.
     simulates =
@@ -203,7 +184,7 @@ void Monitor::State::read_inputs(const Frame& frame) {
     } else {
       inputs(i) = kUnknown;
       ++counters.bad_values;
-      if (++run > kHeld) distrust_simulation(i);
+      if (++run > bad_data::kHeldSamples) distrust_simulation(i);
     }
   }
 }
@@ -261,22 +242,22 @@ void Monitor::State::simulate() {
 void Monitor::State::pass_gap(std::int64_t missing) {
   counters.missing += static_cast<std::uint64_t>(missing);
   correlation.close_window();
-  test.skip(missing);
+  detector.skip(missing);
   for (Cv& cv : cvs) cv.unknown_run += missing;
   if (!model_started) return;
   for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, settings.settling_samples); ++k)
     model.advance(held_inputs);
-  if (missing > kHeld)
+  if (missing > bad_data::kHeldSamples)
     for (int i = 0; i < counts.inputs(); ++i) distrust_simulation(i);
 }
 
 void Monitor::State::take_sample() {
   ++samples;
-  test.update(inputs, residuals);
+  detector.update(inputs, residuals);
   bool used = false;
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
-    const bool took = test.took_row(j);
+    const bool took = detector.took_row(j);
     used = used || took;
     cv.without_row = took ? 0 : cv.without_row + 1;
     const double spiked = screen.spikes(j) > cv.spikes ? 1.0 : 0.0;
@@ -288,9 +269,10 @@ void Monitor::State::take_sample() {
   if (used) ++counters.used;
 
   const bool close =
-      std::all_of(cvs.begin(), cvs.end(), [](const Cv& cv) { return cv.unknown_run <= kHeld; }) &&
+      std::all_of(cvs.begin(), cvs.end(),
+                  [](const Cv& cv) { return cv.unknown_run <= bad_data::kHeldSamples; }) &&
       std::all_of(unknown_runs.begin(), unknown_runs.end(),
-                  [](std::int64_t run) { return run <= kHeld; });
+                  [](std::int64_t run) { return run <= bad_data::kHeldSamples; });
   if (close)
     correlation.update(held_inputs, held_residuals);
   else
@@ -303,13 +285,13 @@ void Monitor::State::evaluate() {
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
     const bool due = (samples + j * stride / counts.cv) % stride == 0;
-    if (due) test.fold(j);
-    if (cv.alarms.isolating() || !test.memory(j).ready()) cv.judged = false;
-    cv.evaluated = (due || !cv.judged) && test.memory(j).ready();
+    if (due) detector.fold(j);
+    if (cv.alarms.isolating() || !detector.memory(j).ready()) cv.judged = false;
+    cv.evaluated = (due || !cv.judged) && detector.memory(j).ready();
     if (!cv.evaluated) continue;
     cv.judged = true;
-    for (int m = 0; m < test.memory_count(); ++m)
-      if (test.memory(j, m).ready()) test.evaluate(j, m);
+    for (int m = 0; m < detector.memory_count(); ++m)
+      if (detector.memory(j, m).ready()) detector.evaluate(j, m);
   }
 }
 
@@ -353,7 +335,7 @@ void Monitor::State::take_frame(const Frame& frame) {
       of(j).alarms.hold();
       continue;
     }
-    of(j).alarms.update(j, of(j).evaluated, test, scan, settings.alarm, [&](int input) {
+    of(j).alarms.update(j, of(j).evaluated, detector, scan, settings.alarm, [&](int input) {
       transitions.push_back({j, input, of(j).alarms.state(input)});
     });
   }
@@ -373,7 +355,7 @@ void Monitor::State::judge() {
 
 void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   ChannelStatus& channel = status[index(cv, input)];
-  const RegressionMemory& memory = test.memory(cv);
+  const RegressionMemory& memory = detector.memory(cv);
   const CvAlarms& alarms = of(cv).alarms;
   channel.effective_samples = memory.effective_rows();
   channel.confounder = -1;
@@ -382,7 +364,7 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   const bool outage = of(cv).without_row > settings.fir_lags &&
                       of(cv).unknown_run > settings.fir_lags && of(cv).settling == 0;
   const bool input_lost = unknown_runs[static_cast<std::size_t>(input)] > settings.fir_lags;
-  if (outage || input_lost || of(cv).bad_share > kMostlyBad || implausible(cv)) {
+  if (outage || input_lost || of(cv).bad_share > bad_data::kMostShare || implausible(cv)) {
     channel.reason = Reason::kBadData;
     return;
   }
@@ -392,14 +374,14 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
     channel.effective_samples = effective_samples;
     if (alarms.isolating() && alarms.state(input) == AlarmState::kActive)
       channel.p_value = alarms.change_p_value();
-    const bool bad =
-        static_cast<double>(samples) >= 2.0 * memory.needed_rows() && !alarms.isolating();
+    const bool bad = static_cast<double>(samples) >= bad_data::kWarmUps * memory.needed_rows() &&
+                     !alarms.isolating();
     channel.reason = alarms.isolating() ? Reason::kIsolating
                      : bad              ? Reason::kBadData
                                         : Reason::kWarmingUp;
     return;
   }
-  const ChannelEvidence& evidence = test.evidence(cv, input);
+  const ChannelEvidence& evidence = detector.evidence(cv, input);
   channel.p_value = evidence.p_value;
   channel.p_value_material = evidence.p_value_material;
   channel.statistic = evidence.statistic;
@@ -416,15 +398,17 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
   channel.usual = evidence.usual;
   channel.log_time_error = evidence.log_time_error;
   channel.dead_time_error = evidence.dead_time_error;
-  const double half = kInterval * std::min(evidence.gain_error.deviation, kBlind);
+  const double half =
+      kNormalTwoSided95 * std::min(evidence.gain_error.deviation, visibility::kBlindGainError);
   channel.effect_size = evidence.gain_error.value * evidence.reference_gain;
   channel.effect_low = channel.effect_size - half * std::abs(evidence.reference_gain);
   channel.effect_high = channel.effect_size + half * std::abs(evidence.reference_gain);
-  channel.smallest_error = std::min(kVisible * evidence.excitation_index, kBlind);
+  channel.smallest_error = std::min(visibility::kSeenDeviations * evidence.excitation_index,
+                                    visibility::kBlindGainError);
   channel.excited = channel.smallest_error <= settings.gain_error_of_interest;
   channel.material = alarmed || evidence.p_value_material < channel_rate;
-  const bool overwhelming =
-      channel.smallest_error < kBlind && evidence.p_value < kOverwhelming * channel_rate;
+  const bool overwhelming = channel.smallest_error < visibility::kBlindGainError &&
+                            evidence.p_value < visibility::kOverwhelming * channel_rate;
   if (channel.excited || ((overwhelming || alarmed) && exceeds)) {
     channel.verdict = exceeds ? Verdict::kMismatch : Verdict::kMatch;
     channel.reason = Reason::kNone;
@@ -435,11 +419,12 @@ void Monitor::State::judge_channel(int cv, int input, double channel_rate) {
 }
 
 Reason Monitor::State::why_not_excited(int cv, int input) {
-  const ChannelEvidence& evidence = test.evidence(cv, input);
+  const ChannelEvidence& evidence = detector.evidence(cv, input);
   const bool all_still = std::all_of(motions.begin(), motions.begin() + counts.mv,
                                      [](const InputMotion& motion) { return motion.still(); });
   if (all_still && input < counts.mv) return Reason::kControllerOff;
-  if (kVisible * evidence.excitation_index_alone <= settings.gain_error_of_interest &&
+  if (visibility::kSeenDeviations * evidence.excitation_index_alone <=
+          settings.gain_error_of_interest &&
       evidence.confounder >= 0)
     return Reason::kCollinear;
   if (motions[static_cast<std::size_t>(input)].at_limit()) return Reason::kConstrained;
@@ -447,13 +432,14 @@ Reason Monitor::State::why_not_excited(int cv, int input) {
 }
 
 // F at which that evidence would be a mismatch. The quantile takes a search, so it is kept until
-// the degrees of freedom have changed by one per cent, which moves it by some 1e-5.
+// the degrees of freedom have changed a little.
 double Monitor::State::threshold_for(const ChannelEvidence& evidence, double freedom,
                                      double channel_rate) {
   if (evidence.numerator_freedom <= 0.0) return 0.0;
   for (Threshold& known : thresholds) {
     if (known.numerator != evidence.numerator_freedom || known.tests != evidence.tests) continue;
-    if (std::abs(known.denominator - freedom) > 0.01 * freedom) {
+    if (std::abs(known.denominator - freedom) >
+        calibration::evaluation::kKeptThresholdShare * freedom) {
       known.denominator = freedom;
       known.value = f_quantile(channel_rate / known.tests, known.numerator, freedom);
     }

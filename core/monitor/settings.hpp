@@ -2,21 +2,22 @@
 
 #include <vector>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/correlation_kind.hpp"
 
 namespace mpm {
 
 /// What decides between match and mismatch.
 enum class ThresholdKind {
-  kFTest,     ///< the calibrated channel test
+  kFTest,     ///< the F tests of the mismatch detector
   kMeanLine,  ///< the thesis's mean line (core/mismatch/mean_line.hpp); not calibrated
 };
 
 /// Errors up to which a model is good enough: larger ones alarm.
 struct MaterialitySettings {
-  double gain = 0.05;           ///< relative to the model's
-  double time_constant = 0.10;  ///< relative to the model's
-  double dead_time_s = 0.0;     ///< 0 = half a sample time
+  double gain = calibration::materiality::kGain;                   ///< relative to the model's
+  double time_constant = calibration::materiality::kTimeConstant;  ///< relative to the model's
+  double dead_time_s = 0.0;                                        ///< 0 = half a sample time
 };
 
 /// The same of one channel, in place of the unit's.
@@ -38,7 +39,7 @@ struct MonitorSettings {
   int controlling_lags = 40;  ///< g of (3.15)
   int first_lag = -10;        ///< reported range of lags d of (3.15)
   int last_lag = 20;
-  int fir_lags = 0;              ///< block length of the channel test
+  int fir_lags = 0;              ///< block length of the mismatch detector
   int residual_order = 0;        ///< lags of all residuals
   double tail_s = 0.0;           ///< time constant of the tail regressor
   int diagnosis_samples = 6000;  ///< kept for a diagnosis when an alarm stands; 0 = none is made

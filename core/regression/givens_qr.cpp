@@ -6,13 +6,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/regression/calibration.hpp"
+
 namespace mpm {
-namespace {
 
-// Of a stored row at least this much must be kept for r + s x' to lose no more than a digit.
-constexpr double kMostlyKept = 0.1;
-
-}  // namespace
+using calibration::rounding::kMostlyKept;
 
 GivensQr::GivensQr(int columns, int responses)
     : columns_(columns), responses_(responses), own_(std::max(columns + responses, 1), 1) {
@@ -121,7 +119,8 @@ void GivensQr::eliminate_column(int column, RowBatch& batch, int count, double l
   for (int k = 0; k < count; ++k) {
     const auto s = static_cast<std::size_t>(k);
     double* x = batch.row(k);
-    const double entry = std::abs(x[c]) <= kRoundingNoise * magnitudes[s * stride + c] ? 0.0 : x[c];
+    const double entry =
+        std::abs(x[c]) <= calibration::rounding::kNoise * magnitudes[s * stride + c] ? 0.0 : x[c];
     double& inverse_row_weight = batch.inverse_row_weights_[s];
     const double faded = lambda * weight;
     const double square = entry * entry;
@@ -170,7 +169,7 @@ void GivensQr::preview_batch(RowBatch& batch, int count, Preview* previews) cons
   }
   for (; i < columns_; ++i) {
     const std::size_t begin = row_begin(i);
-    const double noise = kRoundingNoise * magnitudes[static_cast<std::size_t>(i)];
+    const double noise = calibration::rounding::kNoise * magnitudes[static_cast<std::size_t>(i)];
     for (int k = 0; k < count; ++k) {
       double* x = batch.row(k);
       const double entry = std::abs(x[i]) <= noise ? 0.0 : x[i];
@@ -221,7 +220,7 @@ void GivensQr::centred_norms(int first, Eigen::Ref<Eigen::VectorXd> norms) const
 void GivensQr::solve(int response, int leading, Eigen::Ref<Eigen::VectorXd> coefficients) const {
   for (int i = leading - 1; i >= 0; --i) {
     const double diagonal = root(i);
-    if (diagonal <= kNegligible * magnitudes_[static_cast<std::size_t>(i)]) {
+    if (diagonal <= calibration::rounding::kNegligible * magnitudes_[static_cast<std::size_t>(i)]) {
       coefficients(i) = 0.0;
       continue;
     }

@@ -111,10 +111,9 @@ class GivensQr {
   void centred_norms(int first, Eigen::Ref<Eigen::VectorXd> norms) const;
 
   /// Least-squares coefficients of one response into `coefficients` (`leading` long). Columns
-  /// whose diagonal is at most kNegligible times their largest entry are left out (coefficient 0).
+  /// whose diagonal is at most negligible against their largest entry are left out (coefficient 0).
   /// With `leading` < columns(), of the regression on the first `leading` columns only.
   void solve(int response, int leading, Eigen::Ref<Eigen::VectorXd> coefficients) const;
-  static constexpr double kNegligible = 1e-7;
 
  private:
   /// Row i is stored from the granule that holds column i on.

@@ -43,10 +43,6 @@ struct RowBlock {
   int rows;
 };
 
-/// An entry of a row that is left with less than this fraction of its column's magnitude after the
-/// earlier columns are rotated off is rounding noise: |x| <= 64 eps * max |x| is taken for 0.
-inline constexpr double kRoundingNoise = 64 * 2.220446049250313e-16;
-
 /// What eliminating kRowGranule columns of a block of rows needs to know and finds out, beside the
 /// rows. Per row and column arrays have kRowGranule values a row, unless said otherwise.
 struct HeadBlock {

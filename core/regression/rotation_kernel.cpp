@@ -1,6 +1,8 @@
 // Compiled once per instruction set, each with its own MPM_KERNEL_SET (core/CMakeLists.txt).
 #include "core/regression/rotation_kernel.hpp"
 
+#include "core/regression/calibration.hpp"
+
 #if defined(__FMA__)
 #include <immintrin.h>
 #endif
@@ -73,7 +75,7 @@ inline void subtract_product(double a, const Vector& b, Vector& c) {
 }
 
 inline double without_noise(double entry, double magnitude) {
-  return __builtin_fabs(entry) <= kRoundingNoise * magnitude ? 0.0 : entry;
+  return __builtin_fabs(entry) <= calibration::rounding::kNoise * magnitude ? 0.0 : entry;
 }
 
 // Rows whose heads are taken column after column: at most, and at least for that to pay.

@@ -11,8 +11,6 @@ namespace {
 
 // Keeps all arithmetic on intervals far from overflow, and the numbers exact in JSON.
 constexpr std::int64_t kLargestInterval = std::int64_t{1} << 53;
-// A number that is behind by more than this many times the lateness is a restart, not a late block.
-constexpr int kRestartFactor = 4;
 
 unsigned bit_of(SignalKind kind) { return 1u << static_cast<unsigned>(kind); }
 
@@ -90,7 +88,8 @@ void Aligner::start(Window& window, std::int64_t interval) {
 }
 
 bool Aligner::near(const Window& window, std::int64_t interval) const {
-  return interval >= window.next - kRestartFactor * settings_.max_lateness &&
+  return interval >=
+             window.next - calibration::alignment::kRestartFactor * settings_.max_lateness &&
          interval <= window.newest + settings_.capacity;
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/signal/calibration.hpp"
 #include "core/signal/frame.hpp"
 
 namespace mpm {
@@ -21,8 +22,10 @@ struct BlockView {
 };
 
 struct AlignerSettings {
-  int max_lateness = 8;  ///< intervals that a block may come after all kinds had newer ones
-  int capacity = 1024;   ///< intervals that one kind may be ahead of another one, > max_lateness
+  /// Intervals that a block may come after all kinds had newer ones.
+  int max_lateness = calibration::alignment::kMaxLateness;
+  /// Intervals that one kind may be ahead of another one, > max_lateness.
+  int capacity = calibration::alignment::kCapacity;
 };
 
 /// What became of the blocks and intervals so far.

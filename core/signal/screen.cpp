@@ -5,20 +5,11 @@
 #include <cmath>
 
 namespace mpm {
-namespace {
 
-// Odds against a run of repeated values being chance.
-constexpr double kChance = 1e-6;
-
-// Values exactly at the end of a signal's range that make that end a limit of the instrument.
-constexpr int kEndHits = 3;
-
-// A spike leaves and comes back by this many times the usual difference.
-constexpr double kSpike = 6.0;
-constexpr double kScaleSamples = 300.0;
-constexpr double kFirstSamples = 30.0;
-
-}  // namespace
+using calibration::repeats::kEndHits;
+using calibration::repeats::kReturns;
+using calibration::spikes::kFirstSamples;
+using calibration::spikes::kJump;
 
 void Screen::Repeats::take(double value) {
   if (taken == 0) {
@@ -38,7 +29,7 @@ void Screen::Repeats::take(double value) {
       end = value;
       hits = 1;
     } else if (value == end) {
-      hits = std::min(hits + 1, 1000);
+      hits = std::min(hits + 1, kEndHits);
     }
   };
   hit(low, at_low, value < low);
@@ -54,7 +45,7 @@ void Screen::Repeats::take(double value) {
 
 bool Screen::Repeats::frozen() const {
   if (!coarse()) return run > 0;
-  return run > 0 && run * std::log(repeated / counted) < std::log(kChance);
+  return run > 0 && run * std::log(repeated / counted) < std::log(calibration::repeats::kChance);
 }
 
 bool Screen::Repeats::at_end() const {
@@ -190,10 +181,10 @@ void Screen::screen_spikes(int cv) {
     const auto back_at = [&](std::size_t next) {
       if (!known[next]) return false;
       const double home = levels[next] - levels[1];
-      return std::abs(home) > kSpike * jumps.scale && away * home < 0.0 &&
-             std::abs(levels[next] - jumps.home) < 0.5 * std::abs(away);
+      return std::abs(home) > kJump * jumps.scale && away * home < 0.0 &&
+             std::abs(levels[next] - jumps.home) < calibration::spikes::kBackShare * std::abs(away);
     };
-    if (std::abs(away) > kSpike * jumps.scale && (back_at(2) || back_at(3))) {
+    if (std::abs(away) > kJump * jumps.scale && (back_at(2) || back_at(3))) {
       mark(SignalKind::kCv, cv, kDelay - 1, &ScreenCounters::spikes);
       ++jumps.spikes;
     }
@@ -201,9 +192,11 @@ void Screen::screen_spikes(int cv) {
   if (!known[2] || !known[3]) return;
   const double difference = std::abs(levels[3] - levels[2]);
   jumps.samples += 1.0;
-  const double bounded =
-      jumps.samples > kFirstSamples ? std::min(difference, 3.0 * jumps.scale) : difference;
-  jumps.scale += (bounded - jumps.scale) / std::min(jumps.samples, kScaleSamples);
+  const double bounded = jumps.samples > kFirstSamples
+                             ? std::min(difference, calibration::spikes::kBound * jumps.scale)
+                             : difference;
+  jumps.scale +=
+      (bounded - jumps.scale) / std::min(jumps.samples, calibration::spikes::kScaleSamples);
 }
 
 }  // namespace mpm

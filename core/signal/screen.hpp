@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/signal/calibration.hpp"
 #include "core/signal/frame.hpp"
 
 namespace mpm {
@@ -29,8 +30,6 @@ struct ScreenCounters {
 class Screen {
  public:
   static constexpr int kDelay = 3;
-  /// Returns that make a signal a coarse one.
-  static constexpr int kReturns = 3;
 
   /// `may_predict[j]`: a prediction of CV j may come with the frames. `acts[input * cvs + cv]`: the
   /// model has that channel; `dead_time`: its longest, samples.
@@ -53,14 +52,15 @@ class Screen {
   /// One signal's repetitions.
   struct Repeats {
     double last = 0.0, before_last = 0.0;
-    int run = 0;                            // values in a row equal to the one before
-    int returns = 0;                        // to the value before the last
-    double repeated = 0.5, counted = 50.0;  // prior: one in a hundred
+    int run = 0;      // values in a row equal to the one before
+    int returns = 0;  // to the value before the last
+    double repeated = calibration::repeats::kPriorRepeated;
+    double counted = calibration::repeats::kPriorValues;
     double low = 0.0, high = 0.0;
     int at_low = 0, at_high = 0;  // how often exactly there
     int taken = 0;
     void take(double value);
-    [[nodiscard]] bool coarse() const { return returns >= kReturns; }
+    [[nodiscard]] bool coarse() const { return returns >= calibration::repeats::kReturns; }
     [[nodiscard]] bool frozen() const;
     [[nodiscard]] bool at_end() const;
   };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/statistics/normal.hpp"
+
 namespace mpm::report {
 namespace {
 
@@ -13,8 +15,7 @@ std::vector<bool> predictions_of(const config::UnitConfig& config) {
   return given;
 }
 
-// Two-sided 95 % of a normal estimate, s.d.; what is not known at all stays finite for readers.
-constexpr double kInterval = 1.96;
+// What is not known at all stays finite for readers.
 constexpr double kWidest = 1e6;
 
 void fill_sizes(const ChannelStatus& status, double sample_time_s, ChannelRecord& record) {
@@ -26,14 +27,14 @@ void fill_sizes(const ChannelStatus& status, double sample_time_s, ChannelRecord
   record.usual = status.usual;
   const auto bounded = [](double value) { return std::clamp(value, -kWidest, kWidest); };
   const auto half = [&](const Estimate& estimate) {
-    return std::min(kInterval * estimate.deviation, std::log(kWidest));
+    return std::min(kNormalTwoSided95 * estimate.deviation, std::log(kWidest));
   };
   const Estimate& time = status.log_time_error;
   record.time_constant_ratio = std::min(std::exp(time.value), kWidest);
   record.time_constant_low = std::exp(bounded(time.value - half(time)));
   record.time_constant_high = std::min(std::exp(time.value + half(time)), kWidest);
   const Estimate& dead = status.dead_time_error;
-  const double dead_half = std::min(kInterval * dead.deviation, kWidest);
+  const double dead_half = std::min(kNormalTwoSided95 * dead.deviation, kWidest);
   record.dead_time_error_s = bounded(dead.value) * sample_time_s;
   record.dead_time_low_s = bounded(dead.value - dead_half) * sample_time_s;
   record.dead_time_high_s = bounded(dead.value + dead_half) * sample_time_s;

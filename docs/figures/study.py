@@ -49,7 +49,7 @@ def rates(all_correlations, true_channels):
 
 
 def test_rates(all_correlations, true_channels):
-    """Of the calibrated channel test on the same runs: true channels and others with p below the
+    """Of the mismatch detector on the same runs: true channels and others with p below the
     rate of one channel of nine."""
     def count(found):
         below = [c.p_value[channel] < 0.01 / 9 for c in all_correlations
@@ -114,7 +114,7 @@ def main():
     print("| scenario | correlation | CV1 / CV2 / CV3, each MV1 MV2 MV3 | line |\n|---|---|---|---|",
           *largest, "", sep="\n")
     print("| scenario | " + " | ".join(m.replace("_", " ") for m, _ in runs.METHODS) +
-          " | channel test |\n|---|---|---|---|---|---|", *rate_rows, "", sep="\n")
+          " | mismatch detector |\n|---|---|---|---|---|---|", *rate_rows, "", sep="\n")
     print("| scenario | g | CV1 / CV2 / CV3, each MV1 MV2 MV3 | line | rates |\n|---|---|---|---|---|",
           *sweep, sep="\n")
 

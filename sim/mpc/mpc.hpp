@@ -7,7 +7,7 @@
 
 #include "config/unit_config.hpp"
 #include "core/model/linear_model.hpp"
-#include "core/optim/dense_qp.hpp"
+#include "sim/mpc/dense_qp.hpp"
 
 namespace mpm::sim {
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
-#include "core/mismatch/channel_test.hpp"
 #include "core/mismatch/lagged_correlation.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 #include "core/monitor/monitor.hpp"
 #include "core/regression/givens_qr.hpp"
 #include "sim/loop/closed_loop.hpp"
@@ -126,7 +126,7 @@ struct Channels {
   void update() { test.update(inputs.next(), residuals.next()); }
 
   Signals inputs, residuals;
-  ChannelTest test;
+  MismatchDetector test;
 };
 
 struct Factor {

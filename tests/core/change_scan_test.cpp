@@ -10,8 +10,8 @@ namespace {
 
 // Two inputs in open loop, one CV with coloured noise; the residual depends on input 1 between two
 // samples.
-ChannelTest run(std::uint64_t seed, int samples, int from, int until, double size,
-                double noise_ratio = 1.0) {
+MismatchDetector run(std::uint64_t seed, int samples, int from, int until, double size,
+                     double noise_ratio = 1.0) {
   ModelSpec spec;
   spec.input_count = 2;
   spec.cv_count = 1;
@@ -22,7 +22,7 @@ ChannelTest run(std::uint64_t seed, int samples, int from, int until, double siz
   spec.channels = {{0, 0, TransferFunction{1.0, {15.0}, 0, 1, false}},
                    {0, 1, TransferFunction{1.0, {15.0}, 0, 1, false}}};
   const LinearModel model(spec);
-  ChannelTest channel_test({2, 1, 12, 4, {std::exp(-1.0 / 15.0)}}, {{0.9995, 0}}, 3000, 10, model);
+  MismatchDetector detector({2, 1, 12, 4, {std::exp(-1.0 / 15.0)}}, {{0.9995, 0}}, 3000, 10, model);
   LinearModel hidden(spec);
   Eigen::VectorXd u(2), e(1);
   double noise = 0.0;
@@ -32,19 +32,19 @@ ChannelTest run(std::uint64_t seed, int samples, int from, int until, double siz
     const double level = k < samples / 2 ? 1.0 : noise_ratio;
     noise = 0.8 * noise + 0.1 * level * test::uniform(seed * 10 + 5, k);
     e(0) = noise + (k >= from && k < until ? size * hidden.output()(0) : 0.0);
-    channel_test.update(u, e);
+    detector.update(u, e);
     Eigen::VectorXd second = u;
     second(0) = 0.0;
     hidden.advance(second);
   }
-  return channel_test;
+  return detector;
 }
 
 TEST_CASE("a change that begins inside the memory is dated and its input named") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const ChannelTest channel_test = run(seed, 2000, 1400, 2000, 0.4);
-    ChangeScan scan(channel_test.shape());
-    const std::optional<ChangePoint> change = scan.scan(channel_test, 0);
+    const MismatchDetector detector = run(seed, 2000, 1400, 2000, 0.4);
+    ChangeScan scan(detector.shape());
+    const std::optional<ChangePoint> change = scan.scan(detector, 0);
     CAPTURE(seed);
     REQUIRE(change);
     CHECK(change->kind == ChangeKind::kBegan);
@@ -56,9 +56,9 @@ TEST_CASE("a change that begins inside the memory is dated and its input named")
 
 TEST_CASE("the end of a mismatch is seen as such") {
   for (std::uint64_t seed = 11; seed <= 30; ++seed) {
-    const ChannelTest channel_test = run(seed, 2000, 0, 1500, 0.4);
-    ChangeScan scan(channel_test.shape());
-    const std::optional<ChangePoint> change = scan.scan(channel_test, 0);
+    const MismatchDetector detector = run(seed, 2000, 0, 1500, 0.4);
+    ChangeScan scan(detector.shape());
+    const std::optional<ChangePoint> change = scan.scan(detector, 0);
     CAPTURE(seed);
     REQUIRE(change);
     CHECK(change->kind == ChangeKind::kEnded);
@@ -73,9 +73,9 @@ TEST_CASE("a mismatch that was there all along, no mismatch, and louder noise ar
   for (std::uint64_t seed = 21; seed <= 60; ++seed) {
     for (const double size : {0.0, 0.1, 0.4})
       for (const double noise_ratio : {1.0, 3.0}) {
-        const ChannelTest channel_test = run(seed, 1500, 0, 1500, size, noise_ratio);
-        ChangeScan scan(channel_test.shape());
-        const std::optional<ChangePoint> change = scan.scan(channel_test, 0);
+        const MismatchDetector detector = run(seed, 1500, 0, 1500, size, noise_ratio);
+        ChangeScan scan(detector.shape());
+        const std::optional<ChangePoint> change = scan.scan(detector, 0);
         CAPTURE(seed, size, noise_ratio);
         if (size > 0.0 && change) ++split;
         if (size == 0.0 && change) CHECK(change->p_value > 1e-9);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/channel_evaluator.hpp"
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/regression_history.hpp"
@@ -20,12 +21,12 @@ struct MemoryLength {
   int window = 0;       ///< samples
 };
 
-/// Calibrated channel test. Per CV j the model residual e_j is regressed, in ARX form (the direct
-/// method, valid in closed loop because the innovation w_j(k) is independent of the past), on the
-/// rows of `RegressionHistory`, and F tests that input i's block of coefficients is zero given all
-/// the others, which is so exactly where channel (j, i) matches (Ljung 1999, section 13.4, for the
-/// regression; Seber and Lee 2003, section 4.3, for F; `ChannelEvaluator` for what is read off).
-/// Rows are weighted
+/// Finds the channels of which the model is wrong. Per CV j the model residual e_j is regressed, in
+/// ARX form (the direct method, valid in closed loop because the innovation w_j(k) is independent
+/// of the past), on the rows of `RegressionHistory`, and F tests that input i's block of
+/// coefficients is zero given all the others, which is so exactly where channel (j, i) matches
+/// (Ljung 1999, section 13.4, for the regression; Seber and Lee 2003, section 4.3, for F;
+/// `ChannelEvaluator` for what is read off). Rows are weighted
 ///
 ///     lambda^age * min(1, 3 s / |r|)^2 / s^2,
 ///
@@ -39,14 +40,14 @@ struct MemoryLength {
 /// Once a CV has had enough rows, new ones wait for each other and are taken together (`fold`),
 /// which loads a factor once for all of them. The prediction that weighs a row is that of the rows
 /// before the first one that waits with it.
-class ChannelTest {
+class MismatchDetector {
  public:
   /// `memories`: the first one is the longest; its prediction errors weigh the rows.
   /// `remembered`: samples from which a CV can start afresh. `patience`: samples (>= 1) after which
   /// rows that wait are taken at the latest.
-  ChannelTest(const RegressionShape& shape, const std::vector<MemoryLength>& memories,
-              int remembered, int patience, const LinearModel& model,
-              std::vector<MaterialityLimits> limits = {{}});
+  MismatchDetector(const RegressionShape& shape, const std::vector<MemoryLength>& memories,
+                   int remembered, int patience, const LinearModel& model,
+                   std::vector<MaterialityLimits> limits = {{}});
 
   /// Takes u(k) and e(k) of the next interval, NaN where unknown.
   void update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
@@ -89,7 +90,9 @@ class ChannelTest {
   /// The same with rows clipped at 6 instead of 3 s.d.: after a change many rows surprise, and they
   /// are what tells of it.
   [[nodiscard]] double lenient_weight(int cv, int age) const {
-    return std::min(2.0 * row_weight(cv, age), 1.0 / scale_windows_[index(cv)].window()[age]);
+    constexpr double kLenience =
+        calibration::row_weights::kLenientClip / calibration::row_weights::kClip;
+    return std::min(kLenience * row_weight(cv, age), 1.0 / scale_windows_[index(cv)].window()[age]);
   }
 
  private:

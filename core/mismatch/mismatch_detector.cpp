@@ -1,4 +1,4 @@
-#include "core/mismatch/channel_test.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,41 +7,21 @@
 namespace mpm {
 namespace {
 
-// Rows over which the noise level is followed, and the error in s.d. beyond which a row is trusted
-// less (about 300 rows and 3 s.d. keep both calibration and power).
-constexpr double kScaleRows = 300.0;
-constexpr double kClip = 3.0;
-
-// Shares of clipped rows from which on tails are somewhat and very heavy (normal: 0.3 %). With
-// heavy tails the same evidence takes more rows: of 528, p < 0.01 came in 10 % of healthy channels.
-constexpr double kNormalClipped = 0.008;
-constexpr double kHeavyClipped = 0.02;
-// A CV is taken to have heavy tails until its rows say otherwise; so many rows stand behind that.
-constexpr double kPriorRows = 200.0;
-
-constexpr double kRecentRows = 100.0;
-constexpr double kLastingRows = 2000.0;
-
-// While there are fewer rows per column each one teaches the next what to expect: their prediction
-// errors would have too much in common if they were taken together.
-constexpr int kTogether = 10;
+namespace heavy_tails = calibration::heavy_tails;
+using calibration::row_weights::kClip;
+using calibration::row_weights::kLastingRows;
+using calibration::row_weights::kNoiseRows;
+using calibration::row_weights::kRecentRows;
 
 // Weight of a row that waits for its own.
 constexpr double kWaiting = -1.0;
 
-// A row that says more of a direction hardly seen before than of the noise: of rows that wait
-// together, all say the same, so they do not move what is known of the noise.
-constexpr double kNewDirection = 1.0;
-
-// A sliding window is rebuilt each time it has grown by this part: never a row is taken out of a
-// factor, which would lose digits after an outlier.
-constexpr int kSlideParts = 8;
-
 }  // namespace
 
-ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryLength>& memories,
-                         int remembered, int patience, const LinearModel& model,
-                         std::vector<MaterialityLimits> limits)
+MismatchDetector::MismatchDetector(const RegressionShape& shape,
+                                   const std::vector<MemoryLength>& memories, int remembered,
+                                   int patience, const LinearModel& model,
+                                   std::vector<MaterialityLimits> limits)
     : shape_(shape),
       lengths_(memories),
       remembered_(remembered),
@@ -52,26 +32,26 @@ ChannelTest::ChannelTest(const RegressionShape& shape, const std::vector<MemoryL
       weighed_(shape.columns() + 1, patience),
       previews_(static_cast<std::size_t>(patience)) {
   ages_.reserve(previews_.size());
-  if (memories.empty()) throw std::invalid_argument("the channel test needs a memory");
+  if (memories.empty()) throw std::invalid_argument("the mismatch detector needs a memory");
   for (const MemoryLength& length : memories) {
     if (!(length.lambda > 0.0 && length.lambda <= 1.0) || length.window < 0 ||
-        length.window + length.window / kSlideParts > remembered)
-      throw std::invalid_argument("impossible memory of the channel test");
+        length.window + length.window / calibration::sliding_window::kParts > remembered)
+      throw std::invalid_argument("impossible memory of the mismatch detector");
     for (int j = 0; j < shape.cvs; ++j) {
       memories_.emplace_back(shape.columns());
       slides_.push_back(0);
     }
   }
   responses_.resize(static_cast<std::size_t>(shape.cvs));
-  for (Response& response : responses_) response.clipped_share = kHeavyClipped;
+  for (Response& response : responses_) response.clipped_share = heavy_tails::kFullShare;
   for (int j = 0; j < shape.cvs; ++j) {
     weight_windows_.emplace_back(remembered);
     scale_windows_.emplace_back(remembered);
   }
 }
 
-void ChannelTest::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
-                         const Eigen::Ref<const Eigen::VectorXd>& residuals) {
+void MismatchDetector::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
+                              const Eigen::Ref<const Eigen::VectorXd>& residuals) {
   history_.push(inputs, residuals);
   for (int j = 0; j < shape_.cvs; ++j) {
     Response& response = responses_[index(j)];
@@ -83,7 +63,7 @@ void ChannelTest::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
   }
 }
 
-void ChannelTest::skip(std::int64_t missing) {
+void MismatchDetector::skip(std::int64_t missing) {
   for (int j = 0; j < shape_.cvs; ++j) fold(j);
   history_.skip(missing);
   for (int j = 0; j < shape_.cvs; ++j) {
@@ -96,18 +76,21 @@ void ChannelTest::skip(std::int64_t missing) {
   }
 }
 
-int ChannelTest::patience(int cv) const {
-  return memories_[at(cv, 0)].rows >= kTogether * shape_.columns() ? rows_.capacity() : 1;
+int MismatchDetector::patience(int cv) const {
+  return memories_[at(cv, 0)].rows >=
+                 calibration::row_weights::kTogetherRowsPerColumn * shape_.columns()
+             ? rows_.capacity()
+             : 1;
 }
 
-void ChannelTest::fold(int cv) {
+void MismatchDetector::fold(int cv) {
   Response& response = responses_[index(cv)];
   if (response.waiting > 0) take(cv, std::min(response.waiting, response.span) - 1, 0);
   response.waiting = 0;
 }
 
 // The rows that wait of these ages (oldest >= newest), as many as fit into a batch.
-void ChannelTest::take(int cv, int oldest, int newest) {
+void MismatchDetector::take(int cv, int oldest, int newest) {
   const Response& response = responses_[index(cv)];
   LagWindow& weights = weight_windows_[index(cv)];
   const int columns = shape_.columns();
@@ -152,19 +135,20 @@ void ChannelTest::take(int cv, int oldest, int newest) {
 }
 
 // Weight of the row of which this is known before it is taken; follows the noise level.
-double ChannelTest::weigh(int cv, const GivensQr::Preview& preview, bool together) {
+double MismatchDetector::weigh(int cv, const GivensQr::Preview& preview, bool together) {
   Response& response = responses_[index(cv)];
   double weight = 1.0 / response.scale;
   const double leverage = preview.leverage * weight * weight;
   const double error = std::abs(preview.error) * weight / std::sqrt(1.0 + leverage);  // in s.d.
   const double clipped = std::min(error, kClip);
   if (error > clipped) weight *= clipped / error;
-  const bool new_direction = together && leverage > kNewDirection;
+  const bool new_direction = together && leverage > calibration::row_weights::kNewDirectionLeverage;
   response.square_rows += 1.0;
   response.clipped_share +=
       ((error > kClip && !new_direction ? 1.0 : 0.0) - response.clipped_share) /
-      std::min(kPriorRows + response.square_rows, kLastingRows);
-  const double heavy = (response.clipped_share - kNormalClipped) / (kHeavyClipped - kNormalClipped);
+      std::min(heavy_tails::kPriorRows + response.square_rows, kLastingRows);
+  const double heavy = (response.clipped_share - heavy_tails::kFromShare) /
+                       (heavy_tails::kFullShare - heavy_tails::kFromShare);
   for (int m = 0; m < memory_count(); ++m)
     memories_[at(cv, m)].heavy_tails = std::clamp(heavy, 0.0, 1.0);
   if (new_direction) return weight;
@@ -173,24 +157,24 @@ double ChannelTest::weigh(int cv, const GivensQr::Preview& preview, bool togethe
       (square - response.recent_square) / std::min(response.square_rows, kRecentRows);
   response.lasting_square +=
       (square - response.lasting_square) / std::min(response.square_rows, kLastingRows);
-  response.scale_rows = std::min(response.scale_rows + 1.0, kScaleRows);
+  response.scale_rows = std::min(response.scale_rows + 1.0, kNoiseRows);
   response.scale *= std::sqrt(1.0 + (clipped * clipped - 1.0) / response.scale_rows);
   return weight;
 }
 
 // The first rows come as they are; once they are twice as many as the columns they give the first
 // estimate of the noise level, by which they are then divided like all that follow.
-void ChannelTest::begin_scale(int cv) {
+void MismatchDetector::begin_scale(int cv) {
   const RegressionMemory& first = memories_[at(cv, 0)];
   const int columns = shape_.columns();
-  if (first.rows < 2 * columns) return;
+  if (first.rows < calibration::row_weights::kFirstRowsPerColumn * columns) return;
   const double freedom = first.freedom();
   const double mean_square = first.factor.residual_square(0) / first.weight_sum *
                              (freedom + columns) / std::max(freedom, 1.0);
   if (!(mean_square > 0.0)) return;
   Response& response = responses_[index(cv)];
   response.scale = std::sqrt(mean_square);
-  response.scale_rows = std::min(std::max(freedom, 1.0), kScaleRows);
+  response.scale_rows = std::min(std::max(freedom, 1.0), kNoiseRows);
   response.scaled = true;
   for (int m = 0; m < memory_count(); ++m) memories_[at(cv, m)].factor.scale(1.0 / response.scale);
   for (int age = 0; age < response.span; ++age) {
@@ -200,17 +184,19 @@ void ChannelTest::begin_scale(int cv) {
   }
 }
 
-void ChannelTest::slide(int cv, int memory) {
+// The window is rebuilt now and then: never a row is taken out of a factor, which would lose digits
+// after an outlier.
+void MismatchDetector::slide(int cv, int memory) {
   const int window = lengths_[static_cast<std::size_t>(memory)].window;
   if (window == 0 || responses_[index(cv)].span <= window) return;
-  if (++slides_[at(cv, memory)] < window / kSlideParts) return;
+  if (++slides_[at(cv, memory)] < window / calibration::sliding_window::kParts) return;
   slides_[at(cv, memory)] = 0;
   fold(cv);
   refill(cv, memory, window);
 }
 
 // From the rows as they were weighed.
-void ChannelTest::refill(int cv, int memory, int samples) {
+void MismatchDetector::refill(int cv, int memory, int samples) {
   RegressionMemory& target = memories_[at(cv, memory)];
   const double lambda = lengths_[static_cast<std::size_t>(memory)].lambda;
   target.clear();
@@ -231,7 +217,7 @@ void ChannelTest::refill(int cv, int memory, int samples) {
 }
 
 // Rows are weighed anew: what was surprising under what is now forgotten may be usual after it.
-void ChannelTest::start_afresh(int cv, int samples) {
+void MismatchDetector::start_afresh(int cv, int samples) {
   fold(cv);
   Response& response = responses_[index(cv)];
   response.span = std::min(samples, response.span);
@@ -242,7 +228,7 @@ void ChannelTest::start_afresh(int cv, int samples) {
   if (response.span == 0) return;
   response.scale = scale_windows_[index(cv)].window()[response.span - 1];
   response.square_rows = response.recent_square = response.lasting_square = 0.0;
-  response.clipped_share = kNormalClipped;
+  response.clipped_share = heavy_tails::kFromShare;
   for (int age = response.span - 1; age >= 0; --age)
     if (row_weight(cv, age) > 0.0) weight_windows_[index(cv)].set(age, kWaiting);
   for (int oldest = response.span - 1; oldest >= 0;) {
@@ -252,7 +238,7 @@ void ChannelTest::start_afresh(int cv, int samples) {
   }
 }
 
-void ChannelTest::evaluate(int cv, int memory) {
+void MismatchDetector::evaluate(int cv, int memory) {
   fold(cv);
   evaluator_.evaluate(cv, memories_[at(cv, memory)],
                       &evidence_[at(cv, memory) * static_cast<std::size_t>(shape_.inputs)]);

@@ -1,4 +1,4 @@
-#include "core/mismatch/channel_test.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -27,21 +27,21 @@ ModelSpec first_order(int inputs, int cvs, double time_constant_s) {
   return spec;
 }
 
-void evaluate_all(ChannelTest& channel_test) {
-  for (int m = 0; m < channel_test.memory_count(); ++m)
-    for (int j = 0; j < channel_test.shape().cvs; ++j)
-      if (channel_test.memory(j, m).ready()) channel_test.evaluate(j, m);
+void evaluate_all(MismatchDetector& detector) {
+  for (int m = 0; m < detector.memory_count(); ++m)
+    for (int j = 0; j < detector.shape().cvs; ++j)
+      if (detector.memory(j, m).ready()) detector.evaluate(j, m);
 }
 
-TEST_CASE("the channel test equals brute-force batch fits") {
-  // Expected: tests/oracles/channel_test.py; signals drawn alike.
-  const nlohmann::json oracle = test::read_oracle("channel_test.json");
+TEST_CASE("the mismatch detector equals brute-force batch fits") {
+  // Expected: tests/oracles/mismatch_detector.py; signals drawn alike.
+  const nlohmann::json oracle = test::read_oracle("mismatch_detector.json");
   const int m = oracle["inputs"];
   const int n = oracle["cvs"];
   const LinearModel model(first_order(m, n, 10.0));
-  ChannelTest channel_test({m, n, oracle["fir_lags"], oracle["residual_order"],
-                            oracle["tail_poles"].get<std::vector<double>>()},
-                           {{oracle["lambda"], 0}}, 100, oracle["patience"], model);
+  MismatchDetector detector({m, n, oracle["fir_lags"], oracle["residual_order"],
+                             oracle["tail_poles"].get<std::vector<double>>()},
+                            {{oracle["lambda"], 0}}, 100, oracle["patience"], model);
   Eigen::VectorXd u(m), e(n), noise = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd before = Eigen::VectorXd::Zero(2);
   for (int k = 0; k < oracle["samples"].get<int>(); ++k) {
@@ -55,29 +55,29 @@ TEST_CASE("the channel test equals brute-force batch fits") {
     if (k >= 2) e(0) += 0.08 * before(1);
     before(1) = before(0);
     before(0) = u(1);
-    channel_test.update(u, e);
+    detector.update(u, e);
   }
-  evaluate_all(channel_test);
-  CHECK(channel_test.memory(0).effective_rows() ==
+  evaluate_all(detector);
+  CHECK(detector.memory(0).effective_rows() ==
         Approx(oracle["effective_rows"].get<double>()).epsilon(1e-10));
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < m; ++i) {
       // The oracle's F, divided by the factor for few rows that the evaluator's comment gives.
-      const double per_freedom = channel_test.shape().columns() / channel_test.memory(j).freedom();
+      const double per_freedom = detector.shape().columns() / detector.memory(j).freedom();
       const double plain =
           oracle["statistics"][static_cast<std::size_t>(j)][static_cast<std::size_t>(i)];
       const double expected = plain / (1.0 + 0.26 * per_freedom);
       CAPTURE(j, i);
-      const ChannelEvidence& evidence = channel_test.evidence(j, i);
+      const ChannelEvidence& evidence = detector.evidence(j, i);
       CHECK(evidence.block_statistic == Approx(expected).epsilon(1e-8));
       // Of two tests the better one counts, doubled.
       const double block_p =
-          f_upper_tail(expected, channel_test.shape().block(), channel_test.memory(0).freedom());
+          f_upper_tail(expected, detector.shape().block(), detector.memory(0).freedom());
       CHECK(evidence.tests == 2);
       CHECK(evidence.p_value <= std::min(1.0, 2.0 * block_p) * (1.0 + 1e-6));
       CHECK(evidence.p_value ==
             Approx(std::min(1.0, 2.0 * f_upper_tail(evidence.statistic, evidence.numerator_freedom,
-                                                    channel_test.memory(0).freedom())))
+                                                    detector.memory(0).freedom())))
                 .epsilon(1e-9));
     }
   }
@@ -91,7 +91,7 @@ struct OpenLoop {
   std::vector<double> input_scale = {1.0, 1.0};
   bool same_inputs = false;
 
-  void run(ChannelTest& channel_test, const ModelSpec& spec, int samples) const {
+  void run(MismatchDetector& detector, const ModelSpec& spec, int samples) const {
     LinearModel model(spec);
     Eigen::VectorXd u(2), e(2), noise = Eigen::VectorXd::Zero(2);
     for (int k = 0; k < samples; ++k) {
@@ -104,18 +104,18 @@ struct OpenLoop {
                    0.1 * test::uniform(seed * 100 + 50 + static_cast<std::uint64_t>(j), k);
       e = noise;
       e(0) += hidden_ratio * model.output()(0);
-      channel_test.update(u, e);
+      detector.update(u, e);
       Eigen::VectorXd only_first = u;
       only_first(1) = 0.0;
       model.advance(only_first);
     }
-    evaluate_all(channel_test);
+    evaluate_all(detector);
   }
 };
 
-ChannelTest make_test(const ModelSpec& spec, double lambda = 1.0) {
-  return ChannelTest({2, 2, 12, 4, {std::exp(-1.0 / 15.0)}}, {{lambda, 0}}, 2000, 1,
-                     LinearModel(spec));
+MismatchDetector make_test(const ModelSpec& spec, double lambda = 1.0) {
+  return MismatchDetector({2, 2, 12, 4, {std::exp(-1.0 / 15.0)}}, {{lambda, 0}}, 2000, 1,
+                          LinearModel(spec));
 }
 
 TEST_CASE("the p-value of a matching channel keeps its promise") {
@@ -126,12 +126,12 @@ TEST_CASE("the p-value of a matching channel keeps its promise") {
   int below_5 = 0;
   int below_20 = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    ChannelTest channel_test = make_test(spec, 0.998);
-    OpenLoop(seed).run(channel_test, spec, 1200);
+    MismatchDetector detector = make_test(spec, 0.998);
+    OpenLoop(seed).run(detector, spec, 1200);
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i) {
-        below_5 += channel_test.evidence(j, i).p_value < 0.05 ? 1 : 0;
-        below_20 += channel_test.evidence(j, i).p_value < 0.2 ? 1 : 0;
+        below_5 += detector.evidence(j, i).p_value < 0.05 ? 1 : 0;
+        below_20 += detector.evidence(j, i).p_value < 0.2 ? 1 : 0;
       }
   }
   CAPTURE(below_5, below_20);
@@ -146,20 +146,20 @@ TEST_CASE("a hidden gain error is found in its channel, with its size and its s.
   const ModelSpec spec = first_order(2, 2, 15.0);
   double chi_square = 0.0;
   for (std::uint64_t seed = 201; seed <= 220; ++seed) {
-    ChannelTest channel_test = make_test(spec);
+    MismatchDetector detector = make_test(spec);
     OpenLoop loop(seed);
     loop.hidden_ratio = 0.25;
-    loop.run(channel_test, spec, 1500);
-    const ChannelEvidence& found = channel_test.evidence(0, 0);
+    loop.run(detector, spec, 1500);
+    const ChannelEvidence& found = detector.evidence(0, 0);
     CHECK(found.p_value < 1e-12);
     CHECK(found.reference_gain == Approx(1.0));
     CHECK(found.excitation_index < 0.05);
     const double z = (found.gain_error_ratio - 0.25) / found.excitation_index;
     CHECK(std::abs(z) < 4.0);
     chi_square += z * z;
-    CHECK(channel_test.evidence(1, 0).p_value > 1e-5);
-    CHECK(channel_test.evidence(0, 1).p_value > 1e-5);
-    CHECK(channel_test.evidence(1, 1).p_value > 1e-5);
+    CHECK(detector.evidence(1, 0).p_value > 1e-5);
+    CHECK(detector.evidence(0, 1).p_value > 1e-5);
+    CHECK(detector.evidence(1, 1).p_value > 1e-5);
   }
   INFO("chi square " << chi_square);
   CHECK(chi_square > 5.9);
@@ -172,12 +172,11 @@ TEST_CASE("a usual error is seen sooner than an unusual one of the same size") {
   const ModelSpec spec = first_order(2, 2, 15.0);
   int directed = 0;
   for (std::uint64_t seed = 301; seed <= 320; ++seed) {
-    ChannelTest channel_test = make_test(spec);
+    MismatchDetector detector = make_test(spec);
     OpenLoop loop(seed);
     loop.hidden_ratio = 0.1;
-    loop.run(channel_test, spec, 500);
-    directed +=
-        channel_test.evidence(0, 0).numerator_freedom < channel_test.shape().block() ? 1 : 0;
+    loop.run(detector, spec, 500);
+    directed += detector.evidence(0, 0).numerator_freedom < detector.shape().block() ? 1 : 0;
   }
   CHECK(directed > 10);
 }
@@ -185,18 +184,18 @@ TEST_CASE("a usual error is seen sooner than an unusual one of the same size") {
 TEST_CASE("excitation: silent, weak and inseparable inputs are told apart") {
   const ModelSpec spec = first_order(2, 2, 15.0);
   SECTION("an input that never moves says nothing") {
-    ChannelTest channel_test = make_test(spec);
+    MismatchDetector detector = make_test(spec);
     OpenLoop loop(7);
     loop.input_scale = {1.0, 0.0};
-    loop.run(channel_test, spec, 1000);
-    CHECK(std::isinf(channel_test.evidence(0, 1).excitation_index));
-    CHECK(channel_test.evidence(0, 1).p_value == 1.0);
-    CHECK(channel_test.evidence(0, 0).excitation_index < 0.1);
+    loop.run(detector, spec, 1000);
+    CHECK(std::isinf(detector.evidence(0, 1).excitation_index));
+    CHECK(detector.evidence(0, 1).p_value == 1.0);
+    CHECK(detector.evidence(0, 0).excitation_index < 0.1);
   }
   SECTION("a tenth of the movement: ten times the s.d.") {
     // The noise is the same and enters linearly, so the s.d. scales with 1 / movement exactly.
-    ChannelTest strong = make_test(spec);
-    ChannelTest weak = make_test(spec);
+    MismatchDetector strong = make_test(spec);
+    MismatchDetector weak = make_test(spec);
     OpenLoop loop(8);
     loop.run(strong, spec, 1000);
     loop.input_scale = {1.0, 0.1};
@@ -205,23 +204,23 @@ TEST_CASE("excitation: silent, weak and inseparable inputs are told apart") {
           Approx(10.0 * strong.evidence(0, 1).excitation_index).epsilon(1e-6));
   }
   SECTION("two inputs that move as one name each other") {
-    ChannelTest channel_test = make_test(spec);
+    MismatchDetector detector = make_test(spec);
     OpenLoop loop(9);
     loop.same_inputs = true;
     loop.hidden_ratio = 0.5;
-    loop.run(channel_test, spec, 1000);
-    CHECK(channel_test.evidence(0, 0).excitation_index > 100.0);
-    CHECK(channel_test.evidence(0, 0).excitation_index_alone < 0.1);
-    CHECK(channel_test.evidence(0, 0).confounder == 1);
-    CHECK(channel_test.evidence(0, 1).confounder == 0);
+    loop.run(detector, spec, 1000);
+    CHECK(detector.evidence(0, 0).excitation_index > 100.0);
+    CHECK(detector.evidence(0, 0).excitation_index_alone < 0.1);
+    CHECK(detector.evidence(0, 0).confounder == 1);
+    CHECK(detector.evidence(0, 1).confounder == 0);
   }
 }
 
 TEST_CASE("units of any size give the same verdict") {
   // CV in units 1e6 times smaller, input 1: 1e-6 times: F, p and the relative error are unchanged.
   const ModelSpec spec = first_order(2, 2, 15.0);
-  ChannelTest plain = make_test(spec);
-  ChannelTest scaled = make_test(spec);
+  MismatchDetector plain = make_test(spec);
+  MismatchDetector scaled = make_test(spec);
   LinearModel model(spec);
   Eigen::VectorXd u(2), e(2), scaled_u(2), scaled_e(2);
   for (int k = 0; k < 800; ++k) {
@@ -242,10 +241,10 @@ TEST_CASE("units of any size give the same verdict") {
             Approx(plain.evidence(j, i).statistic).epsilon(1e-9));
 }
 
-TEST_CASE("the channel test allocates nothing per sample") {
+TEST_CASE("the mismatch detector allocates nothing per sample") {
   const ModelSpec spec = first_order(3, 3, 50.0);
-  ChannelTest channel_test({3, 3, 20, 8, {0.98}}, {{0.9995, 0}, {1.0, 500}}, 600, 8,
-                           LinearModel(spec));
+  MismatchDetector detector({3, 3, 20, 8, {0.98}}, {{0.9995, 0}, {1.0, 500}}, 600, 8,
+                            LinearModel(spec));
   Eigen::VectorXd u(3), e(3);
   const std::uint64_t before = test::allocation_count();
   for (int k = 0; k < 600; ++k) {
@@ -253,13 +252,13 @@ TEST_CASE("the channel test allocates nothing per sample") {
       u(static_cast<int>(i)) = test::coloured(400 + i, k);
       e(static_cast<int>(i)) = test::coloured(410 + i, k);
     }
-    if (k == 450) channel_test.skip(3);
+    if (k == 450) detector.skip(3);
     if (k == 500) u(1) = e(2) = std::nan("");
-    channel_test.update(u, e);
-    if (k == 590) channel_test.start_afresh(1, 560);
-    evaluate_all(channel_test);
+    detector.update(u, e);
+    if (k == 590) detector.start_afresh(1, 560);
+    evaluate_all(detector);
   }
-  CHECK(channel_test.memory(0).ready());
+  CHECK(detector.memory(0).ready());
   CHECK(test::allocation_count() == before);
 }
 

@@ -1,4 +1,4 @@
-#include "core/optim/dense_qp.hpp"
+#include "sim/mpc/dense_qp.hpp"
 
 #include <Eigen/QR>
 #include <catch2/catch.hpp>
@@ -8,15 +8,15 @@
 #include <stdexcept>
 
 #include "tests/allocation_counter.hpp"
-#include "tests/core/ipopt_oracle.hpp"
+#include "tests/sim/ipopt_oracle.hpp"
 
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using mpm::DenseQp;
-using mpm::QpStatus;
+using mpm::sim::DenseQp;
+using mpm::sim::QpStatus;
 using mpm::test::OracleAnswer;
 using mpm::test::QpProblem;
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Brute-force channel test: writes channel_test.json.
+"""Brute-force F tests of all channels: writes mismatch_detector.json.
 
 The weights depend on earlier estimates, so every row is judged by a batch least-squares fit
 (numpy.linalg.lstsq) of all rows before those that waited with it, and F of a block is the change of the weighted residual sum of
 squares when the block's columns are left out: two fits, no factor, no recursion.
-Run: /usr/bin/python3 tests/oracles/channel_test.py  (numpy 1.24.2)
+Run: /usr/bin/python3 tests/oracles/mismatch_detector.py  (numpy 1.24.2)
 """
 import json
 import os
@@ -124,7 +124,7 @@ def main():
     out = dict(numpy=np.__version__, inputs=M, cvs=N, fir_lags=LAGS, residual_order=ORDER,
                tail_poles=POLES, samples=SAMPLES, patience=PATIENCE, effective_rows=w1 * w1 / w2,
                statistics=statistics, **{"lambda": LAM})
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "channel_test.json")
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "mismatch_detector.json")
     with open(path, "w") as file:
         json.dump(out, file, indent=1)
         file.write("\n")

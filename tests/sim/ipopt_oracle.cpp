@@ -1,4 +1,4 @@
-#include "tests/core/ipopt_oracle.hpp"
+#include "tests/sim/ipopt_oracle.hpp"
 
 #if defined(MPM_HAVE_IPOPT)
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace mpm {
+namespace mpm::sim {
 
 enum class QpStatus : std::uint8_t { kOptimal, kInfeasible, kIterationLimit };
 
@@ -79,4 +79,4 @@ class DenseQp {
   int iterations_ = 0;
 };
 
-}  // namespace mpm
+}  // namespace mpm::sim

@@ -1,4 +1,4 @@
-#include "core/optim/dense_qp.hpp"
+#include "sim/mpc/dense_qp.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include "core/regression/rotation.hpp"
 
-namespace mpm {
+namespace mpm::sim {
 namespace {
 
 using Eigen::Index;
@@ -238,4 +238,4 @@ void DenseQp::publish_multipliers() {
   }
 }
 
-}  // namespace mpm
+}  // namespace mpm::sim

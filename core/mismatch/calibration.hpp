@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+
+/// The numbers of this room that decide what is said of a channel. Where each comes from:
+///
+///   fitted   on seeds from 100001 on, which score nothing; the command beside it fits it again;
+///   derived  from the paper or formula that is named;
+///   chosen   by hand on prototypes with other generators and seeds. `./run study` shows what the
+///            choice gives (docs/validation.md), the named test what it is for.
+namespace mpm::calibration {
+
+/// Errors of a channel's model up to which it is good enough, unless the user sets others. Chosen:
+/// a controller hardly notices errors that small; some error every model has.
+namespace materiality {
+inline constexpr double kGain = 0.05;            ///< relative
+inline constexpr double kTimeConstant = 0.10;    ///< relative
+inline constexpr double kDeadTimeSamples = 0.5;  ///< half the resolution of a control interval
+}  // namespace materiality
+
+/// In a regression on its own past F is too large on few rows, by 1 + factor columns / freedom
+/// (Bartlett 1937 on such factors): the residuals' lags come out too fast, and what moves slowly
+/// seems too certain. Fitted on Shell, seeds 100001-101000: ./run calibrate --only few_rows
+namespace few_rows {
+inline constexpr double kDirected = 1.35;  ///< of the test for the usual errors, 1
+inline constexpr double kBlock = 0.26;     ///< of the test of the whole block, 1
+}  // namespace few_rows
+
+/// Rows that a memory must hold before anything is said. With four per column p < 1e-4 still comes
+/// seven times too often, with five as often as it should; heavy tails (t with 2.5 degrees of
+/// freedom) take up to 25. Fitted: ./run calibrate --only rows_needed
+namespace rows_needed {
+inline constexpr double kPerColumn = 5.0;
+inline constexpr double kMorePerColumn = 20.0;  ///< where tails are as heavy as below
+}  // namespace rows_needed
+
+/// Shares of clipped rows (beyond row_weights::kClip) from which on tails count as somewhat and as
+/// very heavy; normal noise has 0.0027. With heavy tails and 528 rows p < 0.01 came in 10 % of
+/// healthy channels. Fitted: ./run calibrate --only heavy_tails
+namespace heavy_tails {
+inline constexpr double kFromShare = 0.008;
+inline constexpr double kFullShare = 0.02;
+/// Rows that stand behind the presumption that a new CV's tails are heavy. Chosen.
+inline constexpr double kPriorRows = 200.0;
+}  // namespace heavy_tails
+
+/// How rows are weighed by their own prediction errors.
+namespace row_weights {
+/// Rows over which the noise level is followed, and the error in s.d. beyond which a row is trusted
+/// less. Chosen: with these the false alarms stay nominal where the noise trebles or has heavy
+/// tails, at the price of some power on 1000 samples.
+inline constexpr double kNoiseRows = 300.0;
+inline constexpr double kClip = 3.0;
+/// The same where a change is looked for: after one many rows surprise, and they are what tells of
+/// it. Chosen (tests/core/change_scan_test.cpp).
+inline constexpr double kLenientClip = 6.0;
+/// Rows per column that give the first estimate of the noise level. Chosen: half of them are left
+/// for it.
+inline constexpr int kFirstRowsPerColumn = 2;
+/// Rows over which the errors of now are compared with those of long; chosen.
+inline constexpr double kRecentRows = 100.0;
+inline constexpr double kLastingRows = 2000.0;
+/// Leverage in units of the noise variance above which a row says more of a direction hardly seen
+/// before than of the noise: of rows that wait together all say the same, so they do not move what
+/// is known of the noise. Derived: half of such an error's variance is the prediction's.
+inline constexpr double kNewDirectionLeverage = 1.0;
+/// While there are fewer rows per column each one teaches the next what to expect: their prediction
+/// errors would have too much in common if they were taken together. Chosen.
+inline constexpr int kTogetherRowsPerColumn = 10;
+}  // namespace row_weights
+
+/// Unknown residuals in a row that are interpolated. Chosen: what is guessed over longer gaps would
+/// correlate with the inputs through the feedback (tests/sim/bad_data_alarms_test.cpp).
+namespace gaps {
+inline constexpr int kInterpolated = 2;  ///< samples
+}
+
+/// A sliding window is rebuilt each time it has grown by one of so many parts. Chosen: a compromise
+/// of cost against how sharp its edge is.
+namespace sliding_window {
+inline constexpr int kParts = 8;
+}
+
+/// The errors that a channel's model usually has, as directions.
+namespace usual_errors {
+/// Dead-time errors, samples: the response that much later, minus the response. Chosen: with these
+/// and the derivatives by gain and time constant the test had most power on prototypes.
+inline constexpr std::array kDelayShifts = {-2, 2, 6};
+/// Step of the derivative by the logarithm of the time constants, relative. Chosen: small against
+/// what is told apart, large against one sample's interpolation.
+inline constexpr double kTimeConstantStep = 0.1;
+/// Below this p-value no combination of them explains what is seen. Chosen.
+inline constexpr double kUnusualPValue = 1e-3;
+/// Slowest time constants over which the tails are fitted to a step response, and the samples that
+/// this is at least and at most. Derived: exp(-8) = 0.03 % is left after it.
+inline constexpr double kTailFitTimeConstants = 8.0;
+inline constexpr int kTailFitFewest = 50;
+inline constexpr int kTailFitMost = 20000;
+}  // namespace usual_errors
+
+/// The other inputs mask one where they make its gain's s.d. this many times larger. Chosen.
+namespace confounding {
+inline constexpr double kMasked = 2.0;
+}
+
+/// The search for the moment of a change.
+namespace change_scan {
+inline constexpr int kMoments = 100;  ///< looked at; chosen: one per cent of the memory
+/// By how many residual variances a change must beat no change. Chosen: chance gives a few.
+inline constexpr double kMargin = 20.0;
+/// What m more parameters gain by chance is chi-square with mean m and variance 2 m; so many s.d.
+/// above the mean they must gain. Chosen, for the best of all moments.
+inline constexpr double kChanceDeviations = 6.0;
+/// Above this p-value no input explains anything since a change. Chosen.
+inline constexpr double kNothingPValue = 1e-3;
+/// Rows beyond the columns below which a part's variance is not known. Chosen.
+inline constexpr int kFewestFreedom = 15;
+/// Rows per column since a change that ended nothing and began nothing: fewer could not tell twice
+/// as many coefficients apart. Chosen.
+inline constexpr int kRowsPerColumn = 2;
+}  // namespace change_scan
+
+/// Where rounding ends what can be known; relative s.d. or squares of them. Derived from double
+/// precision (2.2e-16) with room for what some thousand rotations lose.
+namespace rounding {
+/// A column of which less than this share is its own is held at that share: the variances of
+/// everything that depends on it then come out huge instead of meaningless.
+inline constexpr double kOwnShare = 1e-7;
+/// Above this own share of every column the regression's coefficients are worth reading. Chosen:
+/// below, their errors are a thousand times those of independent columns.
+inline constexpr double kSeparableShare = 1e-3;
+/// A direction of which the ones before it leave less is none of its own.
+inline constexpr double kIndependentShare = 1e-6;
+/// The same of a column of the three in `box_least_squares`, which nothing has blurred before.
+inline constexpr double kFreeShare = 1e-12;
+/// An input whose own movement (residual sum of squares given the others) is below this fraction of
+/// its total carries rounding noise only: relative s.d. 1e-9, well above eps and well below any
+/// collinearity that double precision can still resolve (tests/core/lagged_correlation_test.cpp).
+inline constexpr double kOwnMovementSquare = 1e-18;
+}  // namespace rounding
+
+}  // namespace mpm::calibration

@@ -1,0 +1,53 @@
+#pragma once
+
+/// The numbers of this room that decide how a model is taken. Where each comes from: see
+/// core/mismatch/calibration.hpp.
+namespace mpm::calibration {
+
+/// What counts as the same, for a model that somebody typed.
+namespace model_rounding {
+/// A pole this near to 1, a sum of coefficients this small against them: an integrator. A pulse
+/// response this small against what could come: none yet. Derived: seven digits above what double
+/// precision loses, well below what anybody types.
+inline constexpr double kSame = 1e-9;
+/// The same of a root that comes of a polynomial whose sum of coefficients is 0 already: a double
+/// root is known to half the digits.
+inline constexpr double kSameRoot = 1e-6;
+/// Dead times this near to whole samples are whole, in samples.
+inline constexpr double kWholeSample = 1e-9;
+/// A time this short of a disturbance's onset or end, in sample times, counts as that: seconds
+/// since 1970 as a double are good to 0.2 us.
+inline constexpr double kSameInstant = 1e-4;
+}  // namespace model_rounding
+
+/// Longest dead time, samples. Chosen: bounds memory and catches slipped units.
+inline constexpr int kLongestDeadTime = 1000000;
+
+/// A step response that stays below this share of its largest value has not begun: the samples
+/// until then are its dead time. Chosen: identified responses are never quite 0.
+inline constexpr double kNotBegun = 1e-3;
+
+/// Samples over which a step response is watched for when it settles: a rest, and per slowest time
+/// constant so many, more for each order and for each factor e of the tolerance. Chosen,
+/// generously: n equal lags take n + a few sqrt(n) time constants.
+namespace settling_horizon {
+inline constexpr double kSamples = 10.0;
+inline constexpr double kTimeConstants = 10.0;
+inline constexpr double kPerOrder = 5.0;
+inline constexpr double kPerLogTolerance = 2.0;
+}  // namespace settling_horizon
+
+/// Tanks that are integrated within the sample.
+namespace tanks {
+/// Steps per fastest time constant. Errors of a level: 1e-6, and up to 2e-4 for a while after a
+/// tank has run empty or begun to overflow (tests/core/tank_channel_test.cpp). A tank much faster
+/// than the sample time follows its inflow: L-stability makes finer steps needless there.
+inline constexpr double kStepsPerTimeConstant = 20.0;
+inline constexpr double kMostSteps = 200.0;
+/// Below this level (of the operating point's) the root bends sharply and a tank that fills again
+/// is of order 1.5 only: its steps are parted.
+inline constexpr double kNearlyEmpty = 0.05;
+inline constexpr int kParts = 8;
+}  // namespace tanks
+
+}  // namespace mpm::calibration

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+
+/// The numbers of this room that decide what is said. What the user may set has its default in
+/// settings.hpp, with what it means. Where each comes from: see core/mismatch/calibration.hpp.
+namespace mpm::calibration {
+
+/// Whether an error of interest would show.
+namespace visibility {
+/// S.d. of the gain estimate that an error must be worth to be seen: root of the noncentrality at
+/// which a chi-square test of 6 degrees of freedom at level 0.01 / 9 has 94 % power. Derived
+/// (tests/core/calibration_test.cpp; 95 % would be 5.88).
+inline constexpr double kSeenDeviations = 5.8;
+/// Relative gain error beyond which nothing is said: where even that would not show, no data speak.
+/// Chosen.
+inline constexpr double kBlindGainError = 100.0;
+/// Where the excitation is too poor to trust the calibration, only evidence counts whose p-value is
+/// below the usual rate times this. Chosen.
+inline constexpr double kOverwhelming = 1e-6;
+}  // namespace visibility
+
+/// When data are too bad for a verdict.
+namespace bad_data {
+/// Unknown values of a signal in a row that may be taken as unchanged, samples. Chosen.
+inline constexpr std::int64_t kHeldSamples = 5;
+/// More than this share of a CV's samples without a residual, exponentially weighted over so many
+/// samples (the memory of the noise level). Chosen.
+inline constexpr double kMostShare = 0.5;
+inline constexpr double kShareSamples = 300.0;
+/// Values that an instrument falsifies are not missing at random (it clips what is large): no more
+/// than this share of implausible ones over so many samples. Chosen; 20 % frozen or clipped values
+/// give no verdict, 5 % do (docs/validation.md, bad data).
+inline constexpr double kImplausibleShare = 0.1;
+inline constexpr double kImplausibleSamples = 1000.0;
+/// Where spikes are found more often than this, others side by side pass the screen unseen. Chosen:
+/// without it spikes in 1 % of the values gave a false alarm in 1 run of 20.
+inline constexpr double kSpikyShare = 0.003;
+/// A CV that has no verdict after so many times the samples it needs has bad data, and is not just
+/// warming up. Chosen.
+inline constexpr double kWarmUps = 2.0;
+}  // namespace bad_data
+
+/// How an input moves: for the reason of a verdict that is undetermined. Chosen.
+namespace input_motion {
+inline constexpr double kMostOfTheTime = 0.5;  ///< share of the samples
+inline constexpr int kStillSamples = 60;       ///< without any movement: it stands still
+inline constexpr double kAtEnd = 1e-6;         ///< share of its range within which it is at the end
+inline constexpr double kMemoryShare = 0.25;   ///< of the samples that a CV remembers
+}  // namespace input_motion
+
+/// What an alarm takes beside the p-values that the user may set.
+namespace alarms {
+/// That the error matters may be a little less certain than that there is one: to raise an alarm it
+/// must have at most this p-value. Chosen.
+inline constexpr double kMattersPValue = 1e-3;
+/// An alarm stays while its error is significant at this level and might matter. Chosen.
+inline constexpr double kStaysPValue = 0.05;
+inline constexpr int kOnDelaySamples = 10;   ///< unless the user sets one; chosen
+inline constexpr int kOffDelaySamples = 60;  ///< likewise
+}  // namespace alarms
+
+/// When a change is looked for, and believed. Chosen, on the experiments `change_*` of the study's
+/// prototype.
+namespace change_search {
+inline constexpr std::int64_t kBetween = 100;       ///< samples from one search to the next
+inline constexpr std::int64_t kBetweenUrgent = 20;  ///< where the errors are much larger than usual
+inline constexpr double kUrgentSurprise = 2.0;      ///< ratio of mean squares: that much larger
+/// Worth a search: an error this likely, or errors this much larger than usual (ratio of mean
+/// squares). While a memory spans a change its p-value is slow to fall.
+inline constexpr double kSuspiciousPValue = 1e-5;
+inline constexpr double kSuspiciousSurprise = 1.3;
+/// A change is certain where its p-value, of the likeliest moment and input, is below this. At one
+/// sample a second a year has 3e5 searches of a hundred moments each: once in thirty years.
+inline constexpr double kCertainPValue = 1e-9;
+}  // namespace change_search
+
+/// Memories in effective samples, (1 + lambda) / (1 - lambda). Chosen: the long one sees gain
+/// errors of some 5 % on Shell (docs/validation.md), the fast one large ones sooner.
+namespace memories {
+inline constexpr double kEffectiveSamples = 4000.0;
+inline constexpr double kFastEffectiveSamples = 1000.0;
+/// Memories of fewer rows than these per column could hardly tell the columns apart.
+inline constexpr double kRowsPerColumn = 15.0;
+inline constexpr double kFastRowsPerColumn = 8.0;
+/// Samples remembered for a fresh start, as a multiple of the long memory's.
+inline constexpr double kRememberedShare = 1.2;
+}  // namespace memories
+
+/// How often a CV is evaluated: it costs as much as several rows, and what it says changes slowly.
+namespace evaluation {
+/// For 88 columns every eighth sample. Chosen.
+inline constexpr double kColumnsPerStride = 11.0;
+inline constexpr int kLongestStride = 30;  ///< samples
+/// The threshold of F is kept until the degrees of freedom have changed by this share, which moves
+/// it by some 1e-5. Chosen.
+inline constexpr double kKeptThresholdShare = 0.01;
+}  // namespace evaluation
+
+/// The regression's columns, where the user leaves them to be derived. Chosen: block size and order
+/// are those of the prototype's best test (20 lags and a tail; eight lags of all residuals, which
+/// noise that is coupled between CVs needs).
+namespace regression_shape {
+inline constexpr int kFewestFirLags = 20;
+inline constexpr int kMostFirLags = 60;
+/// An error in the dead time must stay inside the pulse lags: this many samples beyond the longest.
+inline constexpr int kDeadTimeMargin = 13;
+inline constexpr int kResidualOrder = 8;
+/// One tail with the slowest time constant, and further ones, each this many times faster, as long
+/// as they are slower than the pulse lags can show (so many times their number).
+inline constexpr double kTailRatio = 4.0;
+inline constexpr double kSlowerThanLags = 2.0;
+}  // namespace regression_shape
+
+/// Slowest time constants after which what a wrong start left behind is below 1 %. Derived:
+/// exp(-5) = 0.7 %.
+namespace simulation {
+inline constexpr double kSettlingTimeConstants = 5.0;
+}
+
+}  // namespace mpm::calibration

@@ -1,0 +1,49 @@
+#pragma once
+
+/// The numbers of this room that decide which values count and which samples go together. Where
+/// each comes from: see core/mismatch/calibration.hpp.
+namespace mpm::calibration {
+
+/// Repeated values (`Screen`).
+namespace repeats {
+/// Probability below which a run of repeated values is not taken for chance. Chosen: one run in a
+/// million values.
+inline constexpr double kChance = 1e-6;
+/// Returns to the value before the last that make a signal a coarse one. Chosen: a fine one has
+/// none.
+inline constexpr int kReturns = 3;
+/// What is presumed of a signal's share of repetitions: one in a hundred, as if seen in so many
+/// values. Chosen.
+inline constexpr double kPriorRepeated = 0.5;
+inline constexpr double kPriorValues = 50.0;
+/// Values exactly at the end of a signal's range that make that end a limit of the instrument.
+/// Chosen.
+inline constexpr int kEndHits = 3;
+}  // namespace repeats
+
+/// Values that jump away and right back (`Screen`).
+namespace spikes {
+/// So many times the usual difference it leaves and comes back. Chosen
+/// (tests/sim/bad_data_alarms_test.cpp).
+inline constexpr double kJump = 6.0;
+/// It is back where it is nearer to the last value than this share of the jump. Chosen.
+inline constexpr double kBackShare = 0.5;
+/// Differences over which the usual one is followed; so many it takes to know one; and beyond how
+/// many times the usual one a difference counts no more. Chosen, as the noise level's
+/// (row_weights).
+inline constexpr double kScaleSamples = 300.0;
+inline constexpr double kFirstSamples = 30.0;
+inline constexpr double kBound = 3.0;
+}  // namespace spikes
+
+/// Blocks that come apart (`Aligner`), in control intervals. Chosen: what middleware reorders is
+/// far less, and a gateway that is a thousand ahead on one topic has lost the others.
+namespace alignment {
+inline constexpr int kMaxLateness = 8;
+inline constexpr int kCapacity = 1024;
+/// A number that is behind by more than this many times the lateness is a restart, not a late
+/// block.
+inline constexpr int kRestartFactor = 4;
+}  // namespace alignment
+
+}  // namespace mpm::calibration
