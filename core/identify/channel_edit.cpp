@@ -1,11 +1,11 @@
 #include "core/identify/channel_edit.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <type_traits>
 
+#include "core/model/eigenvalues.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {

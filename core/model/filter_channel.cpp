@@ -1,12 +1,13 @@
 #include "core/model/filter_channel.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
+
+#include "core/model/eigenvalues.hpp"
 
 namespace mpm {
 namespace {

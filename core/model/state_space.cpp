@@ -1,6 +1,5 @@
 #include "core/model/state_space.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,8 @@
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
+
+#include "core/model/eigenvalues.hpp"
 
 namespace mpm {
 namespace {
