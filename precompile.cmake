@@ -11,9 +11,9 @@ foreach(library mpm_config mpm_idl mpm_sim)
   target_precompile_headers(${library} REUSE_FROM mpm_core)
 endforeach()
 
-target_precompile_headers(mpm_report PRIVATE ${program_headers})
-foreach(library mpm_io mpm_mcap mpm_recording mpm_service)
-  target_precompile_headers(${library} REUSE_FROM mpm_report)
+target_precompile_headers(mpm_files PRIVATE ${program_headers})
+foreach(library mpm_host mpm_mcap mpm_report mpm_bus mpm_bag mpm_live)
+  target_precompile_headers(${library} REUSE_FROM mpm_files)
 endforeach()
 
 # Command lines: CLI11 is long to compile and soon done.
