@@ -55,9 +55,8 @@ TEST_CASE("who joins late gets the current alarm of each channel, once, and noth
     return states.count("u4") == 1;
   }));
   CHECK(count == 4);
-  CHECK(states ==
-        std::map<std::string, std::string>{
-            {"u1", "cleared"}, {"u2", "active"}, {"u3", "cleared"}, {"u4", "active"}});
+  CHECK(states == std::map<std::string, std::string>{
+                      {"u1", "cleared"}, {"u2", "active"}, {"u3", "cleared"}, {"u4", "active"}});
 }
 
 TEST_CASE("who joins late gets the last changes of alarms in their order") {

@@ -416,9 +416,9 @@ TEST_CASE("a topic of somebody else is recorded by the type that its writer desc
   const Corner corner("foreign");
   const std::string file = corner.folder.file("run.mcap");
   const idl::Writer<mpm_Health> foreign(corner.participant, "site/health", idl::health_qos());
-  Process recorder = corner.start({"mpm", "record", "--output", file, "--topics", "site/health",
-                                   "site/nothing", "--chunk-duration", "0.01", "--compression",
-                                   "none"});
+  Process recorder =
+      corner.start({"mpm", "record", "--output", file, "--topics", "site/health", "site/nothing",
+                    "--chunk-duration", "0.01", "--compression", "none"});
   mpm_Health health{};
   char unit[] = "far away";
   health.unit = unit;

@@ -148,9 +148,8 @@ void check_killed_recorder(std::mt19937& random, bool idle) {
   Stage stage("killed" + std::to_string(random()));
   const std::string recording = stage.folder.file("run.mcap");
   const std::string mended = stage.folder.file("mended.mcap");
-  Process recorder =
-      stage.start("record", {"mpm", "record", "--output", recording, "--chunk-size",
-                             std::to_string(kChunkBytes), "--chunk-duration", "1h"});
+  Process recorder = stage.start("record", {"mpm", "record", "--output", recording, "--chunk-size",
+                                            std::to_string(kChunkBytes), "--chunk-duration", "1h"});
   const idl::Participant participant(stage.domain);
   const idl::UnitPublisher publisher = toy_publisher(participant, idl::WriterPace::kLossless);
   REQUIRE(publisher.wait_for_readers(kPatience));
