@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -6,6 +5,7 @@
 
 #include "config/load_model_parts.hpp"
 #include "config/yaml_text.hpp"
+#include "core/model/eigenvalues.hpp"
 
 namespace mpm::config {
 namespace {

@@ -1,7 +1,6 @@
-#include <Eigen/Eigenvalues>
-
 #include "config/load_sections.hpp"
 #include "config/yaml_text.hpp"
+#include "core/model/eigenvalues.hpp"
 
 namespace mpm::config {
 namespace {

@@ -3,8 +3,9 @@
 #include <dds/ddsrt/log.h>
 
 #include <chrono>
-#include <mutex>
 #include <string_view>
+
+#include "idl/mutex.hpp"
 
 namespace mpm::idl {
 namespace {
@@ -14,12 +15,12 @@ constexpr int kLinesPerPeriod = 10;
 constexpr std::chrono::seconds kPeriod{10};
 
 struct LogState {
-  std::mutex mutex;
-  LogHandler handler;
-  std::string last_line;
-  Clock::time_point period_end;
-  int lines = 0;       // passed in this period
-  int suppressed = 0;  // not passed in this period
+  Mutex mutex;
+  LogHandler handler MPM_GUARDED_BY(mutex);
+  std::string last_line MPM_GUARDED_BY(mutex);
+  Clock::time_point period_end MPM_GUARDED_BY(mutex);
+  int lines MPM_GUARDED_BY(mutex) = 0;       // passed in this period
+  int suppressed MPM_GUARDED_BY(mutex) = 0;  // not passed in this period
 };
 
 LogState& log_state() {
@@ -33,7 +34,7 @@ LogLevel level_of(std::uint32_t priority) {
   return priority & DDS_LC_WARNING ? LogLevel::kWarning : LogLevel::kInfo;
 }
 
-void start_new_period(LogState& state, Clock::time_point now) {
+void start_new_period(LogState& state, Clock::time_point now) MPM_REQUIRES(state.mutex) {
   if (state.suppressed > 0 && state.handler)
     state.handler(LogLevel::kWarning,
                   std::to_string(state.suppressed) + " more DDS messages not shown");
@@ -47,7 +48,7 @@ void on_log(void*, const dds_log_data_t* data) {
   while (!line.empty() && line.back() == '\n') line.remove_suffix(1);
 
   LogState& state = log_state();
-  const std::lock_guard lock(state.mutex);
+  const MutexLock lock(state.mutex);
   state.last_line = line;
   const Clock::time_point now = Clock::now();
   if (now >= state.period_end) start_new_period(state, now);
@@ -64,7 +65,7 @@ void on_log(void*, const dds_log_data_t* data) {
 void set_log_handler(LogHandler handler) {
   {
     LogState& state = log_state();
-    const std::lock_guard lock(state.mutex);
+    const MutexLock lock(state.mutex);
     state.handler = std::move(handler);
   }
   dds_set_log_sink(&on_log, nullptr);
@@ -72,7 +73,7 @@ void set_log_handler(LogHandler handler) {
 
 std::string last_log_line() {
   LogState& state = log_state();
-  const std::lock_guard lock(state.mutex);
+  const MutexLock lock(state.mutex);
   return state.last_line;
 }
 

@@ -1,6 +1,5 @@
 #include "core/model/filter_channel.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "core/model/calibration.hpp"
+#include "core/model/eigenvalues.hpp"
 
 namespace mpm {
 namespace {

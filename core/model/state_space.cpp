@@ -1,6 +1,5 @@
 #include "core/model/state_space.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/model/calibration.hpp"
+#include "core/model/eigenvalues.hpp"
 
 namespace mpm {
 namespace {

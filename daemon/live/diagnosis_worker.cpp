@@ -2,24 +2,23 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <deque>
 #include <exception>
-#include <mutex>
 #include <vector>
 
 #include "daemon/host/low_priority.hpp"
+#include "idl/mutex.hpp"
 
 namespace mpm::live {
 
 struct DiagnosisWorker::State {
   Work work;
   std::atomic<bool> stopped = false;
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::deque<DiagnosisJob> waiting;
-  std::vector<DiagnosisOutcome> outcomes;  // at most one per asker
-  bool ended = false;
+  Mutex mutex;
+  Condition changed;
+  std::deque<DiagnosisJob> waiting MPM_GUARDED_BY(mutex);
+  std::vector<DiagnosisOutcome> outcomes MPM_GUARDED_BY(mutex);  // at most one per asker
+  bool ended MPM_GUARDED_BY(mutex) = false;
 };
 
 DiagnosisWorker::DiagnosisWorker(Work work) : state_(std::make_shared<State>()) {
@@ -30,15 +29,15 @@ DiagnosisWorker::DiagnosisWorker(Work work) : state_(std::make_shared<State>()) 
 DiagnosisWorker::~DiagnosisWorker() {
   if (!thread_.joinable()) return;
   state_->stopped = true;
-  { const std::lock_guard lock(state_->mutex); }  // the thread waits or will look
+  { const MutexLock lock(state_->mutex); }  // the thread waits or will look
   state_->changed.notify_all();
   thread_.join();
 }
 
 bool DiagnosisWorker::submit(DiagnosisJob& job) {
   {
-    const std::unique_lock lock(state_->mutex, std::try_to_lock);
-    if (!lock.owns_lock()) return false;
+    if (!state_->mutex.try_lock()) return false;
+    const MutexLock lock(state_->mutex, std::adopt_lock);
     auto& waiting = state_->waiting;
     const auto same = std::find_if(waiting.begin(), waiting.end(), [&](const DiagnosisJob& other) {
       return other.asker == job.asker;
@@ -53,8 +52,8 @@ bool DiagnosisWorker::submit(DiagnosisJob& job) {
 }
 
 std::optional<DiagnosisOutcome> DiagnosisWorker::take(int asker) {
-  const std::unique_lock lock(state_->mutex, std::try_to_lock);
-  if (!lock.owns_lock()) return std::nullopt;
+  if (!state_->mutex.try_lock()) return std::nullopt;
+  const MutexLock lock(state_->mutex, std::adopt_lock);
   auto& outcomes = state_->outcomes;
   const auto own =
       std::find_if(outcomes.begin(), outcomes.end(),
@@ -68,10 +67,15 @@ std::optional<DiagnosisOutcome> DiagnosisWorker::take(int asker) {
 bool DiagnosisWorker::stop(std::chrono::milliseconds patience) {
   if (!thread_.joinable()) return true;
   state_->stopped = true;
-  std::unique_lock lock(state_->mutex);
-  state_->changed.notify_all();
-  const bool ended = state_->changed.wait_for(lock, patience, [this] { return state_->ended; });
-  lock.unlock();
+  bool ended = false;
+  {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    MutexLock lock(state_->mutex);
+    state_->changed.notify_all();
+    while (!state_->ended && state_->changed.wait_until(lock, deadline)) {
+    }
+    ended = state_->ended;
+  }
   if (ended)
     thread_.join();
   else
@@ -82,9 +86,9 @@ bool DiagnosisWorker::stop(std::chrono::milliseconds patience) {
 void DiagnosisWorker::run(State& state) {
   host::take_low_priority("mpm-diagnosis");
   const GoOn go_on = [&state] { return !state.stopped; };
-  std::unique_lock lock(state.mutex);
+  MutexLock lock(state.mutex);
   while (true) {
-    state.changed.wait(lock, [&] { return state.stopped || !state.waiting.empty(); });
+    while (!state.stopped && state.waiting.empty()) state.changed.wait(lock);
     if (state.stopped) break;
     const DiagnosisJob job = std::move(state.waiting.front());
     state.waiting.pop_front();

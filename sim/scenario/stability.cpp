@@ -1,12 +1,12 @@
 #include "sim/scenario/stability.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "core/model/eigenvalues.hpp"
 #include "sim/mpc/linear_gain.hpp"
 
 namespace mpm::sim {

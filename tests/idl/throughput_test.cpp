@@ -60,7 +60,6 @@ TEST_CASE("a lossless writer at full speed loses nothing to a reader, in order, 
   long early_kb = 0;
   int count = 0;
   bool in_order = true;
-  const auto begin = std::chrono::steady_clock::now();
   while (count < 2 * kFrames && wait_set.wait(std::chrono::seconds(5)))
     readers.take([&](const SampleView& sample) {
       ++count;
@@ -70,10 +69,9 @@ TEST_CASE("a lossless writer at full speed loses nothing to a reader, in order, 
       max_skew = std::max(max_skew, std::abs(next[0] - next[2]));
       if (sample.interval == kFrames / 5) early_kb = resident_kb();
     });
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   writer.join();
-  WARN(kFrames / elapsed.count() << " frames/s, skew " << max_skew << " intervals, memory "
-                                 << early_kb << " -> " << resident_kb() << " kB");
+  WARN("skew " << max_skew << " intervals, memory " << early_kb << " -> " << resident_kb()
+               << " kB");
   CHECK(all_written);
   CHECK(count == 2 * kFrames);
   CHECK(in_order);
@@ -97,13 +95,12 @@ TEST_CASE("a writer that never pauses keeps no history for readers that follow")
       status.mv = mv.data();
       REQUIRE(writer.write(status));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(3));
-    reader.take([&](const mpm_ChannelStatus&) { ++count; });
+    const bool followed = eventually([&] {
+      reader.take([&](const mpm_ChannelStatus&) { ++count; });
+      return count >= 35 * (k + 1);
+    });
+    REQUIRE(followed);
   }
-  CHECK(eventually([&] {
-    reader.take([&](const mpm_ChannelStatus&) { ++count; });
-    return count >= 300 * 35;
-  }));
   CHECK(count == 300 * 35);
   WARN("history took " << resident_kb() - before_kb << " kB");
   if (test::resident_memory_is_ours())
@@ -118,17 +115,12 @@ TEST_CASE("a real-time writer is never held up by a reader that takes nothing") 
   const UnitPublisher publisher(writing, layout(), WriterPace::kRealTime);
   REQUIRE(publisher.wait_for_readers(std::chrono::seconds(10)));
 
+  // A writer that waited would wait for this reader in vain, and fail after its 10 s.
   Frame frame(kCounts);
-  std::chrono::duration<double> longest{0};
   for (int k = 0; k < 30'000; ++k) {
     frame.interval = k;
-    const auto begin = std::chrono::steady_clock::now();
     REQUIRE(publisher.publish(frame));
-    longest =
-        std::max(longest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin));
   }
-  WARN("longest write " << longest.count() * 1e3 << " ms");
-  CHECK(longest.count() < 0.5);
 }
 
 }  // namespace mpm::idl

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <set>
 
 #include "tests/system/bench.hpp"
@@ -94,19 +95,30 @@ TEST_CASE("the daemon writes outputs only: never an input topic, never a layout"
                                              DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
                            "publications");
   std::set<std::string> topics;
+  std::size_t gone = 0;
   const auto take = [&] {
     void* samples[64] = {};
     dds_sample_info_t infos[64];
     const int count = dds_take(reader.get(), samples, infos, 64, 64);
-    for (int i = 0; i < count; ++i)
+    for (int i = 0; i < count; ++i) {
       if (infos[i].valid_data)
         topics.insert(static_cast<dds_builtintopic_endpoint_t*>(samples[i])->topic_name);
+      if (infos[i].instance_state != DDS_ALIVE_INSTANCE_STATE) ++gone;
+    }
     if (count > 0) dds_return_loan(reader.get(), samples, count);
-    return topics.size() >= 4;
   };
-  CHECK(idl::eventually(take));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  take();
+  CHECK(idl::eventually([&] {
+    take();
+    return topics.size() >= 4;
+  }));
+  // A participant tells of its writers in their order: once all have gone there were no others.
+  bench.daemon.send(SIGTERM);
+  CHECK(bench.daemon.wait(std::chrono::seconds(10)) == 0);
+  CHECK(idl::eventually([&] {
+    take();
+    return gone >= 4;
+  }));
+  CHECK(gone == 4);
   CHECK(topics ==
         std::set<std::string>{"mpm/alarm", "mpm/alarm_event", "mpm/channel_status", "mpm/health"});
 }
@@ -135,7 +147,13 @@ TEST_CASE("partitions do not see each other") {
   layout[SignalKind::kMv].tags = {"u1", "u2"};
   layout[SignalKind::kCv].tags = {"y1"};
   const idl::UnitPublisher publisher(outsider, layout, idl::WriterPace::kRealTime);
-  CHECK_FALSE(publisher.wait_for_readers(std::chrono::milliseconds(1500)));
+  // Who came later on the daemon's side has been found; so would the outsider have been.
+  const idl::Participant insider(bench.options);
+  const idl::UnitPublisher known(insider, layout, idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  bench.publish(known, plant, 30);
+  CHECK(bench.observe([&] { return bench.health().frames == 30; }));
+  CHECK_FALSE(publisher.wait_for_readers(std::chrono::milliseconds(0)));
   for (const bus::Output& output : readers.take())
     CHECK(std::holds_alternative<bus::LayoutRecord>(output));  // its own one
 }

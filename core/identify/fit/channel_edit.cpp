@@ -1,12 +1,12 @@
 #include "core/identify/fit/channel_edit.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <type_traits>
 
 #include "core/identify/fit/calibration.hpp"
+#include "core/model/eigenvalues.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {

@@ -51,7 +51,7 @@ void Recorder::add_known(const idl::KnownTopic& topic) {
 void Recorder::add_reader(idl::RawReader reader, const RecordedTopic& description) {
   readers_.push_back(std::move(reader));
   wait_set_.attach(readers_.back().readable());
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   recording_.add_topic(description);
 }
 
@@ -95,19 +95,19 @@ void Recorder::write_all() {
   std::size_t written = 0;  // of `samples`
   try {
     while (queue_.pop(samples, kTick)) {
-      const std::lock_guard lock(mutex_);
+      const MutexLock lock(mutex_);
       for (written = 0; written < samples.size(); ++written) recording_.write(samples[written]);
       recording_.tick(host::wall_time_ns());
     }
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     recording_.finish();
   } catch (const std::exception& error) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     problem_ = error.what();
     unwritten_ = samples.size() - std::min(written, samples.size());
   }
   while (queue_.pop(samples, kTick)) {  // after a problem: what was taken has no place any more
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     unwritten_ += samples.size();
   }
 }
@@ -123,7 +123,7 @@ RecorderState Recorder::state() const {
   RecorderState state;
   for (const idl::RawReader& reader : readers_) state.lost += reader.lost();
   state.dropped = queue_.dropped();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   state.totals = recording_.totals();
   state.path = recording_.path();
   state.problem = problem_;

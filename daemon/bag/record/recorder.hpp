@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <mutex>
 #include <set>
 #include <string>
 #include <thread>
@@ -9,6 +8,7 @@
 
 #include "daemon/bag/record/recording_writer.hpp"
 #include "idl/discovery.hpp"
+#include "idl/mutex.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/wait_set.hpp"
 
@@ -68,10 +68,11 @@ class Recorder {
   std::vector<RecordedSample> batch_;
 
   SampleQueue queue_;
-  mutable std::mutex mutex_;  // of the next three
-  RecordingWriter recording_;
-  std::string problem_;
-  std::uint64_t unwritten_ = 0;  // samples that came too late for the file after a problem
+  mutable Mutex mutex_;
+  RecordingWriter recording_ MPM_GUARDED_BY(mutex_);
+  std::string problem_ MPM_GUARDED_BY(mutex_);
+  // Samples that came too late for the file after a problem.
+  std::uint64_t unwritten_ MPM_GUARDED_BY(mutex_) = 0;
   std::thread writer_;
 };
 

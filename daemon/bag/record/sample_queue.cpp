@@ -6,7 +6,7 @@ namespace mpm::bag {
 
 void SampleQueue::push(std::vector<RecordedSample>& samples) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     for (RecordedSample& sample : samples) {
       const std::size_t bytes = sizeof sample + sample.sample.cdr.size();
       if (bytes_ + bytes > most_bytes_) {
@@ -23,21 +23,23 @@ void SampleQueue::push(std::vector<RecordedSample>& samples) {
 
 bool SampleQueue::pop(std::vector<RecordedSample>& samples, std::chrono::milliseconds patience) {
   samples.clear();
-  std::unique_lock lock(mutex_);
-  filled_.wait_for(lock, patience, [this] { return closed_ || !samples_.empty(); });
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  MutexLock lock(mutex_);
+  while (!closed_ && samples_.empty() && filled_.wait_until(lock, deadline)) {
+  }
   std::swap(samples, samples_);
   bytes_ = 0;
   return !closed_ || !samples.empty();
 }
 
 void SampleQueue::close() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   closed_ = true;
   filled_.notify_one();
 }
 
 std::uint64_t SampleQueue::dropped() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return dropped_;
 }
 

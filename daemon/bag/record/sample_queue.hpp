@@ -1,12 +1,11 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <vector>
 
+#include "idl/mutex.hpp"
 #include "idl/raw_sample.hpp"
 
 namespace mpm::bag {
@@ -33,13 +32,13 @@ class SampleQueue {
   [[nodiscard]] std::uint64_t dropped() const;
 
  private:
-  std::size_t most_bytes_;
-  mutable std::mutex mutex_;
-  std::condition_variable filled_;
-  std::vector<RecordedSample> samples_;
-  std::size_t bytes_ = 0;
-  std::uint64_t dropped_ = 0;
-  bool closed_ = false;
+  const std::size_t most_bytes_;
+  mutable Mutex mutex_;
+  Condition filled_;
+  std::vector<RecordedSample> samples_ MPM_GUARDED_BY(mutex_);
+  std::size_t bytes_ MPM_GUARDED_BY(mutex_) = 0;
+  std::uint64_t dropped_ MPM_GUARDED_BY(mutex_) = 0;
+  bool closed_ MPM_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace mpm::bag

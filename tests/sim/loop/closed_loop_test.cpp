@@ -1,7 +1,6 @@
 #include "sim/loop/closed_loop.hpp"
 
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
 #include <sstream>
 
@@ -190,18 +189,13 @@ TEST_CASE("a loop that diverges says so") {
   CHECK_FALSE(loop.finite());
 }
 
-TEST_CASE("a closed-loop step does not allocate, and 3000 take well below 2 s") {
+TEST_CASE("a closed-loop step does not allocate") {
   LoopSetup setup = healthy_loop(load_plant("shell3x3"));
   for (auto& limits : setup.unit.simulation.mv_limits) limits = {-1.5, 1.5, 0.1};
   setup.unit.simulation.cv_limits[0] = {-0.52, 0.52};
   ClosedLoop loop(setup);
   const std::uint64_t before = mpm::test::allocation_count();
-  const auto start = std::chrono::steady_clock::now();
   for (int k = 0; k < 3000; ++k) static_cast<void>(loop.step());
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   CHECK(mpm::test::allocation_count() == before);
   CHECK(loop.controller().limited_count() > 200);
-#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  CHECK(taken.count() < 2.0);
-#endif
 }
