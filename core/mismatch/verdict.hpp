@@ -1,9 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <string_view>
 
 #include "core/mismatch/channel_evidence.hpp"
+#include "core/text/words.hpp"
 
 namespace mpm {
 
@@ -21,36 +22,13 @@ enum class Reason : std::uint8_t {
   kIsolating,      ///< something in this CV changed; samples since then are still too few
 };
 
-[[nodiscard]] constexpr std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kMatch:
-      return "match";
-    case Verdict::kMismatch:
-      return "mismatch";
-    default:
-      return "undetermined";
-  }
+[[nodiscard]] constexpr auto words_of(Verdict) {
+  return std::array{"undetermined", "match", "mismatch"};
 }
 
-[[nodiscard]] constexpr std::string_view to_string(Reason reason) {
-  switch (reason) {
-    case Reason::kWarmingUp:
-      return "warming_up";
-    case Reason::kNotExcited:
-      return "not_excited";
-    case Reason::kCollinear:
-      return "collinear";
-    case Reason::kBadData:
-      return "bad_data";
-    case Reason::kControllerOff:
-      return "controller_off";
-    case Reason::kConstrained:
-      return "constrained";
-    case Reason::kIsolating:
-      return "isolating";
-    default:
-      return "";
-  }
+[[nodiscard]] constexpr auto words_of(Reason) {
+  return std::array{"",         "warming_up",     "not_excited", "collinear",
+                    "bad_data", "controller_off", "constrained", "isolating"};
 }
 
 /// Judgement on one channel (one input to one CV) after one sample.
