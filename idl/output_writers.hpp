@@ -1,30 +1,48 @@
 #pragma once
 
-#include "daemon/report/health.hpp"
-#include "daemon/report/records.hpp"
+#include <tuple>
+
+#include "idl/output_samples.hpp"
 #include "idl/writer.hpp"
 
-namespace mpm::bus {
+namespace mpm::idl {
+
+/// Writes one kind of records to their topic.
+template <class Record>
+class OutputWriter {
+ public:
+  explicit OutputWriter(const Participant& participant)
+      : writer_(participant, OutputTopic<Record>::kName, OutputTopic<Record>::kWriterQos()) {}
+
+  [[nodiscard]] bool write(const Record& record) const {
+    SampleMaker maker;
+    return writer_.write(maker.sample_of(record));
+  }
+
+ private:
+  Writer<SampleOf<Record>> writer_;
+};
+
+template <class Records>
+class WritersOf;
+
+template <class... Record>
+class WritersOf<std::tuple<Record...>> {
+ public:
+  explicit WritersOf(const Participant& participant)
+      : writers_(OutputWriter<Record>(participant)...) {}
+
+  template <class Any>
+  [[nodiscard]] bool write(const Any& record) const {
+    return std::get<OutputWriter<Any>>(writers_).write(record);
+  }
+
+ private:
+  std::tuple<OutputWriter<Record>...> writers_;
+};
 
 /// Everything the daemon ever writes on one domain, all units. None of these waits for a reader;
 /// false means that the sample could not be handed over.
-class OutputWriters {
- public:
-  explicit OutputWriters(const idl::Participant& participant);
+using OutputWriters = WritersOf<OutputRecords>;
 
-  [[nodiscard]] bool write(const report::ChannelRecord& record) const;
-  /// The change as an event, and as the state that late joiners get.
-  [[nodiscard]] bool write(const report::AlarmRecord& record) const;
-  /// The state only: what holds before the first change, and what is learnt of an alarm later.
-  [[nodiscard]] bool write_state(const report::AlarmRecord& record) const;
-  [[nodiscard]] bool write_event(const report::AlarmRecord& record) const;
-  [[nodiscard]] bool write(const report::HealthRecord& record) const;
-
- private:
-  idl::Writer<mpm_ChannelStatus> channel_status_;
-  idl::Writer<mpm_Alarm> alarm_;
-  idl::Writer<mpm_AlarmEvent> alarm_event_;
-  idl::Writer<mpm_Health> health_;
-};
-
-}  // namespace mpm::bus
+}  // namespace mpm::idl

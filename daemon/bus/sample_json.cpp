@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "daemon/bus/output_samples.hpp"
-
 namespace mpm::bus {
 namespace {
 
@@ -60,11 +58,6 @@ Json json_of(const mpm_Layout& sample) {
           {"tags", texts(sample.tags)},
           {"engineering_units", texts(sample.engineering_units)}};
 }
-
-Json json_of(const mpm_ChannelStatus& sample) { return to_json(record_of(sample)); }
-Json json_of(const mpm_Alarm& sample) { return to_json(record_of(sample)); }
-Json json_of(const mpm_AlarmEvent& sample) { return to_json(record_of(sample)); }
-Json json_of(const mpm_Health& sample) { return to_json(record_of(sample)); }
 
 std::string yaml_text(const Json& json) {
   std::string lines;

@@ -50,8 +50,8 @@ report/diagnosis
 report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
 report files report/diagnosis report/page
-bus report
-bus/watch bus
+bus
+bus/watch report
 bag files/times files files/csv mcap
 bag/record host mcap bag
 bag/replay host mcap bag
