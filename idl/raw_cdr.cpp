@@ -84,10 +84,6 @@ class Decoded {
   void* memory_;
 };
 
-static_assert(offsetof(mpm_Sample, unit) == 0 && offsetof(mpm_Layout, unit) == 0 &&
-              offsetof(mpm_ChannelStatus, unit) == 0 && offsetof(mpm_Alarm, unit) == 0 &&
-              offsetof(mpm_AlarmEvent, unit) == 0 && offsetof(mpm_Health, unit) == 0);
-
 }  // namespace
 
 RawReader::RawReader(const Participant& participant, const KnownTopic& topic)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <tuple>
 
 #include "idl/topics.hpp"
 
@@ -11,26 +13,39 @@ extern const std::string_view kIdlText;  // written by embed.cmake
 
 namespace {
 
-// One reader sees all that a late joiner may see and all that comes while it is busy.
-Qos layout_writer(WriterPace) { return layout_qos(); }
-Qos status_writer(WriterPace) { return channel_status_writer_qos(); }
-Qos alarm_writer(WriterPace) { return alarm_qos(); }
-Qos event_writer(WriterPace) { return alarm_event_writer_qos(); }
-Qos health_writer(WriterPace) { return health_qos(); }
+template <class Sample>
+constexpr KnownTopic known(const char* name, Qos (*reader_qos)(), Qos (*writer_qos)(WriterPace),
+                           bool input = false) {
+  static_assert(offsetof(Sample, unit) == 0);
+  return {name, TopicType<Sample>::descriptor(), reader_qos, writer_qos, input};
+}
 
-constexpr std::array kTopics = {
-    KnownTopic{"mpm/mv", &mpm_Sample_desc, sample_reader_qos, sample_writer_qos, true},
-    KnownTopic{"mpm/dv", &mpm_Sample_desc, sample_reader_qos, sample_writer_qos, true},
-    KnownTopic{"mpm/cv", &mpm_Sample_desc, sample_reader_qos, sample_writer_qos, true},
-    KnownTopic{"mpm/prediction", &mpm_Sample_desc, sample_reader_qos, sample_writer_qos, true},
-    KnownTopic{"mpm/setpoint", &mpm_Sample_desc, sample_reader_qos, sample_writer_qos, true},
-    KnownTopic{kLayoutTopic, &mpm_Layout_desc, late_joiner_reader_qos, layout_writer, false},
-    KnownTopic{kChannelStatusTopic, &mpm_ChannelStatus_desc, channel_status_reader_qos,
-               status_writer, false},
-    KnownTopic{kAlarmTopic, &mpm_Alarm_desc, late_joiner_reader_qos, alarm_writer, false},
-    KnownTopic{kAlarmEventTopic, &mpm_AlarmEvent_desc, alarm_event_reader_qos, event_writer, false},
-    KnownTopic{kHealthTopic, &mpm_Health_desc, late_joiner_reader_qos, health_writer, false},
-};
+constexpr KnownTopic input(const char* name) {
+  return known<mpm_Sample>(name, sample_reader_qos, sample_writer_qos, true);
+}
+
+Qos layout_writer(WriterPace) { return layout_qos(); }
+
+template <class Record>
+Qos output_writer(WriterPace) {
+  return OutputTopic<Record>::kWriterQos();
+}
+
+// One reader sees all that a late joiner may see and all that comes while it is busy.
+template <class... Record>
+constexpr auto topics(const std::tuple<Record...>*) {
+  return std::array{
+      input("mpm/mv"),
+      input("mpm/dv"),
+      input("mpm/cv"),
+      input("mpm/prediction"),
+      input("mpm/setpoint"),
+      known<mpm_Layout>(kLayoutTopic, late_joiner_reader_qos, layout_writer),
+      known<SampleOf<Record>>(OutputTopic<Record>::kName, OutputTopic<Record>::kEveryChangeQos,
+                              output_writer<Record>)...};
+}
+
+constexpr std::array kTopics = topics(static_cast<const OutputRecords*>(nullptr));
 
 }  // namespace
 

@@ -1,8 +1,13 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
+#include "core/record/alarm_record.hpp"
+#include "core/record/channel_record.hpp"
+#include "core/record/health_record.hpp"
 #include "core/signal/frame.hpp"
+#include "idl/qos.hpp"
 #include "mpm.h"
 
 namespace mpm::idl {
@@ -26,27 +31,75 @@ template <class T>
 struct TopicType;
 template <>
 struct TopicType<mpm_Sample> {
-  static const dds_topic_descriptor_t* descriptor() { return &mpm_Sample_desc; }
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Sample_desc; }
 };
 template <>
 struct TopicType<mpm_Layout> {
-  static const dds_topic_descriptor_t* descriptor() { return &mpm_Layout_desc; }
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Layout_desc; }
 };
 template <>
 struct TopicType<mpm_ChannelStatus> {
-  static const dds_topic_descriptor_t* descriptor() { return &mpm_ChannelStatus_desc; }
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_ChannelStatus_desc; }
 };
 template <>
 struct TopicType<mpm_Alarm> {
-  static const dds_topic_descriptor_t* descriptor() { return &mpm_Alarm_desc; }
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Alarm_desc; }
 };
 template <>
 struct TopicType<mpm_AlarmEvent> {
-  static const dds_topic_descriptor_t* descriptor() { return &mpm_AlarmEvent_desc; }
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_AlarmEvent_desc; }
 };
 template <>
 struct TopicType<mpm_Health> {
-  static const dds_topic_descriptor_t* descriptor() { return &mpm_Health_desc; }
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Health_desc; }
 };
+
+/// The topic that carries a kind of record: the type of its samples, its name and profile (as in
+/// qos.hpp), and how many samples a reader takes at once. They come instance by instance: only a
+/// batch that holds all there is can be put back into the order of writing.
+template <class Record>
+struct OutputTopic;
+template <>
+struct OutputTopic<ChannelRecord> {
+  using Sample = mpm_ChannelStatus;
+  static constexpr const char* kName = kChannelStatusTopic;
+  static constexpr auto kWriterQos = channel_status_writer_qos;
+  static constexpr auto kReaderQos = channel_status_reader_qos;
+  static constexpr auto kEveryChangeQos = channel_status_reader_qos;
+  static constexpr int kBatch = 16384;
+};
+template <>
+struct OutputTopic<AlarmStateRecord> {
+  using Sample = mpm_Alarm;
+  static constexpr const char* kName = kAlarmTopic;
+  static constexpr auto kWriterQos = alarm_qos;
+  static constexpr auto kReaderQos = alarm_qos;
+  static constexpr auto kEveryChangeQos = late_joiner_reader_qos;
+  static constexpr int kBatch = 64;
+};
+template <>
+struct OutputTopic<AlarmRecord> {
+  using Sample = mpm_AlarmEvent;
+  static constexpr const char* kName = kAlarmEventTopic;
+  static constexpr auto kWriterQos = alarm_event_writer_qos;
+  static constexpr auto kReaderQos = alarm_event_reader_qos;
+  static constexpr auto kEveryChangeQos = alarm_event_reader_qos;
+  static constexpr int kBatch = 4096;
+};
+template <>
+struct OutputTopic<HealthRecord> {
+  using Sample = mpm_Health;
+  static constexpr const char* kName = kHealthTopic;
+  static constexpr auto kWriterQos = health_qos;
+  static constexpr auto kReaderQos = health_qos;
+  static constexpr auto kEveryChangeQos = late_joiner_reader_qos;
+  static constexpr int kBatch = 64;
+};
+
+/// All that the monitor says. Of one frame the alarms follow the channels.
+using OutputRecords = std::tuple<ChannelRecord, AlarmStateRecord, AlarmRecord, HealthRecord>;
+
+template <class Record>
+using SampleOf = typename OutputTopic<Record>::Sample;
 
 }  // namespace mpm::idl

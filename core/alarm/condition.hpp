@@ -1,10 +1,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+
+#include "core/text/words.hpp"
 
 namespace mpm {
 
 enum class AlarmState : unsigned char { kCleared, kActive };
+
+[[nodiscard]] constexpr auto words_of(AlarmState) { return std::array{"cleared", "active"}; }
 
 /// One alarm condition on a p-value: raised once it has stayed below `raise_below` for
 /// `on_delay` samples in a row, cleared once it has stayed above `clear_above` for `off_delay`

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <string_view>
 
 #include "core/mismatch/channel_evidence.hpp"
+#include "core/text/words.hpp"
 
 namespace mpm {
 
@@ -21,61 +22,46 @@ enum class Reason : std::uint8_t {
   kIsolating,      ///< something in this CV changed; samples since then are still too few
 };
 
-[[nodiscard]] constexpr std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kMatch:
-      return "match";
-    case Verdict::kMismatch:
-      return "mismatch";
-    default:
-      return "undetermined";
-  }
+[[nodiscard]] constexpr auto words_of(Verdict) {
+  return std::array{"undetermined", "match", "mismatch"};
 }
 
-[[nodiscard]] constexpr std::string_view to_string(Reason reason) {
-  switch (reason) {
-    case Reason::kWarmingUp:
-      return "warming_up";
-    case Reason::kNotExcited:
-      return "not_excited";
-    case Reason::kCollinear:
-      return "collinear";
-    case Reason::kBadData:
-      return "bad_data";
-    case Reason::kControllerOff:
-      return "controller_off";
-    case Reason::kConstrained:
-      return "constrained";
-    case Reason::kIsolating:
-      return "isolating";
-    default:
-      return "";
-  }
+[[nodiscard]] constexpr auto words_of(Reason) {
+  return std::array{"",         "warming_up",     "not_excited", "collinear",
+                    "bad_data", "controller_off", "constrained", "isolating"};
 }
 
-/// Judgement on one channel (one input to one CV) after one sample.
-struct ChannelStatus {
-  Verdict verdict = Verdict::kUndetermined;
-  Reason reason = Reason::kWarmingUp;
-  int confounder = -1;               ///< input index, for kCollinear; -1 otherwise
+/// The numbers behind a verdict that an alarm repeats.
+struct AlarmEvidence {
   double p_value = 1.0;              ///< of the F test of the channel, 0..1
   double statistic = 0.0;            ///< its F; |correlation| with the mean line
   double threshold = 0.0;            ///< of the statistic, where the verdict turns to mismatch
   double partial_correlation = 0.0;  ///< where its magnitude is largest for lags >= 1; (3.15), or
                                      ///< the kind that the settings name
   int lag = 0;                       ///< samples, where that is
+  double effect_size = 0.0;          ///< estimated gain error, plant minus model, CV per input unit
+};
+
+/// What is said of one channel as it stands (core/record/channel_record.hpp).
+struct ChannelVerdict : AlarmEvidence {
+  Verdict verdict = Verdict::kUndetermined;
+  Reason reason = Reason::kWarmingUp;
   bool excited = false;
   double p_value_material = 1.0;  ///< that the error is within the materiality limits, at most
   bool material = false;          ///< the error matters: it is beyond them
   double model_gain = 0.0;        ///< what 100 % means, CV per input unit
-  double effect_size = 0.0;       ///< estimated gain error, plant minus model, CV per input unit
-  double effect_low = 0.0;        ///< its 95 % interval
+  double effect_low = 0.0;        ///< 95 % interval of effect_size
   double effect_high = 0.0;
-  bool usual = false;        ///< errors of gain, time constant and dead time explain what is seen
-  Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
-  Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
+  bool usual = false;  ///< errors of gain, time constant and dead time explain what is seen
   double smallest_error = 0.0;  ///< smallest relative gain error that would have been seen, >= 0
   double effective_samples = 0.0;
+};
+
+/// Judgement on one channel (one input to one CV) after one sample.
+struct ChannelStatus : ChannelVerdict {
+  int confounder = -1;       ///< input index, for kCollinear; -1 otherwise
+  Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
+  Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
 };
 
 }  // namespace mpm

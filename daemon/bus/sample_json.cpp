@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "daemon/bus/output_samples.hpp"
 #include "idl/layout_sample.hpp"
 
 namespace mpm::bus {
@@ -55,11 +54,6 @@ Json json_of(const mpm_Layout& sample) {
           {"tags", idl::texts_of(sample.tags)},
           {"engineering_units", idl::texts_of(sample.engineering_units)}};
 }
-
-Json json_of(const mpm_ChannelStatus& sample) { return to_json(record_of(sample)); }
-Json json_of(const mpm_Alarm& sample) { return to_json(record_of(sample)); }
-Json json_of(const mpm_AlarmEvent& sample) { return to_json(record_of(sample)); }
-Json json_of(const mpm_Health& sample) { return to_json(record_of(sample)); }
 
 std::string yaml_text(const Json& json) {
   std::string lines;

@@ -6,16 +6,12 @@
 
 namespace mpm::bus {
 
-/// What a sample holds, for `mpm echo`. Status, alarms and health as the journal and `mpm watch
-/// --json` write them.
+/// What a sample of an input holds, for `mpm echo`; what the monitor says is in
+/// daemon/report/record_json.hpp.
 [[nodiscard]] nlohmann::ordered_json json_of(const mpm_Sample& sample);
 [[nodiscard]] nlohmann::ordered_json json_of(const mpm_Layout& sample);
-[[nodiscard]] nlohmann::ordered_json json_of(const mpm_ChannelStatus& sample);
-[[nodiscard]] nlohmann::ordered_json json_of(const mpm_Alarm& sample);
-[[nodiscard]] nlohmann::ordered_json json_of(const mpm_AlarmEvent& sample);
-[[nodiscard]] nlohmann::ordered_json json_of(const mpm_Health& sample);
 
-/// The same as lines `name: value` for people, nested values indented.
+/// The same, or a record, as lines `name: value` for people, nested values indented.
 [[nodiscard]] std::string yaml_text(const nlohmann::ordered_json& json);
 
 }  // namespace mpm::bus

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "config/unit_config.hpp"
-#include "daemon/bus/output_writers.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/unit_pipeline.hpp"
+#include "idl/output_writers.hpp"
 #include "idl/sample_readers.hpp"
 
 namespace mpm::live {
@@ -37,7 +37,7 @@ class Domain {
   idl::Participant participant_;
   idl::SampleReaders samples_;
   idl::Reader<mpm_Layout> layouts_;
-  bus::OutputWriters outputs_;
+  idl::OutputWriters outputs_;
   std::map<std::string, std::unique_ptr<UnitPipeline>, std::less<>> units_;
   std::uint64_t unknown_unit_ = 0;
   host::RateLimiter unknown_limit_;

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/report/records.hpp"
+#include "core/record/alarm_record.hpp"
+#include "core/record/channel_record.hpp"
 
 namespace mpm::live {
 
@@ -17,8 +18,8 @@ class Journal {
 
   /// All channels after one frame, then the alarms that it changed. False if the file would not
   /// take it (full disk ...).
-  [[nodiscard]] bool write(const std::vector<report::ChannelRecord>& channels,
-                           const std::vector<report::AlarmRecord>& alarms);
+  [[nodiscard]] bool write(const std::vector<ChannelRecord>& channels,
+                           const std::vector<AlarmRecord>& alarms);
 
  private:
   struct Close {

@@ -31,8 +31,8 @@ LiveDiagnosis::LiveDiagnosis(std::shared_ptr<const config::UnitConfig> unit,
       ring_(unit_->counts(), unit_->monitor.diagnosis_samples),
       schedule_(schedule_of(*unit_)) {}
 
-void LiveDiagnosis::note(const report::AlarmRecord& change) {
-  if (change.to != "active") {
+void LiveDiagnosis::note(const AlarmRecord& change) {
+  if (change.to != AlarmChange::kActive) {
     alarms_.erase({change.mv, change.cv});
     return;
   }
@@ -42,12 +42,12 @@ void LiveDiagnosis::note(const report::AlarmRecord& change) {
   youngest_alarm_ns_ = change.source_time_ns;
 }
 
-void LiveDiagnosis::push(const Frame& frame, const std::vector<report::AlarmRecord>& changes) {
+void LiveDiagnosis::push(const Frame& frame, const std::vector<AlarmRecord>& changes) {
   ring_.push(frame);
   bool raised = false;
-  for (const report::AlarmRecord& change : changes) {
+  for (const AlarmRecord& change : changes) {
     note(change);
-    raised = raised || change.to == "active";
+    raised = raised || change.to == AlarmChange::kActive;
   }
   if (!schedule_.due(frame.source_time_ns, ring_.rows(), raised, !alarms_.empty())) return;
   pending_.emplace();
@@ -63,13 +63,13 @@ std::optional<DiagnosisOutcome> LiveDiagnosis::poll() {
   return worker_.take(asker_);
 }
 
-std::vector<report::AlarmRecord> LiveDiagnosis::diagnosed(const DiagnosisOutcome& outcome) const {
-  std::vector<report::AlarmRecord> records;
+std::vector<AlarmRecord> LiveDiagnosis::diagnosed(const DiagnosisOutcome& outcome) const {
+  std::vector<AlarmRecord> records;
   for (const auto& [tags, standing] : alarms_) {
     if (standing.alarm.interval > outcome.interval || standing.channel >= outcome.causes.size())
       continue;
     records.push_back(standing.alarm);
-    records.back().to = "diagnosed";
+    records.back().to = AlarmChange::kDiagnosed;
     records.back().named = outcome.causes[standing.channel];
   }
   return records;

@@ -21,19 +21,19 @@ class LiveDiagnosis {
   LiveDiagnosis(std::shared_ptr<const config::UnitConfig> unit, DiagnosisWorker& worker, int asker);
 
   /// After a frame was judged, and its outputs written: with the alarms that it changed.
-  void push(const Frame& frame, const std::vector<report::AlarmRecord>& changes);
+  void push(const Frame& frame, const std::vector<AlarmRecord>& changes);
   /// Now and then: starts what could not be started, and hands over what has been found.
   [[nodiscard]] std::optional<DiagnosisOutcome> poll();
   /// The alarms that stand, with what `outcome` says of them; none that it could not know of.
-  [[nodiscard]] std::vector<report::AlarmRecord> diagnosed(const DiagnosisOutcome& outcome) const;
+  [[nodiscard]] std::vector<AlarmRecord> diagnosed(const DiagnosisOutcome& outcome) const;
 
  private:
   struct Standing {
-    report::AlarmRecord alarm;
+    AlarmRecord alarm;
     std::size_t channel = 0;  // inputs outermost
   };
 
-  void note(const report::AlarmRecord& change);
+  void note(const AlarmRecord& change);
 
   std::shared_ptr<const config::UnitConfig> unit_;
   DiagnosisWorker& worker_;

@@ -57,7 +57,7 @@ std::string MonitorService::status() const {
   std::uint64_t units = 0, matching = 0, mismatching = 0, undetermined = 0, alarms = 0;
   for (const auto& domain : domains_) {
     for (const auto& [name, unit] : domain->units()) {
-      const report::HealthRecord& health = unit->health();
+      const HealthRecord& health = unit->health();
       ++units;
       matching += health.matching;
       mismatching += health.mismatching;

@@ -12,9 +12,9 @@ bool touches(const Place& place, int input, int cv) {
   return (place.cv < 0 || place.cv == cv) && (place.input < 0 || place.input == input);
 }
 
-report::NamedCause cause_of(const report::DiagnosisRun& run, int input, int cv) {
+NamedCause cause_of(const report::DiagnosisRun& run, int input, int cv) {
   const std::vector<Finding>& findings = run.diagnosis.findings;
-  report::NamedCause named;
+  NamedCause named;
   const auto own = std::find_if(findings.begin(), findings.end(), [=](const Finding& finding) {
     return touches(finding.subject.place, input, cv);
   });
@@ -38,9 +38,9 @@ report::NamedCause cause_of(const report::DiagnosisRun& run, int input, int cv) 
 
 }  // namespace
 
-std::vector<report::NamedCause> causes_of_channels(const report::DiagnosisRun& run) {
+std::vector<NamedCause> causes_of_channels(const report::DiagnosisRun& run) {
   const SignalCounts counts = run.unit.counts();
-  std::vector<report::NamedCause> causes;
+  std::vector<NamedCause> causes;
   for (int input = 0; input < counts.inputs(); ++input)
     for (int cv = 0; cv < counts.cv; ++cv) causes.push_back(cause_of(run, input, cv));
   return causes;

@@ -36,7 +36,7 @@ std::vector<std::string> tags_of(const config::UnitConfig& unit, std::string_vie
 
 }  // namespace
 
-UnitPipeline::UnitPipeline(const config::UnitConfig& config, const bus::OutputWriters& outputs,
+UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWriters& outputs,
                            Journal* journal, Clock::time_point now)
     : config_(config),
       outputs_(outputs),
@@ -67,13 +67,12 @@ void UnitPipeline::diagnose_with(DiagnosisWorker& worker, int asker) {
 
 // Tells "no alarm" from "no monitor", and clears what a daemon before this one left behind.
 void UnitPipeline::publish_initial_alarms() {
-  for (const report::ChannelRecord& channel : monitor_.channels()) {
-    report::AlarmRecord record;
+  for (const ChannelRecord& channel : monitor_.channels()) {
+    AlarmStateRecord record;
     record.unit = channel.unit;
     record.mv = channel.mv;
     record.cv = channel.cv;
-    record.to = "cleared";
-    if (!outputs_.write_state(record))
+    if (!outputs_.write(record))
       spdlog::warn("{}: cannot publish the alarm of {} -> {}", record.unit, record.mv, record.cv);
   }
 }
@@ -110,13 +109,15 @@ void UnitPipeline::on_frame(const Frame& frame) {
   monitor_.push(frame);
 
   bool written = true;
-  for (const report::ChannelRecord& channel : monitor_.channels())
+  for (const ChannelRecord& channel : monitor_.channels())
     written = outputs_.write(channel) && written;
-  for (const report::AlarmRecord& alarm : monitor_.alarms()) {
+  for (const AlarmRecord& alarm : monitor_.alarms()) {
     written = outputs_.write(alarm) && written;
-    spdlog::log(alarm.to == "active" ? spdlog::level::warn : spdlog::level::info,
+    written = outputs_.write(AlarmStateRecord(alarm)) && written;
+    spdlog::log(alarm.to == AlarmChange::kActive ? spdlog::level::warn : spdlog::level::info,
                 "{}: {} -> {}: alarm {} at interval {} (p {:.1e}, gain error {:.3g})", alarm.unit,
-                alarm.mv, alarm.cv, alarm.to, alarm.interval, alarm.p_value, alarm.effect_size);
+                alarm.mv, alarm.cv, to_string(alarm.to), alarm.interval, alarm.p_value,
+                alarm.effect_size);
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
@@ -141,11 +142,11 @@ void UnitPipeline::publish_diagnosis() {
   if (!outcome->file_problem.empty())
     spdlog::error("{}: the report could not be written: {}", config_.unit, outcome->file_problem);
   bool written = true;
-  for (report::AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
-    written = outputs_.write_state(alarm) && written;  // the alarm is as old as it was
+  for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
+    written = outputs_.write(AlarmStateRecord(alarm)) && written;  // the alarm is as old as it was
     alarm.interval = outcome->interval;
     alarm.source_time_ns = outcome->time_ns;
-    written = outputs_.write_event(alarm) && written;
+    written = outputs_.write(alarm) && written;
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
@@ -188,14 +189,14 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit) {
   health_.unknown_unit = unknown_unit;
   health_.restarts = aligner.restarts;
   health_.undetermined = health_.matching = health_.mismatching = health_.active_alarms = 0;
-  for (const report::ChannelRecord& channel : monitor_.channels()) {
-    if (channel.verdict == "match")
+  for (const ChannelRecord& channel : monitor_.channels()) {
+    if (channel.verdict == Verdict::kMatch)
       ++health_.matching;
-    else if (channel.verdict == "mismatch")
+    else if (channel.verdict == Verdict::kMismatch)
       ++health_.mismatching;
     else
       ++health_.undetermined;
-    if (channel.alarm_active) ++health_.active_alarms;
+    if (channel.alarm == AlarmState::kActive) ++health_.active_alarms;
   }
   judge_health();
   incomplete_before_ = aligner.incomplete;

@@ -7,11 +7,11 @@
 
 #include "config/unit_config.hpp"
 #include "core/signal/aligner.hpp"
-#include "daemon/bus/output_writers.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/journal.hpp"
 #include "daemon/live/live_diagnosis.hpp"
 #include "daemon/report/unit_monitor.hpp"
+#include "idl/output_writers.hpp"
 #include "idl/sample_view.hpp"
 
 namespace mpm::live {
@@ -23,7 +23,7 @@ class UnitPipeline {
   using Clock = std::chrono::steady_clock;
 
   /// `journal` may be null. The others must outlive the pipeline.
-  UnitPipeline(const config::UnitConfig& config, const bus::OutputWriters& outputs,
+  UnitPipeline(const config::UnitConfig& config, const idl::OutputWriters& outputs,
                Journal* journal, Clock::time_point now);
   /// From now on alarms are diagnosed, if the unit file wants that. `asker`: no other unit's.
   void diagnose_with(DiagnosisWorker& worker, int asker);
@@ -36,7 +36,7 @@ class UnitPipeline {
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
   void tick(Clock::time_point now, std::uint64_t unknown_unit);
 
-  [[nodiscard]] const report::HealthRecord& health() const { return health_; }
+  [[nodiscard]] const HealthRecord& health() const { return health_; }
 
  private:
   void on_frame(const Frame& frame);
@@ -47,7 +47,7 @@ class UnitPipeline {
   void report_refused(const idl::SampleView& sample);
 
   config::UnitConfig config_;
-  const bus::OutputWriters& outputs_;
+  const idl::OutputWriters& outputs_;
   Journal* journal_;
   report::UnitMonitor monitor_;
   Aligner aligner_;
@@ -58,7 +58,7 @@ class UnitPipeline {
   Clock::time_point last_frame_;
   Clock::time_point last_sample_;
   Clock::time_point next_health_;
-  report::HealthRecord health_;
+  HealthRecord health_;
   std::uint64_t incomplete_before_ = 0;  // at the last health
   std::string wrong_layout_;             // kinds whose layout differs; empty = none known
   host::RateLimiter refused_limit_, output_limit_, journal_limit_;

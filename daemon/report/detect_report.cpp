@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/record/reason_text.hpp"
+#include "daemon/report/record_json.hpp"
+
 namespace mpm::report {
 namespace {
 
@@ -35,11 +38,12 @@ std::string size_of(const ChannelRecord& channel) {
 std::string describe(const ChannelRecord& channel) {
   std::string text = channel.mv + " -> " + channel.cv;
   text.resize(std::max<std::size_t>(text.size(), 24), ' ');
-  text += "  " + channel.verdict;
-  if (!channel.reason.empty()) text += " (" + channel.reason + ")";
+  text.append("  ").append(to_string(channel.verdict));
+  if (channel.reason != Reason::kNone)
+    text += " (" + reason_text(channel.reason, channel.confounder) + ")";
   text.resize(std::max<std::size_t>(text.size(), 52), ' ');
   text += format("  p %-8.1e  statistic %-7.3g", channel.p_value, channel.statistic);
-  if (channel.verdict == "mismatch")
+  if (channel.verdict == Verdict::kMismatch)
     text += size_of(channel);
   else if (channel.smallest_error > 0.0)
     text += format("  would show a gain error of %.0f %%", 100.0 * channel.smallest_error, 0.0);
@@ -49,8 +53,9 @@ std::string describe(const ChannelRecord& channel) {
 }  // namespace
 
 bool DetectReport::mismatch() const {
-  return std::any_of(channels.begin(), channels.end(),
-                     [](const ChannelRecord& channel) { return channel.verdict == "mismatch"; });
+  return std::any_of(channels.begin(), channels.end(), [](const ChannelRecord& channel) {
+    return channel.verdict == Verdict::kMismatch;
+  });
 }
 
 nlohmann::ordered_json to_json(const DetectReport& report) {
@@ -66,13 +71,13 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
                               {"channels", nlohmann::ordered_json::array()},
                               {"alarms", nlohmann::ordered_json::array()}};
   for (const ChannelRecord& channel : report.channels) {
-    nlohmann::ordered_json entry = to_json(channel);
+    nlohmann::ordered_json entry = json_of(channel);
     for (const char* key : {"record", "unit", "interval", "time_ns"}) entry.erase(key);
     json["channels"].push_back(std::move(entry));
   }
   for (const AlarmRecord& alarm : report.alarms) {
     nlohmann::ordered_json entry{{"time", seconds(alarm.source_time_ns)}};
-    nlohmann::ordered_json record = to_json(alarm);
+    nlohmann::ordered_json record = json_of(alarm);
     for (const char* key : {"record", "unit", "time_ns"}) record.erase(key);
     entry.update(record);
     json["alarms"].push_back(std::move(entry));
@@ -96,7 +101,7 @@ std::string to_text(const DetectReport& report) {
   for (const ChannelRecord& channel : report.channels) text += "  " + describe(channel) + '\n';
   for (const AlarmRecord& alarm : report.alarms)
     text += format("  %.3f s: ", seconds(alarm.source_time_ns), 0.0) + "alarm " + alarm.mv +
-            " -> " + alarm.cv + " " + alarm.to + '\n';
+            " -> " + alarm.cv + " " + std::string(to_string(alarm.to)) + '\n';
   return text;
 }
 

@@ -18,13 +18,7 @@ std::vector<bool> predictions_of(const config::UnitConfig& config) {
 // What is not known at all stays finite for readers.
 constexpr double kWidest = 1e6;
 
-void fill_sizes(const ChannelStatus& status, double sample_time_s, ChannelRecord& record) {
-  record.effect_low = status.effect_low;
-  record.effect_high = status.effect_high;
-  record.model_gain = status.model_gain;
-  record.p_value_material = status.p_value_material;
-  record.material = status.material;
-  record.usual = status.usual;
+void fill_errors(const ChannelStatus& status, double sample_time_s, ChannelRecord& record) {
   const auto bounded = [](double value) { return std::clamp(value, -kWidest, kWidest); };
   const auto half = [&](const Estimate& estimate) {
     return std::min(kNormalTwoSided95 * estimate.deviation, std::log(kWidest));
@@ -38,6 +32,18 @@ void fill_sizes(const ChannelStatus& status, double sample_time_s, ChannelRecord
   record.dead_time_error_s = bounded(dead.value) * sample_time_s;
   record.dead_time_low_s = bounded(dead.value - dead_half) * sample_time_s;
   record.dead_time_high_s = bounded(dead.value + dead_half) * sample_time_s;
+}
+
+AlarmRecord alarm_of(const ChannelRecord& channel, AlarmState to) {
+  AlarmRecord alarm;
+  static_cast<AlarmEvidence&>(alarm) = channel;
+  alarm.unit = channel.unit;
+  alarm.mv = channel.mv;
+  alarm.cv = channel.cv;
+  alarm.interval = channel.interval;
+  alarm.source_time_ns = channel.source_time_ns;
+  alarm.to = to == AlarmState::kActive ? AlarmChange::kActive : AlarmChange::kCleared;
+  return alarm;
 }
 
 }  // namespace
@@ -69,15 +75,10 @@ void UnitMonitor::push(const Frame& frame) {
   alarms_.clear();
   if (monitor_.transitions().empty()) return;
   const int cvs = config_.counts().cv;
-  for (const AlarmTransition& transition : monitor_.transitions()) {
-    const ChannelRecord& channel =
-        channels()[static_cast<std::size_t>(transition.input * cvs + transition.cv)];
-    alarms_.push_back({channel.unit, channel.mv, channel.cv, channel.interval,
-                       channel.source_time_ns,
-                       transition.to == AlarmState::kActive ? "active" : "cleared", channel.p_value,
-                       channel.statistic, channel.threshold, channel.partial_correlation,
-                       channel.lag, channel.effect_size});
-  }
+  for (const AlarmTransition& transition : monitor_.transitions())
+    alarms_.push_back(
+        alarm_of(channels()[static_cast<std::size_t>(transition.input * cvs + transition.cv)],
+                 transition.to));
 }
 
 // Nobody reads all records of every frame of a recording.
@@ -90,20 +91,10 @@ void UnitMonitor::fill() const {
       const ChannelStatus& status = monitor_.channel(j, i);
       record.interval = interval_;
       record.source_time_ns = source_time_ns_;
-      record.verdict = to_string(status.verdict);
-      record.reason = status.verdict == Verdict::kUndetermined ? to_string(status.reason) : "";
-      if (status.confounder >= 0) record.reason += " with " + config_.input_tag(status.confounder);
-      record.p_value = status.p_value;
-      record.statistic = status.statistic;
-      record.threshold = status.threshold;
-      record.partial_correlation = status.partial_correlation;
-      record.lag = status.lag;
-      record.excited = status.excited;
-      record.effect_size = status.effect_size;
-      record.smallest_error = status.smallest_error;
-      fill_sizes(status, config_.model.sample_time_s, record);
-      record.effective_samples = status.effective_samples;
-      record.alarm_active = monitor_.alarm(j, i) == AlarmState::kActive;
+      static_cast<ChannelVerdict&>(record) = status;
+      record.confounder = status.confounder < 0 ? "" : config_.input_tag(status.confounder);
+      fill_errors(status, config_.model.sample_time_s, record);
+      record.alarm = monitor_.alarm(j, i);
       const Eigen::Ref<const Eigen::VectorXd> values = monitor_.partial_correlations(j, i);
       for (Eigen::Index l = 0; l < values.size(); ++l)
         record.partial_correlations[static_cast<std::size_t>(l)] = values(l);

@@ -5,7 +5,8 @@
 
 #include "config/unit_config.hpp"
 #include "core/monitor/monitor.hpp"
-#include "daemon/report/records.hpp"
+#include "core/record/alarm_record.hpp"
+#include "core/record/channel_record.hpp"
 
 namespace mpm::report {
 

@@ -56,8 +56,8 @@ report/diagnosis
 report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
 report files report/diagnosis report/page
-bus report
-bus/watch files/times bus
+bus
+bus/watch files/times report bus
 bag files/times files files/csv mcap
 bag/record host files/times mcap bag
 bag/replay host mcap bag

@@ -22,22 +22,20 @@ TEST_CASE("a mismatch becomes an alarm that who joins later sees; SIGTERM ends t
 
   SECTION("as a reader of mpm/alarm") {
     const idl::Participant late(bench.options);
-    bus::OutputReaders readers(late);
-    std::vector<bus::AlarmStateRecord> states;
-    std::vector<report::AlarmRecord> events;
+    idl::OutputReaders readers(late);
+    std::vector<AlarmStateRecord> states;
+    std::vector<AlarmRecord> events;
     CHECK(idl::eventually([&] {
-      for (const bus::Output& output : readers.take()) {
-        if (const auto* state = std::get_if<bus::AlarmStateRecord>(&output))
-          states.push_back(*state);
-        if (const auto* event = std::get_if<report::AlarmRecord>(&output)) events.push_back(*event);
+      for (const idl::Output& output : readers.take()) {
+        if (const auto* state = std::get_if<AlarmStateRecord>(&output)) states.push_back(*state);
+        if (const auto* event = std::get_if<AlarmRecord>(&output)) events.push_back(*event);
       }
       return states.size() == 2 && !events.empty();
     }));
     REQUIRE(states.size() == 2);  // one per channel
-    const report::AlarmRecord& first =
-        states[0].alarm.mv == "u1" ? states[0].alarm : states[1].alarm;
+    const AlarmRecord& first = states[0].mv == "u1" ? states[0] : states[1];
     CHECK(first.cv == "y1");
-    CHECK(first.to == "active");
+    CHECK(first.to == AlarmChange::kActive);
     CHECK(first.source_time_ns > 0);
     CHECK(first.effect_size == Approx(2.0).margin(0.5));  // gain 4 instead of 2
   }
@@ -52,7 +50,7 @@ TEST_CASE("a mismatch becomes an alarm that who joins later sees; SIGTERM ends t
 
   bench.daemon.send(SIGTERM);
   CHECK(bench.daemon.wait(std::chrono::seconds(1)) == 0);
-  CHECK(bench.observe([&] { return !bench.seen<bus::MonitorGone>().empty(); }));
+  CHECK(bench.observe([&] { return !bench.seen<idl::MonitorGone>().empty(); }));
   INFO(read_file(bench.folder.file("mpmd.err")));
   CHECK(read_file(bench.folder.file("mpmd.err")).find("<4>toy: u1 -> y1: alarm active") !=
         std::string::npos);
@@ -64,10 +62,10 @@ TEST_CASE("a right model raises no alarm, and the channels become matches") {
   Plant plant(2.0);
   bench.publish(publisher, plant, kEnough);
   REQUIRE(bench.observe([&] { return bench.health().frames == kEnough; }));
-  CHECK(bench.seen<report::AlarmRecord>().empty());
+  CHECK(bench.seen<AlarmRecord>().empty());
   CHECK(bench.health().matching == 2);
   CHECK(bench.health().state == "normal");
-  for (const auto& state : bench.seen<bus::AlarmStateRecord>()) CHECK(state.alarm.to == "cleared");
+  for (const auto& state : bench.seen<AlarmStateRecord>()) CHECK(state.to == AlarmChange::kCleared);
 }
 
 TEST_CASE("mpm watch --json prints what the journal holds, byte for byte, at full speed") {

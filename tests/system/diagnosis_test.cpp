@@ -8,8 +8,8 @@
 #include <sstream>
 #include <system_error>
 
-#include "daemon/bus/output_readers.hpp"
 #include "daemon/live/report_store.hpp"
+#include "idl/output_readers.hpp"
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
@@ -143,26 +143,26 @@ TEST_CASE("an alarm gets its cause, who joins later sees it, and no sample waits
        << at(without, 0.95) << ", " << without.back() << " without");
 
   const idl::Participant newcomer(plant.domain);
-  bus::OutputReaders late(newcomer);
-  report::AlarmRecord alarm;
-  report::HealthRecord health;
+  idl::OutputReaders late(newcomer);
+  AlarmRecord alarm;
+  HealthRecord health;
   CHECK(idl::eventually([&] {
-    for (const bus::Output& output : late.take()) {
-      if (const auto* state = std::get_if<bus::AlarmStateRecord>(&output))
-        if (!state->alarm.named.text.empty()) alarm = state->alarm;
-      if (const auto* record = std::get_if<report::HealthRecord>(&output)) health = *record;
+    for (const idl::Output& output : late.take()) {
+      if (const auto* state = std::get_if<AlarmStateRecord>(&output))
+        if (!state->named.text.empty()) alarm = *state;
+      if (const auto* record = std::get_if<HealthRecord>(&output)) health = *record;
     }
     return !alarm.unit.empty() && health.frames == 1700;
   }));
   CHECK(health.missing + health.incomplete + health.late + health.out_of_order == 0);
-  CHECK(alarm.to == "active");
+  CHECK(alarm.to == AlarmChange::kActive);
   CHECK(alarm.mv == "u3");
   CHECK(alarm.cv == "y1");
   CHECK(alarm.named.cause == "gain");
   CHECK(alarm.named.text.find("y1 answers u3") == 0);
   CHECK(alarm.named.confidence > 0.8);
   REQUIRE(alarm.named.parameters.size() == 1);
-  const report::CauseParameter& ratio = alarm.named.parameters[0];
+  const CauseParameter& ratio = alarm.named.parameters[0];
   CHECK(ratio.name == "gain_ratio");
   CHECK(ratio.value == Approx(0.6).margin(0.05));
   CHECK(ratio.low < ratio.value);

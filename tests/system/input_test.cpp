@@ -53,7 +53,7 @@ TEST_CASE("what is wrong with the input is counted in the health, without a floo
     if (k != 35) REQUIRE(write(cv, {"toy", k, {1.0}}));  // incomplete
 
   CHECK(bench.observe([&] { return bench.health().frames == 45; }));
-  const report::HealthRecord health = bench.health();
+  const HealthRecord health = bench.health();
   CHECK(health.wrong_length == 100);
   CHECK(health.repeated == 3);
   CHECK(health.late == 1);
@@ -141,7 +141,7 @@ TEST_CASE("partitions do not see each other") {
   idl::DomainOptions other = bench.options;
   other.partition += "-other";
   const idl::Participant outsider(other);
-  bus::OutputReaders readers(outsider);
+  idl::OutputReaders readers(outsider);
   UnitLayout layout;
   layout.unit = "toy";
   layout[SignalKind::kMv].tags = {"u1", "u2"};
@@ -154,8 +154,8 @@ TEST_CASE("partitions do not see each other") {
   bench.publish(known, plant, 30);
   CHECK(bench.observe([&] { return bench.health().frames == 30; }));
   CHECK_FALSE(publisher.wait_for_readers(std::chrono::milliseconds(0)));
-  for (const bus::Output& output : readers.take())
-    CHECK(std::holds_alternative<bus::LayoutRecord>(output));  // its own one
+  for (const idl::Output& output : readers.take())
+    CHECK(std::holds_alternative<idl::LayoutRecord>(output));  // its own one
 }
 
 TEST_CASE("thirty viewers on one host all hear the daemon, without multicast") {

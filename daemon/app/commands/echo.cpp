@@ -4,6 +4,8 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <tuple>
 
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
@@ -11,6 +13,8 @@
 #include "daemon/bus/sample_json.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "daemon/report/record_json.hpp"
+#include "idl/output_samples.hpp"
 #include "idl/reader.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/wait_set.hpp"
@@ -53,9 +57,9 @@ void print(const EchoOptions& options, const nlohmann::ordered_json& sample,
   }
 }
 
-// 0, or 2 if not all that was asked for came in time.
-template <class T>
-int echo(const EchoOptions& options, const idl::KnownTopic& topic) {
+// 0, or 2 if not all that was asked for came in time. `json_of`: of a sample.
+template <class T, class JsonOf>
+int echo(const EchoOptions& options, const idl::KnownTopic& topic, JsonOf json_of) {
   std::signal(SIGPIPE, SIG_IGN);  // the stream notices
   host::StopSignal stop;
   host::set_up_logging("warning");
@@ -74,7 +78,7 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic) {
     const std::string unit = sample.unit == nullptr ? "" : sample.unit;
     if (unit.empty() || (!options.unit.empty() && unit != options.unit)) return;
     if (printed >= wanted) return;
-    print(options, bus::json_of(sample), info);
+    print(options, json_of(sample), info);
     if (info.valid) ++printed;
   };
   while (printed < wanted && std::cout.good() && !stop.received()) {
@@ -89,6 +93,27 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic) {
   return (bounded ? printed < wanted : options.duration_s > 0.0 && printed == 0) ? 2 : 0;
 }
 
+template <class Record>
+int echo_output(const EchoOptions& options, const idl::KnownTopic& topic) {
+  using Sample = idl::SampleOf<Record>;
+  return echo<Sample>(options, topic, [](const Sample& sample) {
+    return report::json_of(idl::record_of<Record>(sample));
+  });
+}
+
+using Echo = int (*)(const EchoOptions&, const idl::KnownTopic&);
+
+// Null where `topic` is none that the monitor writes.
+template <class... Record>
+Echo find_output(const idl::KnownTopic& topic, const std::tuple<Record...>*) {
+  Echo found = nullptr;
+  ((topic.name == std::string_view(idl::OutputTopic<Record>::kName)
+        ? void(found = echo_output<Record>)
+        : void()),
+   ...);
+  return found;
+}
+
 int echo(const EchoOptions& options) {
   const idl::KnownTopic* topic = idl::find_known_topic(options.topic);
   if (topic == nullptr) {
@@ -96,12 +121,11 @@ int echo(const EchoOptions& options) {
               << "' is no topic of the monitor; try mpm topics, and mpm hz for what others write\n";
     return 3;
   }
-  if (topic->type == &mpm_Layout_desc) return echo<mpm_Layout>(options, *topic);
-  if (topic->type == &mpm_ChannelStatus_desc) return echo<mpm_ChannelStatus>(options, *topic);
-  if (topic->type == &mpm_Alarm_desc) return echo<mpm_Alarm>(options, *topic);
-  if (topic->type == &mpm_AlarmEvent_desc) return echo<mpm_AlarmEvent>(options, *topic);
-  if (topic->type == &mpm_Health_desc) return echo<mpm_Health>(options, *topic);
-  return echo<mpm_Sample>(options, *topic);
+  if (const Echo output = find_output(*topic, static_cast<const idl::OutputRecords*>(nullptr)))
+    return output(options, *topic);
+  const auto json_of = [](const auto& sample) { return bus::json_of(sample); };
+  if (topic->type == &mpm_Layout_desc) return echo<mpm_Layout>(options, *topic, json_of);
+  return echo<mpm_Sample>(options, *topic, json_of);
 }
 
 }  // namespace

@@ -10,10 +10,10 @@
 
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
-#include "daemon/bus/output_readers.hpp"
 #include "daemon/bus/watch/viewer.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "idl/output_readers.hpp"
 
 namespace mpm::app {
 namespace {
@@ -49,9 +49,9 @@ int watch(const WatchOptions& options) {
   const idl::Participant participant(options.domain);
   // The table also shows the health; lines and JSON of alarms need nothing but alarms.
   const bus::ViewMode mode = mode_of(options);
-  bus::OutputReaders readers(participant, options.alarms_only && mode != bus::ViewMode::kTable
-                                              ? bus::OutputReaders::Scope::kAlarms
-                                              : bus::OutputReaders::Scope::kEverything);
+  idl::OutputReaders readers(participant, options.alarms_only && mode != bus::ViewMode::kTable
+                                              ? idl::OutputReaders::Scope::kAlarms
+                                              : idl::OutputReaders::Scope::kEverything);
   idl::WaitSet wait_set;
   readers.attach_to(wait_set);
   bus::Viewer viewer(mode, {wants_color(options), options.alarms_only}, options.unit);
@@ -61,7 +61,7 @@ int watch(const WatchOptions& options) {
   bool last_look = false;
   while (viewer.has_reader() && !stop.received()) {
     if (wait_set.wait(kLongestWait))
-      for (const bus::Output& output : readers.take()) viewer.show(output);
+      for (const idl::Output& output : readers.take()) viewer.show(output);
     const Clock::time_point now = Clock::now();
     last_look = options.for_s > 0.0 && now >= end;
     viewer.tick(now);

@@ -59,7 +59,7 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a.size() - i < b.size() - j;
 }
 
-void Board::update(const Output& output) {
+void Board::update(const idl::Output& output) {
   std::visit([this](const auto& record) { show(record); }, output);
 }
 
@@ -67,7 +67,7 @@ UnitBoard* Board::board_of(const std::string& unit) {
   return wanted(unit) ? &units_[unit] : nullptr;
 }
 
-void Board::show(const LayoutRecord& layout) {
+void Board::show(const idl::LayoutRecord& layout) {
   // Of a unit that no monitor watches there is nothing to show.
   UnitBoard* board = board_of(layout.unit);
   if (board == nullptr) return;
@@ -75,7 +75,7 @@ void Board::show(const LayoutRecord& layout) {
   order(*board);
 }
 
-void Board::show(const report::ChannelRecord& channel) {
+void Board::show(const ChannelRecord& channel) {
   UnitBoard* board = board_of(channel.unit);
   if (board == nullptr) return;
   board->gone = false;
@@ -87,25 +87,23 @@ void Board::show(const report::ChannelRecord& channel) {
   board->channels[{channel.mv, channel.cv}] = channel;
 }
 
-void Board::show(const AlarmStateRecord& state) {
-  UnitBoard* board = board_of(state.alarm.unit);
+void Board::show(const AlarmStateRecord& alarm) {
+  UnitBoard* board = board_of(alarm.unit);
   if (board == nullptr) return;
-  if (state.alarm.to == "active")
-    board->alarms[{state.alarm.mv, state.alarm.cv}] = state.alarm;
+  if (alarm.to == AlarmChange::kActive)
+    board->alarms[{alarm.mv, alarm.cv}] = alarm;
   else
-    board->alarms.erase({state.alarm.mv, state.alarm.cv});
+    board->alarms.erase({alarm.mv, alarm.cv});
 }
 
-void Board::show(const report::AlarmRecord&) {}  // the state follows each change
-
-void Board::show(const report::HealthRecord& health) {
+void Board::show(const HealthRecord& health) {
   UnitBoard* board = board_of(health.unit);
   if (board == nullptr) return;
   board->gone = false;
   board->health = health;
 }
 
-void Board::show(const MonitorGone& gone) {
+void Board::show(const idl::MonitorGone& gone) {
   const auto it = units_.find(gone.unit);
   if (it != units_.end()) it->second.gone = true;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/bus/output_readers.hpp"
+#include "idl/output_readers.hpp"
 
 namespace mpm::bus {
 
@@ -17,11 +17,10 @@ namespace mpm::bus {
 struct UnitBoard {
   std::vector<std::string> inputs;  ///< columns: MVs, then DVs
   std::vector<std::string> cvs;     ///< rows
-  std::map<std::pair<std::string, std::string>, report::ChannelRecord>
-      channels;                                                               ///< by (input, CV)
-  std::map<std::pair<std::string, std::string>, report::AlarmRecord> alarms;  ///< the active ones
-  std::map<std::string, std::vector<std::string>> layout;                     ///< by kind
-  report::HealthRecord health;
+  std::map<std::pair<std::string, std::string>, ChannelRecord> channels;   ///< by (input, CV)
+  std::map<std::pair<std::string, std::string>, AlarmStateRecord> alarms;  ///< the active ones
+  std::map<std::string, std::vector<std::string>> layout;                  ///< by kind
+  HealthRecord health;
   bool gone = false;  ///< its monitor left
   std::uint64_t samples = 0;
   std::int64_t last_interval = 0;
@@ -35,7 +34,7 @@ class Board {
   /// `unit` empty: all.
   explicit Board(std::string unit) : unit_(std::move(unit)) {}
 
-  void update(const Output& output);
+  void update(const idl::Output& output);
   /// Takes the sample rate over the time since the last call.
   void take_rate(std::chrono::duration<double> elapsed);
 
@@ -47,12 +46,12 @@ class Board {
 
  private:
   UnitBoard* board_of(const std::string& unit);
-  void show(const LayoutRecord& layout);
-  void show(const report::ChannelRecord& channel);
-  void show(const AlarmStateRecord& state);
-  void show(const report::AlarmRecord& change);
-  void show(const report::HealthRecord& health);
-  void show(const MonitorGone& gone);
+  void show(const idl::LayoutRecord& layout);
+  void show(const ChannelRecord& channel);
+  void show(const AlarmStateRecord& alarm);
+  void show(const HealthRecord& health);
+  void show(const idl::MonitorGone& gone);
+  void show(const auto&) {}  // nothing else is on the board; an alarm's state follows its change
 
   std::string unit_;
   std::map<std::string, UnitBoard> units_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/record/reason_text.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::bus {
@@ -28,31 +29,34 @@ std::string utc(std::int64_t time_ns) {
   return files::formatted_utc(time_ns / 1'000'000'000, "%Y-%m-%dT%H:%M:%SZ");
 }
 
-const char* color_of(const std::string& verdict) {
-  if (verdict == "match") return kGreen;
-  return verdict == "mismatch" ? kRed : kGrey;
+const char* color_of(Verdict verdict) {
+  if (verdict == Verdict::kMatch) return kGreen;
+  return verdict == Verdict::kMismatch ? kRed : kGrey;
 }
 
 std::string padded(const std::string& text, std::size_t width) {
   return text.size() >= width ? text : text + std::string(width - text.size(), ' ');
 }
 
-const report::ChannelRecord* find(const UnitBoard& board, const std::string& input,
-                                  const std::string& cv) {
+const ChannelRecord* find(const UnitBoard& board, const std::string& input, const std::string& cv) {
   const auto it = board.channels.find({input, cv});
   return it == board.channels.end() ? nullptr : &it->second;
 }
 
-std::string shout(const report::ChannelRecord& channel) {
-  std::string word = channel.verdict.empty() ? "-" : channel.verdict;
-  return channel.alarm_active ? word + " !" : word;
+std::string reason_of(const ChannelRecord& channel) {
+  return reason_text(channel.reason, channel.confounder);
+}
+
+std::string shout(const ChannelRecord& channel) {
+  std::string word(to_string(channel.verdict));
+  return channel.alarm == AlarmState::kActive ? word + " !" : word;
 }
 
 std::size_t column_width(const UnitBoard& board, const std::string& input) {
   std::size_t width = input.size();
   for (const std::string& cv : board.cvs)
-    if (const report::ChannelRecord* channel = find(board, input, cv))
-      width = std::max({width, shout(*channel).size(), channel->reason.size()});
+    if (const ChannelRecord* channel = find(board, input, cv))
+      width = std::max({width, shout(*channel).size(), reason_of(*channel).size()});
   return width + 2;
 }
 
@@ -71,12 +75,12 @@ std::string matrix(const UnitBoard& board, const Painter& paint) {
     std::string reasons = "  " + std::string(first, ' ');
     bool any_reason = false;
     for (std::size_t i = 0; i < widths.size(); ++i) {
-      const report::ChannelRecord* channel = find(board, board.inputs[i], cv);
+      const ChannelRecord* channel = find(board, board.inputs[i], cv);
       verdicts += channel == nullptr
                       ? padded("", widths[i])
                       : paint(color_of(channel->verdict), padded(shout(*channel), widths[i]));
-      reasons += padded(channel == nullptr ? "" : channel->reason, widths[i]);
-      any_reason = any_reason || (channel != nullptr && !channel->reason.empty());
+      reasons += padded(channel == nullptr ? "" : reason_of(*channel), widths[i]);
+      any_reason = any_reason || (channel != nullptr && channel->reason != Reason::kNone);
     }
     text += verdicts + '\n';
     if (any_reason) text += paint(kGrey, reasons) + '\n';
@@ -85,7 +89,7 @@ std::string matrix(const UnitBoard& board, const Painter& paint) {
 }
 
 std::string head(const std::string& name, const UnitBoard& board, const Painter& paint) {
-  const report::HealthRecord& health = board.health;
+  const HealthRecord& health = board.health;
   std::string text = paint(kBold, name) +
                      fmt::format("  {} samples, {:.1f}/s", board.samples, board.samples_per_s);
   if (health.source_time_ns != 0) text += ", data of " + utc(health.source_time_ns);
@@ -98,23 +102,23 @@ std::string head(const std::string& name, const UnitBoard& board, const Painter&
   return text;
 }
 
-std::string alarm_text(const report::AlarmRecord& alarm) {
+std::string alarm_text(const AlarmRecord& alarm) {
   return fmt::format("{} -> {}  since {}  p {:.1e}  gain error {:.3g}", alarm.mv, alarm.cv,
                      utc(alarm.source_time_ns), alarm.p_value, alarm.effect_size);
 }
 
 /// "gain_ratio 0.7 (0.68 to 0.72)", all of them.
-std::string numbers_text(const report::NamedCause& named) {
+std::string numbers_text(const NamedCause& named) {
   std::string text;
-  for (const report::CauseParameter& parameter : named.parameters)
+  for (const CauseParameter& parameter : named.parameters)
     text += fmt::format("{}{} {:.3g} ({:.3g} to {:.3g})", text.empty() ? "" : ", ", parameter.name,
                         parameter.value, parameter.low, parameter.high);
   return text;
 }
 
-std::string cause_text(const report::NamedCause& named) {
-  if (named.cause.empty()) return "cause: not named";
-  return fmt::format("cause: {}, {:.0f} % sure  {}", named.cause, 100.0 * named.confidence,
+std::string cause_text(const NamedCause& named) {
+  if (!named.cause) return "cause: not named";
+  return fmt::format("cause: {}, {:.0f} % sure  {}", *named.cause, 100.0 * named.confidence,
                      numbers_text(named));
 }
 
@@ -137,26 +141,25 @@ std::string render(const Board& board, const RenderOptions& options) {
   return text.empty() ? "waiting for a monitor ...\n" : text;
 }
 
-std::string change_line(const report::ChannelRecord* before, const report::ChannelRecord& after) {
-  const std::string old = before == nullptr ? "" : before->verdict;
-  if (old == after.verdict && (before == nullptr || before->reason == after.reason)) return "";
-  std::string line = fmt::format("{} {} {} -> {}: {}", utc(after.source_time_ns), after.unit,
-                                 after.mv, after.cv, after.verdict);
-  if (!after.reason.empty()) line += " (" + after.reason + ")";
-  if (after.reason.empty()) line += fmt::format(" (p {:.1e})", after.p_value);
-  return line;
+std::string change_line(const ChannelRecord* before, const ChannelRecord& after) {
+  const std::string reason = reason_of(after);
+  if (before != nullptr && before->verdict == after.verdict && reason_of(*before) == reason)
+    return "";
+  return fmt::format("{} {} {} -> {}: {} ({})", utc(after.source_time_ns), after.unit, after.mv,
+                     after.cv, to_string(after.verdict),
+                     reason.empty() ? fmt::format("p {:.1e}", after.p_value) : reason);
 }
 
-std::string change_line(const report::AlarmRecord& change) {
-  if (change.to == "diagnosed")
+std::string change_line(const AlarmRecord& change) {
+  if (change.to == AlarmChange::kDiagnosed)
     return fmt::format("{} {} {} -> {}: {}. {}", utc(change.source_time_ns), change.unit, change.mv,
                        change.cv, cause_text(change.named), change.named.text);
   return fmt::format("{} {} {} -> {}: alarm {} (p {:.1e}, gain error {:.3g})",
-                     utc(change.source_time_ns), change.unit, change.mv, change.cv, change.to,
-                     change.p_value, change.effect_size);
+                     utc(change.source_time_ns), change.unit, change.mv, change.cv,
+                     to_string(change.to), change.p_value, change.effect_size);
 }
 
-std::string change_line(const report::HealthRecord& before, const report::HealthRecord& after) {
+std::string change_line(const HealthRecord& before, const HealthRecord& after) {
   if (before.state == after.state) return "";
   return fmt::format("{} {} health: {}{}", utc(after.source_time_ns), after.unit, after.state,
                      after.detail.empty() ? "" : " (" + after.detail + ")");

@@ -17,10 +17,8 @@ struct RenderOptions {
 
 /// What a log should say if `before` became `after`; empty if nothing that matters changed.
 /// `before` may be null.
-[[nodiscard]] std::string change_line(const report::ChannelRecord* before,
-                                      const report::ChannelRecord& after);
-[[nodiscard]] std::string change_line(const report::AlarmRecord& change);
-[[nodiscard]] std::string change_line(const report::HealthRecord& before,
-                                      const report::HealthRecord& after);
+[[nodiscard]] std::string change_line(const ChannelRecord* before, const ChannelRecord& after);
+[[nodiscard]] std::string change_line(const AlarmRecord& change);
+[[nodiscard]] std::string change_line(const HealthRecord& before, const HealthRecord& after);
 
 }  // namespace mpm::bus

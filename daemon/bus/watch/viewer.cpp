@@ -1,6 +1,10 @@
 #include "daemon/bus/watch/viewer.hpp"
 
 #include <cstdio>
+#include <type_traits>
+#include <variant>
+
+#include "daemon/report/record_json.hpp"
 
 namespace mpm::bus {
 namespace {
@@ -13,6 +17,12 @@ void print_line(const std::string& line) {
   std::fwrite(line.data(), 1, line.size(), stdout);
   std::fputc('\n', stdout);
 }
+
+// Layouts, an alarm's state, which follows its change, and a monitor's end are no lines.
+std::string json_line(const auto& record) { return report::json_of(record).dump(); }
+std::string json_line(const idl::LayoutRecord&) { return ""; }
+std::string json_line(const AlarmStateRecord&) { return ""; }
+std::string json_line(const idl::MonitorGone&) { return ""; }
 
 // Clears what the new picture does not cover, and only that: no flicker.
 std::string in_place(const std::string& picture) {
@@ -31,45 +41,44 @@ Viewer::Viewer(ViewMode mode, const RenderOptions& options, std::string unit)
   if (mode_ == ViewMode::kTable) std::fputs("\x1b[2J", stdout);
 }
 
-void Viewer::show(const Output& output) {
+void Viewer::show(const idl::Output& output) {
   if (mode_ == ViewMode::kJson) print_json(output);
   if (mode_ == ViewMode::kLines) print_change(output);
   board_.update(output);
 }
 
-void Viewer::print_json(const Output& output) {
-  if (const auto* channel = std::get_if<report::ChannelRecord>(&output)) {
-    if (!options_.alarms_only && board_.wanted(channel->unit)) print_line(to_json(*channel).dump());
-  } else if (const auto* alarm = std::get_if<report::AlarmRecord>(&output)) {
-    if (board_.wanted(alarm->unit)) print_line(to_json(*alarm).dump());
-  } else if (const auto* health = std::get_if<report::HealthRecord>(&output)) {
-    if (!options_.alarms_only && board_.wanted(health->unit)) print_line(to_json(*health).dump());
-  }
+void Viewer::print_json(const idl::Output& output) {
+  const auto print = [this](const auto& record) {
+    constexpr bool kAlarm = std::is_base_of_v<AlarmRecord, std::decay_t<decltype(record)>>;
+    if (board_.wanted(record.unit) && (kAlarm || !options_.alarms_only))
+      print_line(json_line(record));
+  };
+  std::visit(print, output);
 }
 
-void Viewer::print_change(const Output& output) {
+void Viewer::print_change(const idl::Output& output) {
   const auto board_of = [this](const std::string& unit) {
     const auto it = board_.units().find(unit);
     return it == board_.units().end() ? nullptr : &it->second;
   };
-  if (const auto* alarm = std::get_if<report::AlarmRecord>(&output)) {
+  if (const auto* alarm = std::get_if<AlarmRecord>(&output)) {
     if (board_.wanted(alarm->unit)) print_line(change_line(*alarm));
     return;
   }
   if (options_.alarms_only) return;
-  if (const auto* channel = std::get_if<report::ChannelRecord>(&output)) {
+  if (const auto* channel = std::get_if<ChannelRecord>(&output)) {
     if (!board_.wanted(channel->unit)) return;
-    const report::ChannelRecord* before = nullptr;
+    const ChannelRecord* before = nullptr;
     if (const UnitBoard* board = board_of(channel->unit))
       if (const auto it = board->channels.find({channel->mv, channel->cv});
           it != board->channels.end())
         before = &it->second;
     print_line(change_line(before, *channel));
-  } else if (const auto* health = std::get_if<report::HealthRecord>(&output)) {
+  } else if (const auto* health = std::get_if<HealthRecord>(&output)) {
     if (!board_.wanted(health->unit)) return;
     const UnitBoard* board = board_of(health->unit);
-    print_line(change_line(board == nullptr ? report::HealthRecord{} : board->health, *health));
-  } else if (const auto* gone = std::get_if<MonitorGone>(&output)) {
+    print_line(change_line(board == nullptr ? HealthRecord{} : board->health, *health));
+  } else if (const auto* gone = std::get_if<idl::MonitorGone>(&output)) {
     const UnitBoard* board = board_of(gone->unit);
     if (board != nullptr && !board->gone) print_line(gone->unit + " monitor gone");
   }

@@ -21,7 +21,7 @@ class Viewer {
 
   Viewer(ViewMode mode, const RenderOptions& options, std::string unit);
 
-  void show(const Output& output);
+  void show(const idl::Output& output);
   /// Redraws the table a few times a second; passes on what was written so far.
   void tick(Clock::time_point now);
   /// False when nobody reads stdout any more.
@@ -29,8 +29,8 @@ class Viewer {
   [[nodiscard]] bool any_alarm() const { return board_.any_alarm(); }
 
  private:
-  void print_json(const Output& output);
-  void print_change(const Output& output);
+  void print_json(const idl::Output& output);
+  void print_change(const idl::Output& output);
   void draw(Clock::time_point now);
 
   ViewMode mode_;

@@ -31,8 +31,8 @@ monitor: {diagnosis_samples: 1000, diagnosis_period: 0}
   return std::make_shared<const config::UnitConfig>(std::move(loaded.config));
 }
 
-report::AlarmRecord change(const std::string& mv, const std::string& to, std::int64_t k) {
-  report::AlarmRecord record;
+AlarmRecord change(const std::string& mv, AlarmChange to, std::int64_t k) {
+  AlarmRecord record;
   record.unit = "toy";
   record.mv = mv;
   record.cv = "y1";
@@ -46,7 +46,7 @@ DiagnosisOutcome named() {
   DiagnosisOutcome outcome;
   outcome.headline = "found";
   outcome.causes = {{"gain", "u1 it is.", 0.9, {{"gain_ratio", 0.7, 0.6, 0.8}}},
-                    {"", "Not this channel.", 0.0, {}}};
+                    {{}, "Not this channel.", 0.0, {}}};
   return outcome;
 }
 
@@ -81,10 +81,9 @@ class Gate {
 
 /// Frames from `first` to `last`, with one change at the first.
 void feed(LiveDiagnosis& live, std::int64_t first, std::int64_t last,
-          const std::vector<report::AlarmRecord>& changes = {}) {
+          const std::vector<AlarmRecord>& changes = {}) {
   for (std::int64_t k = first; k <= last; ++k)
-    live.push(test::frame_at(k, {2, 0, 1, 0}),
-              k == first ? changes : std::vector<report::AlarmRecord>{});
+    live.push(test::frame_at(k, {2, 0, 1, 0}), k == first ? changes : std::vector<AlarmRecord>{});
 }
 
 std::optional<DiagnosisOutcome> await(LiveDiagnosis& live) {
@@ -101,7 +100,8 @@ TEST_CASE("the samples of an alarm that stands are diagnosed, and its channel ge
   LiveDiagnosis live(toy(), worker, 3);
   feed(live, 1, 400);
   CHECK_FALSE(live.poll());
-  feed(live, 401, 700, {change("u1", "active", 401), change("u2", "active", 401)});
+  feed(live, 401, 700,
+       {change("u1", AlarmChange::kActive, 401), change("u2", AlarmChange::kActive, 401)});
   CHECK_FALSE(live.poll());
   CHECK(gate.begun == 0);
   feed(live, 701, 701);
@@ -117,15 +117,15 @@ TEST_CASE("the samples of an alarm that stands are diagnosed, and its channel ge
   CHECK(job.unseen_rows == 150);
   CHECK(job.alarm_time_ns == 401'000'000'000);
 
-  const std::vector<report::AlarmRecord> records = live.diagnosed(*outcome);
+  const std::vector<AlarmRecord> records = live.diagnosed(*outcome);
   REQUIRE(records.size() == 2);
   CHECK(records[0].mv == "u1");
-  CHECK(records[0].to == "diagnosed");
+  CHECK(records[0].to == AlarmChange::kDiagnosed);
   CHECK(records[0].interval == 401);
   CHECK(records[0].named.cause == "gain");
   REQUIRE(records[0].named.parameters.size() == 1);
   CHECK(records[0].named.parameters[0].value == 0.7);
-  CHECK(records[1].named.cause.empty());
+  CHECK_FALSE(records[1].named.cause);
   CHECK(records[1].named.text == "Not this channel.");
   CHECK_FALSE(live.poll());  // once
 }
@@ -134,11 +134,12 @@ TEST_CASE("a diagnosis says nothing of alarms that cleared, nor of those raised 
   Gate gate;
   DiagnosisWorker worker(gate.work());
   LiveDiagnosis live(toy(), worker, 0);
-  feed(live, 1, 400, {change("u1", "active", 1)});
+  feed(live, 1, 400, {change("u1", AlarmChange::kActive, 1)});
   gate.open = 1;
   const auto outcome = await(live);
   REQUIRE(outcome);
-  feed(live, 401, 401, {change("u2", "active", 401), change("u1", "cleared", 401)});
+  feed(live, 401, 401,
+       {change("u2", AlarmChange::kActive, 401), change("u1", AlarmChange::kCleared, 401)});
   CHECK(live.diagnosed(*outcome).empty());
 }
 

@@ -57,22 +57,22 @@ TEST_CASE("nothing is written where nothing is to be kept; what cannot be writte
 
 TEST_CASE("an alarm gets the finding that touches its channel") {
   const report::DiagnosisRun run = test::sample_run(600);
-  const std::vector<report::NamedCause> causes = causes_of_channels(run);
+  const std::vector<NamedCause> causes = causes_of_channels(run);
   REQUIRE(causes.size() == 9);
-  const report::NamedCause& gain = causes[2 * 3 + 2];  // u3 -> y3
+  const NamedCause& gain = causes[2 * 3 + 2];  // u3 -> y3
   CHECK(gain.cause == "gain");
   REQUIRE_FALSE(gain.parameters.empty());
   CHECK(gain.parameters[0].name == "gain_ratio");
   CHECK(gain.parameters[0].value == Approx(1.4).margin(0.1));
   CHECK(gain.text.find("y3 answers u3") == 0);
   CHECK(gain.confidence > 0.5);
-  CHECK(causes[0 * 3 + 2].cause.empty());  // u1 -> y3
+  CHECK_FALSE(causes[0 * 3 + 2].cause);  // u1 -> y3
   CHECK(causes[0 * 3 + 2].text.find("Not this channel, but another of its CV: y3") == 0);
   CHECK(causes[0 * 3 + 0].cause == "unmodelled_input");
   CHECK(causes[1 * 3 + 1].cause == "output_disturbance");
 
-  for (const report::NamedCause& cause : causes_of_channels(test::matching_run())) {
-    CHECK(cause.cause.empty());
+  for (const NamedCause& cause : causes_of_channels(test::matching_run())) {
+    CHECK_FALSE(cause.cause);
     CHECK(cause.text.find("matches the plant") != std::string::npos);
   }
 }

@@ -6,9 +6,9 @@
 namespace mpm::bus {
 namespace {
 
-report::ChannelRecord channel(const std::string& mv, const std::string& cv,
-                              const std::string& verdict, const std::string& reason = "") {
-  report::ChannelRecord record;
+ChannelRecord channel(const std::string& mv, const std::string& cv, Verdict verdict,
+                      Reason reason = Reason::kNone) {
+  ChannelRecord record;
   record.unit = "shell";
   record.mv = mv;
   record.cv = cv;
@@ -17,13 +17,13 @@ report::ChannelRecord channel(const std::string& mv, const std::string& cv,
   return record;
 }
 
-AlarmStateRecord alarm(const std::string& mv, const std::string& cv, const std::string& to) {
-  report::AlarmRecord record;
+AlarmStateRecord alarm(const std::string& mv, const std::string& cv, AlarmChange to) {
+  AlarmStateRecord record;
   record.unit = "shell";
   record.mv = mv;
   record.cv = cv;
   record.to = to;
-  return {record};
+  return record;
 }
 
 }  // namespace
@@ -38,23 +38,23 @@ TEST_CASE("tags are ordered as people count") {
 TEST_CASE("rows and columns follow the layout, then the natural order") {
   Board board("");
   for (const std::string input : {"u10", "d1", "u2", "u1"})
-    board.update(channel(input, "y1", "match"));
+    board.update(channel(input, "y1", Verdict::kMatch));
   const UnitBoard& unit = board.units().at("shell");
   CHECK(unit.inputs == std::vector<std::string>{"d1", "u1", "u2", "u10"});
-  board.update(LayoutRecord{"shell", "mv", {"u10", "u1", "u2"}});
-  board.update(LayoutRecord{"shell", "dv", {"d1"}});
+  board.update(idl::LayoutRecord{"shell", "mv", {"u10", "u1", "u2"}});
+  board.update(idl::LayoutRecord{"shell", "dv", {"d1"}});
   CHECK(unit.inputs == std::vector<std::string>{"u10", "u1", "u2", "d1"});
 }
 
 TEST_CASE("the picture says every verdict in words, why it is undetermined, and the alarms") {
   Board board("");
   CHECK(render(board, {}) == "waiting for a monitor ...\n");
-  board.update(channel("u1", "y1", "match"));
-  board.update(channel("u2", "y1", "undetermined", "not_excited"));
-  report::ChannelRecord bad = channel("u1", "y2", "mismatch");
-  bad.alarm_active = true;
+  board.update(channel("u1", "y1", Verdict::kMatch));
+  board.update(channel("u2", "y1", Verdict::kUndetermined, Reason::kNotExcited));
+  ChannelRecord bad = channel("u1", "y2", Verdict::kMismatch);
+  bad.alarm = AlarmState::kActive;
   board.update(bad);
-  board.update(alarm("u1", "y2", "active"));
+  board.update(alarm("u1", "y2", AlarmChange::kActive));
   CHECK(board.any_alarm());
 
   const std::string plain = render(board, {false, false});
@@ -66,21 +66,21 @@ TEST_CASE("the picture says every verdict in words, why it is undetermined, and 
   CHECK(render(board, {true, false}).find("\x1b[90mundetermined") != std::string::npos);
   CHECK(render(board, {false, true}).find("undetermined") == std::string::npos);
 
-  board.update(alarm("u1", "y2", "cleared"));
+  board.update(alarm("u1", "y2", AlarmChange::kCleared));
   CHECK_FALSE(board.any_alarm());
-  board.update(MonitorGone{"shell"});
+  board.update(idl::MonitorGone{"shell"});
   CHECK(render(board, {false, false}).find("monitor gone") != std::string::npos);
 }
 
 TEST_CASE("only the unit asked for is shown, and samples are counted by interval") {
   Board board("shell");
-  report::ChannelRecord other = channel("u1", "y1", "match");
+  ChannelRecord other = channel("u1", "y1", Verdict::kMatch);
   other.unit = "column";
   board.update(other);
   CHECK(board.units().empty());
   for (std::int64_t k = 1; k <= 5; ++k)
     for (const std::string input : {"u1", "u2"}) {
-      report::ChannelRecord record = channel(input, "y1", "match");
+      ChannelRecord record = channel(input, "y1", Verdict::kMatch);
       record.interval = k;
       board.update(record);
     }
@@ -90,10 +90,10 @@ TEST_CASE("only the unit asked for is shown, and samples are counted by interval
 }
 
 TEST_CASE("a line is due when a verdict or its reason changes, not before") {
-  const report::ChannelRecord warming = channel("u1", "y1", "undetermined", "warming_up");
+  const ChannelRecord warming = channel("u1", "y1", Verdict::kUndetermined, Reason::kWarmingUp);
   CHECK(change_line(nullptr, warming) == "- shell u1 -> y1: undetermined (warming_up)");
   CHECK(change_line(&warming, warming).empty());
-  const report::ChannelRecord match = channel("u1", "y1", "match");
+  const ChannelRecord match = channel("u1", "y1", Verdict::kMatch);
   CHECK(change_line(&warming, match).find("match") != std::string::npos);
 }
 

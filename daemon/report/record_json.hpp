@@ -1,0 +1,58 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "core/record/alarm_record.hpp"
+#include "core/record/channel_record.hpp"
+#include "core/record/field_key.hpp"
+
+namespace mpm::report {
+
+/// Gathers a record's fields as JSON.
+class JsonMaker {
+ public:
+  // One row of a list of fields.
+  void operator()(const FieldKey& key, const auto& member) {
+    if (key.shown) json_[key.name] = value_of(member);
+  }
+
+  [[nodiscard]] nlohmann::ordered_json take() { return std::move(json_); }
+
+ private:
+  using Json = nlohmann::ordered_json;
+
+  template <class T>
+  static const T& value_of(const T& value) {
+    return value;
+  }
+  template <Worded Enum>
+  static Json value_of(const Enum& value) {
+    return to_string(value);
+  }
+  static Json value_of(const std::optional<std::string>& text) {
+    return text ? Json(*text) : Json();
+  }
+  static Json value_of(const std::vector<CauseParameter>& parameters);
+  static Json value_of(const CauseIntervals& intervals);
+  static Json value_of(const std::tuple<const Reason&, const std::string&>& reason);
+  static Json value_of(const std::tuple<const double&, const double&>& interval);
+  /// First lag, values.
+  static Json value_of(const std::tuple<const int&, const std::vector<double>&>& correlations);
+
+  Json json_;
+};
+
+/// What the monitor says as JSON. The lines of journal and `mpm watch`, `mpm echo` and `mpm detect`
+/// all come from here, so that they are the same bytes.
+template <class Record>
+[[nodiscard]] nlohmann::ordered_json json_of(const Record& record) {
+  JsonMaker maker;
+  Record::fields(maker, record);
+  return maker.take();
+}
+
+}  // namespace mpm::report
