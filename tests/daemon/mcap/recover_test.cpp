@@ -7,7 +7,7 @@
 #include "daemon/mcap/recover.hpp"
 #include "daemon/mcap/writer.hpp"
 #include "tests/fuzz/exercise_mcap.hpp"
-#include "tests/mcap/files.hpp"
+#include "tests/daemon/mcap/files.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {

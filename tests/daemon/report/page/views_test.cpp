@@ -8,7 +8,7 @@
 #include "daemon/report/page/model_views.hpp"
 #include "daemon/report/page/residual_views.hpp"
 #include "daemon/report/page/spectrum.hpp"
-#include "tests/diagnose/sample_run.hpp"
+#include "tests/daemon/report/sample_run.hpp"
 
 namespace mpm::test {
 namespace {
