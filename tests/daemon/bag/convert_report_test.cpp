@@ -4,7 +4,7 @@
 
 #include "daemon/bag/mcap_frame_writer.hpp"
 #include "daemon/mcap/writer.hpp"
-#include "tests/mcap/bench.hpp"
+#include "tests/daemon/bag/bench.hpp"
 
 namespace mpm::test {
 namespace {

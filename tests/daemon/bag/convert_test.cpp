@@ -14,48 +14,14 @@
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
 #include "daemon/mcap/writer.hpp"
-#include "tests/mcap/bench.hpp"
-#include "tests/mcap/files.hpp"
+#include "tests/daemon/bag/bench.hpp"
+#include "tests/daemon/mcap/files.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {
 namespace {
 
 const std::string kShell = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
-
-/// Any bits that are a finite double.
-double any_double(std::mt19937_64& random) {
-  double value = std::numeric_limits<double>::quiet_NaN();
-  while (!std::isfinite(value)) {
-    const std::uint64_t bits = random();
-    std::memcpy(&value, &bits, sizeof value);
-  }
-  return value;
-}
-
-/// Every kind of value and quality; times to the nanosecond.
-std::vector<Frame> any_frames(const config::UnitConfig& unit, int count) {
-  std::mt19937_64 random(11);
-  std::vector<Frame> frames;
-  for (int k = 0; k < count; ++k) {
-    Frame frame(unit.counts());
-    frame.interval = k + (k > count / 2 ? 5 : 0);  // a gap
-    frame.source_time_ns = 1'714'564'800'000'000'000 + frame.interval * 60'000'000'000 +
-                           static_cast<std::int64_t>(random() % 1'000'000'000);
-    for (SignalBlock& block : frame.blocks) {
-      for (int i = 0; i < block.size(); ++i) {
-        const std::uint64_t pick = random() % 10;
-        const bool missing = pick == 0;
-        block.values(i) = missing ? std::numeric_limits<double>::quiet_NaN() : any_double(random);
-        block.quality[static_cast<std::size_t>(i)] =
-            missing || pick == 1 ? Quality::kBad
-                                 : (pick == 2 ? Quality::kUncertain : Quality::kGood);
-      }
-    }
-    frames.push_back(std::move(frame));
-  }
-  return frames;
-}
 
 TEST_CASE("MCAP, CSV, MCAP, CSV: not a bit is lost, in either layout and any zone") {
   Bench bench;
@@ -284,97 +250,6 @@ TEST_CASE("Info tells where a CSV's clock goes back, and times without rounding"
   CHECK(json["rows"]["duration_s"] == 249.5);
   CHECK(to_text(info).find("; 2 rows not later than the one before, the farthest back by 1 s after "
                            "1970-01-01T00:00:01Z\n") != std::string::npos);
-}
-
-TEST_CASE("The programs: exit codes, files, messages") {
-  Bench bench;
-  const auto mpm = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "mpm");
-    return run(arguments, bench.folder.file("out"), bench.folder.file("err")).value_or(-1);
-  };
-  const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
-  for (const Frame& frame : any_frames(bench.unit, 300)) a.write(frame);
-  a.finish();
-  CHECK(mpm({"info", path("a.mcap"), "--json"}) == 0);
-  const auto json = nlohmann::json::parse(bench.text("out"));
-  CHECK(json["index"] == "intact");
-  CHECK(json["units"][0]["unit"] == "small");
-  CHECK(mpm({"convert", path("a.mcap"), path("a.csv"), "--time-zone", "Europe/Berlin"}) == 0);
-  CHECK(bench.text("out").find("300 rows of 7 signals") != std::string::npos);
-  CHECK(mpm({"convert", path("a.csv"), path("b.mcap"), "--config", path("small.yaml")}) == 0);
-  CHECK(mpm({"convert", path("a.mcap"), path("b.csv"), "--time-zone", "Mars/Base"}) == 3);
-  CHECK(mpm({"convert", path("a.mcap"), path("b.csv"), "--layout", "tall"}) == 3);
-  CHECK_FALSE(std::filesystem::exists(path("b.csv")));
-  const std::string bytes = bench.text("a.mcap");
-  write_file(path("torn.mcap"), bytes.substr(0, bytes.size() / 2));
-  CHECK(mpm({"detect", "--config", path("small.yaml"), "--data", path("torn.mcap")}) == 3);
-  CHECK(lines_of(bench.text("err")).back().find("torn.mcap: error: byte ") != std::string::npos);
-  CHECK(bench.text("err").find("mpm recover") != std::string::npos);
-  CHECK(mpm({"recover", path("torn.mcap")}) == 0);
-  CHECK(std::filesystem::exists(path("torn.recovered.mcap")));
-  CHECK(mpm({"info", path("torn.recovered.mcap")}) == 0);
-  CHECK(mpm({"recover", path("a.csv")}) == 3);
-  CHECK(mpm({"info", path("none.mcap")}) == 3);
-}
-
-TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell beside it") {
-  Bench bench;
-  const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
-  for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
-  a.finish();
-  REQUIRE(run({"mpm", "convert", path("a.mcap"), path("a.csv")}, path("out"), path("err")) == 0);
-  REQUIRE(run({"mpm", "convert", path("a.mcap"), "-"}, path("out"), path("err")) == 0);
-  CHECK(bench.text("out") == bench.text("a.csv"));
-  CHECK(bench.text("err").find("30 rows of 7 signals") != std::string::npos);
-  CHECK(bench.text("err").find(std::to_string(bench.text("a.csv").size()) + " bytes") !=
-        std::string::npos);
-  CHECK_FALSE(std::filesystem::exists("-"));
-}
-
-TEST_CASE("what standard output does not take is a failure") {
-  Bench bench;
-  const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
-  for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
-  a.finish();
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"info", path("a.mcap")},
-        {"info", path("a.mcap"), "--json"},
-        {"detect", "--config", path("small.yaml"), "--data", path("a.mcap"), "--json"},
-        {"convert", path("a.mcap"), "-"},
-        {"--version"}}) {
-    CAPTURE(arguments);
-    std::vector<std::string> all = arguments;
-    all.insert(all.begin(), "mpm");
-    CHECK(run(all, "/dev/full", path("err")) == 2);
-    CHECK(bench.text("err").find("standard output") != std::string::npos);
-  }
-}
-
-TEST_CASE("mpm recover never writes over the file that it mends") {
-  Bench bench;
-  const std::string file = bench.folder.file("torn.mcap");
-  bag::McapFrameWriter writer(file, bench.unit, all_columns());
-  for (const Frame& frame : any_frames(bench.unit, 30)) writer.write(frame);
-  writer.finish();
-  const std::string torn = read_file(file).substr(0, read_file(file).size() - 50);
-  write_file(file, torn);
-  std::filesystem::create_symlink(file, bench.folder.file("link.mcap"));
-  std::filesystem::create_hard_link(file, bench.folder.file("twin.mcap"));
-  const std::string other_way =
-      bench.folder.file("../") +
-      std::filesystem::path(bench.folder.file("x")).parent_path().filename().string() +
-      "/torn.mcap";
-  for (const std::string& output :
-       {file, bench.folder.file("link.mcap"), bench.folder.file("twin.mcap"), other_way}) {
-    CAPTURE(output);
-    CHECK(run({"mpm", "recover", file, "--output", output}, bench.folder.file("out"),
-              bench.folder.file("err")) == 3);
-    CHECK(bench.text("err") == output + ": error: is the file that is read\n");
-    CHECK(read_file(file) == torn);
-  }
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 #include "daemon/bag/mcap_frame_writer.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
-#include "tests/mcap/bench.hpp"
-#include "tests/mcap/files.hpp"
+#include "tests/daemon/bag/bench.hpp"
+#include "tests/daemon/mcap/files.hpp"
 
 namespace mpm::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tests/allocation_counter.hpp"
-#include "tests/service/live_frames.hpp"
+#include "tests/daemon/live/live_frames.hpp"
 
 namespace mpm::live {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "daemon/live/named_cause.hpp"
-#include "tests/diagnose/sample_run.hpp"
+#include "tests/daemon/report/sample_run.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::live {

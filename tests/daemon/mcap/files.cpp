@@ -1,4 +1,4 @@
-#include "tests/mcap/files.hpp"
+#include "tests/daemon/mcap/files.hpp"
 
 #include <lz4frame.h>
 

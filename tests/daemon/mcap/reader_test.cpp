@@ -10,7 +10,7 @@
 #include "daemon/mcap/reader.hpp"
 #include "daemon/mcap/scan.hpp"
 #include "daemon/mcap/writer.hpp"
-#include "tests/mcap/files.hpp"
+#include "tests/daemon/mcap/files.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {

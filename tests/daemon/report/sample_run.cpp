@@ -1,4 +1,4 @@
-#include "tests/diagnose/sample_run.hpp"
+#include "tests/daemon/report/sample_run.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "tests/mcap/bench.hpp"
+#include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {

@@ -5,7 +5,7 @@
 
 #include "daemon/mcap/ordered_reader.hpp"
 #include "daemon/mcap/writer.hpp"
-#include "tests/mcap/bench.hpp"
+#include "tests/daemon/bag/bench.hpp"
 
 namespace mpm::test {
 namespace {

@@ -4,7 +4,7 @@
 set -eu
 build=$1
 source=$2
-here=$source/tests/mcap/js
+here=$source/tests/daemon/mcap/js
 work=$build/js
 bin=$build/bin
 unit=$work/unit.yaml

@@ -5,7 +5,7 @@
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
 #include "daemon/report/diagnosis/extended_unit.hpp"
-#include "tests/diagnose/sample_run.hpp"
+#include "tests/daemon/report/sample_run.hpp"
 
 namespace mpm::test {
 namespace {

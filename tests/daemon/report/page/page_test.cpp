@@ -8,7 +8,7 @@
 
 #include "daemon/report/page/page.hpp"
 #include "daemon/report/page/page_data.hpp"
-#include "tests/diagnose/sample_run.hpp"
+#include "tests/daemon/report/sample_run.hpp"
 
 namespace mpm::test {
 namespace {

@@ -5,7 +5,7 @@
 #include "daemon/report/diagnosis/number_text.hpp"
 #include "daemon/report/page/model_views.hpp"
 #include "daemon/report/page/residual_views.hpp"
-#include "tests/diagnose/sample_run.hpp"
+#include "tests/daemon/report/sample_run.hpp"
 
 namespace mpm::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "tests/allocation_counter.hpp"
-#include "tests/sim/ipopt_oracle.hpp"
+#include "tests/sim/mpc/ipopt_oracle.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "tests/sim/ipopt_oracle.hpp"
+#include "tests/sim/mpc/ipopt_oracle.hpp"
 
 #if defined(MPM_HAVE_IPOPT)
 

@@ -1,0 +1,104 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "daemon/bag/mcap_recording.hpp"
+#include "tests/daemon/bag/bench.hpp"
+#include "tests/system/process.hpp"
+
+namespace mpm::test {
+namespace {
+
+TEST_CASE("The programs: exit codes, files, messages") {
+  Bench bench;
+  const auto mpm = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "mpm");
+    return run(arguments, bench.folder.file("out"), bench.folder.file("err")).value_or(-1);
+  };
+  const auto path = [&](const char* name) { return bench.folder.file(name); };
+  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 300)) a.write(frame);
+  a.finish();
+  CHECK(mpm({"info", path("a.mcap"), "--json"}) == 0);
+  const auto json = nlohmann::json::parse(bench.text("out"));
+  CHECK(json["index"] == "intact");
+  CHECK(json["units"][0]["unit"] == "small");
+  CHECK(mpm({"convert", path("a.mcap"), path("a.csv"), "--time-zone", "Europe/Berlin"}) == 0);
+  CHECK(bench.text("out").find("300 rows of 7 signals") != std::string::npos);
+  CHECK(mpm({"convert", path("a.csv"), path("b.mcap"), "--config", path("small.yaml")}) == 0);
+  CHECK(mpm({"convert", path("a.mcap"), path("b.csv"), "--time-zone", "Mars/Base"}) == 3);
+  CHECK(mpm({"convert", path("a.mcap"), path("b.csv"), "--layout", "tall"}) == 3);
+  CHECK_FALSE(std::filesystem::exists(path("b.csv")));
+  const std::string bytes = bench.text("a.mcap");
+  write_file(path("torn.mcap"), bytes.substr(0, bytes.size() / 2));
+  CHECK(mpm({"detect", "--config", path("small.yaml"), "--data", path("torn.mcap")}) == 3);
+  CHECK(lines_of(bench.text("err")).back().find("torn.mcap: error: byte ") != std::string::npos);
+  CHECK(bench.text("err").find("mpm recover") != std::string::npos);
+  CHECK(mpm({"recover", path("torn.mcap")}) == 0);
+  CHECK(std::filesystem::exists(path("torn.recovered.mcap")));
+  CHECK(mpm({"info", path("torn.recovered.mcap")}) == 0);
+  CHECK(mpm({"recover", path("a.csv")}) == 3);
+  CHECK(mpm({"info", path("none.mcap")}) == 3);
+}
+
+TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell beside it") {
+  Bench bench;
+  const auto path = [&](const char* name) { return bench.folder.file(name); };
+  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
+  a.finish();
+  REQUIRE(run({"mpm", "convert", path("a.mcap"), path("a.csv")}, path("out"), path("err")) == 0);
+  REQUIRE(run({"mpm", "convert", path("a.mcap"), "-"}, path("out"), path("err")) == 0);
+  CHECK(bench.text("out") == bench.text("a.csv"));
+  CHECK(bench.text("err").find("30 rows of 7 signals") != std::string::npos);
+  CHECK(bench.text("err").find(std::to_string(bench.text("a.csv").size()) + " bytes") !=
+        std::string::npos);
+  CHECK_FALSE(std::filesystem::exists("-"));
+}
+
+TEST_CASE("what standard output does not take is a failure") {
+  Bench bench;
+  const auto path = [&](const char* name) { return bench.folder.file(name); };
+  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
+  a.finish();
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", path("a.mcap")},
+        {"info", path("a.mcap"), "--json"},
+        {"detect", "--config", path("small.yaml"), "--data", path("a.mcap"), "--json"},
+        {"convert", path("a.mcap"), "-"},
+        {"--version"}}) {
+    CAPTURE(arguments);
+    std::vector<std::string> all = arguments;
+    all.insert(all.begin(), "mpm");
+    CHECK(run(all, "/dev/full", path("err")) == 2);
+    CHECK(bench.text("err").find("standard output") != std::string::npos);
+  }
+}
+
+TEST_CASE("mpm recover never writes over the file that it mends") {
+  Bench bench;
+  const std::string file = bench.folder.file("torn.mcap");
+  bag::McapRecording writer(file, bench.unit, all_columns());
+  for (const Frame& frame : any_frames(bench.unit, 30)) writer.write(frame);
+  writer.finish();
+  const std::string torn = read_file(file).substr(0, read_file(file).size() - 50);
+  write_file(file, torn);
+  std::filesystem::create_symlink(file, bench.folder.file("link.mcap"));
+  std::filesystem::create_hard_link(file, bench.folder.file("twin.mcap"));
+  const std::string other_way =
+      bench.folder.file("../") +
+      std::filesystem::path(bench.folder.file("x")).parent_path().filename().string() +
+      "/torn.mcap";
+  for (const std::string& output :
+       {file, bench.folder.file("link.mcap"), bench.folder.file("twin.mcap"), other_way}) {
+    CAPTURE(output);
+    CHECK(run({"mpm", "recover", file, "--output", output}, bench.folder.file("out"),
+              bench.folder.file("err")) == 3);
+    CHECK(bench.text("err") == output + ": error: is the file that is read\n");
+    CHECK(read_file(file) == torn);
+  }
+}
+
+}  // namespace
+}  // namespace mpm::test
