@@ -2,7 +2,7 @@
 #include <map>
 
 #include "daemon/bag/mcap_frame_writer.hpp"
-#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
 #include "tests/mcap/bench.hpp"
 #include "tests/mcap/files.hpp"
 

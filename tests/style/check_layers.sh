@@ -51,18 +51,21 @@ host
 files/times
 files
 files/csv files/times files
-mcap
+mcap/format
+mcap/read mcap/format
+mcap/write mcap/format
+mcap mcap/format mcap/read mcap/write
 report/diagnosis
 report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
 report files report/diagnosis report/page
 bus report
 bus/watch files/times bus
-bag files/times files files/csv mcap
-bag/record host files/times mcap bag
-bag/replay host mcap bag
+bag files/times files files/csv mcap/format mcap/read mcap/write
+bag/record host files/times mcap/write bag
+bag/replay host mcap/read bag
 live host files/times files report/diagnosis report bus
-app/commands host files/times files files/csv mcap report/diagnosis report/closed_loop report bus bus/watch bag bag/record bag/replay live
+app/commands host files/times files files/csv mcap/read mcap report/diagnosis report/closed_loop report bus bus/watch bag bag/record bag/replay live
 app host live app/commands
 TABLE
 for folder in $(git ls-files 'daemon/*.hpp' 'daemon/*.cpp' | sed 's|^daemon/||; s|/[^/]*$||' | sort -u); do
