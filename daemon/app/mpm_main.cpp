@@ -2,16 +2,7 @@
 #include <exception>
 #include <iostream>
 
-#include "daemon/app/commands/convert.hpp"
-#include "daemon/app/commands/detect.hpp"
-#include "daemon/app/commands/diagnose.hpp"
-#include "daemon/app/commands/info.hpp"
-#include "daemon/app/commands/publish.hpp"
-#include "daemon/app/commands/record.hpp"
-#include "daemon/app/commands/recover.hpp"
-#include "daemon/app/commands/replay.hpp"
-#include "daemon/app/commands/topics.hpp"
-#include "daemon/app/commands/watch.hpp"
+#include "daemon/app/commands/commands.hpp"
 #include "daemon/host/standard_output.hpp"
 #include "daemon/host/version.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "config/finding.hpp"
 #include "daemon/bag/sample_stream.hpp"
-#include "daemon/mcap/printable.hpp"
+#include "daemon/mcap/format/printable.hpp"
 #include "idl/layout_sample.hpp"
 
 namespace mpm::bag {

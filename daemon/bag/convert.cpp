@@ -8,7 +8,7 @@
 #include "config/finding.hpp"
 #include "daemon/bag/mcap_frame_writer.hpp"
 #include "daemon/files/replacement_file.hpp"
-#include "daemon/mcap/file_sequence.hpp"
+#include "daemon/mcap/read/file_sequence.hpp"
 
 namespace mpm::bag {
 namespace {

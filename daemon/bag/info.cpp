@@ -8,9 +8,9 @@
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/bag/sample_stream.hpp"
 #include "daemon/files/csv/csv_rows.hpp"
-#include "daemon/mcap/file_sequence.hpp"
-#include "daemon/mcap/reader.hpp"
-#include "daemon/mcap/scan.hpp"
+#include "daemon/mcap/read/file_sequence.hpp"
+#include "daemon/mcap/read/reader.hpp"
+#include "daemon/mcap/read/scan.hpp"
 
 namespace mpm::bag {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "daemon/bag/sample_stream.hpp"
 #include "daemon/files/times/time_text.hpp"
-#include "daemon/mcap/printable.hpp"
+#include "daemon/mcap/format/printable.hpp"
 
 namespace mpm::bag {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "config/unit_config.hpp"
 #include "daemon/files/csv/column.hpp"
-#include "daemon/mcap/writer.hpp"
+#include "daemon/mcap/write/writer.hpp"
 #include "idl/cdr.hpp"
 
 namespace mpm::bag {

@@ -7,7 +7,7 @@
 #include "daemon/bag/contents.hpp"
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/files/aligning.hpp"
-#include "daemon/mcap/printable.hpp"
+#include "daemon/mcap/format/printable.hpp"
 
 namespace mpm::bag {
 namespace {

@@ -1,7 +1,7 @@
 #include "daemon/bag/sample_stream.hpp"
 
 #include "config/finding.hpp"
-#include "daemon/mcap/printable.hpp"
+#include "daemon/mcap/format/printable.hpp"
 #include "idl/layout_sample.hpp"
 
 namespace mpm::bag {

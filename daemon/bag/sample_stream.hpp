@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/mcap/file_sequence.hpp"
+#include "daemon/mcap/read/file_sequence.hpp"
 #include "idl/cdr.hpp"
 #include "idl/sample_view.hpp"
 

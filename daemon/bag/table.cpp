@@ -10,7 +10,7 @@
 #include "daemon/bag/mcap_frames.hpp"
 #include "daemon/files/csv/csv_reader.hpp"
 #include "daemon/files/csv/csv_rows.hpp"
-#include "daemon/mcap/file_sequence.hpp"
+#include "daemon/mcap/read/file_sequence.hpp"
 
 namespace mpm::bag {
 namespace {

@@ -5,9 +5,9 @@
 #include <map>
 #include <optional>
 
-#include "daemon/mcap/chunk.hpp"
-#include "daemon/mcap/decode.hpp"
-#include "daemon/mcap/writer.hpp"
+#include "daemon/mcap/format/decode.hpp"
+#include "daemon/mcap/read/chunk.hpp"
+#include "daemon/mcap/write/writer.hpp"
 
 namespace mpm::mcap {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "config/finding.hpp"
 #include "daemon/bag/info_text.hpp"
-#include "daemon/mcap/ordered_reader.hpp"
-#include "daemon/mcap/reader.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
+#include "daemon/mcap/read/reader.hpp"
 #include "daemon/mcap/recover.hpp"
 
 namespace mpm::test {

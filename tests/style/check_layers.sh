@@ -25,47 +25,73 @@ if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \
   status=1
 fi
 
-# Inside daemon, from the ground up: a folder, and those whose headers it may include besides its own.
-# Whatever stands here may be included only further down. Its first name is the files' namespace.
-known=" "
-while read -r folder below; do
-  for other in $below; do
-    case "$known" in *" $other "*) ;; *)
-      echo "daemon/$folder cannot stand on daemon/$other, which is not below it" >&2
-      status=1 ;;
-    esac
+# floors ROOM: reads from the ground up a folder of the room, and those whose headers it may include
+# besides its own. Whatever stands here may be included only further down.
+floors() {
+  room=$1
+  known=" "
+  while read -r folder below; do
+    for other in $below; do
+      case "$known" in *" $other "*) ;; *)
+        echo "$room/$folder cannot stand on $room/$other, which is not below it" >&2
+        status=1 ;;
+      esac
+    done
+    known="$known$folder "
+    allowed=$(echo "$folder $below" | tr -s ' ' '|')
+    if grep -nE "^ *# *include *\"$room/" "$room/$folder"/*.[ch]pp |
+      grep -vE "\"$room/(${allowed%|})/[^/]*\""; then
+      echo "$room/$folder must not include the above" >&2
+      status=1
+    fi
+    # In daemon the first name is the files' namespace.
+    [ "$room" = daemon ] || continue
+    if grep -L "^namespace mpm::${folder%%/*} {" "daemon/$folder"/*.[ch]pp | grep .; then
+      echo "the above are not in namespace mpm::${folder%%/*}" >&2
+      status=1
+    fi
   done
-  known="$known$folder "
-  allowed=$(echo "$folder $below" | tr -s ' ' '|')
-  if grep -nE '^ *# *include *"daemon/' "daemon/$folder"/*.[ch]pp |
-    grep -vE "\"daemon/(${allowed%|})/[^/]*\""; then
-    echo "daemon/$folder must not include the above" >&2
-    status=1
-  fi
-  if grep -L "^namespace mpm::${folder%%/*} {" "daemon/$folder"/*.[ch]pp | grep .; then
-    echo "the above are not in namespace mpm::${folder%%/*}" >&2
-    status=1
-  fi
-done <<'TABLE'
+  for folder in $(git ls-files "$room/*.hpp" "$room/*.cpp" | sed "s|^$room/||; s|/[^/]*$||" | sort -u); do
+    case "$known" in *" $folder "*) ;; *) echo "$room/$folder has no place" >&2; status=1 ;; esac
+  done
+}
+
+floors core <<'TABLE'
+text
+signal
+regression
+statistics
+model
+alarm text
+mismatch text signal regression statistics model
+record text alarm mismatch
+monitor text signal statistics model alarm mismatch
+identify/fit model
+identify/causes text model identify/fit
+identify/search identify/fit identify/causes
+identify/diagnosis statistics model identify/fit identify/causes identify/search
+TABLE
+
+floors daemon <<'TABLE'
 host
 files/times
 files
 files/csv files/times files
-mcap
+mcap/format
+mcap/read mcap/format
+mcap/write mcap/format
+mcap mcap/format mcap/read mcap/write
 report/diagnosis
 report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
 report files report/diagnosis report/page
 bus
 bus/watch files/times report bus
-bag files/times files files/csv mcap
-bag/record host files/times mcap bag
-bag/replay host mcap bag
+bag files/times files files/csv mcap/format mcap/read mcap/write
+bag/record host files/times mcap/write bag
+bag/replay host mcap/read bag
 live host files/times files report/diagnosis report bus
-app/commands host files/times files files/csv mcap report/diagnosis report/closed_loop report bus bus/watch bag bag/record bag/replay live
+app/commands host files/times files files/csv mcap/read mcap report/diagnosis report/closed_loop report bus bus/watch bag bag/record bag/replay live
 app host live app/commands
 TABLE
-for folder in $(git ls-files 'daemon/*.hpp' 'daemon/*.cpp' | sed 's|^daemon/||; s|/[^/]*$||' | sort -u); do
-  case "$known" in *" $folder "*) ;; *) echo "daemon/$folder has no place" >&2; status=1 ;; esac
-done
 exit $status

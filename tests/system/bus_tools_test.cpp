@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
 #include "idl/raw_sample.hpp"
 #include "idl/sample_readers.hpp"
 #include "tests/system/bench.hpp"

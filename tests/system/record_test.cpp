@@ -8,7 +8,7 @@
 #include <regex>
 #include <thread>
 
-#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
 #include "daemon/mcap/recover.hpp"
 #include "idl/raw_sample.hpp"
 #include "tests/system/bench.hpp"

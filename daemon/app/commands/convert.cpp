@@ -1,4 +1,4 @@
-#include "daemon/app/commands/convert.hpp"
+#include "daemon/app/commands/commands.hpp"
 
 #include <iostream>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "daemon/app/commands/detect.hpp"
+#include "daemon/app/commands/commands.hpp"
 
 #include <iostream>
 #include <memory>
@@ -11,7 +11,7 @@
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/live/journal.hpp"
-#include "daemon/mcap/file_sequence.hpp"
+#include "daemon/mcap/read/file_sequence.hpp"
 #include "daemon/report/detect_report.hpp"
 #include "daemon/report/unit_monitor.hpp"
 

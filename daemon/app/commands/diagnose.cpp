@@ -1,4 +1,4 @@
-#include "daemon/app/commands/diagnose.hpp"
+#include "daemon/app/commands/commands.hpp"
 
 #include <fstream>
 #include <iostream>

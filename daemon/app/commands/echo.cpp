@@ -7,9 +7,9 @@
 #include <string_view>
 #include <tuple>
 
+#include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
-#include "daemon/app/commands/topics.hpp"
 #include "daemon/bus/sample_json.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"

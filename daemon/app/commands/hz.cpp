@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
-#include "daemon/app/commands/topics.hpp"
 #include "daemon/bus/window_statistics.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"

@@ -1,4 +1,4 @@
-#include "daemon/app/commands/publish.hpp"
+#include "daemon/app/commands/commands.hpp"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/app/commands/record.hpp"
+#include "daemon/app/commands/commands.hpp"
 
 #include <array>
 #include <cstdio>

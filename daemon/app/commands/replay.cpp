@@ -1,4 +1,4 @@
-#include "daemon/app/commands/replay.hpp"
+#include "daemon/app/commands/commands.hpp"
 
 #include <algorithm>
 #include <array>

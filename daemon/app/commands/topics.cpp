@@ -1,4 +1,4 @@
-#include "daemon/app/commands/topics.hpp"
+#include "daemon/app/commands/commands.hpp"
 
 #include <chrono>
 #include <iostream>

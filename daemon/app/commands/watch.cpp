@@ -1,4 +1,4 @@
-#include "daemon/app/commands/watch.hpp"
+#include "daemon/app/commands/commands.hpp"
 
 #include <unistd.h>
 

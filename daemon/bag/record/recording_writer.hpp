@@ -8,7 +8,7 @@
 
 #include "daemon/bag/record/recording_files.hpp"
 #include "daemon/bag/record/sample_queue.hpp"
-#include "daemon/mcap/writer.hpp"
+#include "daemon/mcap/write/writer.hpp"
 
 namespace mpm::bag {
 

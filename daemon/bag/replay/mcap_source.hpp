@@ -6,7 +6,7 @@
 
 #include "daemon/bag/lifecycle.hpp"
 #include "daemon/bag/replay/replay_source.hpp"
-#include "daemon/mcap/file_sequence.hpp"
+#include "daemon/mcap/read/file_sequence.hpp"
 
 namespace mpm::bag {
 

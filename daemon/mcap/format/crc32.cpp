@@ -1,4 +1,4 @@
-#include "daemon/mcap/crc32.hpp"
+#include "daemon/mcap/format/crc32.hpp"
 
 #include <zlib.h>
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "daemon/mcap/format.hpp"
+#include "daemon/mcap/format/format.hpp"
 
 namespace mpm::mcap {
 

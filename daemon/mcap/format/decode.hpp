@@ -3,7 +3,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "daemon/mcap/format.hpp"
+#include "daemon/mcap/format/format.hpp"
 
 namespace mpm::mcap {
 

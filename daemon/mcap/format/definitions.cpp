@@ -1,6 +1,6 @@
-#include "daemon/mcap/definitions.hpp"
+#include "daemon/mcap/format/definitions.hpp"
 
-#include "daemon/mcap/decode.hpp"
+#include "daemon/mcap/format/decode.hpp"
 
 namespace mpm::mcap {
 namespace {

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "daemon/mcap/format.hpp"
+#include "daemon/mcap/format/format.hpp"
 
 namespace mpm::mcap {
 

@@ -1,4 +1,4 @@
-#include "daemon/mcap/encode.hpp"
+#include "daemon/mcap/format/encode.hpp"
 
 namespace mpm::mcap {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "daemon/mcap/format.hpp"
+#include "daemon/mcap/format/format.hpp"
 
 namespace mpm::mcap {
 

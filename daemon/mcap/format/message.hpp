@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "daemon/mcap/definitions.hpp"
+#include "daemon/mcap/format/definitions.hpp"
 
 namespace mpm::mcap {
 

@@ -1,4 +1,4 @@
-#include "daemon/mcap/printable.hpp"
+#include "daemon/mcap/format/printable.hpp"
 
 #include <algorithm>
 

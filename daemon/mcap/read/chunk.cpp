@@ -1,7 +1,7 @@
-#include "daemon/mcap/chunk.hpp"
+#include "daemon/mcap/read/chunk.hpp"
 
-#include "daemon/mcap/crc32.hpp"
-#include "daemon/mcap/decode.hpp"
+#include "daemon/mcap/format/crc32.hpp"
+#include "daemon/mcap/format/decode.hpp"
 
 namespace mpm::mcap {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/mcap/definitions.hpp"
-#include "daemon/mcap/record_stream.hpp"
-#include "daemon/mcap/unpacker.hpp"
+#include "daemon/mcap/format/definitions.hpp"
+#include "daemon/mcap/read/record_stream.hpp"
+#include "daemon/mcap/read/unpacker.hpp"
 
 namespace mpm::mcap {
 

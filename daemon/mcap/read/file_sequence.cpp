@@ -1,11 +1,11 @@
-#include "daemon/mcap/file_sequence.hpp"
+#include "daemon/mcap/read/file_sequence.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <limits>
 
 #include "config/finding.hpp"
-#include "daemon/mcap/record_stream.hpp"
+#include "daemon/mcap/read/record_stream.hpp"
 
 namespace mpm::mcap {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
 
 namespace mpm::mcap {
 

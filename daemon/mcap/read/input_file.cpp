@@ -1,4 +1,4 @@
-#include "daemon/mcap/input_file.hpp"
+#include "daemon/mcap/read/input_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>

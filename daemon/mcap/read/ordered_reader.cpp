@@ -1,11 +1,11 @@
-#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
 
 #include <algorithm>
 #include <tuple>
 #include <utility>
 
-#include "daemon/mcap/decode.hpp"
-#include "daemon/mcap/reader.hpp"
+#include "daemon/mcap/format/decode.hpp"
+#include "daemon/mcap/read/reader.hpp"
 
 namespace mpm::mcap {
 namespace {

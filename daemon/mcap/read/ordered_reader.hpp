@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/mcap/message.hpp"
-#include "daemon/mcap/scan.hpp"
+#include "daemon/mcap/format/message.hpp"
+#include "daemon/mcap/read/scan.hpp"
 
 namespace mpm::mcap {
 

@@ -1,8 +1,8 @@
-#include "daemon/mcap/reader.hpp"
+#include "daemon/mcap/read/reader.hpp"
 
 #include <algorithm>
 
-#include "daemon/mcap/decode.hpp"
+#include "daemon/mcap/format/decode.hpp"
 
 namespace mpm::mcap {
 

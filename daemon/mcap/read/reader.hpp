@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "daemon/mcap/chunk.hpp"
-#include "daemon/mcap/crc32.hpp"
-#include "daemon/mcap/message.hpp"
+#include "daemon/mcap/format/crc32.hpp"
+#include "daemon/mcap/format/message.hpp"
+#include "daemon/mcap/read/chunk.hpp"
 
 namespace mpm::mcap {
 

@@ -1,10 +1,10 @@
-#include "daemon/mcap/record_stream.hpp"
+#include "daemon/mcap/read/record_stream.hpp"
 
 #include <algorithm>
 #include <fstream>
 #include <utility>
 
-#include "daemon/mcap/decode.hpp"
+#include "daemon/mcap/format/decode.hpp"
 
 namespace mpm::mcap {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "daemon/mcap/input_file.hpp"
+#include "daemon/mcap/read/input_file.hpp"
 
 namespace mpm::mcap {
 

@@ -1,9 +1,9 @@
-#include "daemon/mcap/scan.hpp"
+#include "daemon/mcap/read/scan.hpp"
 
 #include <algorithm>
 
-#include "daemon/mcap/crc32.hpp"
-#include "daemon/mcap/decode.hpp"
+#include "daemon/mcap/format/crc32.hpp"
+#include "daemon/mcap/format/decode.hpp"
 
 namespace mpm::mcap {
 namespace {

@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "daemon/mcap/chunk.hpp"
+#include "daemon/mcap/read/chunk.hpp"
 
 namespace mpm::mcap {
 

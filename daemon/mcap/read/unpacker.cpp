@@ -1,5 +1,5 @@
-#include "daemon/mcap/unpacker.hpp"
-#include "daemon/mcap/printable.hpp"
+#include "daemon/mcap/read/unpacker.hpp"
+#include "daemon/mcap/format/printable.hpp"
 
 #include <lz4frame.h>
 #include <zstd.h>

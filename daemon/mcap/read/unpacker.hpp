@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/mcap/format.hpp"
+#include "daemon/mcap/format/format.hpp"
 
 namespace mpm::mcap {
 

@@ -1,4 +1,4 @@
-#include "daemon/mcap/compression.hpp"
+#include "daemon/mcap/write/compression.hpp"
 
 #include <zstd.h>
 

@@ -1,4 +1,4 @@
-#include "daemon/mcap/output_file.hpp"
+#include "daemon/mcap/write/output_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "daemon/mcap/crc32.hpp"
+#include "daemon/mcap/format/crc32.hpp"
 
 namespace mpm::mcap {
 

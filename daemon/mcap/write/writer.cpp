@@ -1,11 +1,11 @@
-#include "daemon/mcap/writer.hpp"
+#include "daemon/mcap/write/writer.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
-#include "daemon/mcap/encode.hpp"
+#include "daemon/mcap/format/encode.hpp"
 
 namespace mpm::mcap {
 namespace {

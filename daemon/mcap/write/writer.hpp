@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/mcap/compression.hpp"
-#include "daemon/mcap/format.hpp"
-#include "daemon/mcap/output_file.hpp"
+#include "daemon/mcap/format/format.hpp"
+#include "daemon/mcap/write/compression.hpp"
+#include "daemon/mcap/write/output_file.hpp"
 
 namespace mpm::mcap {
 

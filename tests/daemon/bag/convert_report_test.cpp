@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "daemon/bag/mcap_frame_writer.hpp"
-#include "daemon/mcap/writer.hpp"
+#include "daemon/mcap/write/writer.hpp"
 #include "tests/daemon/bag/bench.hpp"
 
 namespace mpm::test {

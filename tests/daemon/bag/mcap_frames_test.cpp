@@ -2,7 +2,7 @@
 #include <map>
 
 #include "daemon/bag/mcap_frame_writer.hpp"
-#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/daemon/mcap/files.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <lz4frame.h>
 
-#include "daemon/mcap/compression.hpp"
-#include "daemon/mcap/crc32.hpp"
+#include "daemon/mcap/format/crc32.hpp"
+#include "daemon/mcap/write/compression.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {

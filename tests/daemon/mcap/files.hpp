@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/mcap/encode.hpp"
-#include "daemon/mcap/message.hpp"
+#include "daemon/mcap/format/encode.hpp"
+#include "daemon/mcap/format/message.hpp"
 
 namespace mpm::test {
 

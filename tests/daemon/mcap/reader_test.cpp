@@ -5,11 +5,11 @@
 #include <cstdlib>
 
 #include "config/finding.hpp"
-#include "daemon/mcap/crc32.hpp"
-#include "daemon/mcap/ordered_reader.hpp"
-#include "daemon/mcap/reader.hpp"
-#include "daemon/mcap/scan.hpp"
-#include "daemon/mcap/writer.hpp"
+#include "daemon/mcap/format/crc32.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
+#include "daemon/mcap/read/reader.hpp"
+#include "daemon/mcap/read/scan.hpp"
+#include "daemon/mcap/write/writer.hpp"
 #include "tests/daemon/mcap/files.hpp"
 #include "tests/system/process.hpp"
 

@@ -3,9 +3,9 @@
 #include <random>
 
 #include "config/finding.hpp"
-#include "daemon/mcap/reader.hpp"
+#include "daemon/mcap/read/reader.hpp"
 #include "daemon/mcap/recover.hpp"
-#include "daemon/mcap/writer.hpp"
+#include "daemon/mcap/write/writer.hpp"
 #include "tests/daemon/mcap/files.hpp"
 #include "tests/fuzz/exercise_mcap.hpp"
 #include "tests/system/process.hpp"

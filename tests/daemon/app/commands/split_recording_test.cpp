@@ -3,8 +3,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "daemon/mcap/ordered_reader.hpp"
-#include "daemon/mcap/writer.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
+#include "daemon/mcap/write/writer.hpp"
 #include "tests/daemon/bag/bench.hpp"
 
 namespace mpm::test {

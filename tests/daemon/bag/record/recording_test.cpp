@@ -8,7 +8,7 @@
 
 #include "daemon/bag/lifecycle.hpp"
 #include "daemon/bag/record/recording_writer.hpp"
-#include "daemon/mcap/ordered_reader.hpp"
+#include "daemon/mcap/read/ordered_reader.hpp"
 #include "idl/cdr.hpp"
 #include "tests/system/process.hpp"
 

@@ -9,7 +9,7 @@
 #include "daemon/bag/replay/mcap_source.hpp"
 #include "daemon/bag/replay/player.hpp"
 #include "daemon/bag/replay/selection.hpp"
-#include "daemon/mcap/encode.hpp"
+#include "daemon/mcap/format/encode.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::bag {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+/// The commands of `mpm`. Each goes into `app` and leaves its exit code in `exit_code` once it has
+/// run.
+namespace mpm::app {
+
+/// `mpm detect`: the daemon's own pipeline on a file.
+void add_detect(CLI::App& app, int& exit_code);
+/// `mpm diagnose`: what the simulation gets wrong in recorded data, and a model that gets it right.
+void add_diagnose(CLI::App& app, int& exit_code);
+/// `mpm info`: what a data file holds.
+void add_info(CLI::App& app, int& exit_code);
+/// `mpm convert`: recordings and data files into each other.
+void add_convert(CLI::App& app, int& exit_code);
+/// `mpm recover`: mends a recording whose recorder was killed.
+void add_recover(CLI::App& app, int& exit_code);
+/// `mpm watch`: what the monitors say, live.
+void add_watch(CLI::App& app, int& exit_code);
+/// `mpm record`: what goes over the bus, into files.
+void add_record(CLI::App& app, int& exit_code);
+/// `mpm replay`: recordings back onto the bus.
+void add_replay(CLI::App& app, int& exit_code);
+/// `mpm publish`: lines on standard input become a unit's samples on DDS.
+void add_publish(CLI::App& app, int& exit_code);
+/// `mpm topics`: who reads and writes what on the bus.
+void add_topics(CLI::App& app, int& exit_code);
+/// `mpm echo`: the samples of a topic as text.
+void add_echo(CLI::App& app, int& exit_code);
+/// `mpm hz` and `mpm delay`: how often samples come, and how old they are.
+void add_hz(CLI::App& app, int& exit_code);
+void add_delay(CLI::App& app, int& exit_code);
+
+}  // namespace mpm::app
