@@ -47,12 +47,12 @@ class MPM_THREADS(scoped_lockable) MutexLock {
   void unlock() MPM_THREADS(release_capability()) { lock_.unlock(); }
 
  private:
-  friend class Condition;
+  friend class ConditionVariable;
   std::unique_lock<Mutex> lock_;
 };
 
 /// What threads that hold a lock wait for. Wakes up for no reason too: wait in a loop.
-class Condition {
+class ConditionVariable {
  public:
   void wait(MutexLock& lock) { changed_.wait(lock.lock_); }
   /// False at `deadline`.

@@ -15,7 +15,7 @@ struct DiagnosisWorker::State {
   Work work;
   std::atomic<bool> stopped = false;
   Mutex mutex;
-  Condition changed;
+  ConditionVariable changed;
   std::deque<DiagnosisJob> waiting MPM_GUARDED_BY(mutex);
   std::vector<DiagnosisOutcome> outcomes MPM_GUARDED_BY(mutex);  // at most one per asker
   bool ended MPM_GUARDED_BY(mutex) = false;

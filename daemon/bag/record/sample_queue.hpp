@@ -34,7 +34,7 @@ class SampleQueue {
  private:
   const std::size_t most_bytes_;
   mutable Mutex mutex_;
-  Condition filled_;
+  ConditionVariable filled_;
   std::vector<RecordedSample> samples_ MPM_GUARDED_BY(mutex_);
   std::size_t bytes_ MPM_GUARDED_BY(mutex_) = 0;
   std::uint64_t dropped_ MPM_GUARDED_BY(mutex_) = 0;
