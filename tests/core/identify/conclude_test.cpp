@@ -1,0 +1,123 @@
+#include "core/identify/conclude.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::lag;
+
+constexpr Index kRows = 600;
+
+struct Bench {
+  VectorXd u;
+  Recording recording;
+  Problem problem;
+  SearchResult result;
+
+  Bench(const VectorXd& inputs, const VectorXd& y, const std::vector<Effect>& effects = {})
+      : u(inputs),
+        recording(test::recording_of(u, y)),
+        problem(test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), 1, recording, Tolerances{},
+                NoiseModel{}) {
+    result.fit = problem.fit(effects, 0, {0}, 10);
+    for (const Effect& effect : result.fit.effects) result.named.push_back({effect, 50.0, 1.0, {}});
+  }
+};
+
+VectorXd plant(const VectorXd& u) { return test::first_order(u, 2.0, 10.0); }
+
+// White noise of s.d. 0.1 and an offset of 0.5 throughout: known to 0.1 / sqrt(592), within what a
+// fitted noise model of order 8 leaves.
+TEST_CASE("a level that is far off is a disturbance as old as the data") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.5);
+  REQUIRE(bench.result.named.empty());
+  name_levels(bench.problem, bench.result);
+  REQUIRE(bench.result.named.size() == 1);
+  const Effect& level = bench.result.named[0].effect;
+  CHECK(level.subject == Subject{Cause::kOutputDisturbance, 0, -1, -1, "step"});
+  CHECK(level.onset == 0);
+  const double sd = 0.1 / std::sqrt(592.0);
+  CHECK(level.value("size", 0.0) == Approx(0.5).margin(5.0 * sd));
+  REQUIRE(bench.result.fit.covariance.rows() == 1);
+  CHECK(std::sqrt(bench.result.fit.covariance(0, 0)) == Approx(sd).epsilon(0.5));
+  CHECK(bench.result.named[0].evidence ==
+        Approx(std::pow(level.value("size", 0.0), 2) / bench.result.fit.covariance(0, 0)));
+  CHECK(bench.result.fit.effects.size() == 1);
+  CHECK(bench.result.fit.cvs[0].beta(0) == 0.0);  // told once
+}
+
+// 1.5 s.d. of the noise is the rule.
+TEST_CASE("a level within the noise is a small error") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.13);
+  const VectorXd beta = bench.result.fit.cvs[0].beta;
+  name_levels(bench.problem, bench.result);
+  CHECK(bench.result.named.empty());
+  CHECK(bench.result.fit.cvs[0].beta == beta);
+}
+
+TEST_CASE("the level of a CV with a new input is that input's operating point") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.5);
+  Named named;
+  named.effect.subject = {Cause::kUnmodelledInput, 0, -1, 0, ""};
+  bench.result.named.push_back(named);
+  name_levels(bench.problem, bench.result);
+  CHECK(bench.result.named.size() == 1);
+}
+
+VectorXd play(const VectorXd& u, double width) {
+  VectorXd position = u;
+  for (Index k = 1; k < u.size(); ++k)
+    position(k) = std::clamp(position(k - 1), u(k) - 0.5 * width, u(k) + 0.5 * width);
+  return position;
+}
+
+Effect deadband(double width) {
+  Effect effect;
+  effect.subject = {Cause::kInputNonlinearity, 0, 0, -1, "deadband"};
+  effect.coordinates = {{"width", width, 0.0, 0.5, 0.02, 1e-4, 4.0}};
+  return effect;
+}
+
+// The truth is known to the test: 95 of 100 intervals should hold it, and none may be narrower than
+// what the curvature says.
+TEST_CASE("the interval of a play holds the truth") {
+  int inside = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const VectorXd u = 0.3 * test::autoregressive(test::normal(100 + seed, kRows), 0.9);
+    Bench bench(u, plant(play(u, 0.4)) + 0.1 * test::normal(200 + seed, kRows), {deadband(0.4)});
+    const double before = bench.result.fit.covariance(0, 0);
+    int told = 0;
+    widen_kinked(bench.problem, bench.result, [&told] { ++told; });
+    const double after = bench.result.fit.covariance(0, 0);
+    CHECK(told == 1);
+    CHECK(after >= before);
+    const double width = bench.result.fit.effects[0].coordinates[0].value;
+    if (std::abs(width - 0.4) < 1.96 * std::sqrt(after)) ++inside;
+  }
+  CHECK(inside >= 17);
+}
+
+TEST_CASE("what is smooth keeps the interval of its curvature") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  Effect gain;
+  gain.subject = {Cause::kGain, 0, 0, -1, ""};
+  gain.coordinates = {{"gain_ratio", 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}};
+  Bench bench(u, 1.2 * plant(u) + 0.1 * test::white(2, kRows), {gain});
+  const MatrixXd before = bench.result.fit.covariance;
+  widen_kinked(bench.problem, bench.result, [] {});
+  CHECK(bench.result.fit.covariance == before);
+}
+
+}  // namespace
+}  // namespace mpm
