@@ -119,6 +119,8 @@ TEST_CASE("a diagnosis that is stopped says so, and the model is as it was") {
 TEST_CASE("the same data are diagnosed to the same bits") {
   const Recording recording = plant(1.4);
   const Diagnosis first = diagnosis_of(recording), second = diagnosis_of(recording);
+  REQUIRE(first.findings.size() == 1);
+  REQUIRE(second.findings.size() == 1);
   CHECK(first.after == second.after);
   CHECK(first.findings[0].evidence == second.findings[0].evidence);
   CHECK(first.scores[0].gain_low == second.scores[0].gain_low);

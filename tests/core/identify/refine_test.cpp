@@ -80,6 +80,20 @@ TEST_CASE("an onset is moved to where the plant changed") {
   }
 }
 
+// A step's moment is nothing that a fit could shift: others are tried, ever closer.
+TEST_CASE("a step is moved to its row") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  VectorXd y = test::first_order(u, 2.0, 10.0) + 0.05 * test::white(2, kRows);
+  y.tail(kRows - 317).array() += 0.4;
+  Bench bench(u, y);
+  Trial trial = bench.trials.attempt(effect_of({Cause::kOutputDisturbance, 0, -1, -1, "step"},
+                                               {{"size", 0.3, 0.0, 1.0, 0.01}}, 314),
+                                     6);
+  place_onset(bench.trials, trial);
+  CHECK(trial.candidate.onset == 317);
+  CHECK(trial.candidate.value("size", 0.0) == Approx(0.4).margin(0.05));
+}
+
 // From half as much again: the misfit has kinks at every reversal, and a fit alone stops early.
 TEST_CASE("the width of a play is polished to what it is") {
   const VectorXd u = wandering();
@@ -91,6 +105,26 @@ TEST_CASE("the width of a play is polished to what it is") {
   polish(bench.trials, trial);
   CHECK(trial.candidate.coordinates[0].value == Approx(width).epsilon(0.03));
   CHECK(trial.odds > 100.0);
+  // No width within a per cent of it is likelier.
+  for (const double by : {0.99, 1.01}) {
+    Effect other = trial.candidate;
+    other.coordinates[0].value *= by;
+    CHECK(bench.trials.attempt(other, 0).odds <= trial.odds + 1e-6);
+  }
+}
+
+TEST_CASE("the two widths of a sticking valve are polished to what they are") {
+  const VectorXd u = wandering();
+  const double band = 0.5, jump = 0.35;
+  Bench bench(u,
+              test::first_order(sticking(u, band, jump), 2.0, 10.0) + 0.02 * test::white(9, kRows));
+  Trial trial = bench.trials.attempt(
+      effect_of({Cause::kStiction, 0, 0, -1, ""}, {{"band", 0.6, 0.0, 0.5, 0.03, 1e-4, 4.0},
+                                                   {"jump", 0.28, 0.0, 0.5, -0.03, 0.0, 4.0}}),
+      0);
+  polish(bench.trials, trial);
+  CHECK(trial.candidate.value("band", 0.0) == Approx(band).epsilon(0.03));
+  CHECK(trial.candidate.value("jump", 0.0) == Approx(jump).epsilon(0.05));
 }
 
 TEST_CASE("a smooth cause is not polished") {

@@ -64,6 +64,9 @@ TEST_CASE("what nobody would care about is never more likely than not") {
   const Trial slight = small.trials.attempt(gain(Cause::kGain, 1, 1), 6);
   CHECK(slight.candidate.coordinates[0].value == Approx(1.03).margin(0.01));
   CHECK(slight.odds <= 0.0);
+  // And so is 20 % where 30 % are what nobody minds.
+  large.settings.materiality.gain = 0.3;
+  CHECK(large.trials.attempt(gain(Cause::kGain, 1, 1), 6).odds == 0.0);
   Bench none(plant(1.0, 1.0));
   CHECK(none.trials.attempt(gain(Cause::kGain, 1, 1), 6).odds < 0.0);
 }
