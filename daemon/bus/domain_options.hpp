@@ -3,7 +3,7 @@
 #include "config/unit_config.hpp"
 #include "idl/participant.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 /// The DDS side of a unit file, which idl knows nothing of.
 [[nodiscard]] inline idl::DomainOptions domain_options(const config::DdsSettings& settings) {
@@ -17,4 +17,4 @@ namespace mpm::daemon {
   return options;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -4,7 +4,7 @@
 
 #include "daemon/bus/output_samples.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
 // Samples come instance by instance. Only a batch that holds all there is can be put back into the
@@ -75,4 +75,4 @@ const std::vector<Output>& OutputReaders::take() {
   return sorted_;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

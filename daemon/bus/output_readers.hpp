@@ -5,16 +5,16 @@
 #include <variant>
 #include <vector>
 
-#include "daemon/bus/health.hpp"
+#include "daemon/report/health.hpp"
 #include "daemon/report/records.hpp"
 #include "idl/reader.hpp"
 #include "idl/wait_set.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 /// The alarm of a channel as it stands, told apart from a change of it.
 struct AlarmStateRecord {
-  AlarmRecord alarm;
+  report::AlarmRecord alarm;
 };
 
 /// The daemon that wrote this is gone; what it said last no longer holds.
@@ -29,8 +29,8 @@ struct LayoutRecord {
   std::vector<std::string> tags;
 };
 
-using Output = std::variant<LayoutRecord, ChannelRecord, AlarmStateRecord, AlarmRecord,
-                            HealthRecord, MonitorGone>;
+using Output = std::variant<LayoutRecord, report::ChannelRecord, AlarmStateRecord,
+                            report::AlarmRecord, report::HealthRecord, MonitorGone>;
 
 /// Reads what daemons say, in the order in which they said it.
 class OutputReaders {
@@ -57,4 +57,4 @@ class OutputReaders {
   std::vector<Output> sorted_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -1,14 +1,15 @@
 #include "daemon/bus/output_samples.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
 // A sender of another make may leave strings out.
 std::string text(const char* string) { return string == nullptr ? "" : string; }
 
 template <class T>
-NamedCause named_cause(const T& sample) {
-  NamedCause named{text(sample.cause), text(sample.cause_text), sample.cause_confidence, {}};
+report::NamedCause named_cause(const T& sample) {
+  report::NamedCause named{
+      text(sample.cause), text(sample.cause_text), sample.cause_confidence, {}};
   for (std::uint32_t i = 0; i < sample.cause_parameters._length; ++i) {
     const mpm_CauseParameter& parameter = sample.cause_parameters._buffer[i];
     named.parameters.push_back(
@@ -18,7 +19,7 @@ NamedCause named_cause(const T& sample) {
 }
 
 template <class T>
-AlarmRecord alarm_record(const T& sample, const char* to) {
+report::AlarmRecord alarm_record(const T& sample, const char* to) {
   return {text(sample.unit),
           text(sample.mv),
           text(sample.cv),
@@ -36,8 +37,8 @@ AlarmRecord alarm_record(const T& sample, const char* to) {
 
 }  // namespace
 
-ChannelRecord record_of(const mpm_ChannelStatus& sample) {
-  ChannelRecord record;
+report::ChannelRecord record_of(const mpm_ChannelStatus& sample) {
+  report::ChannelRecord record;
   record.unit = text(sample.unit);
   record.mv = text(sample.mv);
   record.cv = text(sample.cv);
@@ -74,12 +75,16 @@ ChannelRecord record_of(const mpm_ChannelStatus& sample) {
   return record;
 }
 
-AlarmRecord record_of(const mpm_Alarm& sample) { return alarm_record(sample, sample.state); }
+report::AlarmRecord record_of(const mpm_Alarm& sample) {
+  return alarm_record(sample, sample.state);
+}
 
-AlarmRecord record_of(const mpm_AlarmEvent& sample) { return alarm_record(sample, sample.to); }
+report::AlarmRecord record_of(const mpm_AlarmEvent& sample) {
+  return alarm_record(sample, sample.to);
+}
 
-HealthRecord record_of(const mpm_Health& sample) {
-  HealthRecord record;
+report::HealthRecord record_of(const mpm_Health& sample) {
+  report::HealthRecord record;
   record.unit = text(sample.unit);
   record.state = text(sample.state);
   record.detail = text(sample.detail);
@@ -103,4 +108,4 @@ HealthRecord record_of(const mpm_Health& sample) {
   return record;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

@@ -2,22 +2,22 @@
 
 #include <vector>
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
 // The C types have no const; writing does not touch what they point to.
 char* borrow(const std::string& text) { return const_cast<char*>(text.c_str()); }
 
-std::vector<mpm_CauseParameter> parameters_of(const NamedCause& named) {
+std::vector<mpm_CauseParameter> parameters_of(const report::NamedCause& named) {
   std::vector<mpm_CauseParameter> parameters;
-  for (const CauseParameter& parameter : named.parameters)
+  for (const report::CauseParameter& parameter : named.parameters)
     parameters.push_back({borrow(parameter.name), parameter.value, parameter.low, parameter.high});
   return parameters;
 }
 
 // mpm_Alarm and mpm_AlarmEvent differ in one name.
 template <class T>
-T alarm_sample(const AlarmRecord& record, std::vector<mpm_CauseParameter>& parameters) {
+T alarm_sample(const report::AlarmRecord& record, std::vector<mpm_CauseParameter>& parameters) {
   T sample{};
   sample.unit = borrow(record.unit);
   sample.mv = borrow(record.mv);
@@ -46,7 +46,7 @@ OutputWriters::OutputWriters(const idl::Participant& participant)
       alarm_event_(participant, idl::kAlarmEventTopic, idl::alarm_event_writer_qos()),
       health_(participant, idl::kHealthTopic, idl::health_qos()) {}
 
-bool OutputWriters::write(const ChannelRecord& record) const {
+bool OutputWriters::write(const report::ChannelRecord& record) const {
   const auto count = static_cast<std::uint32_t>(record.partial_correlations.size());
   mpm_ChannelStatus sample{};
   sample.unit = borrow(record.unit);
@@ -84,19 +84,19 @@ bool OutputWriters::write(const ChannelRecord& record) const {
   return channel_status_.write(sample);
 }
 
-bool OutputWriters::write(const AlarmRecord& record) const {
+bool OutputWriters::write(const report::AlarmRecord& record) const {
   const bool event_written = write_event(record);
   return write_state(record) && event_written;
 }
 
-bool OutputWriters::write_event(const AlarmRecord& record) const {
+bool OutputWriters::write_event(const report::AlarmRecord& record) const {
   std::vector<mpm_CauseParameter> parameters = parameters_of(record.named);
   auto event = alarm_sample<mpm_AlarmEvent>(record, parameters);
   event.to = borrow(record.to);
   return alarm_event_.write(event);
 }
 
-bool OutputWriters::write_state(const AlarmRecord& record) const {
+bool OutputWriters::write_state(const report::AlarmRecord& record) const {
   static const std::string active = "active";
   std::vector<mpm_CauseParameter> parameters = parameters_of(record.named);
   auto state = alarm_sample<mpm_Alarm>(record, parameters);
@@ -104,7 +104,7 @@ bool OutputWriters::write_state(const AlarmRecord& record) const {
   return alarm_.write(state);
 }
 
-bool OutputWriters::write(const HealthRecord& record) const {
+bool OutputWriters::write(const report::HealthRecord& record) const {
   mpm_Health sample{};
   sample.unit = borrow(record.unit);
   sample.state = borrow(record.state);
@@ -129,4 +129,4 @@ bool OutputWriters::write(const HealthRecord& record) const {
   return health_.write(sample);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

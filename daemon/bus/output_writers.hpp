@@ -1,10 +1,10 @@
 #pragma once
 
-#include "daemon/bus/health.hpp"
+#include "daemon/report/health.hpp"
 #include "daemon/report/records.hpp"
 #include "idl/writer.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 
 /// Everything the daemon ever writes on one domain, all units. None of these waits for a reader;
 /// false means that the sample could not be handed over.
@@ -12,13 +12,13 @@ class OutputWriters {
  public:
   explicit OutputWriters(const idl::Participant& participant);
 
-  [[nodiscard]] bool write(const ChannelRecord& record) const;
+  [[nodiscard]] bool write(const report::ChannelRecord& record) const;
   /// The change as an event, and as the state that late joiners get.
-  [[nodiscard]] bool write(const AlarmRecord& record) const;
+  [[nodiscard]] bool write(const report::AlarmRecord& record) const;
   /// The state only: what holds before the first change, and what is learnt of an alarm later.
-  [[nodiscard]] bool write_state(const AlarmRecord& record) const;
-  [[nodiscard]] bool write_event(const AlarmRecord& record) const;
-  [[nodiscard]] bool write(const HealthRecord& record) const;
+  [[nodiscard]] bool write_state(const report::AlarmRecord& record) const;
+  [[nodiscard]] bool write_event(const report::AlarmRecord& record) const;
+  [[nodiscard]] bool write(const report::HealthRecord& record) const;
 
  private:
   idl::Writer<mpm_ChannelStatus> channel_status_;
@@ -27,4 +27,4 @@ class OutputWriters {
   idl::Writer<mpm_Health> health_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

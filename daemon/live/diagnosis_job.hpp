@@ -9,7 +9,7 @@
 #include "daemon/live/frame_ring.hpp"
 #include "daemon/report/records.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 /// One diagnosis to be made; holds copies only, so that it may outlive who asked.
 struct DiagnosisJob {
@@ -26,11 +26,11 @@ struct DiagnosisOutcome {
   int asker = 0;
   std::int64_t interval = 0;  ///< of the last sample diagnosed
   std::int64_t time_ns = 0;
-  std::string headline;            ///< what was found; empty where there was no diagnosis
-  std::string problem;             ///< why there was none
-  std::vector<NamedCause> causes;  ///< of each channel; inputs outermost, CVs innermost
-  std::string folder;              ///< where the report lies; may be empty
-  std::string file_problem;        ///< why it does not
+  std::string headline;                    ///< what was found; empty where there was no diagnosis
+  std::string problem;                     ///< why there was none
+  std::vector<report::NamedCause> causes;  ///< of each channel; inputs outermost, CVs innermost
+  std::string folder;                      ///< where the report lies; may be empty
+  std::string file_problem;                ///< why it does not
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

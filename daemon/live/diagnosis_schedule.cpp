@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 // Fewer tell nothing about a gain.
@@ -35,4 +35,4 @@ int unseen_rows(int rows, std::int64_t rows_since_alarm) {
       std::min<std::int64_t>(rows / 3, std::max(kFewestUnseen, rows_since_alarm / 2)));
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 struct ScheduleSettings {
   int needed_rows = 0;         ///< fewer are no diagnosis
@@ -38,4 +38,4 @@ class DiagnosisSchedule {
 /// alarm, because the fit has to see the change as well, but never more than the usual third.
 [[nodiscard]] int unseen_rows(int rows, std::int64_t rows_since_alarm);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

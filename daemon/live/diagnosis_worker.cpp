@@ -8,9 +8,9 @@
 #include <mutex>
 #include <vector>
 
-#include "daemon/service/low_priority.hpp"
+#include "daemon/host/low_priority.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 struct DiagnosisWorker::State {
   Work work;
@@ -80,7 +80,7 @@ bool DiagnosisWorker::stop(std::chrono::milliseconds patience) {
 }
 
 void DiagnosisWorker::run(State& state) {
-  take_low_priority("mpm-diagnosis");
+  host::take_low_priority("mpm-diagnosis");
   const GoOn go_on = [&state] { return !state.stopped; };
   std::unique_lock lock(state.mutex);
   while (true) {
@@ -114,4 +114,4 @@ void DiagnosisWorker::run(State& state) {
   state.changed.notify_all();
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

@@ -8,7 +8,7 @@
 
 #include "daemon/live/diagnosis_job.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 /// One thread of low priority that diagnoses, one job after the other. Of each asker at most one
 /// job waits, the youngest. No call but stop() ever waits for the thread: where it is just now
@@ -41,4 +41,4 @@ class DiagnosisWorker {
   std::thread thread_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -73,4 +73,4 @@ RingCopy FrameRing::copy() const {
   return copy;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

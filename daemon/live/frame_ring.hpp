@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/identify/recording.hpp"
+#include "core/identify/fit/recording.hpp"
 #include "core/signal/frame.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 /// A copy of the ring's rows, oldest first: MVs, DVs, CVs; NaN where a value is not known.
 struct RingCopy {
@@ -47,4 +47,4 @@ class FrameRing {
   std::vector<double> values_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

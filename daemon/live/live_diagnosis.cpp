@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 ScheduleSettings schedule_of(const config::UnitConfig& unit) {
@@ -31,7 +31,7 @@ LiveDiagnosis::LiveDiagnosis(std::shared_ptr<const config::UnitConfig> unit,
       ring_(unit_->counts(), unit_->monitor.diagnosis_samples),
       schedule_(schedule_of(*unit_)) {}
 
-void LiveDiagnosis::note(const AlarmRecord& change) {
+void LiveDiagnosis::note(const report::AlarmRecord& change) {
   if (change.to != "active") {
     alarms_.erase({change.mv, change.cv});
     return;
@@ -42,10 +42,10 @@ void LiveDiagnosis::note(const AlarmRecord& change) {
   youngest_alarm_ns_ = change.source_time_ns;
 }
 
-void LiveDiagnosis::push(const Frame& frame, const std::vector<AlarmRecord>& changes) {
+void LiveDiagnosis::push(const Frame& frame, const std::vector<report::AlarmRecord>& changes) {
   ring_.push(frame);
   bool raised = false;
-  for (const AlarmRecord& change : changes) {
+  for (const report::AlarmRecord& change : changes) {
     note(change);
     raised = raised || change.to == "active";
   }
@@ -63,8 +63,8 @@ std::optional<DiagnosisOutcome> LiveDiagnosis::poll() {
   return worker_.take(asker_);
 }
 
-std::vector<AlarmRecord> LiveDiagnosis::diagnosed(const DiagnosisOutcome& outcome) const {
-  std::vector<AlarmRecord> records;
+std::vector<report::AlarmRecord> LiveDiagnosis::diagnosed(const DiagnosisOutcome& outcome) const {
+  std::vector<report::AlarmRecord> records;
   for (const auto& [tags, standing] : alarms_) {
     if (standing.alarm.interval > outcome.interval || standing.channel >= outcome.causes.size())
       continue;
@@ -75,4 +75,4 @@ std::vector<AlarmRecord> LiveDiagnosis::diagnosed(const DiagnosisOutcome& outcom
   return records;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

@@ -11,7 +11,7 @@
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/frame_ring.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 /// The diagnoses of one unit: keeps its last samples, has them diagnosed while an alarm stands, and
 /// adds to the alarms what comes of it.
@@ -21,19 +21,19 @@ class LiveDiagnosis {
   LiveDiagnosis(std::shared_ptr<const config::UnitConfig> unit, DiagnosisWorker& worker, int asker);
 
   /// After a frame was judged, and its outputs written: with the alarms that it changed.
-  void push(const Frame& frame, const std::vector<AlarmRecord>& changes);
+  void push(const Frame& frame, const std::vector<report::AlarmRecord>& changes);
   /// Now and then: starts what could not be started, and hands over what has been found.
   [[nodiscard]] std::optional<DiagnosisOutcome> poll();
   /// The alarms that stand, with what `outcome` says of them; none that it could not know of.
-  [[nodiscard]] std::vector<AlarmRecord> diagnosed(const DiagnosisOutcome& outcome) const;
+  [[nodiscard]] std::vector<report::AlarmRecord> diagnosed(const DiagnosisOutcome& outcome) const;
 
  private:
   struct Standing {
-    AlarmRecord alarm;
+    report::AlarmRecord alarm;
     std::size_t channel = 0;  // inputs outermost
   };
 
-  void note(const AlarmRecord& change);
+  void note(const report::AlarmRecord& change);
 
   std::shared_ptr<const config::UnitConfig> unit_;
   DiagnosisWorker& worker_;
@@ -45,4 +45,4 @@ class LiveDiagnosis {
   std::optional<DiagnosisJob> pending_;  // the worker had no time to take it
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

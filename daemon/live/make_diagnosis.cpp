@@ -2,20 +2,20 @@
 
 #include <exception>
 
-#include "core/identify/diagnosis.hpp"
-#include "daemon/io/read_recording.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
+#include "daemon/files/read_recording.hpp"
+#include "daemon/host/version.hpp"
 #include "daemon/live/named_cause.hpp"
-#include "daemon/report/explain.hpp"
-#include "daemon/service/version.hpp"
+#include "daemon/report/diagnosis/explain.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
-DiagnosisRun prepare(const DiagnosisJob& job) {
-  DiagnosisRun run;
+report::DiagnosisRun prepare(const DiagnosisJob& job) {
+  report::DiagnosisRun run;
   run.unit = *job.unit;
   run.recording = job.samples.recording(job.unit->sample_time_s);
-  run.program = version_text("mpmd");
+  run.program = host::version_text("mpmd");
   run.command_line = "mpmd, because of the alarm of " + time_folder(job.alarm_time_ns);
   run.config_file = job.unit->unit + " as mpmd runs it";
   run.data_file = "the last " + std::to_string(job.samples.rows()) + " samples of " +
@@ -25,9 +25,9 @@ DiagnosisRun prepare(const DiagnosisJob& job) {
   return run;
 }
 
-std::string headline_of(const DiagnosisRun& run) {
-  std::string text = verdict_headline(run);
-  for (const Finding& finding : run.diagnosis.findings) text += " " + explain(run, finding);
+std::string headline_of(const report::DiagnosisRun& run) {
+  std::string text = report::verdict_headline(run);
+  for (const Finding& finding : run.diagnosis.findings) text += " " + report::explain(run, finding);
   return text;
 }
 
@@ -36,8 +36,8 @@ std::string headline_of(const DiagnosisRun& run) {
 std::optional<DiagnosisOutcome> make_diagnosis(const DiagnosisJob& job, const ReportStore& store,
                                                const DiagnosisWorker::GoOn& go_on) {
   DiagnosisOutcome outcome;
-  DiagnosisRun run = prepare(job);
-  outcome.problem = io::recording_problem(run.recording, needed_samples(run.unit.model));
+  report::DiagnosisRun run = prepare(job);
+  outcome.problem = files::recording_problem(run.recording, needed_samples(run.unit.model));
   if (!outcome.problem.empty()) return outcome;
   DiagnosisSettings settings;
   settings.mv_count = run.unit.counts().mv;
@@ -56,4 +56,4 @@ std::optional<DiagnosisOutcome> make_diagnosis(const DiagnosisJob& job, const Re
   return outcome;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

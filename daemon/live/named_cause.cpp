@@ -2,45 +2,48 @@
 
 #include <algorithm>
 
-#include "daemon/report/explain.hpp"
+#include "core/identify/causes/cause.hpp"
+#include "daemon/report/diagnosis/explain.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
-bool touches(const Subject& subject, int input, int cv) {
-  return (subject.cv < 0 || subject.cv == cv) && (subject.input < 0 || subject.input == input);
+bool touches(const Place& place, int input, int cv) {
+  return (place.cv < 0 || place.cv == cv) && (place.input < 0 || place.input == input);
 }
 
-NamedCause cause_of(const DiagnosisRun& run, int input, int cv) {
+report::NamedCause cause_of(const report::DiagnosisRun& run, int input, int cv) {
   const std::vector<Finding>& findings = run.diagnosis.findings;
-  NamedCause named;
+  report::NamedCause named;
   const auto own = std::find_if(findings.begin(), findings.end(), [=](const Finding& finding) {
-    return touches(finding.subject, input, cv);
+    return touches(finding.subject.place, input, cv);
   });
   if (own != findings.end()) {
-    named.cause = name_of(own->subject.cause);
-    named.text = explain(run, *own);
+    named.cause = own->subject.cause->name().text;
+    named.text = report::explain(run, *own);
     named.confidence = own->confidence;
     for (const Parameter& parameter : own->parameters)
-      named.parameters.push_back({parameter.name, parameter.value, parameter.low, parameter.high});
+      named.parameters.push_back(
+          {parameter.name(), parameter.value, parameter.low, parameter.high});
     return named;
   }
-  const auto on_cv = std::find_if(findings.begin(), findings.end(),
-                                  [=](const Finding& finding) { return finding.subject.cv == cv; });
+  const auto on_cv = std::find_if(findings.begin(), findings.end(), [=](const Finding& finding) {
+    return finding.subject.place.cv == cv;
+  });
   named.text = on_cv == findings.end()
-                   ? verdict_sentence(run)
-                   : "Not this channel, but another of its CV: " + explain(run, *on_cv);
+                   ? report::verdict_sentence(run)
+                   : "Not this channel, but another of its CV: " + report::explain(run, *on_cv);
   return named;
 }
 
 }  // namespace
 
-std::vector<NamedCause> causes_of_channels(const DiagnosisRun& run) {
+std::vector<report::NamedCause> causes_of_channels(const report::DiagnosisRun& run) {
   const SignalCounts counts = run.unit.counts();
-  std::vector<NamedCause> causes;
+  std::vector<report::NamedCause> causes;
   for (int input = 0; input < counts.inputs(); ++input)
     for (int cv = 0; cv < counts.cv; ++cv) causes.push_back(cause_of(run, input, cv));
   return causes;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

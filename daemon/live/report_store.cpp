@@ -11,7 +11,7 @@
 
 #include "daemon/report/report_files.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,16 +68,16 @@ std::string unit_folder(const std::string& unit) {
 ReportStore::ReportStore(std::string folder, std::size_t kept)
     : folder_(std::move(folder)), kept_(kept) {}
 
-std::string ReportStore::write(const DiagnosisRun& run, std::int64_t alarm_time_ns) const {
+std::string ReportStore::write(const report::DiagnosisRun& run, std::int64_t alarm_time_ns) const {
   if (folder_.empty()) return {};
   const fs::path unit = fs::path(folder_) / unit_folder(run.unit.unit);
   const fs::path place = unit / time_folder(alarm_time_ns);
-  io::OutputFolder folder(place.string());
-  write_reports(run, folder);
+  files::OutputFolder folder(place.string());
+  report::write_reports(run, folder);
   folder.commit();
   fs::last_write_time(place, fs::file_time_type::clock::now());  // renaming within may not tell
   prune(unit, place, kept_);
   return place.string();
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

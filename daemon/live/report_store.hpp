@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "daemon/report/diagnosis_run.hpp"
+#include "daemon/report/diagnosis/diagnosis_run.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 
 /// The reports of the daemon's diagnoses: STATE/UNIT/20240501T120000Z/report.html and so on. A
 /// later diagnosis of the same alarm takes the place of the earlier one.
@@ -18,7 +18,7 @@ class ReportStore {
 
   /// Returns where the report lies; empty if nothing is kept. Throws std::exception where it cannot
   /// be written.
-  std::string write(const DiagnosisRun& run, std::int64_t alarm_time_ns) const;
+  std::string write(const report::DiagnosisRun& run, std::int64_t alarm_time_ns) const;
 
  private:
   std::string folder_;
@@ -30,4 +30,4 @@ class ReportStore {
 /// The unit's name as the name of a folder: whatever a path might misread is %XX.
 [[nodiscard]] std::string unit_folder(const std::string& unit);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

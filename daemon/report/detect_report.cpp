@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) / 1e9; }
@@ -100,4 +100,4 @@ std::string to_text(const DetectReport& report) {
   return text;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

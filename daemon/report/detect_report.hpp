@@ -7,7 +7,7 @@
 
 #include "daemon/report/records.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// What `mpm detect` found in a file: the verdicts after its last row and every alarm on the way.
 struct DetectReport {
@@ -29,4 +29,4 @@ struct DetectReport {
 /// The same for a person.
 [[nodiscard]] std::string to_text(const DetectReport& report);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

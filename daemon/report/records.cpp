@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 nlohmann::ordered_json to_json(const ChannelRecord& record) {
   nlohmann::ordered_json json{{"record", "channel"},
@@ -80,4 +80,4 @@ nlohmann::ordered_json to_json(const AlarmRecord& record) {
   return json;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

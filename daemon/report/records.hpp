@@ -8,7 +8,7 @@
 /// What the monitor says, as records with tags instead of indices. The DDS output topics, the
 /// JSON lines of daemon and `mpm detect`, and `mpm watch` all carry these, so one serialiser makes
 /// them byte-identical.
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// One channel after one sample; topic mpm/channel_status.
 struct ChannelRecord {
@@ -73,4 +73,4 @@ struct AlarmRecord {
 /// `mpm watch` are the same lines, whether or not somebody had time for a diagnosis.
 [[nodiscard]] nlohmann::ordered_json to_json(const AlarmRecord& record);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

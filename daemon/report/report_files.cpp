@@ -1,13 +1,13 @@
 #include "daemon/report/report_files.hpp"
 
-#include "daemon/report/diagnosis_report.hpp"
-#include "daemon/report/extended_unit.hpp"
-#include "daemon/report/page.hpp"
-#include "daemon/report/page_data.hpp"
+#include "daemon/report/diagnosis/diagnosis_report.hpp"
+#include "daemon/report/diagnosis/extended_unit.hpp"
+#include "daemon/report/page/page.hpp"
+#include "daemon/report/page/page_data.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
-std::string write_reports(const DiagnosisRun& run, io::OutputFolder& folder) {
+std::string write_reports(const DiagnosisRun& run, files::OutputFolder& folder) {
   folder.write("extended.yaml", extended_yaml(run));
   std::string json = to_json(run).dump(2) + "\n";
   folder.write("report.json", json);
@@ -15,4 +15,4 @@ std::string write_reports(const DiagnosisRun& run, io::OutputFolder& folder) {
   return json;
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

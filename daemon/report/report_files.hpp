@@ -2,13 +2,13 @@
 
 #include <string>
 
-#include "daemon/io/output_folder.hpp"
-#include "daemon/report/diagnosis_run.hpp"
+#include "daemon/files/output_folder.hpp"
+#include "daemon/report/diagnosis/diagnosis_run.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// The files of a diagnosis, whoever asked for it: extended.yaml, report.json and report.html.
 /// Returns the text of report.json. They appear when `folder` is committed.
-std::string write_reports(const DiagnosisRun& run, io::OutputFolder& folder);
+std::string write_reports(const DiagnosisRun& run, files::OutputFolder& folder);
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-namespace mpm::daemon {
+namespace mpm::report {
 namespace {
 
 std::vector<bool> predictions_of(const config::UnitConfig& config) {
@@ -110,4 +110,4 @@ void UnitMonitor::fill() const {
   }
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

@@ -7,7 +7,7 @@
 #include "core/monitor/monitor.hpp"
 #include "daemon/report/records.hpp"
 
-namespace mpm::daemon {
+namespace mpm::report {
 
 /// The monitor of one unit, speaking in tags: frames in, records out. The daemon and `mpm detect`
 /// both go through here, so that the same frames give the same records.
@@ -38,4 +38,4 @@ class UnitMonitor {
   std::vector<AlarmRecord> alarms_;
 };
 
-}  // namespace mpm::daemon
+}  // namespace mpm::report

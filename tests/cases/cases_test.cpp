@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
-#include "daemon/io/csv_reader.hpp"
+#include "daemon/files/csv/csv_reader.hpp"
 #include "tests/cases/recordings.hpp"
 #include "tests/system/process.hpp"
 
@@ -183,7 +183,7 @@ TEST_CASE("The cases' recordings are read to the last row") {
     REQUIRE(unit.findings.empty());
     const std::optional<std::string> file = find(recordings, one.recording);
     if (!file) continue;
-    io::CsvReader reader(*file, unit.config);
+    files::CsvReader reader(*file, unit.config);
     Frame frame;
     long rows = 0;
     std::int64_t last = -1;

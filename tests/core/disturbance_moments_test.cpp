@@ -2,8 +2,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/identify/square_waves.hpp"
-#include "core/identify/step_moments.hpp"
+#include "core/identify/causes/square_waves.hpp"
+#include "core/identify/causes/step_moments.hpp"
 
 // What is hidden: a step of 1 at row 613 in wandering noise whose own changes over a hundred rows
 // are larger, and a square wave. Both are found at their very row, since whitening makes them

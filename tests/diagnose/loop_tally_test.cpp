@@ -1,4 +1,4 @@
-#include "daemon/closed_loop/loop_tally.hpp"
+#include "daemon/report/closed_loop/loop_tally.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -35,7 +35,7 @@ Frame frame(const config::UnitConfig& config, double u, double v, double y, doub
 
 TEST_CASE("a loop's errors and its time at limits are counted, what is bad left out") {
   const config::UnitConfig config = unit();
-  daemon::LoopTally tally(config, daemon::limits_in(config, {}));
+  report::LoopTally tally(config, report::limits_in(config, {}));
   CHECK(std::isnan(tally.error_variance(0)));
   tally.add(frame(config, 20.0, 4.0, 1.0, 2.0));
   tally.add(frame(config, 0.0, 3.9, 3.0, 2.0));
@@ -48,7 +48,7 @@ TEST_CASE("a loop's errors and its time at limits are counted, what is bad left 
 TEST_CASE("a scenario's limits replace the unit file's") {
   config::ScenarioConfig scenario;
   scenario.mv_limits = {{"u", 0.5, {}, {}, {}}, {"v", 1.0, {}, 3.0, {}}};
-  const std::vector<config::MvLimits> limits = daemon::limits_in(unit(), scenario);
+  const std::vector<config::MvLimits> limits = report::limits_in(unit(), scenario);
   CHECK(limits[0].low == 5.0);
   CHECK(limits[0].high == 15.0);
   CHECK(limits[1].high == 3.0);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/report/page.hpp"
-#include "daemon/report/page_data.hpp"
+#include "daemon/report/page/page.hpp"
+#include "daemon/report/page/page_data.hpp"
 #include "tests/diagnose/sample_run.hpp"
 
 namespace mpm::test {
@@ -59,8 +59,8 @@ std::vector<std::string> unbalanced(const std::string& html) {
   return open;
 }
 
-std::string page_of(const daemon::DiagnosisRun& run) {
-  return daemon::page_html(daemon::page_data(run));
+std::string page_of(const report::DiagnosisRun& run) {
+  return report::page_html(report::page_data(run));
 }
 
 TEST_CASE("the page is whole, well formed and holds everything") {
@@ -102,7 +102,7 @@ TEST_CASE("the page needs nothing from elsewhere") {
 }
 
 TEST_CASE("no name of the unit file can break out of the page") {
-  daemon::DiagnosisRun run = sample_run(600);
+  report::DiagnosisRun run = sample_run(600);
   run.unit.unit = "</script><b>&";
   run.unit.cv[2].tag = "y\"3</script><!--";
   run.unit.mv[0].description = "\xff not UTF-8";
@@ -121,18 +121,18 @@ TEST_CASE("a long recording is thinned until the page is small") {
 }
 
 TEST_CASE("a second recording has its own plots") {
-  daemon::DiagnosisRun run = sample_run(600);
+  report::DiagnosisRun run = sample_run(600);
   run.validation = run.recording;
   run.diagnosis.validation_before = run.diagnosis.before;
   run.diagnosis.validation_after = run.diagnosis.after;
-  const nlohmann::ordered_json data = daemon::page_data(run);
+  const nlohmann::ordered_json data = report::page_data(run);
   CHECK(data["sets"].size() == 2);
   CHECK(data["sets"][0]["boundary"].is_null());
   CHECK(data["cvs"][1]["sets"][1]["after"].size() == 600);
 }
 
 TEST_CASE("a diagnosis without simulations still makes a page") {
-  daemon::DiagnosisRun run = matching_run();
+  report::DiagnosisRun run = matching_run();
   run.diagnosis.before.resize(0, 0);
   run.diagnosis.after.resize(0, 0);
   run.diagnosis.scores.clear();
@@ -143,18 +143,18 @@ TEST_CASE("a diagnosis without simulations still makes a page") {
 TEST_CASE("write pages to look at", "[.page]") {
   const char* folder = std::getenv("MPM_PAGE_FOLDER");
   REQUIRE(folder != nullptr);
-  const auto write = [&](const char* name, const daemon::DiagnosisRun& run) {
-    std::ofstream(std::string(folder) + "/" + name) << daemon::page_html(daemon::page_data(run));
+  const auto write = [&](const char* name, const report::DiagnosisRun& run) {
+    std::ofstream(std::string(folder) + "/" + name) << report::page_html(report::page_data(run));
   };
   write("mismatch.html", sample_run());
   write("match.html", matching_run());
   write("long.html", sample_run(60'000));
-  daemon::DiagnosisRun bent = sample_run();
+  report::DiagnosisRun bent = sample_run();
   bent.diagnosis.extended.input_blocks[0] = Stiction{0.08, 0.03};
   bent.diagnosis.extended.input_blocks[1] = Polynomial{{0.8, 0.9}};
   bent.diagnosis.extended.output_blocks[2] = Saturation{-2.0, 2.5};
   write("bent.html", bent);
-  daemon::DiagnosisRun dates = sample_run();
+  report::DiagnosisRun dates = sample_run();
   dates.recording.start_s = 1767225600.0;
   dates.recording.sample_time_s = 60.0;
   dates.diagnosis.findings[2].onset_s = dates.recording.start_s + 2100.0 * 60.0;

@@ -2,16 +2,16 @@
 #include <cmath>
 
 #include "config/load_unit.hpp"
-#include "daemon/report/diagnosis_report.hpp"
-#include "daemon/report/explain.hpp"
-#include "daemon/report/extended_unit.hpp"
+#include "daemon/report/diagnosis/diagnosis_report.hpp"
+#include "daemon/report/diagnosis/explain.hpp"
+#include "daemon/report/diagnosis/extended_unit.hpp"
 #include "tests/diagnose/sample_run.hpp"
 
 namespace mpm::test {
 namespace {
 
-using daemon::DiagnosisRun;
 using nlohmann::ordered_json;
+using report::DiagnosisRun;
 
 std::vector<std::string> keys(const ordered_json& object) {
   std::vector<std::string> names;
@@ -24,7 +24,7 @@ bool holds(const std::string& text, const std::string& part) {
 }
 
 TEST_CASE("report.json has the keys of its contract") {
-  const ordered_json report = ordered_json::parse(daemon::to_json(sample_run()).dump());
+  const ordered_json report = ordered_json::parse(report::to_json(sample_run()).dump());
   CHECK(report["unit"] == "shell");
   CHECK(report["samples"] == 3000);
   CHECK(report["fit_samples"] == 2000);
@@ -69,24 +69,24 @@ TEST_CASE("report.json has the keys of its contract") {
 
 TEST_CASE("a match has no findings and an undetermined verdict a reason") {
   DiagnosisRun run = matching_run();
-  ordered_json report = daemon::to_json(run);
+  ordered_json report = report::to_json(run);
   CHECK(report["verdict"] == "match");
   CHECK(report["findings"].empty());
   run.diagnosis.verdict = DiagnosisVerdict::kUndetermined;
   run.diagnosis.reason = "u2 hardly moves";
-  report = daemon::to_json(run);
+  report = report::to_json(run);
   CHECK(report["verdict"] == "undetermined");
   CHECK(report["reason"] == "u2 hardly moves");
   CHECK(report["details"] == "u2 hardly moves.");
   run.diagnosis.reason = "too little moves";
-  CHECK(daemon::to_json(run)["details"] == "Too little moves.");
+  CHECK(report::to_json(run)["details"] == "Too little moves.");
 }
 
 TEST_CASE("what is not a number is null, and the report stays JSON") {
   DiagnosisRun run = sample_run(600);
   run.diagnosis.scores[0].rmse_after = std::nan("");
   run.diagnosis.findings[0].parameters[0].high = HUGE_VAL;
-  const ordered_json report = ordered_json::parse(daemon::to_json(run).dump());
+  const ordered_json report = ordered_json::parse(report::to_json(run).dump());
   CHECK(report["validation"][0]["rmse_after"].is_null());
   CHECK(report["findings"][0]["interval"]["gain_ratio"][1].is_null());
 }
@@ -110,7 +110,7 @@ TEST_CASE("every cause is explained in a sentence with its tags") {
     Finding finding;
     finding.subject = std::move(subject);
     if (with_parameters) finding.parameters = parameters;
-    return daemon::explain(run, finding);
+    return report::explain(run, finding);
   };
   for (const bool with : {true, false}) {
     for (int i = 0; i <= static_cast<int>(Cause::kStateNonlinearity); ++i) {
@@ -137,19 +137,19 @@ TEST_CASE("every cause is explained in a sentence with its tags") {
 
 TEST_CASE("the extended unit takes new inputs as DVs, at the place that the model gives them") {
   DiagnosisRun run = sample_run(600);
-  const config::UnitConfig unit = daemon::extended_unit(run.unit, run.diagnosis);
+  const config::UnitConfig unit = report::extended_unit(run.unit, run.diagnosis);
   REQUIRE(unit.dv.size() == 1);
   CHECK(unit.dv[0].tag == "t_amb");
   REQUIRE(unit.aux.size() == 1);
   CHECK(unit.aux[0].tag == "p_feed");
   CHECK(unit.input_tag(3) == "t_amb");
   run.diagnosis.new_inputs = {1, 0};
-  CHECK_THROWS_AS(daemon::extended_unit(run.unit, run.diagnosis), std::logic_error);
+  CHECK_THROWS_AS(report::extended_unit(run.unit, run.diagnosis), std::logic_error);
 }
 
 TEST_CASE("extended.yaml says what was changed and loads back as it was found") {
   const DiagnosisRun run = sample_run(3000);
-  const std::string text = daemon::extended_yaml(run);
+  const std::string text = report::extended_yaml(run);
   CHECK(text.rfind("# Written by mpm 0.1.0", 0) == 0);
   CHECK(holds(text, "# - y3 answers u3 40 % more"));
   CHECK(holds(text, "t_amb was under `aux`"));
@@ -168,13 +168,13 @@ TEST_CASE("extended.yaml says what was changed and loads back as it was found") 
   CHECK(model.disturbances[0].onset_s == 2100.0);
 
   const config::LoadResult same =
-      config::load_unit_text(daemon::extended_yaml(matching_run()), "extended.yaml");
+      config::load_unit_text(report::extended_yaml(matching_run()), "extended.yaml");
   REQUIRE(same.ok());
   CHECK(same.config.model.channels.size() == 9);
 }
 
 TEST_CASE("the terminal summary names verdict, findings and gains") {
-  const std::string text = daemon::to_text(sample_run());
+  const std::string text = report::to_text(sample_run());
   CHECK(holds(text, "The model of shell does not match the plant: 3 causes were found."));
   CHECK(holds(text, "1. gain of u3 -> y3"));
   CHECK(holds(text, "or: output_disturbance (drift) on y2"));

@@ -133,8 +133,8 @@ void add_noise(Eigen::MatrixXd& cvs) {
 
 }  // namespace
 
-daemon::DiagnosisRun sample_run(int samples) {
-  daemon::DiagnosisRun run;
+report::DiagnosisRun sample_run(int samples) {
+  report::DiagnosisRun run;
   run.unit = unit();
   run.recording = inputs(run.unit, samples);
   Diagnosis& diagnosis = run.diagnosis;
@@ -179,7 +179,7 @@ daemon::DiagnosisRun sample_run(int samples) {
                                      diagnosis.before.col(cv).tail(unseen),
                                      diagnosis.after.col(cv).tail(unseen)));
   diagnosis.scores[1].refused = true;
-  run.closed_loop = daemon::ClosedLoop{"hidden_gain",
+  run.closed_loop = report::ClosedLoop{"hidden_gain",
                                        {101, 102, 103},
                                        3000,
                                        {"t_amb"},
@@ -195,8 +195,8 @@ daemon::DiagnosisRun sample_run(int samples) {
   return run;
 }
 
-daemon::DiagnosisRun matching_run() {
-  daemon::DiagnosisRun run = sample_run(1000);
+report::DiagnosisRun matching_run() {
+  report::DiagnosisRun run = sample_run(1000);
   run.recording.cvs = run.diagnosis.before;
   add_noise(run.recording.cvs);
   run.diagnosis.after = run.diagnosis.before;

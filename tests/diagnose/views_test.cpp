@@ -3,17 +3,17 @@
 #include <numbers>
 #include <random>
 
-#include "daemon/report/lag_correlation.hpp"
-#include "daemon/report/model_views.hpp"
-#include "daemon/report/number_text.hpp"
-#include "daemon/report/residual_views.hpp"
-#include "daemon/report/spectrum.hpp"
+#include "daemon/report/diagnosis/number_text.hpp"
+#include "daemon/report/page/lag_correlation.hpp"
+#include "daemon/report/page/model_views.hpp"
+#include "daemon/report/page/residual_views.hpp"
+#include "daemon/report/page/spectrum.hpp"
 #include "tests/diagnose/sample_run.hpp"
 
 namespace mpm::test {
 namespace {
 
-using namespace mpm::daemon;
+using namespace mpm::report;
 
 const double kNaN = std::nan("");
 

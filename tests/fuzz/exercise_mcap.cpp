@@ -3,10 +3,10 @@
 #include <stdexcept>
 
 #include "config/finding.hpp"
+#include "daemon/bag/info_text.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
 #include "daemon/mcap/reader.hpp"
 #include "daemon/mcap/recover.hpp"
-#include "daemon/recording/info_text.hpp"
 
 namespace mpm::test {
 namespace {
@@ -49,7 +49,7 @@ void exercise_mcap(const std::string& path, const std::string& scratch) {
                            std::to_string(in_time_order));
   tolerate([&] { drain(*mcap::open_messages(path, {1'000, 2'000'000'000})); });
   tolerate([&] {
-    const recording::FileInfo info = recording::inspect(path);
+    const bag::FileInfo info = bag::inspect(path);
     static_cast<void>(to_text(info));
     static_cast<void>(to_json(info).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   });

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 #include "tests/hidden/hidden_case.hpp"
 
 namespace mpm::hidden {

@@ -85,8 +85,8 @@ std::vector<double> evidence_of(const Draft& draft, const std::vector<TruePlantS
 double weakest_part(const Draft& draft, const TruePlantSpec& healthy, const TruePlantSpec& plant,
                     const LoopRecord& record, const Surroundings& around) {
   const TrueEffect& effect = draft.truth.front();
-  const CvNoise& noise = draft.noise[static_cast<std::size_t>(effect.cv)];
-  const VectorXd whole = measured_by(plant, record, around).col(effect.cv);
+  const CvNoise& noise = draft.noise[static_cast<std::size_t>(effect.place.cv)];
+  const VectorXd whole = measured_by(plant, record, around).col(effect.place.cv);
   std::vector<VectorXd> parts;
   for (std::size_t i = 0; i < plant.channels.size(); ++i) {
     for (double TrueChannel::*number :
@@ -94,8 +94,8 @@ double weakest_part(const Draft& draft, const TruePlantSpec& healthy, const True
       if (plant.channels[i].*number == healthy.channels[i].*number) continue;
       TruePlantSpec without = plant;
       without.channels[i].*number = healthy.channels[i].*number;
-      parts.emplace_back(
-          (whole - measured_by(without, record, around).col(effect.cv)).head(draft.fit_samples));
+      parts.emplace_back((whole - measured_by(without, record, around).col(effect.place.cv))
+                             .head(draft.fit_samples));
     }
   }
   double least = std::numeric_limits<double>::infinity();

@@ -30,8 +30,8 @@ bool is_linear_error(const TrueEffect& effect) {
 }
 
 bool is_about(const TrueEffect& effect, const TrueChannel& channel) {
-  return (effect.cv < 0 || effect.cv == channel.cv) &&
-         (effect.input < 0 || effect.input == channel.input);
+  return (effect.place.cv < 0 || effect.place.cv == channel.cv) &&
+         (effect.place.input < 0 || effect.place.input == channel.input);
 }
 
 std::vector<double> sorted(const Eigen::VectorXd& values) {

@@ -7,8 +7,8 @@ namespace {
 
 /// Bends or scales what goes through channels, in place of adding to a CV.
 bool in_channels(const TrueEffect& effect) {
-  return effect.aux < 0 && effect.cause != Cause::kOutputDisturbance &&
-         effect.cause != Cause::kNoise && effect.cause != Cause::kOutputNonlinearity;
+  return effect.place.aux < 0 && !same_name(effect.cause, &causes::step_disturbance()) &&
+         effect.cause != &causes::noise() && effect.cause != &causes::output_saturation();
 }
 
 bool meet(int one, int other) { return one < 0 || other < 0 || one == other; }
@@ -50,9 +50,9 @@ void hide(Draft& draft, EffectClass effect_class) {
 }
 
 bool separable(const TrueEffect& one, const TrueEffect& other) {
-  if (one.cause == other.cause) return false;
-  return !(in_channels(one) && in_channels(other) && meet(one.cv, other.cv) &&
-           meet(one.input, other.input));
+  if (same_name(one.cause, other.cause)) return false;
+  return !(in_channels(one) && in_channels(other) && meet(one.place.cv, other.place.cv) &&
+           meet(one.place.input, other.place.input));
 }
 
 }  // namespace mpm::hidden

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
-#include "core/identify/finding.hpp"
+#include "core/identify/causes/catalog.hpp"
 #include "sim/signals/random_stream.hpp"
 #include "tests/hidden/cv_noise.hpp"
 #include "tests/hidden/effect_class.hpp"
@@ -18,9 +18,9 @@ namespace mpm::hidden {
 
 /// One thing that is hidden, in the words of the contract.
 struct TrueEffect {
-  std::optional<Cause> cause;  ///< none = nothing that the contract names
-  int cv = -1, input = -1, aux = -1;
-  std::string kind;  ///< as in `Subject`; for what has no cause, what it is
+  const Cause* cause = nullptr;  ///< null = nothing that the contract names
+  Place place = {};
+  std::string manner = {};  ///< of what has no cause: what it is
   /// Plant against model, with the names and units of the findings: gain_ratio,
   /// time_constant_ratio, dead_time_error (s), band, jump, width, low, high (input or CV units),
   /// quadratic, cubic, gain, time_constant, dead_time (s), size (of a drift: by the end of the
@@ -76,6 +76,11 @@ struct Draft {
   [[nodiscard]] double seconds(double samples_) const { return samples_ * unit.sample_time_s; }
   [[nodiscard]] double clock(int k) const { return start_s + seconds(k); }
 };
+
+/// Whether reports call both the same, whatever their kinds. Neither is null.
+[[nodiscard]] inline bool same_name(const Cause* one, const Cause* other) {
+  return &one->name() == &other->name();
+}
 
 // Each hides one effect of its class in the draft and adds it to the truth.
 void hide_in_channel(Draft& draft, EffectClass effect_class);  ///< gain .. output_scale, onset_*

@@ -91,7 +91,7 @@ struct Case {
 
 bool all_visible(const Draft& draft, const std::vector<double>& evidence, double least) {
   for (std::size_t i = 0; i < evidence.size(); ++i)
-    if (draft.truth[i].cause != Cause::kNoise && evidence[i] < least) return false;
+    if (draft.truth[i].cause != &causes::noise() && evidence[i] < least) return false;
   return true;
 }
 

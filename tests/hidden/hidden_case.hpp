@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/identify/recording.hpp"
+#include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
 #include "tests/hidden/draft.hpp"
 #include "tests/hidden/effect_class.hpp"

@@ -42,23 +42,24 @@ ModelSpec repaired(const HiddenCase& hidden) {
   };
   ModelSpec model = hidden.model;
   constexpr double kFar = 1e9;
-  if (effect.cause == Cause::kStiction || effect.cause == Cause::kInputNonlinearity) {
+  if (effect.cause->is_input_block()) {
     InputBlock block = Stiction{value("band", 0.0), value("jump", 0.0)};
-    if (effect.kind == "deadband") block = Deadband{value("width", 0.0)};
-    if (effect.kind == "polynomial")
+    if (effect.cause == &causes::deadband()) block = Deadband{value("width", 0.0)};
+    if (effect.cause == &causes::input_polynomial())
       block = Polynomial{{1.0, value("quadratic", 0.0), value("cubic", 0.0)}};
-    if (effect.kind == "saturation") block = Saturation{value("low", -kFar), value("high", kFar)};
+    if (effect.cause == &causes::input_saturation())
+      block = Saturation{value("low", -kFar), value("high", kFar)};
     model.input_blocks.resize(static_cast<std::size_t>(model.input_count));
-    model.input_blocks[static_cast<std::size_t>(effect.input)] = block;
-  } else if (effect.cause == Cause::kOutputNonlinearity) {
+    model.input_blocks[static_cast<std::size_t>(effect.place.input)] = block;
+  } else if (effect.cause == &causes::output_saturation()) {
     model.output_blocks.resize(static_cast<std::size_t>(model.cv_count));
-    model.output_blocks[static_cast<std::size_t>(effect.cv)] =
+    model.output_blocks[static_cast<std::size_t>(effect.place.cv)] =
         Saturation{value("low", -kFar), value("high", kFar)};
   } else {
     std::vector<sim::ChannelChange> changes;
     for (const ChannelSpec& channel : hidden.model.channels)
-      if ((effect.cv < 0 || channel.cv == effect.cv) &&
-          (effect.input < 0 || channel.input == effect.input))
+      if ((effect.place.cv < 0 || channel.cv == effect.place.cv) &&
+          (effect.place.input < 0 || channel.input == effect.place.input))
         changes.push_back({channel.cv, channel.input, value("gain_ratio", 1.0),
                            value("time_constant_ratio", 1.0), value("dead_time_error", 0.0)});
     model = sim::changed_model(model, changes);
@@ -148,8 +149,8 @@ TEST_CASE("a model with what the truth says is the true plant") {
     for (std::uint64_t seed = kSeed; seed < kSeed + 6; ++seed) {
       const HiddenCase hidden = draw_case(request(effect_class, "shell3x3", Setting::kPlain, seed));
       const TrueEffect& effect = hidden.truth.at(0);
-      CAPTURE(name_of(effect_class), seed, effect.kind);
-      if (effect_class == EffectClass::kInputNonlinearity && effect.cv >= 0)
+      CAPTURE(name_of(effect_class), seed, effect.manner);
+      if (effect_class == EffectClass::kInputNonlinearity && effect.place.cv >= 0)
         continue;  // one channel's own: not in the model yet
       const MatrixXd with = simulate_model(repaired(hidden), hidden.data.inputs);
       CHECK((with - hidden.noise_free).cwiseAbs().maxCoeff() < 1e-9);
@@ -173,8 +174,10 @@ TEST_CASE("an onset changes nothing before it") {
       const MatrixXd healthy = simulate(hidden.healthy_plant, hidden.data.inputs, hidden.data.aux);
       const MatrixXd difference = hidden.noise_free - healthy;
       CHECK(difference.topRows(onset).cwiseAbs().maxCoeff() < 1e-12);
-      CHECK(difference.col(effect.cv).tail(hidden.data.samples() - onset).cwiseAbs().maxCoeff() >
-            1e-3);
+      CHECK(difference.col(effect.place.cv)
+                .tail(hidden.data.samples() - onset)
+                .cwiseAbs()
+                .maxCoeff() > 1e-3);
     }
   }
 }

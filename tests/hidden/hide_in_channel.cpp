@@ -29,11 +29,10 @@ double dead_time_error(Draft& draft, const TrueChannel& channel) {
   return -draft.size * std::min(size, channel.dead_time);
 }
 
-TrueEffect about(Cause cause, const TrueChannel& channel) {
+TrueEffect about(const Cause& cause, const TrueChannel& channel) {
   TrueEffect effect;
-  effect.cause = cause;
-  effect.cv = channel.cv;
-  effect.input = channel.input;
+  effect.cause = &cause;
+  effect.place = {channel.cv, channel.input};
   return effect;
 }
 
@@ -56,7 +55,7 @@ void hide_dead_time(Draft& draft, TrueChannel& channel, TrueEffect& effect) {
 }
 
 TrueEffect hide_several(Draft& draft, TrueChannel& channel) {
-  TrueEffect effect = about(Cause::kDynamics, channel);
+  TrueEffect effect = about(causes::dynamics(), channel);
   const int left_out = draft.below(4);  // 3 = all three
   if (left_out != 0) hide_gain(draft, channel, effect);
   if (left_out != 1) hide_time_constant(draft, channel, effect);
@@ -68,11 +67,12 @@ TrueEffect hide_in_all(Draft& draft, EffectClass effect_class) {
   const bool input = effect_class == EffectClass::kInputScale;
   const double ratio = gain_ratio(draft, 0.25);
   TrueEffect effect;
-  effect.cause = input ? Cause::kInputScale : Cause::kOutputScale;
-  (input ? effect.input : effect.cv) = draft.below(input ? draft.mv_count() : draft.plant.cv_count);
+  effect.cause = input ? &causes::input_scale() : &causes::output_scale();
+  (input ? effect.place.input : effect.place.cv) =
+      draft.below(input ? draft.mv_count() : draft.plant.cv_count);
   effect.parameters["gain_ratio"] = ratio;
   for (TrueChannel& channel : draft.plant.channels)
-    if (channel.input == effect.input || channel.cv == effect.cv) channel.gain *= ratio;
+    if (channel.input == effect.place.input || channel.cv == effect.place.cv) channel.gain *= ratio;
   return effect;
 }
 
@@ -82,7 +82,7 @@ TrueEffect hide_change(Draft& draft, EffectClass effect_class, std::size_t place
   const bool gain = effect_class == EffectClass::kOnsetGain;
   const int onset = draft.onset_between(0.2, 0.6);
   TrueChannel after = draft.plant.channels[place];
-  TrueEffect effect = about(gain ? Cause::kGain : Cause::kDeadTime, after);
+  TrueEffect effect = about(gain ? causes::gain() : causes::dead_time(), after);
   if (gain)
     hide_gain(draft, after, effect);
   else
@@ -122,14 +122,14 @@ void hide_in_channel(Draft& draft, EffectClass effect_class) {
     return;
   }
   TrueChannel& channel = draft.plant.channels[place];
-  TrueEffect effect = about(Cause::kGain, channel);
+  TrueEffect effect = about(causes::gain(), channel);
   if (effect_class == EffectClass::kGain) {
     hide_gain(draft, channel, effect);
   } else if (effect_class == EffectClass::kTimeConstant) {
-    effect.cause = Cause::kTimeConstant;
+    effect.cause = &causes::time_constant();
     hide_time_constant(draft, channel, effect);
   } else if (effect_class == EffectClass::kDeadTime) {
-    effect.cause = Cause::kDeadTime;
+    effect.cause = &causes::dead_time();
     hide_dead_time(draft, channel, effect);
   } else {
     effect = hide_several(draft, channel);

@@ -75,13 +75,14 @@ VectorXd wave(Draft& draft, TrueEffect& effect, double size, int onset) {
 
 void hide_disturbance(Draft& draft, EffectClass shape) {
   TrueEffect effect;
-  effect.cause = Cause::kOutputDisturbance;
-  effect.kind = name_of(shape);
-  effect.cv = draft.below(draft.plant.cv_count);
-  const double size =
-      draft.size * draft.sign() * draft.between(kSmallest, kLargest) * draft.noise_of(effect.cv);
+  effect.cause = shape == EffectClass::kStep    ? &causes::step_disturbance()
+                 : shape == EffectClass::kDrift ? &causes::drift_disturbance()
+                                                : &causes::periodic_disturbance();
+  effect.place.cv = draft.below(draft.plant.cv_count);
+  const double size = draft.size * draft.sign() * draft.between(kSmallest, kLargest) *
+                      draft.noise_of(effect.place.cv);
   const int onset = draft.onset_between(0.1, 0.7);
-  draft.plant.disturbance.col(effect.cv) +=
+  draft.plant.disturbance.col(effect.place.cv) +=
       shape == EffectClass::kStep    ? step(draft, effect, size, onset)
       : shape == EffectClass::kDrift ? drift(draft, effect, size, onset)
                                      : wave(draft, effect, size, onset);
@@ -90,10 +91,10 @@ void hide_disturbance(Draft& draft, EffectClass shape) {
 
 void hide_noise(Draft& draft) {
   TrueEffect effect;
-  effect.cause = Cause::kNoise;
-  effect.cv = draft.below(draft.plant.cv_count);
+  effect.cause = &causes::noise();
+  effect.place.cv = draft.below(draft.plant.cv_count);
   const int onset = draft.onset_between(0.1, 0.7);
-  CvNoise& noise = draft.noise[static_cast<std::size_t>(effect.cv)];
+  CvNoise& noise = draft.noise[static_cast<std::size_t>(effect.place.cv)];
   noise.variance_ratio = 1.0 + draft.size * (draft.between(4.0, 12.0) - 1.0);
   noise.onset = onset;
   effect.onset_s = draft.clock(onset);
@@ -103,12 +104,12 @@ void hide_noise(Draft& draft) {
 
 void hide_unmodelled_input(Draft& draft) {
   TrueEffect effect;
-  effect.cause = Cause::kUnmodelledInput;
-  effect.cv = draft.below(draft.plant.cv_count);
-  effect.aux = draft.below(draft.plant.aux_count);
+  effect.cause = &causes::unmodelled_input();
+  effect.place.cv = draft.below(draft.plant.cv_count);
+  effect.place.aux = draft.below(draft.plant.aux_count);
   TrueChannel channel;
-  channel.cv = effect.cv;
-  channel.input = draft.plant.input_count + effect.aux;
+  channel.cv = effect.place.cv;
+  channel.input = draft.plant.input_count + effect.place.aux;
   const double lag = draft.between(5.0, 40.0);
   channel.time_constant = lag;
   channel.dead_time = draft.between(0.0, 8.0);
@@ -119,9 +120,9 @@ void hide_unmodelled_input(Draft& draft) {
   alone.clipping.clear();
   alone.disturbance.resize(0, 0);
   const Eigen::MatrixXd still = Eigen::MatrixXd::Zero(draft.samples, draft.plant.input_count);
-  const VectorXd unit_effect = simulate(alone, still, draft.aux).col(effect.cv);
-  channel.gain = draft.size * draft.sign() * draft.between(0.6, 1.5) * draft.noise_of(effect.cv) /
-                 deviation_of(unit_effect);
+  const VectorXd unit_effect = simulate(alone, still, draft.aux).col(effect.place.cv);
+  channel.gain = draft.size * draft.sign() * draft.between(0.6, 1.5) *
+                 draft.noise_of(effect.place.cv) / deviation_of(unit_effect);
   draft.plant.channels.push_back(channel);
   effect.parameters["gain"] = channel.gain;
   if (!draft.hard) {

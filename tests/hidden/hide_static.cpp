@@ -13,21 +13,21 @@ namespace {
 /// An input's element bends all of its channels; in a quarter of the cases only one is.
 void place(Draft& draft, TrueEffect& effect, const Element& element) {
   if (!draft.chance(0.25)) {
-    draft.plant.input_elements[static_cast<std::size_t>(effect.input)] = element;
+    draft.plant.input_elements[static_cast<std::size_t>(effect.place.input)] = element;
     return;
   }
   std::vector<TrueChannel*> channels;
   for (TrueChannel& channel : draft.plant.channels)
-    if (channel.input == effect.input) channels.push_back(&channel);
+    if (channel.input == effect.place.input) channels.push_back(&channel);
   TrueChannel& channel =
       *channels[static_cast<std::size_t>(draft.below(static_cast<int>(channels.size())))];
   channel.element = element;
-  effect.cv = channel.cv;
+  effect.place.cv = channel.cv;
 }
 
 Element bend(Draft& draft, TrueEffect& effect) {
-  effect.kind = "polynomial";
-  const auto mv = static_cast<std::size_t>(effect.input);
+  effect.cause = &causes::input_polynomial();
+  const auto mv = static_cast<std::size_t>(effect.place.input);
   const double change = draft.size * draft.sign() * draft.between(0.2, 0.5);
   Bent bent;
   if (draft.hard) {
@@ -35,22 +35,22 @@ Element bend(Draft& draft, TrueEffect& effect) {
     bent.cubic = change / (3.0 * farthest * farthest);
     effect.parameters["cubic"] = bent.cubic;
   } else {
-    bent.quadratic = change / (2.0 * draft.range_of(effect.input));
+    bent.quadratic = change / (2.0 * draft.range_of(effect.place.input));
     effect.parameters["quadratic"] = bent.quadratic;
   }
   return bent;
 }
 
 Element limit(Draft& draft, TrueEffect& effect) {
-  effect.kind = "saturation";
-  const auto mv = static_cast<std::size_t>(effect.input);
-  const double cut = draft.size * draft.between(0.1, 0.3) * draft.range_of(effect.input);
+  effect.cause = &causes::input_saturation();
+  const auto mv = static_cast<std::size_t>(effect.place.input);
+  const double cut = draft.size * draft.between(0.1, 0.3) * draft.range_of(effect.place.input);
   const bool both = draft.chance(0.5) && !draft.hard;
   const bool low = draft.chance(0.5);
   constexpr double kFar = 1e9;
   Limited limited{-kFar, kFar};
   const double share = both ? 0.5 : 1.0;
-  const double origin = draft.plant.input_origin(effect.input);
+  const double origin = draft.plant.input_origin(effect.place.input);
   if (both || low) {
     limited.low = draft.healthy.mv_low[mv] + share * cut;
     effect.parameters["low"] = origin + limited.low;
@@ -66,8 +66,7 @@ Element limit(Draft& draft, TrueEffect& effect) {
 
 void hide_input_nonlinearity(Draft& draft) {
   TrueEffect effect;
-  effect.cause = Cause::kInputNonlinearity;
-  effect.input = draft.below(draft.mv_count());
+  effect.place.input = draft.below(draft.mv_count());
   Element element;
   switch (draft.below(3)) {
     case 0:
@@ -77,8 +76,8 @@ void hide_input_nonlinearity(Draft& draft) {
       element = limit(draft, effect);
       break;
     default:
-      effect.kind = "deadband";
-      element = Play{draft.size * draft.between(0.04, 0.15) * draft.range_of(effect.input)};
+      effect.cause = &causes::deadband();
+      element = Play{draft.size * draft.between(0.04, 0.15) * draft.range_of(effect.place.input)};
       effect.parameters["width"] = std::get<Play>(element).width;
   }
   place(draft, effect, element);
@@ -87,23 +86,22 @@ void hide_input_nonlinearity(Draft& draft) {
 
 void hide_stiction(Draft& draft) {
   TrueEffect effect;
-  effect.cause = Cause::kStiction;
-  effect.input = draft.below(draft.mv_count());
+  effect.cause = &causes::stiction();
+  effect.place.input = draft.below(draft.mv_count());
   Sticking valve;
-  valve.band = draft.size * draft.between(0.04, 0.15) * draft.range_of(effect.input);
+  valve.band = draft.size * draft.between(0.04, 0.15) * draft.range_of(effect.place.input);
   valve.jump = valve.band * draft.between(0.3, 1.0);
   valve.slips_once = draft.hard;
   effect.parameters = {{"band", valve.band}, {"jump", valve.jump}};
-  draft.plant.input_elements[static_cast<std::size_t>(effect.input)] = valve;
+  draft.plant.input_elements[static_cast<std::size_t>(effect.place.input)] = valve;
   draft.truth.push_back(effect);
 }
 
 void hide_output_nonlinearity(Draft& draft) {
   TrueEffect effect;
-  effect.cause = Cause::kOutputNonlinearity;
-  effect.kind = "saturation";
-  effect.cv = draft.below(draft.plant.cv_count);
-  const auto cv = static_cast<std::size_t>(effect.cv);
+  effect.cause = &causes::output_saturation();
+  effect.place.cv = draft.below(draft.plant.cv_count);
+  const auto cv = static_cast<std::size_t>(effect.place.cv);
   const std::vector<double>& values = draft.healthy.cv_sorted[cv];
   const double share = draft.size * draft.between(0.03, 0.2);
   const bool both = draft.chance(0.5) && !draft.hard;

@@ -15,11 +15,10 @@ void hide_unnamed(Draft& draft) {
       channels.push_back(&channel);
   TrueChannel& channel =
       *channels[static_cast<std::size_t>(draft.below(static_cast<int>(channels.size())))];
-  effect.cv = channel.cv;
-  effect.input = channel.input;
+  effect.place = {channel.cv, channel.input};
   switch (draft.below(3)) {
     case 0: {
-      effect.kind = "product";
+      effect.manner = "product";
       channel.modulator =
           (channel.input + 1 + draft.below(draft.mv_count() - 1)) % draft.mv_count();
       channel.modulation = draft.size * draft.sign() * draft.between(0.1, 0.25) /
@@ -28,13 +27,13 @@ void hide_unnamed(Draft& draft) {
       break;
     }
     case 1:
-      effect.kind = "swinging_gain";
+      effect.manner = "swinging_gain";
       channel.swing = draft.size * draft.between(0.1, 0.25);
       channel.swing_period = draft.between(150.0, 600.0);
       effect.parameters["swing"] = channel.swing;
       break;
     default:
-      effect.kind = "slower_up";
+      effect.manner = "slower_up";
       channel.asymmetry = draft.size * draft.between(0.14, 0.4);
       effect.parameters["asymmetry"] = channel.asymmetry;
   }

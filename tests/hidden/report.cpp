@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 
+#include "core/identify/causes/catalog.hpp"
 #include "tests/study/interval.hpp"
 
 namespace mpm::hidden {
@@ -121,8 +122,10 @@ Row class_row(const std::string& name, const Scores& scores) {
 
 std::string confusion_table(const std::vector<CaseScore>& scores) {
   std::vector<std::string> columns = {"none", "undetermined", "unnamed", kFailed};
-  for (int cause = 0; cause <= static_cast<int>(Cause::kStateNonlinearity); ++cause)
-    columns.emplace_back(name_of(static_cast<Cause>(cause)));
+  for (const Cause* cause : causes::all()) {
+    const std::string name = cause->name().text;
+    if (!causes::is_unnamed(*cause) && columns.back() != name) columns.push_back(name);
+  }
   // Causes that nobody named stay out, or the table would be wider than any page.
   columns.erase(std::remove_if(columns.begin(), columns.end(),
                                [&](const std::string& column) {

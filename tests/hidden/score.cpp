@@ -17,7 +17,7 @@ using Eigen::Index;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string column_of(const Diagnosis& diagnosis) {
-  if (!diagnosis.findings.empty()) return name_of(diagnosis.findings.front().subject.cause);
+  if (!diagnosis.findings.empty()) return diagnosis.findings.front().subject.cause->name().text;
   if (diagnosis.verdict == DiagnosisVerdict::kMatch) return "none";
   return diagnosis.verdict == DiagnosisVerdict::kMismatch ? "unnamed" : "undetermined";
 }
@@ -32,27 +32,23 @@ double without_effect(const std::string& name) {
 
 /// A periodic disturbance of the other sign is the same half a period later.
 bool has_free_sign(const TrueEffect& truth, const std::string& name) {
-  return truth.kind == "periodic" && name == "size";
+  return truth.cause == &causes::periodic_disturbance() && name == "size";
 }
 
 void score_parameters(const TrueEffect& truth, const Finding& finding, CaseScore& result) {
   for (const Parameter& stated : finding.parameters) {
-    const auto place = truth.parameters.find(stated.name);
+    const auto place = truth.parameters.find(stated.name());
     if (place == truth.parameters.end()) continue;
     const double value = place->second;
     const auto miss = [&](double wanted) { return std::abs(stated.value - wanted); };
     const auto covers = [&](double wanted) {
       return stated.low <= wanted && wanted <= stated.high;
     };
-    const bool either = has_free_sign(truth, stated.name);
-    result.parameters.push_back({stated.name, covers(value) || (either && covers(-value)),
+    const bool either = has_free_sign(truth, stated.name());
+    result.parameters.push_back({stated.name(), covers(value) || (either && covers(-value)),
                                  (either ? std::min(miss(value), miss(-value)) : miss(value)) /
-                                     std::abs(value - without_effect(stated.name))});
+                                     std::abs(value - without_effect(stated.name()))});
   }
-}
-
-bool is_kind(const std::string& truth, const std::string& stated) {
-  return truth == stated || (truth == "saturation" && stated == "clipping");
 }
 
 void score_place(const HiddenCase& hidden, const TrueEffect& truth, const Answer& answer,
@@ -61,8 +57,8 @@ void score_place(const HiddenCase& hidden, const TrueEffect& truth, const Answer
   result.has_onset = result.has_onset || truth.onset_s.has_value();
   if (answer.match != Match::kPlace) return;
   const Finding& first = *answer.findings.front();
-  if (!truth.kind.empty())
-    result.kind_right = result.kind_right.value_or(true) && is_kind(truth.kind, first.subject.kind);
+  if (*truth.cause->kind() != '\0')
+    result.kind_right = result.kind_right.value_or(true) && truth.cause == first.subject.cause;
   for (const Finding* finding : answer.findings) score_parameters(truth, *finding, result);
   if (truth.onset_s && first.onset_s)
     result.onset_error =
@@ -97,24 +93,25 @@ void score_named(const HiddenCase& hidden, const Diagnosis& diagnosis, CaseScore
 }
 
 void score_unnamed(const HiddenCase& hidden, const Diagnosis& diagnosis, CaseScore& result) {
-  const int cv = hidden.truth.front().cv;
+  const int cv = hidden.truth.front().place.cv;
   result.extra = static_cast<int>(
       std::count_if(diagnosis.findings.begin(), diagnosis.findings.end(), is_confident));
   result.cause_right = diagnosis.verdict == DiagnosisVerdict::kMismatch && result.extra == 0;
   if (!result.cause_right) return;
   result.place_right =
       std::any_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(),
-                  [&](const Unexplained& rest) { return rest.cv == cv; }) ||
+                  [&](const Unexplained& rest) { return rest.subject.place.cv == cv; }) ||
       std::any_of(diagnosis.findings.begin(), diagnosis.findings.end(),
-                  [&](const Finding& finding) { return finding.subject.cv == cv; });
+                  [&](const Finding& finding) { return finding.subject.place.cv == cv; });
 }
 
 /// Whether something was hidden in this CV, or nothing anywhere.
 bool is_affected(const HiddenCase& hidden, Index cv) {
   const auto acts = [&](const TrueEffect& truth) {
-    if (truth.cv >= 0) return truth.cv == cv;
-    return std::any_of(hidden.model.channels.begin(), hidden.model.channels.end(),
-                       [&](const ChannelSpec& c) { return c.cv == cv && c.input == truth.input; });
+    if (truth.place.cv >= 0) return truth.place.cv == cv;
+    return std::any_of(
+        hidden.model.channels.begin(), hidden.model.channels.end(),
+        [&](const ChannelSpec& c) { return c.cv == cv && c.input == truth.place.input; });
   };
   return hidden.truth.empty() || std::any_of(hidden.truth.begin(), hidden.truth.end(), acts);
 }
@@ -141,10 +138,14 @@ void score_rmse(const HiddenCase& hidden, const Diagnosis& diagnosis, CaseScore&
   result.rmse_after = std::sqrt(after / cvs);
 }
 
-void print_place(std::ostream& out, int cv, int input, int aux) {
-  if (cv >= 0) out << " y" << cv + 1;
-  if (input >= 0) out << " u" << input + 1;
-  if (aux >= 0) out << " aux" << aux + 1;
+void print_place(std::ostream& out, const Place& place) {
+  if (place.cv >= 0) out << " y" << place.cv + 1;
+  if (place.input >= 0) out << " u" << place.input + 1;
+  if (place.aux >= 0) out << " aux" << place.aux + 1;
+}
+
+void print_kind(std::ostream& out, const std::string& kind) {
+  if (!kind.empty()) out << ' ' << kind;
 }
 
 void print_onset(std::ostream& out, const std::optional<double>& onset_s) {
@@ -157,11 +158,11 @@ std::string describe(const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
     const Subject& subject = finding.subject;
     if (&finding != &diagnosis.findings.front()) out << " + ";
-    out << name_of(subject.cause);
-    print_place(out, subject.cv, subject.input, subject.aux);
-    if (!subject.kind.empty()) out << ' ' << subject.kind;
+    out << subject.cause->name().text;
+    print_place(out, subject.place);
+    print_kind(out, subject.cause->kind());
     for (const Parameter& parameter : finding.parameters)
-      out << ' ' << parameter.name << '=' << parameter.value << " [" << parameter.low << ", "
+      out << ' ' << parameter.name() << '=' << parameter.value << " [" << parameter.low << ", "
           << parameter.high << ']';
     print_onset(out, finding.onset_s);
     out << " (" << finding.confidence << ')';
@@ -169,11 +170,11 @@ std::string describe(const Diagnosis& diagnosis) {
   if (diagnosis.findings.empty()) out << column_of(diagnosis);
   for (const Unexplained& rest : diagnosis.unexplained) {
     out << " + unexplained";
-    print_place(out, rest.cv, rest.input, -1);
+    print_place(out, rest.subject.place);
   }
   for (const Finding& finding : diagnosis.refused) {
-    out << " - refused " << name_of(finding.subject.cause);
-    print_place(out, finding.subject.cv, finding.subject.input, finding.subject.aux);
+    out << " - refused " << finding.subject.cause->name().text;
+    print_place(out, finding.subject.place);
   }
   return out.str();
 }
@@ -186,12 +187,12 @@ std::string describe(const HiddenCase& hidden) {
   for (std::size_t i = 0; i < hidden.truth.size(); ++i) {
     const TrueEffect& effect = hidden.truth[i];
     if (i > 0) out << " + ";
-    out << (effect.cause ? name_of(*effect.cause) : "unnamed");
-    print_place(out, effect.cv, effect.input, effect.aux);
-    if (!effect.kind.empty()) out << ' ' << effect.kind;
+    out << (effect.cause ? effect.cause->name().text : "unnamed");
+    print_place(out, effect.place);
+    print_kind(out, effect.cause ? effect.cause->kind() : effect.manner);
     for (const auto& [name, value] : effect.parameters) out << ' ' << name << '=' << value;
     print_onset(out, effect.onset_s);
-    if (effect.cause != Cause::kNoise)
+    if (effect.cause != &causes::noise())
       out << " (evidence " << std::llround(hidden.evidence[i]) << ')';
   }
   return hidden.truth.empty() ? "none" : out.str();

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 #include "tests/hidden/hidden_case.hpp"
 
 /// How well a diagnosis says what was hidden.

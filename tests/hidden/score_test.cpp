@@ -22,18 +22,16 @@ HiddenCase blank_case(EffectClass effect_class, std::vector<TrueEffect> truth) {
   return hidden;
 }
 
-TrueEffect effect(Cause cause, int cv, int input, const std::string& kind = "") {
+TrueEffect effect(const Cause& cause, int cv, int input) {
   TrueEffect result;
-  result.cause = cause;
-  result.cv = cv;
-  result.input = input;
-  result.kind = kind;
+  result.cause = &cause;
+  result.place = {cv, input};
   return result;
 }
 
-Finding finding(Cause cause, int cv, int input, double confidence = 0.99) {
+Finding finding(const Cause& cause, int cv, int input, double confidence = 0.99) {
   Finding result;
-  result.subject = {cause, cv, input, -1, ""};
+  result.subject = {&cause, {cv, input}};
   result.confidence = confidence;
   return result;
 }
@@ -48,54 +46,53 @@ Diagnosis mismatch(std::vector<Finding> findings) {
 }  // namespace
 
 TEST_CASE("the first finding's cause counts, the right place may come later") {
-  const HiddenCase hidden = blank_case(EffectClass::kGain, {effect(Cause::kGain, 0, 1)});
-  const CaseScore right = score(hidden, mismatch({finding(Cause::kGain, 0, 1)}), 1.0);
+  const HiddenCase hidden = blank_case(EffectClass::kGain, {effect(causes::gain(), 0, 1)});
+  const CaseScore right = score(hidden, mismatch({finding(causes::gain(), 0, 1)}), 1.0);
   CHECK(right.cause_right);
   CHECK(right.place_right == true);
   CHECK(right.extra == 0);
   CHECK(right.named == "gain");
-  const CaseScore elsewhere = score(hidden, mismatch({finding(Cause::kGain, 1, 0)}), 1.0);
+  const CaseScore elsewhere = score(hidden, mismatch({finding(causes::gain(), 1, 0)}), 1.0);
   CHECK(elsewhere.cause_right);
   CHECK(elsewhere.place_right == false);
   const CaseScore later =
-      score(hidden, mismatch({finding(Cause::kGain, 1, 0), finding(Cause::kGain, 0, 1)}), 1.0);
+      score(hidden, mismatch({finding(causes::gain(), 1, 0), finding(causes::gain(), 0, 1)}), 1.0);
   CHECK(later.cause_right);
   CHECK(later.place_right == true);
   CHECK(later.extra == 1);
-  const CaseScore second =
-      score(hidden, mismatch({finding(Cause::kNoise, 0, -1), finding(Cause::kGain, 0, 1)}), 1.0);
+  const CaseScore second = score(
+      hidden, mismatch({finding(causes::noise(), 0, -1), finding(causes::gain(), 0, 1)}), 1.0);
   CHECK_FALSE(second.cause_right);
   CHECK(second.extra == 1);
-  CHECK_FALSE(score(hidden, mismatch({finding(Cause::kDynamics, 0, 1)}), 1.0).cause_right);
+  CHECK_FALSE(score(hidden, mismatch({finding(causes::dynamics(), 0, 1)}), 1.0).cause_right);
 }
 
 TEST_CASE("the only channel of an input has two names for its gain") {
-  const HiddenCase hidden = blank_case(EffectClass::kGain, {effect(Cause::kGain, 0, 2)});
-  const CaseScore said = score(hidden, mismatch({finding(Cause::kInputScale, -1, 2)}), 1.0);
+  const HiddenCase hidden = blank_case(EffectClass::kGain, {effect(causes::gain(), 0, 2)});
+  const CaseScore said = score(hidden, mismatch({finding(causes::input_scale(), -1, 2)}), 1.0);
   CHECK(said.cause_right);
   CHECK(said.place_right == true);
-  CHECK_FALSE(score(hidden, mismatch({finding(Cause::kOutputScale, 0, -1)}), 1.0).cause_right);
+  CHECK_FALSE(score(hidden, mismatch({finding(causes::output_scale(), 0, -1)}), 1.0).cause_right);
 }
 
 TEST_CASE("dynamics may be said in parts on the same channel") {
-  const HiddenCase hidden = blank_case(EffectClass::kDynamics, {effect(Cause::kDynamics, 0, 1)});
-  const CaseScore said =
-      score(hidden, mismatch({finding(Cause::kGain, 0, 1), finding(Cause::kDeadTime, 0, 1)}), 1.0);
+  const HiddenCase hidden = blank_case(EffectClass::kDynamics, {effect(causes::dynamics(), 0, 1)});
+  const CaseScore said = score(
+      hidden, mismatch({finding(causes::gain(), 0, 1), finding(causes::dead_time(), 0, 1)}), 1.0);
   CHECK(said.cause_right);
   CHECK(said.place_right == true);
   CHECK(said.extra == 0);
-  CHECK_FALSE(score(hidden, mismatch({finding(Cause::kGain, 0, 1)}), 1.0).cause_right);
+  CHECK_FALSE(score(hidden, mismatch({finding(causes::gain(), 0, 1)}), 1.0).cause_right);
 }
 
 TEST_CASE("of two causes both must be named") {
-  const HiddenCase hidden = blank_case(
-      EffectClass::kTwoCauses,
-      {effect(Cause::kStiction, -1, 0), effect(Cause::kOutputDisturbance, 1, -1, "drift")});
-  Finding drift = finding(Cause::kOutputDisturbance, 1, -1);
-  drift.subject.kind = "step";
-  const CaseScore both =
-      score(hidden,
-            mismatch({drift, finding(Cause::kGain, 0, 1), finding(Cause::kStiction, -1, 0)}), 1.0);
+  const HiddenCase hidden =
+      blank_case(EffectClass::kTwoCauses,
+                 {effect(causes::stiction(), -1, 0), effect(causes::drift_disturbance(), 1, -1)});
+  const Finding drift = finding(causes::step_disturbance(), 1, -1);
+  const CaseScore both = score(
+      hidden, mismatch({drift, finding(causes::gain(), 0, 1), finding(causes::stiction(), -1, 0)}),
+      1.0);
   CHECK(both.cause_right);
   CHECK(both.place_right == true);
   CHECK(both.kind_right == false);
@@ -110,30 +107,30 @@ TEST_CASE("nothing hidden, and what has no name") {
   CHECK(score(none, match, 1.0).cause_right);
   CHECK(score(none, match, 1.0).named == "none");
   CHECK_FALSE(score(none, Diagnosis{}, 1.0).cause_right);
-  CHECK(score(none, mismatch({finding(Cause::kGain, 0, 0)}), 1.0).extra == 1);
+  CHECK(score(none, mismatch({finding(causes::gain(), 0, 0)}), 1.0).extra == 1);
 
   TrueEffect nameless;
-  nameless.cv = 1;
+  nameless.place.cv = 1;
   const HiddenCase unnamed = blank_case(EffectClass::kUnnamed, {nameless});
   CHECK_FALSE(score(unnamed, match, 1.0).cause_right);
-  CHECK_FALSE(score(unnamed, mismatch({finding(Cause::kGain, 1, 0)}), 1.0).cause_right);
-  CHECK(score(unnamed, mismatch({finding(Cause::kGain, 1, 0, 0.5)}), 1.0).place_right == true);
+  CHECK_FALSE(score(unnamed, mismatch({finding(causes::gain(), 1, 0)}), 1.0).cause_right);
+  CHECK(score(unnamed, mismatch({finding(causes::gain(), 1, 0, 0.5)}), 1.0).place_right == true);
   Diagnosis located = mismatch({});
   CHECK(score(unnamed, located, 1.0).place_right == false);
-  located.unexplained.push_back({1, -1, "", 0.0, 0.5});
+  located.unexplained.push_back({{&causes::unnamed_product(), {1}}, 0.0, 0.5});
   CHECK(score(unnamed, located, 1.0).cause_right);
   CHECK(score(unnamed, located, 1.0).place_right == true);
   CHECK(score(unnamed, located, 1.0).named == "unnamed");
 }
 
 TEST_CASE("parameters, onset and what is left of the error") {
-  TrueEffect gain = effect(Cause::kGain, 0, 0);
+  TrueEffect gain = effect(causes::gain(), 0, 0);
   gain.parameters["gain_ratio"] = 0.8;
   gain.onset_s = 500.0;
   HiddenCase hidden = blank_case(EffectClass::kOnsetGain, {gain});
   hidden.data.sample_time_s = 10.0;
-  Finding said = finding(Cause::kGain, 0, 0);
-  said.parameters = {{"gain_ratio", 0.82, 0.79, 0.85}, {"other", 1.0, 0.0, 2.0}};
+  Finding said = finding(causes::gain(), 0, 0);
+  said.parameters = {{&kGainRatio, 0.82, 0.79, 0.85}, {&kDampingRatio, 1.0, 0.0, 2.0}};
   said.onset_s = 530.0;
   Diagnosis diagnosis = mismatch({said});
   diagnosis.fit_samples = 20;
@@ -153,10 +150,10 @@ TEST_CASE("parameters, onset and what is left of the error") {
 }
 
 TEST_CASE("tables count what was named") {
-  const HiddenCase hidden = blank_case(EffectClass::kGain, {effect(Cause::kGain, 0, 1)});
+  const HiddenCase hidden = blank_case(EffectClass::kGain, {effect(causes::gain(), 0, 1)});
   const std::vector<CaseScore> scores = {
-      score(hidden, mismatch({finding(Cause::kGain, 0, 1)}), 1.0),
-      score(hidden, mismatch({finding(Cause::kNoise, 0, -1)}), 3.0),
+      score(hidden, mismatch({finding(causes::gain(), 0, 1)}), 1.0),
+      score(hidden, mismatch({finding(causes::noise(), 0, -1)}), 3.0),
       score(hidden, mismatch({}), 2.0)};
   CHECK(confusion_table(scores) ==
         "| hidden | unnamed | gain | noise |\n"

@@ -1,4 +1,4 @@
-#include "daemon/io/csv_reader.hpp"
+#include "daemon/files/csv/csv_reader.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@
 #include "config/load_unit.hpp"
 
 using namespace mpm;
-using namespace mpm::io;
+using namespace mpm::files;
 
 namespace {
 

@@ -6,13 +6,13 @@
 
 #include "config/finding.hpp"
 #include "config/load_unit.hpp"
-#include "daemon/io/cell.hpp"
-#include "daemon/io/csv_line.hpp"
-#include "daemon/io/csv_reader.hpp"
-#include "daemon/io/time_text.hpp"
+#include "daemon/files/csv/cell.hpp"
+#include "daemon/files/csv/csv_line.hpp"
+#include "daemon/files/csv/csv_reader.hpp"
+#include "daemon/files/times/time_text.hpp"
 
 using namespace mpm;
-using namespace mpm::io;
+using namespace mpm::files;
 
 namespace {
 

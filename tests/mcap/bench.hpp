@@ -8,7 +8,7 @@
 
 #include "config/finding.hpp"
 #include "config/load_unit.hpp"
-#include "daemon/recording/convert.hpp"
+#include "daemon/bag/convert.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {
@@ -28,18 +28,17 @@ struct Bench {
     write_file(folder.file("small.yaml"), kSmall);
     unit = config::load_unit(folder.file("small.yaml")).config;
   }
-  recording::ConvertReport convert(const std::string& from, const std::string& to,
-                                   recording::ConvertOptions options = {}) {
-    return recording::convert(folder.file(from), folder.file(to), options);
+  bag::ConvertReport convert(const std::string& from, const std::string& to,
+                             bag::ConvertOptions options = {}) {
+    return bag::convert(folder.file(from), folder.file(to), options);
   }
-  recording::ConvertOptions with_unit() const {
-    recording::ConvertOptions options;
+  bag::ConvertOptions with_unit() const {
+    bag::ConvertOptions options;
     options.unit = unit;
     return options;
   }
   std::string text(const std::string& name) const { return read_file(folder.file(name)); }
-  std::string error(const std::string& from, const std::string& to,
-                    recording::ConvertOptions options) {
+  std::string error(const std::string& from, const std::string& to, bag::ConvertOptions options) {
     try {
       static_cast<void>(convert(from, to, std::move(options)));
     } catch (const config::InputError& error) {
@@ -50,7 +49,7 @@ struct Bench {
   }
 };
 
-inline std::vector<io::Column> all_columns() {
+inline std::vector<files::Column> all_columns() {
   return {{"u", SignalKind::kMv, 0},
           {"d,1", SignalKind::kDv, 0},
           {"y", SignalKind::kCv, 0},

@@ -2,14 +2,14 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "daemon/bag/mcap_recording.hpp"
 #include "daemon/mcap/writer.hpp"
-#include "daemon/recording/mcap_recording.hpp"
 #include "tests/mcap/bench.hpp"
 
 namespace mpm::test {
 namespace {
 
-bool told(const recording::ConvertReport& report, const std::string& line) {
+bool told(const bag::ConvertReport& report, const std::string& line) {
   return std::find(report.notices.begin(), report.notices.end(), line) != report.notices.end();
 }
 
@@ -21,7 +21,7 @@ TEST_CASE("Of values of the same tag and time the last one counts, and that is t
                       "u,60,4,good\n"
                     : "tag,time,value,quality\nu,0,1,good\nu,60,4,good\nu,0,,good\nu,0,3,good\n"
                       "y,0,5,good\n");
-  const recording::ConvertReport report = bench.convert("l.csv", "w.csv");
+  const bag::ConvertReport report = bench.convert("l.csv", "w.csv");
   CHECK(bench.text("w.csv") == "time,u,y\n1970-01-01T00:00:00Z,3,5\n1970-01-01T00:01:00Z,4,\n");
   CHECK(told(report, "2 values replaced by later ones of the same tag and time"));
 }
@@ -30,7 +30,7 @@ TEST_CASE("Values that no double holds are counted; what is almost zero stays") 
   Bench bench;
   write_file(bench.folder.file("a.csv"),
              "time,u,y\n0,1e999,1e-400\n60,-1e999,-1e-400\n120,inf,4e-320\n180,-Inf,nan\n");
-  const recording::ConvertReport report = bench.convert("a.csv", "b.csv");
+  const bag::ConvertReport report = bench.convert("a.csv", "b.csv");
   CHECK(report.values == 3);
   CHECK(report.missing == 5);
   CHECK(told(report, "4 values taken as missing: they are not finite, or too large for a double"));
@@ -42,8 +42,7 @@ TEST_CASE("Values that no double holds are counted; what is almost zero stays") 
 TEST_CASE("Infinite values of a recording are counted, missing ones are not") {
   Bench bench;
   {
-    recording::McapRecording writer(bench.folder.file("a.mcap"), bench.unit,
-                                    {{"u", SignalKind::kMv, 0}});
+    bag::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, {{"u", SignalKind::kMv, 0}});
     Frame frame(bench.unit.counts());
     for (const double value :
          {1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
@@ -55,7 +54,7 @@ TEST_CASE("Infinite values of a recording are counted, missing ones are not") {
     }
     writer.finish();
   }
-  const recording::ConvertReport report = bench.convert("a.mcap", "a.csv");
+  const bag::ConvertReport report = bench.convert("a.mcap", "a.csv");
   CHECK(report.missing == 2);
   CHECK(told(report, "1 values taken as missing: they are not finite"));
 }
@@ -64,7 +63,7 @@ TEST_CASE("Columns and rows that are no signals are named") {
   Bench bench;
   write_file(bench.folder.file("a.csv"),
              "time,u,u.quality,y.quality,,z\n,%,,,,degC\n0,1,good,bad,7,2\n60,1,good,bad,7,2\n");
-  const recording::ConvertReport report = bench.convert("a.csv", "b.csv");
+  const bag::ConvertReport report = bench.convert("a.csv", "b.csv");
   CHECK(bench.text("b.csv") == "time,u,z\n1970-01-01T00:00:00Z,1,2\n1970-01-01T00:01:00Z,1,2\n");
   CHECK(told(report, "ignored, since the tag that they qualify has no column: y.quality"));
   CHECK(told(report, "1 columns without a name are ignored"));
@@ -77,12 +76,12 @@ TEST_CASE("Tags and topics that the unit does not have are named") {
   CHECK(told(bench.convert("a.csv", "b.csv", bench.with_unit()),
              "left out, since the unit file does not name them: other"));
   {
-    recording::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
+    bag::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
     Frame frame(bench.unit.counts());
     writer.write(frame);
     writer.finish();
   }
-  recording::ConvertOptions options = bench.with_unit();
+  bag::ConvertOptions options = bench.with_unit();
   options.unit->aux.clear();
   CHECK(told(bench.convert("a.mcap", "c.csv", options),
              "mpm/aux left out: the unit file has no such signals"));
@@ -101,7 +100,7 @@ TEST_CASE("Tags and topics that the unit does not have are named") {
     writer.write(alarms, 0, 0, encoder.encode(sample));
   }
   writer.finish();
-  const recording::ConvertReport report = bench.convert("more.mcap", "more.csv", bench.with_unit());
+  const bag::ConvertReport report = bench.convert("more.mcap", "more.csv", bench.with_unit());
   CHECK(told(report, "2 samples of other units left out"));
   CHECK(told(report, "3 messages on mpm/alarm left out: they hold no signals"));
 }

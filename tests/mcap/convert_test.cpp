@@ -8,12 +8,12 @@
 
 #include "config/finding.hpp"
 #include "config/load_unit.hpp"
+#include "daemon/bag/convert.hpp"
+#include "daemon/bag/info_text.hpp"
+#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/bag/open_recording.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
 #include "daemon/mcap/writer.hpp"
-#include "daemon/recording/convert.hpp"
-#include "daemon/recording/info_text.hpp"
-#include "daemon/recording/mcap_recording.hpp"
-#include "daemon/recording/open_recording.hpp"
 #include "tests/mcap/bench.hpp"
 #include "tests/mcap/files.hpp"
 #include "tests/system/process.hpp"
@@ -60,31 +60,31 @@ std::vector<Frame> any_frames(const config::UnitConfig& unit, int count) {
 TEST_CASE("MCAP, CSV, MCAP, CSV: not a bit is lost, in either layout and any zone") {
   Bench bench;
   {
-    recording::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
+    bag::McapRecording writer(bench.folder.file("a.mcap"), bench.unit, all_columns());
     for (const Frame& frame : any_frames(bench.unit, 700)) writer.write(frame);
     writer.finish();
   }
-  recording::ConvertOptions options;
-  options.layout = GENERATE(io::CsvLayout::kWide, io::CsvLayout::kLong);
+  bag::ConvertOptions options;
+  options.layout = GENERATE(files::CsvLayout::kWide, files::CsvLayout::kLong);
   const auto times = GENERATE(as<std::string>{}, "utc", "seconds", "America/St_Johns");
   options.seconds = times == "seconds";
   if (times.find('/') != std::string::npos)
-    options.output_zone = std::make_shared<io::TimeZone>(times);
-  const recording::ConvertReport first = bench.convert("a.mcap", "a.csv", options);
+    options.output_zone = std::make_shared<files::TimeZone>(times);
+  const bag::ConvertReport first = bench.convert("a.mcap", "a.csv", options);
   CHECK(first.rows == 700);
   CHECK(first.signals == 7);
   CHECK(first.values + first.missing == 7U * 700U);
   CHECK(first.missing > 0);
   CHECK(first.uncertain > 0);
   CHECK(first.bad > 0);
-  const recording::ConvertReport back = bench.convert("a.csv", "b.mcap", bench.with_unit());
+  const bag::ConvertReport back = bench.convert("a.csv", "b.mcap", bench.with_unit());
   CHECK(back.values == first.values);
   CHECK(back.bad == first.bad);
   static_cast<void>(bench.convert("b.mcap", "b.csv", options));
   CHECK(bench.text("a.csv") == bench.text("b.csv"));
 
   // The values themselves, bit by bit.
-  const auto frames = recording::open_recording(bench.folder.file("b.mcap"), bench.unit);
+  const auto frames = bag::open_recording(bench.folder.file("b.mcap"), bench.unit);
   Frame read;
   for (const Frame& frame : any_frames(bench.unit, 700)) {
     REQUIRE(frames->next(read));
@@ -112,12 +112,12 @@ TEST_CASE("A historian's export becomes a recording and says what was left out")
              "2024-10-27 02:00:00;1,25;2;3;4;9\r\n"  // the clock went back
              "27.10.2024 02:01:00;1;2;3;I/O Timeout;9\r\n"
              "2024-10-27 02:02:00;1");
-  recording::ConvertOptions options = bench.with_unit();
+  bag::ConvertOptions options = bench.with_unit();
   CHECK(bench.error("h.csv", "h.mcap", options)
             .find("h.csv:3:1: error: '2024-10-27 02:58:00' is a "
                   "local time") != std::string::npos);
-  options.input_zone = std::make_shared<io::TimeZone>("Europe/Berlin");
-  const recording::ConvertReport report = bench.convert("h.csv", "h.mcap", options);
+  options.input_zone = std::make_shared<files::TimeZone>("Europe/Berlin");
+  const bag::ConvertReport report = bench.convert("h.csv", "h.mcap", options);
   CHECK(report.rows == 4);
   CHECK(report.signals == 4);
   CHECK(report.missing == 3);
@@ -126,7 +126,7 @@ TEST_CASE("A historian's export becomes a recording and says what was left out")
   CHECK(notices.find("other") != std::string::npos);
   CHECK(notices.find("line 7 is cut off") != std::string::npos);
   CHECK(notices.find("4 times lie in an hour that Europe/Berlin has twice") != std::string::npos);
-  recording::ConvertOptions out;
+  bag::ConvertOptions out;
   static_cast<void>(bench.convert("h.mcap", "back.csv", out));
   CHECK(bench.text("back.csv") ==
         "time,u,\"d,1\",y,z\n"
@@ -134,7 +134,7 @@ TEST_CASE("A historian's export becomes a recording and says what was left out")
         "2024-10-27T00:59:00Z,1.5,,3,4\n"
         "2024-10-27T01:00:00Z,1.25,2,3,4\n"
         "2024-10-27T01:01:00Z,1,2,3,\n");
-  out.output_zone = std::make_shared<io::TimeZone>("Europe/Berlin");
+  out.output_zone = std::make_shared<files::TimeZone>("Europe/Berlin");
   static_cast<void>(bench.convert("h.mcap", "back.csv", out));
   CHECK(bench.text("back.csv").find("2024-10-27T02:59:00+02:00") != std::string::npos);
   CHECK(bench.text("back.csv").find("2024-10-27T02:00:00+01:00") != std::string::npos);
@@ -148,15 +148,15 @@ TEST_CASE("What cannot be converted is refused in one line and leaves no file") 
              "time,u\n2024-03-31 01:59:00,1\n2024-03-31 02:30:00,2\n");
   CHECK(bench.error("none.csv", "x.csv", {}).find("no such file") != std::string::npos);
   CHECK(bench.error("old.csv", "x.mcap", {}).find("--config") != std::string::npos);
-  recording::ConvertOptions options;
-  options.input_zone = std::make_shared<io::TimeZone>("Europe/Berlin");
+  bag::ConvertOptions options;
+  options.input_zone = std::make_shared<files::TimeZone>("Europe/Berlin");
   CHECK(bench.error("gap.csv", "x.csv", options)
             .find("gap.csv:3:1: error: '2024-03-31 02:30:00' "
                   "does not exist in Europe/Berlin") != std::string::npos);
   CHECK(bench.error("old.csv", "no/folder.csv", {}).find("there is no folder") !=
         std::string::npos);
-  CHECK_THROWS_AS(io::TimeZone("Europe/Atlantis"), config::InputError);
-  CHECK_THROWS_AS(io::TimeZone("../../etc/passwd"), config::InputError);
+  CHECK_THROWS_AS(files::TimeZone("Europe/Atlantis"), config::InputError);
+  CHECK_THROWS_AS(files::TimeZone("../../etc/passwd"), config::InputError);
   write_file(bench.folder.file("before.csv"), "time,u,\"d,1\",y,z\n-60,1,1,1,1\n0,2,2,2,2\n");
   CHECK(bench.error("before.csv", "x.mcap", bench.with_unit()).find("before 1970") !=
         std::string::npos);
@@ -186,8 +186,8 @@ TEST_CASE("Of several units the one of the unit file is taken") {
   // Two recordings in one: the second unit has other values.
   config::UnitConfig other = bench.unit;
   other.unit = "other";
-  recording::McapRecording a(bench.folder.file("a.mcap"), bench.unit, all_columns());
-  recording::McapRecording b(bench.folder.file("b.mcap"), other, all_columns());
+  bag::McapRecording a(bench.folder.file("a.mcap"), bench.unit, all_columns());
+  bag::McapRecording b(bench.folder.file("b.mcap"), other, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) {
     a.write(frame);
     b.write(frame);
@@ -213,30 +213,30 @@ TEST_CASE("Of several units the one of the unit file is taken") {
   CHECK(bench.error("both.mcap", "x.csv", {})
             .find("holds several units; pick one with --unit: 'other', 'small'") !=
         std::string::npos);
-  recording::ConvertOptions options;
+  bag::ConvertOptions options;
   options.unit_name = "other";
   CHECK(bench.convert("both.mcap", "other.csv", options).rows == 30);
   CHECK(bench.convert("both.mcap", "small.csv", bench.with_unit()).rows == 30);
   CHECK(bench.text("other.csv") == bench.text("small.csv"));
   other.unit = "third";
   try {
-    static_cast<void>(recording::open_recording(bench.folder.file("both.mcap"), other));
+    static_cast<void>(bag::open_recording(bench.folder.file("both.mcap"), other));
     FAIL("taken");
   } catch (const config::InputError& error) {
     CHECK(std::string(error.what())
               .find("no samples of unit 'third'; its units are 'other', "
                     "'small'") != std::string::npos);
   }
-  const recording::FileInfo info = recording::inspect(bench.folder.file("both.mcap"));
+  const bag::FileInfo info = bag::inspect(bench.folder.file("both.mcap"));
   CHECK(info.units.size() == 2);
   CHECK(info.index_problem.empty());
   CHECK(info.times.count == 2 * (6 + 6 * 30));
-  const recording::SampleTally& mv = info.units.at("small").samples.at(SignalKind::kMv);
+  const bag::SampleTally& mv = info.units.at("small").samples.at(SignalKind::kMv);
   CHECK(mv.times.gaps == 1);
   CHECK(mv.times.missing == 5);
   CHECK(mv.times.longest_gap_ns > 359'000'000'000);
   CHECK(mv.signals.at(0).tag == "u");
-  const recording::SignalTally& u = mv.signals.at(0);
+  const bag::SignalTally& u = mv.signals.at(0);
   CHECK(u.good + u.uncertain + u.bad + u.missing == 30);
 }
 
@@ -244,7 +244,7 @@ TEST_CASE("Info tells a CSV's step, gaps and qualities, and a torn recording's t
   Bench bench;
   write_file(bench.folder.file("a.csv"),
              "time,u,u.quality,y\n0,1,good,2\n10,1,uncertain,\n20,1,bad,3\n50,1,good,4\n");
-  const recording::FileInfo info = recording::inspect(bench.folder.file("a.csv"));
+  const bag::FileInfo info = bag::inspect(bench.folder.file("a.csv"));
   CHECK(info.step_s == 10.0);
   CHECK(info.times.count == 4);
   CHECK(info.times.gaps == 1);
@@ -257,26 +257,26 @@ TEST_CASE("Info tells a CSV's step, gaps and qualities, and a torn recording's t
   CHECK(info.signals[1].missing == 1);
   CHECK(to_json(info)["gaps"]["longest_at"] == "1970-01-01T00:00:20Z");
 
-  recording::McapRecording a(bench.folder.file("a.mcap"), bench.unit, all_columns());
+  bag::McapRecording a(bench.folder.file("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
   a.finish();
   const std::string bytes = bench.text("a.mcap");
   write_file(bench.folder.file("torn.mcap"), bytes.substr(0, bytes.size() - 50));
-  const recording::FileInfo torn = recording::inspect(bench.folder.file("torn.mcap"));
+  const bag::FileInfo torn = bag::inspect(bench.folder.file("torn.mcap"));
   CHECK(torn.times.count == 6 + 6 * 30);
   CHECK(torn.index_problem == "the file has no end");
   CHECK(to_text(torn).find("mpm recover") != std::string::npos);
   std::string wrong = bytes;
   wrong[bytes.size() - 200] = static_cast<char>(wrong[bytes.size() - 200] ^ 4);  // in the summary
   write_file(bench.folder.file("wrong.mcap"), wrong);
-  CHECK(recording::inspect(bench.folder.file("wrong.mcap")).index_problem.find("CRC") !=
+  CHECK(bag::inspect(bench.folder.file("wrong.mcap")).index_problem.find("CRC") !=
         std::string::npos);
 }
 
 TEST_CASE("Info tells where a CSV's clock goes back, and times without rounding") {
   Bench bench;
   write_file(bench.folder.file("a.csv"), "time,u\n0,1\n0.5,1\n1,1\n0,1\n0.5,1\n0.5,1\n249.5,1\n");
-  const recording::FileInfo info = recording::inspect(bench.folder.file("a.csv"));
+  const bag::FileInfo info = bag::inspect(bench.folder.file("a.csv"));
   const auto json = to_json(info);
   CHECK(json["out_of_order"]["count"] == 2);
   CHECK(json["out_of_order"]["farthest_back_s"] == 1.0);
@@ -293,7 +293,7 @@ TEST_CASE("The programs: exit codes, files, messages") {
     return run(arguments, bench.folder.file("out"), bench.folder.file("err")).value_or(-1);
   };
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  recording::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 300)) a.write(frame);
   a.finish();
   CHECK(mpm({"info", path("a.mcap"), "--json"}) == 0);
@@ -321,7 +321,7 @@ TEST_CASE("The programs: exit codes, files, messages") {
 TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell beside it") {
   Bench bench;
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  recording::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
   a.finish();
   REQUIRE(run({"mpm", "convert", path("a.mcap"), path("a.csv")}, path("out"), path("err")) == 0);
@@ -336,7 +336,7 @@ TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell b
 TEST_CASE("what standard output does not take is a failure") {
   Bench bench;
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  recording::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
   a.finish();
   for (const std::vector<std::string>& arguments :
@@ -356,7 +356,7 @@ TEST_CASE("what standard output does not take is a failure") {
 TEST_CASE("mpm recover never writes over the file that it mends") {
   Bench bench;
   const std::string file = bench.folder.file("torn.mcap");
-  recording::McapRecording writer(file, bench.unit, all_columns());
+  bag::McapRecording writer(file, bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) writer.write(frame);
   writer.finish();
   const std::string torn = read_file(file).substr(0, read_file(file).size() - 50);

@@ -41,7 +41,7 @@ struct Rotated : Bench {
       parts.push_back(folder.file(name));
     REQUIRE(run({"mpmsim", "--config", kShell, "--samples", "700", "--csv", folder.file("r.csv")},
                 folder.file("out"), folder.file("err")) == 0);
-    recording::ConvertOptions options;
+    bag::ConvertOptions options;
     options.unit = config::load_unit(kShell).config;
     static_cast<void>(convert("r.csv", "whole.mcap", options));
     split(folder.file("whole.mcap"), parts, 1001);

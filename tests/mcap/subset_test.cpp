@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "daemon/bag/mcap_recording.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
-#include "daemon/recording/mcap_recording.hpp"
 #include "tests/mcap/bench.hpp"
 #include "tests/mcap/files.hpp"
 
@@ -11,8 +11,8 @@ namespace {
 
 /// Values of every signal that the row has, two of them not good.
 void write_recording(const Bench& bench, const std::string& name,
-                     const std::vector<io::Column>& columns) {
-  recording::McapRecording writer(bench.folder.file(name), bench.unit, columns);
+                     const std::vector<files::Column>& columns) {
+  bag::McapRecording writer(bench.folder.file(name), bench.unit, columns);
   for (int k = 0; k < 40; ++k) {
     Frame frame(bench.unit.counts());
     for (SignalBlock& block : frame.blocks) {
@@ -21,7 +21,7 @@ void write_recording(const Bench& bench, const std::string& name,
     }
     frame.interval = k;
     frame.source_time_ns = k * 60'000'000'000;
-    for (const io::Column& column : columns) {
+    for (const files::Column& column : columns) {
       frame[column.kind].values(column.index) = 0.1 * k + column.index;
       frame[column.kind].quality[static_cast<std::size_t>(column.index)] =
           k == 7 ? Quality::kUncertain : Quality::kGood;
@@ -33,8 +33,8 @@ void write_recording(const Bench& bench, const std::string& name,
 
 TEST_CASE("A recording of some topics or signals only goes to CSV and back, bit by bit") {
   Bench bench;
-  const std::vector<io::Column> all = all_columns();
-  const auto columns = GENERATE_COPY(values<std::vector<io::Column>>({
+  const std::vector<files::Column> all = all_columns();
+  const auto columns = GENERATE_COPY(values<std::vector<files::Column>>({
       {all[0]},                 // the MV
       {all[1], all[6]},         // a DV, an aux signal
       {all[0], all[3]},         // of two CVs the second
@@ -43,7 +43,7 @@ TEST_CASE("A recording of some topics or signals only goes to CSV and back, bit 
   }));
   write_recording(bench, "a.mcap", columns);
   static_cast<void>(bench.convert("a.mcap", "a.csv"));
-  const recording::ConvertReport report = bench.convert("a.csv", "b.mcap", bench.with_unit());
+  const bag::ConvertReport report = bench.convert("a.csv", "b.mcap", bench.with_unit());
   CHECK(report.signals == columns.size());
   CHECK(report.rows == 40);
   CHECK(report.missing == 0);

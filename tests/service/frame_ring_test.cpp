@@ -6,7 +6,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/service/live_frames.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 constexpr SignalCounts kCounts{1, 1, 1, 0};
@@ -71,4 +71,4 @@ TEST_CASE("a frame allocates nothing") {
   CHECK(test::allocation_count() == before);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

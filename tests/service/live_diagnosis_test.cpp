@@ -10,7 +10,7 @@
 #include "tests/idl/test_domain.hpp"
 #include "tests/service/live_frames.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 using namespace std::chrono_literals;
@@ -31,8 +31,8 @@ monitor: {diagnosis_samples: 1000, diagnosis_period: 0}
   return std::make_shared<const config::UnitConfig>(std::move(loaded.config));
 }
 
-AlarmRecord change(const std::string& mv, const std::string& to, std::int64_t k) {
-  AlarmRecord record;
+report::AlarmRecord change(const std::string& mv, const std::string& to, std::int64_t k) {
+  report::AlarmRecord record;
   record.unit = "toy";
   record.mv = mv;
   record.cv = "y1";
@@ -81,9 +81,10 @@ class Gate {
 
 /// Frames from `first` to `last`, with one change at the first.
 void feed(LiveDiagnosis& live, std::int64_t first, std::int64_t last,
-          const std::vector<AlarmRecord>& changes = {}) {
+          const std::vector<report::AlarmRecord>& changes = {}) {
   for (std::int64_t k = first; k <= last; ++k)
-    live.push(test::frame_at(k, {2, 0, 1, 0}), k == first ? changes : std::vector<AlarmRecord>{});
+    live.push(test::frame_at(k, {2, 0, 1, 0}),
+              k == first ? changes : std::vector<report::AlarmRecord>{});
 }
 
 std::optional<DiagnosisOutcome> await(LiveDiagnosis& live) {
@@ -116,7 +117,7 @@ TEST_CASE("the samples of an alarm that stands are diagnosed, and its channel ge
   CHECK(job.unseen_rows == 150);
   CHECK(job.alarm_time_ns == 401'000'000'000);
 
-  const std::vector<AlarmRecord> records = live.diagnosed(*outcome);
+  const std::vector<report::AlarmRecord> records = live.diagnosed(*outcome);
   REQUIRE(records.size() == 2);
   CHECK(records[0].mv == "u1");
   CHECK(records[0].to == "diagnosed");
@@ -212,4 +213,4 @@ TEST_CASE("a worker stops at once, in the middle of a diagnosis or idle, or is l
   }
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "daemon/bag/replay/mcap_source.hpp"
+#include "daemon/bag/replay/player.hpp"
+#include "daemon/bag/replay/selection.hpp"
 #include "daemon/mcap/encode.hpp"
-#include "daemon/replay/mcap_source.hpp"
-#include "daemon/replay/player.hpp"
-#include "daemon/replay/selection.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-class FakeClock : public Clock {
+class FakeClock : public host::Clock {
  public:
   [[nodiscard]] std::int64_t now() const override { return now_; }
   void sleep_until(std::int64_t time) override { now_ = std::max(now_, time); }
@@ -296,4 +296,4 @@ TEST_CASE("the pacer stays exact over years and at odd rates") {
   CHECK(pacer.due(140) == 5015);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -1,8 +1,8 @@
-#include "daemon/log/rate_limiter.hpp"
+#include "daemon/host/rate_limiter.hpp"
 
 #include <catch2/catch.hpp>
 
-namespace mpm::daemon {
+namespace mpm::host {
 
 TEST_CASE("of many messages a few pass per period; the next period tells how many did not") {
   using namespace std::chrono_literals;
@@ -17,4 +17,4 @@ TEST_CASE("of many messages a few pass per period; the next period tells how man
   CHECK(limiter.held_back() == 0);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::host

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "daemon/bag/lifecycle.hpp"
+#include "daemon/bag/record/recording.hpp"
 #include "daemon/mcap/ordered_reader.hpp"
-#include "daemon/record/lifecycle.hpp"
-#include "daemon/record/recording.hpp"
 #include "idl/cdr.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bag {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -239,4 +239,4 @@ TEST_CASE("the end of an instance survives as JSON") {
     CHECK_FALSE(parse_lifecycle(text));
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bag

@@ -8,7 +8,7 @@
 #include "tests/diagnose/sample_run.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::daemon {
+namespace mpm::live {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +35,7 @@ TEST_CASE("folders are named by the alarm's time and by the unit, whatever it is
 TEST_CASE("the store writes all files of a diagnosis and keeps the last written ones") {
   const test::TemporaryFolder folder;
   const ReportStore store(folder.file("state"), 2);
-  const DiagnosisRun run = test::sample_run(600);
+  const report::DiagnosisRun run = test::sample_run(600);
   const fs::path unit = folder.file("state/shell");
   CHECK(store.write(run, 5 * kHour) == (unit / "19700101T050000Z").string());
   CHECK(names(unit / "19700101T050000Z") ==
@@ -49,17 +49,17 @@ TEST_CASE("the store writes all files of a diagnosis and keeps the last written 
 
 TEST_CASE("nothing is written where nothing is to be kept; what cannot be written is an error") {
   const test::TemporaryFolder folder;
-  const DiagnosisRun run = test::sample_run(600);
+  const report::DiagnosisRun run = test::sample_run(600);
   CHECK(ReportStore("").write(run, 0).empty());
   test::write_file(folder.file("file"), "");
   CHECK_THROWS_AS(ReportStore(folder.file("file")).write(run, 0), std::exception);
 }
 
 TEST_CASE("an alarm gets the finding that touches its channel") {
-  const DiagnosisRun run = test::sample_run(600);
-  const std::vector<NamedCause> causes = causes_of_channels(run);
+  const report::DiagnosisRun run = test::sample_run(600);
+  const std::vector<report::NamedCause> causes = causes_of_channels(run);
   REQUIRE(causes.size() == 9);
-  const NamedCause& gain = causes[2 * 3 + 2];  // u3 -> y3
+  const report::NamedCause& gain = causes[2 * 3 + 2];  // u3 -> y3
   CHECK(gain.cause == "gain");
   REQUIRE_FALSE(gain.parameters.empty());
   CHECK(gain.parameters[0].name == "gain_ratio");
@@ -71,10 +71,10 @@ TEST_CASE("an alarm gets the finding that touches its channel") {
   CHECK(causes[0 * 3 + 0].cause == "unmodelled_input");
   CHECK(causes[1 * 3 + 1].cause == "output_disturbance");
 
-  for (const NamedCause& cause : causes_of_channels(test::matching_run())) {
+  for (const report::NamedCause& cause : causes_of_channels(test::matching_run())) {
     CHECK(cause.cause.empty());
     CHECK(cause.text.find("matches the plant") != std::string::npos);
   }
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::live

@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "daemon/watch/render.hpp"
+#include "daemon/bus/watch/render.hpp"
 
-namespace mpm::daemon {
+namespace mpm::bus {
 namespace {
 
-ChannelRecord channel(const std::string& mv, const std::string& cv, const std::string& verdict,
-                      const std::string& reason = "") {
-  ChannelRecord record;
+report::ChannelRecord channel(const std::string& mv, const std::string& cv,
+                              const std::string& verdict, const std::string& reason = "") {
+  report::ChannelRecord record;
   record.unit = "shell";
   record.mv = mv;
   record.cv = cv;
@@ -18,7 +18,7 @@ ChannelRecord channel(const std::string& mv, const std::string& cv, const std::s
 }
 
 AlarmStateRecord alarm(const std::string& mv, const std::string& cv, const std::string& to) {
-  AlarmRecord record;
+  report::AlarmRecord record;
   record.unit = "shell";
   record.mv = mv;
   record.cv = cv;
@@ -51,7 +51,7 @@ TEST_CASE("the picture says every verdict in words, why it is undetermined, and 
   CHECK(render(board, {}) == "waiting for a monitor ...\n");
   board.update(channel("u1", "y1", "match"));
   board.update(channel("u2", "y1", "undetermined", "not_excited"));
-  ChannelRecord bad = channel("u1", "y2", "mismatch");
+  report::ChannelRecord bad = channel("u1", "y2", "mismatch");
   bad.alarm_active = true;
   board.update(bad);
   board.update(alarm("u1", "y2", "active"));
@@ -74,13 +74,13 @@ TEST_CASE("the picture says every verdict in words, why it is undetermined, and 
 
 TEST_CASE("only the unit asked for is shown, and samples are counted by interval") {
   Board board("shell");
-  ChannelRecord other = channel("u1", "y1", "match");
+  report::ChannelRecord other = channel("u1", "y1", "match");
   other.unit = "column";
   board.update(other);
   CHECK(board.units().empty());
   for (std::int64_t k = 1; k <= 5; ++k)
     for (const std::string input : {"u1", "u2"}) {
-      ChannelRecord record = channel(input, "y1", "match");
+      report::ChannelRecord record = channel(input, "y1", "match");
       record.interval = k;
       board.update(record);
     }
@@ -90,11 +90,11 @@ TEST_CASE("only the unit asked for is shown, and samples are counted by interval
 }
 
 TEST_CASE("a line is due when a verdict or its reason changes, not before") {
-  const ChannelRecord warming = channel("u1", "y1", "undetermined", "warming_up");
+  const report::ChannelRecord warming = channel("u1", "y1", "undetermined", "warming_up");
   CHECK(change_line(nullptr, warming) == "- shell u1 -> y1: undetermined (warming_up)");
   CHECK(change_line(&warming, warming).empty());
-  const ChannelRecord match = channel("u1", "y1", "match");
+  const report::ChannelRecord match = channel("u1", "y1", "match");
   CHECK(change_line(&warming, match).find("match") != std::string::npos);
 }
 
-}  // namespace mpm::daemon
+}  // namespace mpm::bus

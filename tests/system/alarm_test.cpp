@@ -22,19 +22,19 @@ TEST_CASE("a mismatch becomes an alarm that who joins later sees; SIGTERM ends t
 
   SECTION("as a reader of mpm/alarm") {
     const idl::Participant late(bench.options);
-    daemon::OutputReaders readers(late);
-    std::vector<daemon::AlarmStateRecord> states;
-    std::vector<daemon::AlarmRecord> events;
+    bus::OutputReaders readers(late);
+    std::vector<bus::AlarmStateRecord> states;
+    std::vector<report::AlarmRecord> events;
     CHECK(idl::eventually([&] {
-      for (const daemon::Output& output : readers.take()) {
-        if (const auto* state = std::get_if<daemon::AlarmStateRecord>(&output))
+      for (const bus::Output& output : readers.take()) {
+        if (const auto* state = std::get_if<bus::AlarmStateRecord>(&output))
           states.push_back(*state);
-        if (const auto* event = std::get_if<daemon::AlarmRecord>(&output)) events.push_back(*event);
+        if (const auto* event = std::get_if<report::AlarmRecord>(&output)) events.push_back(*event);
       }
       return states.size() == 2 && !events.empty();
     }));
     REQUIRE(states.size() == 2);  // one per channel
-    const daemon::AlarmRecord& first =
+    const report::AlarmRecord& first =
         states[0].alarm.mv == "u1" ? states[0].alarm : states[1].alarm;
     CHECK(first.cv == "y1");
     CHECK(first.to == "active");
@@ -52,7 +52,7 @@ TEST_CASE("a mismatch becomes an alarm that who joins later sees; SIGTERM ends t
 
   bench.daemon.send(SIGTERM);
   CHECK(bench.daemon.wait(std::chrono::seconds(1)) == 0);
-  CHECK(bench.observe([&] { return !bench.seen<daemon::MonitorGone>().empty(); }));
+  CHECK(bench.observe([&] { return !bench.seen<bus::MonitorGone>().empty(); }));
   INFO(read_file(bench.folder.file("mpmd.err")));
   CHECK(read_file(bench.folder.file("mpmd.err")).find("<4>toy: u1 -> y1: alarm active") !=
         std::string::npos);
@@ -64,11 +64,10 @@ TEST_CASE("a right model raises no alarm, and the channels become matches") {
   Plant plant(2.0);
   bench.publish(publisher, plant, kEnough);
   REQUIRE(bench.observe([&] { return bench.health().frames == kEnough; }));
-  CHECK(bench.seen<daemon::AlarmRecord>().empty());
+  CHECK(bench.seen<report::AlarmRecord>().empty());
   CHECK(bench.health().matching == 2);
   CHECK(bench.health().state == "normal");
-  for (const auto& state : bench.seen<daemon::AlarmStateRecord>())
-    CHECK(state.alarm.to == "cleared");
+  for (const auto& state : bench.seen<bus::AlarmStateRecord>()) CHECK(state.alarm.to == "cleared");
 }
 
 TEST_CASE("mpm watch --json prints what the journal holds, byte for byte, at full speed") {

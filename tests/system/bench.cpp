@@ -76,9 +76,9 @@ void Bench::publish(const idl::UnitPublisher& publisher, Plant& plant, int frame
   for (int i = 0; i < frames; ++i) REQUIRE(publisher.publish(plant.next()));
 }
 
-daemon::HealthRecord Bench::health(const std::string& unit) const {
-  daemon::HealthRecord last;
-  for (const auto& record : seen<daemon::HealthRecord>())
+report::HealthRecord Bench::health(const std::string& unit) const {
+  report::HealthRecord last;
+  for (const auto& record : seen<report::HealthRecord>())
     if (record.unit == unit) last = record;
   return last;
 }

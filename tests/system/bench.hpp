@@ -45,18 +45,18 @@ class Bench {
   [[nodiscard]] bool observe(Done&& done) {
     return idl::eventually(
         [&] {
-          for (const daemon::Output& output : readers.take()) outputs.push_back(output);
+          for (const bus::Output& output : readers.take()) outputs.push_back(output);
           return done();
         },
         std::chrono::seconds(20));
   }
   /// The last health of `unit` seen; empty if none.
-  [[nodiscard]] daemon::HealthRecord health(const std::string& unit = "toy") const;
+  [[nodiscard]] report::HealthRecord health(const std::string& unit = "toy") const;
   /// All records of one type seen.
   template <class Record>
   [[nodiscard]] std::vector<Record> seen() const {
     std::vector<Record> records;
-    for (const daemon::Output& output : outputs)
+    for (const bus::Output& output : outputs)
       if (const auto* record = std::get_if<Record>(&output)) records.push_back(*record);
     return records;
   }
@@ -66,8 +66,8 @@ class Bench {
   idl::DomainOptions options;
   Process daemon;
   idl::Participant participant;
-  daemon::OutputReaders readers;
-  std::vector<daemon::Output> outputs;
+  bus::OutputReaders readers;
+  std::vector<bus::Output> outputs;
 
  private:
   [[nodiscard]] std::vector<std::string> daemon_arguments(const std::vector<std::string>& more);

@@ -146,14 +146,14 @@ TEST_CASE("an alarm gets its cause, who joins later sees it, and no sample waits
   CHECK(at(during, 0.95) < 100.0);
 
   const idl::Participant newcomer(plant.domain);
-  daemon::OutputReaders late(newcomer);
-  daemon::AlarmRecord alarm;
-  daemon::HealthRecord health;
+  bus::OutputReaders late(newcomer);
+  report::AlarmRecord alarm;
+  report::HealthRecord health;
   CHECK(idl::eventually([&] {
-    for (const daemon::Output& output : late.take()) {
-      if (const auto* state = std::get_if<daemon::AlarmStateRecord>(&output))
+    for (const bus::Output& output : late.take()) {
+      if (const auto* state = std::get_if<bus::AlarmStateRecord>(&output))
         if (!state->alarm.named.text.empty()) alarm = state->alarm;
-      if (const auto* record = std::get_if<daemon::HealthRecord>(&output)) health = *record;
+      if (const auto* record = std::get_if<report::HealthRecord>(&output)) health = *record;
     }
     return !alarm.unit.empty() && health.frames == 1700;
   }));
@@ -165,14 +165,14 @@ TEST_CASE("an alarm gets its cause, who joins later sees it, and no sample waits
   CHECK(alarm.named.text.find("y1 answers u3") == 0);
   CHECK(alarm.named.confidence > 0.8);
   REQUIRE(alarm.named.parameters.size() == 1);
-  const daemon::CauseParameter& ratio = alarm.named.parameters[0];
+  const report::CauseParameter& ratio = alarm.named.parameters[0];
   CHECK(ratio.name == "gain_ratio");
   CHECK(ratio.value == Approx(0.6).margin(0.05));
   CHECK(ratio.low < ratio.value);
   CHECK(ratio.high > ratio.value);
 
   const std::string report =
-      plant.folder.file("state/shell/" + daemon::time_folder(alarm.source_time_ns) + "/");
+      plant.folder.file("state/shell/" + live::time_folder(alarm.source_time_ns) + "/");
   CHECK(read_file(report + "report.json").find("\"cause\": \"gain\"") != std::string::npos);
   CHECK(read_file(report + "report.html").find("</html>") != std::string::npos);
   CHECK(run({"mpmd", "--check", "--config", report + "extended.yaml"},

@@ -52,7 +52,7 @@ TEST_CASE("what is wrong with the input is counted in the health, without a floo
     if (k != 35) REQUIRE(write(cv, {"toy", k, {1.0}}));  // incomplete
 
   CHECK(bench.observe([&] { return bench.health().frames == 45; }));
-  const daemon::HealthRecord health = bench.health();
+  const report::HealthRecord health = bench.health();
   CHECK(health.wrong_length == 100);
   CHECK(health.repeated == 3);
   CHECK(health.late == 1);
@@ -129,15 +129,15 @@ TEST_CASE("partitions do not see each other") {
   idl::DomainOptions other = bench.options;
   other.partition += "-other";
   const idl::Participant outsider(other);
-  daemon::OutputReaders readers(outsider);
+  bus::OutputReaders readers(outsider);
   UnitLayout layout;
   layout.unit = "toy";
   layout[SignalKind::kMv].tags = {"u1", "u2"};
   layout[SignalKind::kCv].tags = {"y1"};
   const idl::UnitPublisher publisher(outsider, layout, idl::WriterPace::kRealTime);
   CHECK_FALSE(publisher.wait_for_readers(std::chrono::milliseconds(1500)));
-  for (const daemon::Output& output : readers.take())
-    CHECK(std::holds_alternative<daemon::LayoutRecord>(output));  // its own one
+  for (const bus::Output& output : readers.take())
+    CHECK(std::holds_alternative<bus::LayoutRecord>(output));  // its own one
 }
 
 TEST_CASE("thirty viewers on one host all hear the daemon, without multicast") {

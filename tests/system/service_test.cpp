@@ -103,11 +103,11 @@ TEST_CASE("one daemon watches a folder of units, on several domains at once") {
 
   const auto units_on = [](const idl::DomainOptions& options, std::size_t expected) {
     const idl::Participant participant(options);
-    daemon::OutputReaders readers(participant);
+    bus::OutputReaders readers(participant);
     std::vector<std::string> units;
     (void)idl::eventually([&] {
-      for (const daemon::Output& output : readers.take())
-        if (const auto* health = std::get_if<daemon::HealthRecord>(&output))
+      for (const bus::Output& output : readers.take())
+        if (const auto* health = std::get_if<report::HealthRecord>(&output))
           if (std::find(units.begin(), units.end(), health->unit) == units.end())
             units.push_back(health->unit);
       return units.size() == expected;

@@ -1,6 +1,6 @@
 # cmake -D FOLDER=<of the page's files> -D OUTPUT=<.cpp> -P embed.cmake: the files as C++ constants, so
 # that the program finds them wherever it runs.
-set(text "#include <string_view>\n\nnamespace mpm::daemon {\n")
+set(text "#include <string_view>\n\nnamespace mpm::report {\n")
 foreach(entry kPageHtml:page.html kPageCss:page.css kPlotJs:plot.js kPageJs:page.js)
   string(REPLACE ":" ";" entry ${entry})
   list(GET entry 0 name)
@@ -12,4 +12,4 @@ foreach(entry kPageHtml:page.html kPageCss:page.css kPlotJs:plot.js kPageJs:page
     "extern const std::string_view ${name};\n"
     "const std::string_view ${name}(${name}Bytes, sizeof ${name}Bytes);\n")
 endforeach()
-file(WRITE ${OUTPUT} "${text}}  // namespace mpm::daemon\n")
+file(WRITE ${OUTPUT} "${text}}  // namespace mpm::report\n")

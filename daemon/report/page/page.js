@@ -14,17 +14,7 @@ const report = data.report;
 const main = document.getElementById('main');
 const BEFORE = 'simulated', AFTER = 'extended';
 
-const CAUSES = {
-  gain: 'Gain', dead_time: 'Dead time', time_constant: 'Time constant', dynamics: 'Dynamics',
-  input_scale: 'Scale of an input', output_scale: 'Scale of an output',
-  input_nonlinearity: 'Nonlinear input', stiction: 'Sticking valve',
-  output_nonlinearity: 'Nonlinear output', unmodelled_input: 'Input that the model leaves out',
-  output_disturbance: 'Disturbance or sensor offset', noise: 'Noise',
-  state_nonlinearity: 'Nonlinear dynamics',
-};
-
 const words = text => String(text).replaceAll('->', '→');
-const causeText = cause => (CAUSES[cause] || cause).toLowerCase();
 const percent = share => known(share) ? number(100 * share, 3) + ' %' : '–';
 const unitText = unit => unit ? ', ' + unit : '';
 const some = (list, make) => list.length ? make(list) : null;
@@ -88,7 +78,7 @@ function findingCard(finding, label, refused) {
   fact('Since', finding.onset === null ? 'the beginning of the data, or before' : clock(finding.onset));
   fact('Rivals', rivalList(finding));
   return element('div', {class: 'finding' + (refused ? ' refused' : '')},
-      element('h3', {}, `${label}${CAUSES[finding.cause]}: ${subjectText(finding)}`),
+      element('h3', {}, `${label}${finding.title}: ${subjectText(finding)}`),
       refused ? element('p', {}, element('span', {class: 'badge warn'}, 'refused'), 'Its repair did not carry over to unseen samples, so the extended model does without.') : null,
       element('p', {}, finding.explanation), parameterTable(finding), facts);
 }
@@ -177,7 +167,7 @@ function unseen(set) {
 function onsets(cv, set) {
   const end = set.start + set.step * set.samples;
   return report.findings.filter(finding => (finding.cv === cv.tag || !finding.cv) && finding.onset !== null && finding.onset >= set.start && finding.onset <= end)
-    .map(finding => ({x: finding.onset, label: causeText(finding.cause)}));
+    .map(finding => ({x: finding.onset, label: finding.title.toLowerCase()}));
 }
 
 function pair(x, before, after, more = {}) {

@@ -1,4 +1,4 @@
-#include "core/identify/channel_edit.hpp"
+#include "core/identify/fit/channel_edit.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

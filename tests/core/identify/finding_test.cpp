@@ -1,4 +1,4 @@
-#include "core/identify/finding.hpp"
+#include "core/identify/causes/finding.hpp"
 
 #include <catch2/catch.hpp>
 #include <string>

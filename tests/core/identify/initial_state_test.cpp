@@ -1,4 +1,4 @@
-#include "core/identify/initial_state.hpp"
+#include "core/identify/fit/initial_state.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/identify/misfit_slope.hpp"
+#include "core/identify/fit/misfit_slope.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "core/identify/noise_change.hpp"
+#include "core/identify/causes/noise_change.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

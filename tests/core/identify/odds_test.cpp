@@ -1,4 +1,4 @@
-#include "core/identify/odds.hpp"
+#include "core/identify/search/odds.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

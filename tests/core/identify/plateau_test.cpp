@@ -1,4 +1,4 @@
-#include "core/identify/plateau.hpp"
+#include "core/identify/fit/plateau.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>

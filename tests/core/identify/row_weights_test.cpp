@@ -1,4 +1,4 @@
-#include "core/identify/row_weights.hpp"
+#include "core/identify/fit/row_weights.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

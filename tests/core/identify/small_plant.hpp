@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/identify/problem.hpp"
-#include "core/identify/recording.hpp"
+#include "core/identify/fit/problem.hpp"
+#include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
 #include "tests/core/counter_noise.hpp"
 

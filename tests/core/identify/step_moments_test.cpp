@@ -1,4 +1,4 @@
-#include "core/identify/step_moments.hpp"
+#include "core/identify/causes/step_moments.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

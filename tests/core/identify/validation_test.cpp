@@ -1,4 +1,4 @@
-#include "core/identify/validation.hpp"
+#include "core/identify/diagnosis/validation.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/identify/whitening.hpp"
+#include "core/identify/fit/whitening.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,0 +1,23 @@
+#include "core/identify/causes/catalog.hpp"
+
+#include <algorithm>
+
+namespace mpm::causes {
+
+const std::vector<const Cause*>& all() {
+#define MPM_ADDRESS(cause) &cause(),
+  static const std::vector<const Cause*> kAll = {MPM_CAUSES(MPM_ADDRESS)};
+#undef MPM_ADDRESS
+  return kAll;
+}
+
+const Cause* find(std::string_view name, std::string_view kind) {
+  const auto found = std::find_if(all().begin(), all().end(), [&](const Cause* cause) {
+    return cause->name().text == name && (kind.empty() || cause->kind() == kind);
+  });
+  return found == all().end() ? nullptr : *found;
+}
+
+bool is_unnamed(const Cause& cause) { return &cause.name() == &unnamed_product().name(); }
+
+}  // namespace mpm::causes

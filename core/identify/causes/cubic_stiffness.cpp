@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/channel_error.hpp"
+#include "core/identify/causes/priors.hpp"
+#include "core/identify/causes/state_nonlinearity.hpp"
+#include "core/identify/fit/channel_edit.hpp"
+
+namespace mpm::causes {
+namespace {
+
+/// phi = quadratic y^2 + cubic y^3, y the channel's deviation (RestoringForce).
+constexpr Quantity kQuadratic{"quadratic", Form::kPlain, Unit::kNone};
+constexpr Quantity kCubic{"cubic", Form::kPlain, Unit::kNone};
+
+/// s.d. of each term where the CV is farthest out, as a share of the input's range.
+constexpr double kUsualForce = 0.2;
+constexpr double kStep = 0.02;  ///< of that s.d.
+
+/// A CV is pushed back by a force that does not grow in proportion to it.
+class CubicStiffness : public StateNonlinearity {
+ public:
+  CubicStiffness() : StateNonlinearity("cubic_stiffness") {}
+
+  void apply(const Effect& effect, const Surroundings& surroundings,
+             ModelSpec& model) const override {
+    edit_channels(effect, surroundings, model);
+    model.state_terms.push_back(
+        {effect.place.cv, effect.place.input,
+         RestoringForce{effect.value(kQuadratic, 0.0), effect.value(kCubic, 0.0)}});
+  }
+
+  void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
+    for (const StatePlace& at : state_places(outlook)) {
+      const double origin = outlook.model().output_origin(at.channel->cv);
+      const double reach = std::max(std::abs(at.cv.high - origin), std::abs(at.cv.low - origin));
+      const double force = at.input.range();
+      const auto term = [](const Quantity& quantity, double sd) {
+        return Coordinate{.quantity = &quantity,
+                          .prior_sd = sd,
+                          .step = kStep * sd,
+                          .low = -kUnboundedSize,
+                          .high = kUnboundedSize};
+      };
+      std::vector<Coordinate> spring = {
+          gain_ratio_coordinate(), time_constant_coordinate(0.0),
+          term(kQuadratic, kUsualForce * force / (reach * reach)),
+          term(kCubic, kUsualForce * force / (reach * reach * reach))};
+      // A linear fit to a stiffening spring has got its damping wrong too.
+      if (rings(*at.channel))
+        spring.push_back(
+            {.quantity = &kDampingRatio, .prior_sd = 0.35, .step = 0.01, .low = -2.0, .high = 2.0});
+      found.push_back(effect(place_of(*at.channel), std::move(spring), members_cost(outlook)));
+    }
+  }
+
+  [[nodiscard]] std::string sentence(const Finding& finding,
+                                     const SignalNames& names) const override {
+    return names.cv(finding.subject.place.cv).tag +
+           " is pushed back by a force that does not grow in proportion to it (" + kind() + "). ";
+  }
+};
+
+}  // namespace
+
+const Cause& cubic_stiffness() {
+  static const CubicStiffness kCause;
+  return kCause;
+}
+
+}  // namespace mpm::causes

@@ -1,0 +1,38 @@
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/channel_error.hpp"
+
+namespace mpm::causes {
+namespace {
+
+constexpr CauseName kName{"gain", "Gain"};
+
+/// A channel's gain is another one than the model's.
+class Gain : public SingleChannelError {
+ public:
+  Gain() : SingleChannelError(kName) {}
+
+  void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
+    const double members = cost_of(outlook.model().channels.size());
+    for (const ChannelSpec& channel : outlook.model().channels) {
+      if (!has_own_gain(channel)) continue;
+      found.push_back(effect(place_of(channel), {gain_ratio_coordinate()}, members));
+      for (const Eigen::Index onset : error_onsets(outlook.problem.samples()))
+        found.push_back(effect(place_of(channel), {gain_ratio_coordinate()},
+                               members + error_onset_cost(), onset));
+    }
+  }
+
+  [[nodiscard]] std::string sentence(const Finding& finding,
+                                     const SignalNames& names) const override {
+    return gain_sentence(finding, names);
+  }
+};
+
+}  // namespace
+
+const Cause& gain() {
+  static const Gain kCause;
+  return kCause;
+}
+
+}  // namespace mpm::causes

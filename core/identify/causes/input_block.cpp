@@ -1,0 +1,54 @@
+#include "core/identify/causes/input_block.hpp"
+
+#include <algorithm>
+
+#include "core/identify/causes/channel_error.hpp"
+
+namespace mpm {
+
+void InputBlockCause::apply(const Effect& effect, const Surroundings&, ModelSpec& model) const {
+  const InputBlock block = this->block(effect);
+  if (effect.place.cv < 0) {
+    model.input_blocks[static_cast<std::size_t>(effect.place.input)] = block;
+    return;
+  }
+  for (ChannelSpec& channel : model.channels)
+    if (place_of(channel) == Place{effect.place.cv, effect.place.input})
+      channel.input_block = block;
+}
+
+bool InputBlockCause::goes_with(const Effect& accepted, const Effect& mine) const {
+  if (cause_of(accepted).is_input_block() && accepted.place.input == mine.place.input) return false;
+  return Cause::goes_with(accepted, mine);
+}
+
+std::vector<BlockPlace> InputBlockCause::block_places(const Outlook& outlook) {
+  const ModelSpec& model = outlook.model();
+  const std::size_t members = static_cast<std::size_t>(outlook.inputs()) + model.channels.size();
+  std::vector<BlockPlace> places;
+  for (int input = 0; input < outlook.inputs(); ++input) {
+    if (model.input_blocks[static_cast<std::size_t>(input)]) continue;
+    const std::optional<Spread> spread = spread_of(outlook.recording().inputs.col(input));
+    const std::vector<int> cvs = outlook.cvs_of(input);
+    if (!spread || cvs.empty()) continue;
+    const auto add = [&](int cv, bool whole_input) {
+      const bool taken = std::any_of(
+          model.channels.begin(), model.channels.end(), [&](const ChannelSpec& channel) {
+            return channel.input == input && (cv < 0 || channel.cv == cv) &&
+                   (channel.input_block || !has_own_gain(channel));
+          });
+      if (!taken) places.push_back({{cv, input}, *spread, whole_input, members});
+    };
+    add(cvs.size() > 1 ? -1 : cvs[0], true);
+    if (cvs.size() > 1)
+      for (const int cv : cvs) add(cv, false);
+  }
+  return places;
+}
+
+std::string InputBlockCause::target(const Finding& finding, const SignalNames& names) {
+  const int cv = finding.subject.place.cv;
+  return cv >= 0 ? names.cv(cv).tag : "the plant";
+}
+
+}  // namespace mpm

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/identify/causes/cause.hpp"
+#include "core/identify/causes/spread.hpp"
+
+namespace mpm {
+
+inline constexpr CauseName kInputNonlinearity{"input_nonlinearity", "Nonlinear input"};
+
+/// Where a static block may sit: before all of an input's channels, or before one of several.
+struct BlockPlace {
+  Place place;          ///< cv -1: before all of them
+  Spread input;         ///< how the input moves
+  bool whole_input;     ///< it acts on all CVs of the input
+  std::size_t members;  ///< places there are in the model
+};
+
+/// A cause that puts a static block before an input's channels; one block per place.
+class InputBlockCause : public Cause {
+ public:
+  using Cause::Cause;
+  void apply(const Effect& effect, const Surroundings& surroundings,
+             ModelSpec& model) const override;
+  [[nodiscard]] bool is_input_block() const override { return true; }
+  [[nodiscard]] bool goes_with(const Effect& accepted, const Effect& mine) const override;
+
+ protected:
+  [[nodiscard]] virtual InputBlock block(const Effect& effect) const = 0;
+  /// Where nothing is in the way of a block.
+  [[nodiscard]] static std::vector<BlockPlace> block_places(const Outlook& outlook);
+  /// The tag of what the block stands before: a CV's, or "the plant".
+  [[nodiscard]] static std::string target(const Finding& finding, const SignalNames& names);
+};
+
+}  // namespace mpm

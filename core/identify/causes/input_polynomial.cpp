@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/input_block.hpp"
+#include "core/identify/causes/priors.hpp"
+
+namespace mpm::causes {
+namespace {
+
+/// u acts like linear du + quadratic du^2 + cubic du^3, du from the operating point.
+constexpr Quantity kLinear{"linear", Form::kPlain, Unit::kNone};
+constexpr Quantity kQuadratic{"quadratic", Form::kPlain, Unit::kNone};
+constexpr Quantity kCubic{"cubic", Form::kPlain, Unit::kNone};
+
+/// s.d. of what the curved part adds at the end of the input's range, as a share of the linear one.
+constexpr double kBend = 0.3;
+
+/// A smooth curve between an input and what the plant sees of it.
+class InputPolynomial : public InputBlockCause {
+ public:
+  InputPolynomial() : InputBlockCause(kInputNonlinearity, "polynomial") {}
+
+  void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
+    for (const BlockPlace& at : block_places(outlook)) {
+      const double origin = outlook.model().input_origin(at.place.input);
+      const double reach =
+          std::max(std::abs(at.input.high - origin), std::abs(at.input.low - origin));
+      const Coordinate linear{.quantity = &kLinear,
+                              .value = 1.0,
+                              .prior_mean = 1.0,
+                              .prior_sd = 0.25,
+                              .step = 0.01,
+                              .low = -20.0,
+                              .high = 20.0};
+      const auto curved = [](const Quantity& quantity, double sd) {
+        return Coordinate{.quantity = &quantity,
+                          .prior_sd = sd,
+                          .step = 0.05 * sd,
+                          .low = -kUnbounded,
+                          .high = kUnbounded};
+      };
+      const Coordinate quadratic = curved(kQuadratic, kBend / reach);
+      const Coordinate cubic = curved(kCubic, kBend / (reach * reach));
+      found.push_back(effect(at.place, {linear, quadratic}, cost_of(at.members)));
+      found.push_back(effect(at.place, {linear, quadratic, cubic}, cost_of(at.members)));
+    }
+  }
+
+  [[nodiscard]] std::string sentence(const Finding& finding,
+                                     const SignalNames& names) const override {
+    return target(finding, names) + " does not answer " + names.source(finding.subject.place).tag +
+           " in proportion: the answer to a large move is not a small one's, enlarged. ";
+  }
+
+ protected:
+  [[nodiscard]] InputBlock block(const Effect& effect) const override {
+    Polynomial polynomial;
+    polynomial.coefficients = {effect.value(kLinear, 1.0), effect.value(kQuadratic, 0.0),
+                               effect.value(kCubic, 0.0)};
+    while (polynomial.coefficients.size() > 1 && polynomial.coefficients.back() == 0.0)
+      polynomial.coefficients.pop_back();
+    return polynomial;
+  }
+};
+
+}  // namespace
+
+const Cause& input_polynomial() {
+  static const InputPolynomial kCause;
+  return kCause;
+}
+
+}  // namespace mpm::causes

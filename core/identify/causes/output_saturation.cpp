@@ -1,0 +1,103 @@
+#include <cmath>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/priors.hpp"
+#include "core/identify/causes/spread.hpp"
+
+namespace mpm::causes {
+namespace {
+
+constexpr CauseName kName{"output_nonlinearity", "Nonlinear output"};
+
+constexpr Quantity kLow{"low", Form::kPlain, Unit::kCv};
+constexpr Quantity kHigh{"high", Form::kPlain, Unit::kCv};
+
+/// Shares of the data beyond a level to begin a fit from.
+constexpr double kBeyond[] = {0.002, 0.05, 0.12};
+/// Ways in which a CV may overflow, beside which a level is picked.
+constexpr int kLikes = 40;
+
+/// A CV does not read, or does not go, beyond a level.
+class OutputSaturation : public Cause {
+ public:
+  OutputSaturation() : Cause(kName, "saturation") {}
+
+  void apply(const Effect& effect, const Surroundings&, ModelSpec& model) const override {
+    model.output_blocks[static_cast<std::size_t>(effect.place.cv)] =
+        Saturation{effect.value(kLow, -kNoLimit), effect.value(kHigh, kNoLimit)};
+  }
+
+  /// A clipped sensor would have shown its plateau: what is left is an overflow upstream of it.
+  void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
+    const ModelSpec& model = outlook.model();
+    const double members = cost_of(static_cast<std::size_t>(kLikes * model.cv_count));
+    for (int cv = 0; cv < model.cv_count; ++cv) {
+      if (model.output_blocks[static_cast<std::size_t>(cv)]) continue;
+      const std::optional<Spread> spread = spread_of(outlook.recording().cvs.col(cv));
+      if (!spread) continue;
+      const double range = spread->sorted.back() - spread->sorted.front();
+      const auto level = [&](const Quantity& quantity, double start) {
+        return Coordinate{.quantity = &quantity,
+                          .value = start,
+                          .prior_mean = spread->median,
+                          .prior_sd = 0.5 * range,
+                          .step = 0.003 * range,
+                          .low = -kUnbounded,
+                          .high = kUnbounded};
+      };
+      for (const double p : kBeyond) {
+        found.push_back(effect({cv}, {level(kHigh, spread->quantile(1.0 - p))}, members));
+        found.push_back(effect({cv}, {level(kLow, spread->quantile(p))}, members));
+      }
+    }
+  }
+
+  /// The plateaus of clipped sensors, told to the last digit.
+  [[nodiscard]] std::vector<Effect> shown_by(const Problem& problem) const override {
+    std::vector<Effect> found;
+    for (int cv = 0; cv < problem.model().cv_count; ++cv) {
+      const Plateaus& plateaus = problem.plateaus(cv);
+      if (!plateaus.low && !plateaus.high) continue;
+      const double sd = problem.data(cv).measured_sd;
+      Effect clipping = effect({cv}, {}, 0.0);
+      clipping.certain = true;
+      const auto level = [&](const Quantity& quantity, double value) {
+        clipping.coordinates.push_back({.quantity = &quantity,
+                                        .value = value,
+                                        .prior_mean = value,
+                                        .prior_sd = 1e-6 * sd,
+                                        .step = 1e-4 * sd,
+                                        .low = -kNoLimit,
+                                        .high = kNoLimit});
+      };
+      if (plateaus.low) level(kLow, *plateaus.low);
+      if (plateaus.high) level(kHigh, *plateaus.high);
+      found.push_back(std::move(clipping));
+    }
+    return found;
+  }
+
+  [[nodiscard]] std::string sentence(const Finding& finding,
+                                     const SignalNames& names) const override {
+    const int cv = finding.subject.place.cv;
+    std::string text = names.cv(cv).tag + " does not read";
+    const auto known = [](const Parameter* level) {
+      return level != nullptr && std::isfinite(level->value);
+    };
+    const Parameter* low = finding.find(kLow);
+    const Parameter* high = finding.find(kHigh);
+    if (known(low)) text += " below " + names.in_cv(low->value, cv);
+    if (known(low) && known(high)) text += " nor";
+    if (known(high)) text += " above " + names.in_cv(high->value, cv);
+    return text + ": a clipped sensor or an overflow. ";
+  }
+};
+
+}  // namespace
+
+const Cause& output_saturation() {
+  static const OutputSaturation kCause;
+  return kCause;
+}
+
+}  // namespace mpm::causes

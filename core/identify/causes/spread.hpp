@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace mpm {
+
+/// Where a signal mostly is.
+struct Spread {
+  double low = 0.0, high = 0.0;  ///< 1 and 99 % quantiles
+  double sd = 0.0, median = 0.0;
+  std::vector<double> sorted;  ///< all that is known of it
+
+  [[nodiscard]] double quantile(double p) const {
+    return sorted[static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1))];
+  }
+  [[nodiscard]] double range() const { return high - low; }
+};
+
+/// Nothing where fewer than 20 values are known or the signal hardly moves.
+[[nodiscard]] std::optional<Spread> spread_of(const Eigen::Ref<const Eigen::VectorXd>& values);
+
+}  // namespace mpm

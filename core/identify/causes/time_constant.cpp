@@ -1,0 +1,42 @@
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/channel_error.hpp"
+
+namespace mpm::causes {
+namespace {
+
+constexpr CauseName kName{"time_constant", "Time constant"};
+
+/// Logs of ratios to begin a fit from: throughout, and from a moment on.
+constexpr double kStarts[] = {-0.3, 0.0, 0.4};
+constexpr double kStartFromOnset = 0.2;
+
+/// A channel is slower or faster than the model.
+class TimeConstant : public SingleChannelError {
+ public:
+  TimeConstant() : SingleChannelError(kName) {}
+
+  void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
+    const double members = cost_of(outlook.model().channels.size());
+    for (const ChannelSpec& channel : outlook.model().channels) {
+      for (const double start : kStarts)
+        found.push_back(effect(place_of(channel), {time_constant_coordinate(start)}, members));
+      for (const Eigen::Index onset : error_onsets(outlook.problem.samples()))
+        found.push_back(effect(place_of(channel), {time_constant_coordinate(kStartFromOnset)},
+                               members + error_onset_cost(), onset));
+    }
+  }
+
+  [[nodiscard]] std::string sentence(const Finding& finding,
+                                     const SignalNames& names) const override {
+    return time_constant_sentence(finding, names);
+  }
+};
+
+}  // namespace
+
+const Cause& time_constant() {
+  static const TimeConstant kCause;
+  return kCause;
+}
+
+}  // namespace mpm::causes

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/identify/causes/finding.hpp"
+#include "core/identify/diagnosis/channel_estimates.hpp"
+#include "core/identify/diagnosis/statement.hpp"
+#include "core/identify/diagnosis/validation.hpp"
+#include "core/identify/fit/recording.hpp"
+#include "core/model/model_spec.hpp"
+
+namespace mpm {
+
+struct DiagnosisSettings {
+  int mv_count = 0;            ///< of the model's inputs; the rest are DVs
+  double fit_share = 2.0 / 3;  ///< first part of the recording that is fitted
+  int max_findings = 6;
+  std::uint64_t seed = 1;  ///< of the block bootstrap
+  /// Called after each fit, with the share done, 0..1; returns false to give up, which then takes
+  /// no more than a fit does.
+  std::function<bool(double)> progress = {};
+};
+
+enum class DiagnosisVerdict { kMatch, kMismatch, kUndetermined };
+
+struct Diagnosis {
+  DiagnosisVerdict verdict = DiagnosisVerdict::kUndetermined;
+  std::string reason;  ///< why undetermined, or what the verdict leaves open; for a person
+  Eigen::Index samples = 0, fit_samples = 0, validation_samples = 0;
+  std::vector<Finding> findings;  ///< most important first
+  std::vector<Finding> refused;   ///< found, but their repair did not carry over to unseen data
+  std::vector<Unexplained> unexplained;
+  std::vector<ChannelEstimate> channels;
+  ModelSpec extended;             ///< equal to the model where nothing was found
+  std::vector<int> new_inputs;    ///< aux signals that `extended` takes as inputs after the model's
+  std::vector<CvScore> scores;    ///< one per CV
+  Eigen::MatrixXd before, after;  ///< simulated CVs on the recording, samples x CVs
+  /// The same on the second recording where there is one.
+  Eigen::MatrixXd validation_before, validation_after;
+};
+
+/// Too few rows for a diagnosis of this model are no diagnosis; so many are needed.
+[[nodiscard]] Eigen::Index needed_samples(const ModelSpec& model);
+
+/// Simulates `model` freely on `recording`, names what it gets wrong, extends it and measures the
+/// gain on samples that the fit has not seen: the end of `recording`, or all of `validation`.
+/// Deterministic. Never throws on data. Given up: undetermined, and nothing else is filled in.
+[[nodiscard]] Diagnosis diagnose(const ModelSpec& model, const Recording& recording,
+                                 const Recording* validation, const DiagnosisSettings& settings);
+
+}  // namespace mpm

@@ -1,0 +1,73 @@
+#include "core/identify/diagnosis/noise_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/channel_estimates.hpp"
+#include "core/identify/diagnosis/extension.hpp"
+#include "core/identify/diagnosis/validation.hpp"
+#include "core/identify/fit/free_run.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+Explained explain_with(const NoiseModel& noise, const ModelSpec& model, int model_inputs,
+                       const Recording& recording, const SearchSettings& settings) {
+  Explained explained;
+  explained.problem =
+      std::make_unique<Problem>(model, model_inputs, recording, Tolerances{}, noise);
+  explained.found = search(*explained.problem, settings);
+  return explained;
+}
+
+/// Sum over the CVs of the log of the free run's error on the rows from `first` on.
+double log_error(const Explained& explained, const Recording& recording, Index first) {
+  const std::vector<bool> all(explained.found.named.size(), true);
+  const std::vector<bool> keep(static_cast<std::size_t>(recording.cvs.cols()), true);
+  const ModelSpec model = extend(*explained.problem, explained.found, all, keep);
+  Simulator simulator(recording);
+  double sum = 0.0;
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const VectorXd errors =
+        (recording.cvs.col(cv) - free_run(simulator, model, cv)).tail(recording.samples() - first);
+    const double error = mean_of_finite(errors.cwiseAbs2());
+    sum += std::isfinite(error) ? std::log(error) : 1e6;
+  }
+  return sum;
+}
+
+bool is_too_smooth(const Explained& explained) {
+  return std::any_of(
+      explained.found.fit.cvs.begin(), explained.found.fit.cvs.end(), [&](const CvFit& fit) {
+        const CvData& data = explained.problem->data(fit.cv);
+        const double all = fit.residual.squaredNorm() / std::max(1.0, data.known.sum());
+        return fit.variance < kTooSmooth * all;
+      });
+}
+
+}  // namespace
+
+Explained explain(const ModelSpec& model, int model_inputs, const Recording& recording,
+                  const SearchSettings& settings) {
+  const auto explain_on = [&](const NoiseModel& noise, const Recording& on) {
+    return explain_with(noise, model, model_inputs, on, settings);
+  };
+  Explained explained = explain_on(kFreeNoise, recording);
+  const bool blind =
+      explained.found.named.empty() &&
+      unknown_gains(estimate_channels(*explained.problem, explained.found, settings)) > 0;
+  if (!blind && !is_too_smooth(explained)) return explained;
+  const Index first = (kComparedQuarter - 1) * recording.samples() / kComparedQuarter;
+  const Recording train = part(recording, 0, first);
+  const double with_free = log_error(explain_on(kFreeNoise, train), recording, first);
+  const double with_bounded = log_error(explain_on(kBoundedNoise, train), recording, first);
+  if (!(with_bounded < with_free - (blind ? kSomewhatLess : kClearlyLess))) return explained;
+  return explain_on(kBoundedNoise, recording);
+}
+
+}  // namespace mpm

@@ -1,0 +1,42 @@
+#include "core/identify/diagnosis/unseen.hpp"
+
+#include <algorithm>
+
+#include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/fit/channel_edit.hpp"
+#include "core/identify/fit/free_run.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+
+namespace {
+
+double slowest_samples(const ModelSpec& model) {
+  double slowest = 1.0;
+  for (const ChannelSpec& channel : model.channels)
+    slowest = std::max(slowest, slowest_time_constant_s(channel, model.sample_time_s));
+  return slowest / model.sample_time_s;
+}
+
+}  // namespace
+
+Unseen::Unseen(const Recording& recording, Index rows, const ModelSpec& model, std::uint64_t seed)
+    : simulator_(recording),
+      rows_(rows),
+      block_(static_cast<Index>(kBlockTimeConstants * slowest_samples(model)) + kBlockRows),
+      seed_(seed) {}
+
+Eigen::VectorXd Unseen::measured(int cv) const {
+  return simulator_.recording().cvs.col(cv).tail(rows_);
+}
+
+Eigen::VectorXd Unseen::simulated(const ModelSpec& model, int cv) {
+  return free_run(simulator_, model, cv).tail(rows_);
+}
+
+Eigen::MatrixXd Unseen::free_runs(const ModelSpec& model) {
+  return mpm::free_runs(simulator_, model);
+}
+
+}  // namespace mpm

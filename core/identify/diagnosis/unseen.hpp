@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/identify/fit/simulator.hpp"
+
+namespace mpm {
+
+/// The samples that no fit has seen, and free runs on them.
+class Unseen {
+ public:
+  /// The last `rows` of a recording, which must outlive it. `model` says how long what happened is
+  /// remembered; `seed` of the bootstrap.
+  Unseen(const Recording& recording, Eigen::Index rows, const ModelSpec& model, std::uint64_t seed);
+
+  [[nodiscard]] Eigen::VectorXd measured(int cv) const;
+  [[nodiscard]] Eigen::VectorXd simulated(const ModelSpec& model, int cv);
+  /// All CVs on the whole recording, samples x CVs.
+  [[nodiscard]] Eigen::MatrixXd free_runs(const ModelSpec& model);
+  [[nodiscard]] Eigen::Index rows() const { return rows_; }
+  /// Rows of a block of the bootstrap.
+  [[nodiscard]] Eigen::Index block() const { return block_; }
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+
+ private:
+  Simulator simulator_;
+  Eigen::Index rows_, block_;
+  std::uint64_t seed_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,280 @@
+#include "core/identify/fit/problem.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "core/identify/fit/calibration.hpp"
+#include "core/identify/fit/channel_edit.hpp"
+#include "core/identify/fit/initial_state.hpp"
+#include "core/identify/fit/plateau.hpp"
+#include "core/identify/fit/row_weights.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double spread(const VectorXd& values, const VectorXd& known) {
+  const double count = std::max(1.0, known.sum());
+  const double mean = values.dot(known) / count;
+  return std::sqrt(
+      std::max(1e-30, ((values.array() - mean).square() * known.array()).sum() / count));
+}
+
+}  // namespace
+
+MatrixXd triangle(const MatrixXd& matrix) {
+  const Index columns = matrix.cols();
+  const Eigen::HouseholderQR<MatrixXd> qr(matrix);
+  return qr.matrixQR().topRows(std::min(columns, matrix.rows())).triangularView<Eigen::Upper>();
+}
+
+VectorXd rows_of(const CvData& data, const CvFit& fit, const Eigen::Ref<const VectorXd>& x) {
+  const VectorXd root = (data.weights / fit.variance).cwiseSqrt();
+  return fit.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);
+}
+
+Problem::Problem(const ModelSpec& model, int model_inputs, const Recording& recording,
+                 const Tolerances& tolerances, const NoiseModel& noise)
+    : model_(model),
+      surroundings_{recording.sample_time_s, recording.start_s, model_inputs},
+      simulator_(recording),
+      tolerances_(tolerances),
+      noise_(noise) {
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    CvData data;
+    const auto measured = recording.cvs.col(cv);
+    data.known = measured.unaryExpr([](double y) { return std::isfinite(y) ? 1.0 : 0.0; });
+    data.measured = measured.unaryExpr([](double y) { return std::isfinite(y) ? y : 0.0; });
+    data.measured_sd = spread(data.measured, data.known);
+    plateaus_.push_back(take_out_plateaus(cv, data));
+    data_.push_back(std::move(data));
+  }
+  settle({}, nullptr);
+}
+
+Plateaus Problem::take_out_plateaus(int cv, CvData& data) const {
+  if (model_.output_blocks[static_cast<std::size_t>(cv)]) return {};
+  const auto measured = recording().cvs.col(cv);
+  const Plateaus plateaus = find_plateaus(measured);
+  const double tie = kPlateauTie * data.measured_sd;
+  for (Index k = 0; k < measured.size(); ++k)
+    if ((plateaus.low && measured(k) <= *plateaus.low + tie) ||
+        (plateaus.high && measured(k) >= *plateaus.high - tie))
+      data.known(k) = data.measured(k) = 0.0;
+  return plateaus;
+}
+
+ModelSpec Problem::with(const std::vector<Effect>& effects) const {
+  ModelSpec model = model_;
+  for (const Effect& effect : effects) apply(effect, surroundings_, model);
+  return model;
+}
+
+void Problem::make_nuisances(const ModelSpec& model, int cv) {
+  CvData& data = data_[static_cast<std::size_t>(cv)];
+  const Index samples = data.measured.size();
+  const double scale = spread(data.measured, data.known);
+  std::vector<VectorXd> columns;
+  data.meaning.clear();
+  const auto add = [&](const SmallError& meaning, const VectorXd& column) {
+    columns.push_back(column);
+    data.meaning.push_back(meaning);
+  };
+
+  const VectorXd base = simulator_.cv(model, cv);
+  const VectorXd misfit = (data.measured - base).cwiseProduct(data.known);
+  // A level far beyond what the simulation is off by would make any noise look like a wandering
+  // one, and a wandering one leaves the level free.
+  const double off =
+      std::max(1e-6 * scale, misfit.norm() / std::sqrt(std::max(1.0, data.known.sum())));
+  add({}, VectorXd::Constant(samples, off));
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    const ChannelSpec& channel = model.channels[c];
+    if (channel.cv != cv) continue;
+    const auto difference = [&](const ChannelError& error, double step) -> VectorXd {
+      ModelSpec changed = model;
+      changed.channels[c] = edited(channel, error, model.sample_time_s);
+      return (simulator_.cv(changed, cv) - base) / step;
+    };
+    constexpr double kStep = 0.01;
+    const auto small = [&](const Quantity& what, double sd, const VectorXd& derivative) {
+      add({channel.input, &what, sd}, sd * derivative);
+    };
+    small(kGainRatio, tolerances_.gain, difference({1.0 + kStep, 1.0, 0.0}, kStep));
+    small(kTimeConstantRatio, tolerances_.log_time_constant,
+          difference({1.0, std::exp(kStep), 0.0}, kStep));
+    if (std::holds_alternative<TransferFunction>(channel.dynamics))
+      small(kDeadTimeError, tolerances_.dead_time_samples,
+            difference({1.0, 1.0, 0.25 * model.sample_time_s}, 0.25));
+  }
+  // A first state that is off by more than it shows would explain whatever one wants.
+  // Noise alone is off by a few times what it moves by in a row.
+  const double moves =
+      std::sqrt((misfit.tail(samples - 1) - misfit.head(samples - 1)).squaredNorm() /
+                static_cast<double>(samples));
+  const double first =
+      std::max({1e-3 * scale, first_error(base, recording().cvs.col(cv)), 5.0 * moves});
+  for (const double decay : decay_times(model, cv))
+    add({}, VectorXd::NullaryExpr(samples, [&](Index k) {
+          return first * std::exp(-static_cast<double>(k) / decay);
+        }));
+  data.nuisances.resize(samples, static_cast<Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    data.nuisances.col(static_cast<Index>(i)) = columns[i];
+}
+
+VectorXd Problem::with_shocks(const CvFit& state, const std::vector<Effect>& effects) {
+  constexpr Index kRows = 3;
+  VectorXd innovations = state.innovations;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const Effect& effect = effects[i];
+    if (!effect.edit->jumps() || effect.place.cv != state.cv || effect.onset == 0) continue;
+    std::vector<Effect> others = effects;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const VectorXd step =
+        state.noise.apply(simulate(effects, state.cv) - simulate(others, state.cv));
+    const Index rows = std::min(kRows, samples() - effect.onset);
+    innovations.segment(effect.onset, rows) += step.segment(effect.onset, rows);
+  }
+  return innovations;
+}
+
+void Problem::settle(const std::vector<Effect>& effects, const Fit* fit) {
+  const ModelSpec model = with(effects);
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    make_nuisances(model, cv);
+    CvData& data = data_[static_cast<std::size_t>(cv)];
+    data.weights = data.known;
+    data.weights.head(std::min<Index>(noise_.order, data.weights.size())).setZero();
+    for (Index k = 0; k < data.known.size(); ++k)
+      if (data.known(k) == 0.0)
+        data.weights.segment(k, std::min<Index>(noise_.order + 1, data.known.size() - k)).setZero();
+    if (fit)
+      for (const CvFit& state : fit->cvs)
+        if (state.cv == cv) reweigh(with_shocks(state, effects), data.weights);
+    data.rows = static_cast<double>((data.weights.array() > 0.0).count());
+  }
+}
+
+VectorXd Problem::simulate(const std::vector<Effect>& effects, int cv) {
+  ModelSpec model = model_;
+  VectorXd simulated;
+  bool stale = true;
+  // Effects with an onset come last: each adds what it changes from its onset on.
+  for (const Effect& effect : effects)
+    if (effect.onset == 0 || effect.edit->knows_onset()) apply(effect, surroundings_, model);
+  for (const Effect& effect : effects) {
+    if (effect.onset == 0 || effect.edit->knows_onset() || !touches(effect, model, cv)) continue;
+    if (stale) simulated = simulator_.cv(model, cv);
+    const VectorXd before = simulator_.cv(model, cv);
+    apply(effect, surroundings_, model);
+    const Index after = before.size() - effect.onset;
+    if (after > 0) simulated.tail(after) += (simulator_.cv(model, cv) - before).tail(after);
+    stale = false;
+  }
+  if (stale) simulated = simulator_.cv(model, cv);
+  for (const Effect& effect : effects)
+    if (effect.shape && effect.place.cv == cv)
+      for (std::size_t i = 0; i < effect.coordinates.size(); ++i)
+        simulated += effect.coordinates[i].value * effect.shape->col(static_cast<Index>(i));
+  return simulated;
+}
+
+VectorXd Problem::sensitivity(const std::vector<Effect>& effects, std::size_t effect,
+                              std::size_t coordinate, int cv, const VectorXd& at) {
+  std::vector<Effect> moved = effects;
+  Coordinate& c = moved[effect].coordinates[coordinate];
+  const double step = c.value + c.step > c.high ? -c.step : c.step;
+  c.value += step;
+  return (simulate(moved, cv) - at) * (c.prior_sd / step);
+}
+
+MatrixXd Problem::nuisances(const std::vector<Effect>& effects, int cv) const {
+  const CvData& data = this->data(cv);
+  MatrixXd result = data.nuisances;
+  for (std::size_t b = 0; b < data.meaning.size(); ++b)
+    for (const Effect& effect : effects)
+      if (effect.onset == 0 && effect.place.cv == cv && data.meaning[b].input >= 0 &&
+          effect.place.input == data.meaning[b].input && effect.find(*data.meaning[b].quantity))
+        result.col(static_cast<Index>(b)).setZero();
+  return result;
+}
+
+void Problem::update(CvFit& state, const VectorXd& simulated, const MatrixXd& nuisances) const {
+  const CvData& data = this->data(state.cv);
+  state.residual = (data.measured - simulated - nuisances * state.beta).cwiseProduct(data.known);
+  state.noise = fit_whitening(state.residual, data.weights, noise_);
+  state.innovations = state.noise.apply(state.residual);
+  const double variance =
+      state.innovations.cwiseAbs2().dot(data.weights) / std::max(1.0, data.rows);
+  state.variance = variance < 1e-30 ? 1e-30 : variance;  // stays NaN where the model is none
+}
+
+double Problem::cost_with_noise_of(const Fit& fit, const std::vector<Effect>& effects) {
+  double cost = 0.0;
+  for (const CvFit& state : fit.cvs) {
+    const CvData& data = this->data(state.cv);
+    const MatrixXd small = nuisances(effects, state.cv);
+    const Index samples = data.measured.size(), count = small.cols();
+    MatrixXd system = MatrixXd::Zero(samples + count, count + 1);
+    for (Index b = 0; b < count; ++b)
+      system.col(b).head(samples) = rows_of(data, state, small.col(b));
+    system.col(count).head(samples) =
+        rows_of(data, state, data.measured - simulate(effects, state.cv));
+    system.bottomLeftCorner(count, count).setIdentity();
+    const MatrixXd r = triangle(system);
+    cost += r(count, count) * r(count, count);
+    for (Index b = 0; b < count; ++b) cost += 2.0 * std::log(std::abs(r(b, b)));
+  }
+  return cost;
+}
+
+Index Problem::best_onset(const Fit& fit, Index first, Index last) {
+  // With everything else held: what the rows before an onset cost without the effect, those after
+  // it with the effect, and the few rows whose past lies on both sides.
+  std::vector<Effect> without(fit.effects.begin(), fit.effects.end() - 1);
+  std::vector<Effect> always = fit.effects;
+  always.back().onset = 0;
+  const Index samples = this->samples();
+  VectorXd cost = VectorXd::Zero(last - first + 1);
+  for (const CvFit& state : fit.cvs) {
+    const CvData& data = this->data(state.cv);
+    const VectorXd before = simulate(without, state.cv);
+    const VectorXd change = (simulate(always, state.cv) - before).cwiseProduct(data.known);
+    const VectorXd base = (data.measured - before - nuisances(fit.effects, state.cv) * state.beta)
+                              .cwiseProduct(data.known);
+    const VectorXd old = state.noise.apply(base), moved = state.noise.apply(base - change);
+    VectorXd head = VectorXd::Zero(samples + 1), tail = VectorXd::Zero(samples + 1);
+    for (Index k = 0; k < samples; ++k) head(k + 1) = head(k) + data.weights(k) * old(k) * old(k);
+    for (Index k = samples - 1; k >= 0; --k)
+      tail(k) = tail(k + 1) + data.weights(k) * moved(k) * moved(k);
+    for (Index onset = first; onset <= last; ++onset) {
+      const Index mixed_end = std::min<Index>(samples, onset + noise_.order);
+      double sum = head(onset) + tail(mixed_end);
+      for (Index k = onset; k < mixed_end; ++k) {
+        double value = base(k) - change(k);
+        for (Index l = 1; l <= noise_.order && l <= k; ++l)
+          value -= state.noise.coefficients(l - 1) *
+                   (base(k - l) - (k - l >= onset ? change(k - l) : 0.0));
+        sum += data.weights(k) * value * value;
+      }
+      cost(onset - first) += sum / state.variance;
+    }
+  }
+  Index best = 0;
+  cost.minCoeff(&best);
+  return first + best;
+}
+
+std::vector<int> touched(const Effect& effect, const Problem& problem) {
+  std::vector<int> cvs;
+  for (int cv = 0; cv < problem.model().cv_count; ++cv)
+    if (touches(effect, problem.model(), cv)) cvs.push_back(cv);
+  return cvs;
+}
+
+}  // namespace mpm

@@ -1,0 +1,205 @@
+#include "core/identify/fit/simulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+
+#include "core/identify/fit/channel_edit.hpp"
+#include "core/identify/fit/initial_state.hpp"
+#include "core/model/disturbance.hpp"
+#include "core/model/linear_model.hpp"
+#include "core/model/static_blocks.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// Memory that remembered channels may take, in numbers.
+constexpr std::size_t kRemembered = std::size_t{1} << 24;
+
+/// What a channel's output depends on, as bytes.
+class Key {
+ public:
+  void add(double value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    text_.append(bytes, sizeof value);
+  }
+  void add(const std::vector<double>& values) {
+    add(static_cast<double>(values.size()));
+    for (const double value : values) add(value);
+  }
+  void add(const TransferFunction& v) {
+    add(v.gain), add(v.time_constants_s), add(v.lead_s), add(v.dead_time_s), add(v.integrating);
+  }
+  void add(const DiscreteFilter& v) { add(v.numerator), add(v.denominator), add(v.delay_samples); }
+  void add(const StepResponse& v) { add(v.values); }
+  void add(const TankChain& v) {
+    add(v.time_constants_s), add(v.empty_input), add(v.empty_output), add(v.overflow);
+    add(v.spill), add(v.dead_time_s);
+  }
+  void add(const Polynomial& v) { add(v.coefficients); }
+  void add(const Saturation& v) { add(v.low), add(v.high); }
+  void add(const Deadband& v) { add(v.width); }
+  void add(const Stiction& v) { add(v.band), add(v.jump), add(v.slips_once); }
+  void add(const RestoringForce& v) { add(v.quadratic), add(v.cubic); }
+  void add(const SquareRootOutflow& v) { add(v.empty_output); }
+  void add(const CoulombFriction& v) { add(v.force), add(v.speed); }
+  template <class... Types>
+  void add(const std::variant<Types...>& value) {
+    add(static_cast<double>(value.index()));
+    std::visit([this](const auto& held) { add(held); }, value);
+  }
+  template <class Type>
+  void add(const std::optional<Type>& value) {
+    add(value ? 1.0 : 0.0);
+    if (value) add(*value);
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+double first_finite(const Eigen::Ref<const VectorXd>& values, double otherwise) {
+  for (const double value : values)
+    if (std::isfinite(value)) return value;
+  return otherwise;
+}
+
+const StateTerm* state_term(const ModelSpec& model, const ChannelSpec& channel) {
+  for (const StateTerm& term : model.state_terms)
+    if (term.cv == channel.cv && term.input == channel.input) return &term;
+  return nullptr;
+}
+
+}  // namespace
+
+Simulator::Simulator(const Recording& recording)
+    : recording_(&recording),
+      capacity_(std::max<std::size_t>(
+          16,
+          kRemembered / std::max<std::size_t>(1, static_cast<std::size_t>(recording.samples())))) {}
+
+VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
+                             bool from_origin) const {
+  ModelSpec one = alone(spec, model.sample_time_s);
+  one.input_origin = VectorXd::Constant(1, model.input_origin(spec.input));
+  one.output_origin = VectorXd::Constant(1, model.output_origin(spec.cv));
+  if (const StateTerm* term = state_term(model, spec)) one.state_terms = {{0, 0, term->block}};
+
+  const auto inputs = recording_->inputs.cols();
+  const bool aux = spec.input >= inputs;
+  const Eigen::Ref<const VectorXd> given =
+      aux ? recording_->aux.col(spec.input - inputs) : recording_->inputs.col(spec.input);
+  const double origin = model.input_origin(spec.input);
+  const Index samples = given.size();
+  // The blocks by hand, so that the linear part sees a plain input.
+  VectorXd moved(samples);
+  const double first = from_origin ? origin : first_finite(given, origin);
+  InputElement own(model.input_blocks[static_cast<std::size_t>(spec.input)], origin);
+  InputElement channels(spec.input_block, origin);
+  own.reset(first);
+  channels.reset(origin + own.apply(first));
+  double last = first_finite(given, origin);
+  for (Index k = 0; k < samples; ++k) {
+    if (std::isfinite(given(k))) last = given(k);
+    moved(k) = origin + channels.apply(origin + own.apply(last));
+  }
+
+  LinearModel simulator(one);
+  VectorXd input(1), output(samples);
+  input(0) = from_origin ? origin : moved(0);
+  simulator.reset_steady(input);
+  for (Index k = 0; k < samples; ++k) {
+    output(k) = simulator.output()(0) - one.output_origin(0);
+    input(0) = moved(k);
+    simulator.advance(input);
+  }
+  return output;
+}
+
+const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& spec,
+                                   bool from_origin) {
+  Key key;
+  key.add(from_origin ? 1.0 : 0.0);
+  key.add(static_cast<double>(spec.input));
+  key.add(model.input_origin(spec.input));
+  key.add(model.output_origin(spec.cv));
+  key.add(spec.dynamics);
+  key.add(spec.input_block);
+  key.add(model.input_blocks[static_cast<std::size_t>(spec.input)]);
+  const StateTerm* term = state_term(model, spec);
+  key.add(term ? 1.0 : 0.0);
+  if (term) key.add(term->block);
+  const auto found = remembered_.find(key.text());
+  if (found != remembered_.end()) return found->second;
+  if (remembered_.size() >= capacity_) remembered_.clear();
+  VectorXd output;
+  try {
+    output = simulate(model, spec, from_origin);
+  } catch (const std::invalid_argument&) {  // a fit tried what is no model
+    output = VectorXd::Constant(recording_->samples(), std::numeric_limits<double>::quiet_NaN());
+  }
+  return remembered_.emplace(key.text(), std::move(output)).first->second;
+}
+
+VectorXd Simulator::sum_of_channels(const ModelSpec& model, int cv, bool from_origin) {
+  VectorXd sum = VectorXd::Zero(recording_->samples());
+  for (const ChannelSpec& spec : model.channels)
+    if (spec.cv == cv) sum += channel(model, spec, from_origin);
+  return sum;
+}
+
+bool Simulator::starts_at_origin(const ModelSpec& model) {
+  if (from_origin_) return *from_origin_;
+  double votes = 0.0;
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const auto measured = recording_->cvs.col(cv);
+    const VectorXd shift = VectorXd::Constant(measured.size(), model.output_origin(cv));
+    const double at_origin = first_error(shift + sum_of_channels(model, cv, true), measured);
+    const double at_inputs = first_error(shift + sum_of_channels(model, cv, false), measured);
+    if (at_origin + at_inputs > 0.0) votes += (at_inputs - at_origin) / (at_inputs + at_origin);
+  }
+  from_origin_ = votes > 0.0;
+  return *from_origin_;
+}
+
+VectorXd Simulator::cv(const ModelSpec& model, int cv) {
+  const Index samples = recording_->samples();
+  VectorXd sum = sum_of_channels(model, cv, starts_at_origin(model));
+  for (const DisturbanceTerm& term : model.disturbances) {
+    if (term.cv != cv) continue;
+    for (Index k = 0; k < samples; ++k)
+      sum(k) +=
+          disturbance_at(term, recording_->start_s + static_cast<double>(k) * model.sample_time_s,
+                         1e-6 * model.sample_time_s);
+  }
+  const double origin = model.output_origin(cv);
+  const std::optional<OutputBlock>& block = model.output_blocks[static_cast<std::size_t>(cv)];
+  for (Index k = 0; k < samples; ++k) sum(k) = apply_output_block(block, origin, sum(k));
+  return sum;
+}
+
+ModelSpec with_aux_inputs(const ModelSpec& model, const Recording& recording) {
+  ModelSpec result = model;
+  const auto aux = static_cast<int>(recording.aux.cols());
+  result.input_count += aux;
+  result.input_blocks.resize(static_cast<std::size_t>(result.input_count));
+  result.input_origin.conservativeResize(result.input_count);
+  for (int a = 0; a < aux; ++a) {
+    double sum = 0.0;
+    Index count = 0;
+    for (const double value : recording.aux.col(a))
+      if (std::isfinite(value)) sum += value, ++count;
+    result.input_origin(model.input_count + a) = count > 0 ? sum / static_cast<double>(count) : 0.0;
+  }
+  return result;
+}
+
+}  // namespace mpm

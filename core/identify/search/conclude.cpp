@@ -1,0 +1,86 @@
+#include "core/identify/search/conclude.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
+#include "core/identify/search/calibration.hpp"
+#include "core/identify/search/odds.hpp"
+#include "core/identify/search/trial.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+
+namespace {
+
+/// Cost of the CVs that an effect touches with one of its coordinates held `off` from its value.
+double cost_at(Problem& problem, const Fit& fit, std::size_t effect, Index coordinate, double off) {
+  std::vector<Effect> effects = fit.effects;
+  std::rotate(effects.begin() + static_cast<std::ptrdiff_t>(effect),
+              effects.begin() + static_cast<std::ptrdiff_t>(effect) + 1, effects.end());
+  Coordinate& held = effects.back().coordinates[static_cast<std::size_t>(coordinate)];
+  held.value = std::clamp(held.value + off, held.low, held.high);
+  held.prior_mean = held.value;
+  held.prior_sd *= 1e-6;
+  const std::vector<int> cvs = touched(effects.back(), problem);
+  return problem.fit(effects, effects.size() - 1, cvs, 3).cost;
+}
+
+}  // namespace
+
+void widen_kinked(Problem& problem, SearchResult& result, const std::function<void()>& tell) {
+  Index first = 0;
+  for (std::size_t e = 0; e < result.fit.effects.size(); ++e) {
+    const Effect& effect = result.fit.effects[e];
+    const auto count = static_cast<Index>(effect.coordinates.size());
+    for (Index i = 0; i < std::min<Index>(cause_of(effect).kinked_numbers(), count); ++i) {
+      double& variance = result.fit.covariance(first + i, first + i);
+      const double sd = std::max(std::sqrt(variance),
+                                 1e-3 * effect.coordinates[static_cast<std::size_t>(i)].prior_sd);
+      tell();
+      const double least = cost_at(problem, result.fit, e, i, 0.0);
+      double reach = 0.0;
+      for (const double side : {-1.0, 1.0})
+        for (const double steps : kReachesOfRise)
+          if (cost_at(problem, result.fit, e, i, side * steps * sd) < least + kRise)
+            reach = std::max(reach, steps * sd);
+      variance = std::max(variance, reach * reach / kRise);
+    }
+    first += count;
+  }
+}
+
+void name_levels(const Problem& problem, SearchResult& result) {
+  for (CvFit& fit : result.fit.cvs) {
+    // An input that the model left out has an operating point that nobody knows.
+    const bool new_input =
+        std::any_of(result.named.begin(), result.named.end(), [&](const Named& named) {
+          return named.effect.edit == &causes::unmodelled_input() &&
+                 named.effect.place.cv == fit.cv;
+        });
+    if (new_input) continue;
+    const CvData& data = problem.data(fit.cv);
+    const double level = data.nuisances(0, 0) * fit.beta(0);
+    const double noise = std::sqrt(fit.residual.squaredNorm() / std::max(1.0, data.known.sum()));
+    const double memory = std::max(kLeastReturn, 1.0 - fit.noise.coefficients.sum());
+    const double rows = std::max(1.0, independence({fit}) * data.rows);
+    const double sd = std::sqrt(fit.variance / rows) / memory;
+    if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd)) continue;
+    Named named;
+    named.effect = causes::constant_offset(fit.cv, level, noise);
+    named.evidence = level * level / (sd * sd);
+    named.confidence = kOffsetConfidence;
+    const Index old = result.fit.covariance.rows();
+    result.fit.covariance.conservativeResize(old + 1, old + 1);
+    result.fit.covariance.col(old).setZero();
+    result.fit.covariance.row(old).setZero();
+    result.fit.covariance(old, old) = sd * sd;
+    result.fit.effects.push_back(named.effect);
+    result.named.push_back(std::move(named));
+    fit.beta(0) = 0.0;
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include "core/identify/search/search.hpp"
+
+/// What is said of the accepted effects once nothing more is found.
+namespace mpm {
+
+/// The misfit is no parabola in the widths of play and sticking or in a level of saturation: a row
+/// slips or does not. So what the curvature says is widened to where the misfit, with all else
+/// fitted, really has risen by as much as a 95 % interval allows. `tell` may throw to end it.
+void widen_kinked(Problem& problem, SearchResult& result, const std::function<void()>& tell);
+
+/// A level that is off from the first row on by far more than the noise moves it is no small error
+/// any more, but a sensor's offset or a disturbance as old as the data: adds those to `result`.
+void name_levels(const Problem& problem, SearchResult& result);
+
+}  // namespace mpm

@@ -1,0 +1,291 @@
+#include "core/identify/search/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/search/calibration.hpp"
+#include "core/identify/search/conclude.hpp"
+#include "core/identify/search/odds.hpp"
+#include "core/identify/search/refine.hpp"
+#include "core/identify/search/screening.hpp"
+#include "core/identify/search/trial.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+
+/// The same cause at the same place, with the same numbers.
+bool same_form(const Effect& a, const Effect& b) {
+  const auto same_number = [](const Coordinate& x, const Coordinate& y) {
+    return x.quantity == y.quantity && x.number == y.number;
+  };
+  return subject_of(a) == subject_of(b) && (a.onset > 0) == (b.onset > 0) &&
+         a.variant == b.variant &&
+         std::equal(a.coordinates.begin(), a.coordinates.end(), b.coordinates.begin(),
+                    b.coordinates.end(), same_number);
+}
+
+void erase_at(std::vector<Effect>& effects, std::size_t index) {
+  effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+class Search {
+ public:
+  Search(Problem& problem, const SearchSettings& settings)
+      : problem_(problem),
+        settings_(settings),
+        trials_(problem, settings_, accepted_, [this] { report(); }) {}
+
+  SearchResult run() {
+    for (const Cause* cause : causes::all())
+      for (const Effect& effect : cause->shown_by(problem_)) {
+        accepted_.push_back(effect);
+        named_.push_back({effect, kSeenInData, 1.0, {}});
+      }
+    for (int round = 0; round < settings_.max_findings; ++round) {
+      share_ = 0.1 + 0.8 * round / settings_.max_findings;
+      report();
+      if (!find_one()) break;
+    }
+    drop_superfluous();
+    rewrite();
+    SearchResult result;
+    result.fit = everything();
+    for (std::size_t i = 0; i < accepted_.size(); ++i) {
+      named_[i].effect = result.fit.effects[i];
+      result.named.push_back(named_[i]);
+    }
+    widen_kinked(problem_, result, [this] { report(); });
+    name_levels(problem_, result);
+    return result;
+  }
+
+ private:
+  /// May throw, to end it all.
+  void report() const {
+    if (settings_.progress) settings_.progress(share_);
+  }
+
+  /// All that may still be wrong, each cause's starts.
+  [[nodiscard]] std::vector<Effect> proposals() {
+    std::vector<Effect> all;
+    for (const Cause* cause : causes::all()) {
+      std::vector<Effect> mine;
+      cause->propose({problem_, accepted_, nulls_}, mine);
+      for (Effect& effect : mine) {
+        const bool open =
+            std::all_of(accepted_.begin(), accepted_.end(),
+                        [&](const Effect& accepted) { return cause->goes_with(accepted, effect); });
+        if (open) all.push_back(std::move(effect));
+      }
+    }
+    return all;
+  }
+
+  std::vector<Effect> shortlist() {
+    nulls_.clear();
+    for (int cv = 0; cv < problem_.model().cv_count; ++cv)
+      nulls_.push_back(trials_.without({cv}).cvs.front());
+    const std::vector<Effect> all = proposals();
+    Screening& screening = screening_.emplace(problem_, accepted_, nulls_);
+    std::vector<double> scores;
+    for (const Effect& effect : all) {
+      report();
+      scores.push_back(screening.score(effect) - cause_of(effect).rarity());
+    }
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
+    std::vector<Effect> list;
+    std::map<const CauseName*, int> of_cause;
+    for (const std::size_t i : order) {
+      const auto repeats = std::count_if(list.begin(), list.end(), [&](const Effect& effect) {
+        return same_form(effect, all[i]);
+      });
+      if (repeats >= kStartsOfOneForm) continue;
+      int& likes = of_cause[&cause_of(all[i]).name()];
+      const bool first_of_cause = likes < kOfEachCause && scores[i] > kHopelessOfCause;
+      if (scores[i] < kHopeless || (list.size() >= kShortlist && !first_of_cause)) continue;
+      ++likes;
+      list.push_back(all[i]);
+    }
+    return list;
+  }
+
+  bool find_one() {
+    trials_.settle(last_.cvs.empty() ? nullptr : &last_);
+    std::vector<Trial> trials;
+    for (const Effect& effect : shortlist()) trials.push_back(trials_.attempt(effect, kTrialSteps));
+    if (trials.empty()) return false;
+    std::sort(trials.begin(), trials.end(), more_probable);
+    look_closer(trials_, *screening_, trials);
+    std::sort(trials.begin(), trials.end(), more_probable);
+    for (std::size_t i = 0; i < std::min(kRefined, trials.size()); ++i) {
+      if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - kOnsetWorthMoving)
+        place_onset(trials_, trials[i]);
+      if (trials[i].odds > kWorthStepping * trials[0].odds) step_about(trials_, trials[i]);
+    }
+    std::sort(trials.begin(), trials.end(), more_probable);
+    if (trials[0].odds < settings_.decisive) return false;
+
+    // Once more with rows weighed as the best explanation's innovations ask for. A shock in the
+    // noise would vanish with a jump fitted to it, so a jump has to do without that row's help.
+    const bool jump = trials[0].candidate.edit->jumps();
+    const Fit weighing =
+        jump ? trials_.without(touched(trials[0].candidate, problem_)) : trials[0].fit;
+    trials_.settle(&weighing);
+    std::vector<Trial> again;
+    for (std::size_t i = 0; i < std::min(kTriedAgain, trials.size()); ++i)
+      again.push_back(trials_.attempt(trials[i].candidate, kSecondTrialSteps));
+    std::sort(again.begin(), again.end(), more_probable);
+    if (again[0].odds < settings_.decisive) return false;
+    accept(again);
+    return true;
+  }
+
+  void accept(const std::vector<Trial>& trials) {
+    const Trial& best = trials[0];
+    Named named;
+    named.evidence = best.odds;
+    double total = 1.0 + std::exp(-0.5 * best.odds);
+    for (std::size_t i = 1; i < trials.size(); ++i) {
+      const Subject subject = subject_of(trials[i].candidate);
+      if (subject == subject_of(best.candidate)) continue;
+      const bool known = std::any_of(named.rivals.begin(), named.rivals.end(),
+                                     [&](const Rival& r) { return r.subject == subject; });
+      if (known) continue;
+      // Odds are against the same CVs without either, whichever CVs a rival touches.
+      const double worse = best.odds - trials[i].odds;
+      named.rivals.push_back({subject, worse, worse < settings_.decisive});
+      total += std::exp(-0.5 * worse);
+    }
+    named.confidence = 1.0 / total;
+    named_.push_back(named);
+    // The fit moved the accepted effects too.
+    std::vector<Effect> moved = best.fit.effects;
+    for (Effect& effect : accepted_)
+      for (const Effect& other : moved)
+        if (same_form(effect, other)) effect = other;
+    accepted_.push_back(best.candidate);
+    last_ = best.fit;
+    merge();
+  }
+
+  /// Says what was accepted with fewer parts wrong, where a cause knows how and that explains the
+  /// data no worse.
+  void rewrite() {
+    for (std::size_t i = 0; i < accepted_.size(); ++i)
+      for (const Rewrite& rewrite :
+           cause_of(accepted_[i]).rewrites(i, accepted_, problem_, settings_.materiality))
+        if (take(rewrite, i)) return;
+  }
+
+  /// The effects that come in stand for the one at `mine`, which stays as their rival.
+  bool take(const Rewrite& rewrite, std::size_t mine) {
+    const std::vector<Effect> old_effects = accepted_;
+    const std::vector<Named> old_named = named_;
+    const double old_cost = everything().cost;
+    for (auto index = rewrite.without.rbegin(); index != rewrite.without.rend(); ++index) {
+      erase_at(accepted_, *index);
+      named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(*index));
+    }
+    const std::size_t first_new = named_.size();
+    for (const Effect& effect : rewrite.with) {
+      accepted_.push_back(effect);
+      named_.push_back(old_named[mine]);
+    }
+    const double worse = everything().cost - old_cost;
+    if (worse > settings_.decisive) {
+      accepted_ = old_effects;
+      named_ = old_named;
+      return false;
+    }
+    for (std::size_t i = first_new; i < named_.size(); ++i)
+      named_[i].rivals = {{subject_of(old_effects[mine]), std::max(0.0, -worse), true}};
+    return true;
+  }
+
+  /// Errors of one channel found one after the other are one finding.
+  void merge() {
+    const Effect& last = accepted_.back();
+    const Cause* together = cause_of(last).together_with_others();
+    if (together == nullptr) return;
+    for (std::size_t i = 0; i + 1 < accepted_.size(); ++i) {
+      Effect& other = accepted_[i];
+      if (cause_of(other).together_with_others() != together || other.place != last.place ||
+          other.onset != last.onset)
+        continue;
+      for (const Coordinate& coordinate : last.coordinates) {
+        const Coordinate* same = other.find(*coordinate.quantity);
+        if (same == nullptr) {
+          other.coordinates.push_back(coordinate);
+        } else {
+          Coordinate& own =
+              other.coordinates[static_cast<std::size_t>(same - other.coordinates.data())];
+          own.value = own.quantity->form == Form::kPlain ? own.value * coordinate.value
+                                                         : own.value + coordinate.value;
+        }
+      }
+      if (other.coordinates.size() > 1) other.edit = together;
+      named_[i].evidence += named_.back().evidence;
+      accepted_.pop_back();
+      named_.pop_back();
+      return;
+    }
+  }
+
+  [[nodiscard]] std::vector<int> all_cvs() const {
+    std::vector<int> cvs(static_cast<std::size_t>(problem_.model().cv_count));
+    std::iota(cvs.begin(), cvs.end(), 0);
+    return cvs;
+  }
+
+  Fit everything() { return problem_.fit(accepted_, 0, all_cvs(), kJointSteps); }
+
+  void drop_superfluous() {
+    bool dropped = accepted_.size() > 1;
+    while (dropped && accepted_.size() > 1) {
+      dropped = false;
+      const Fit all = everything();
+      for (std::size_t i = 0; i < accepted_.size() && !dropped; ++i) {
+        report();
+        if (all.effects[i].certain) continue;
+        std::vector<Effect> fewer = all.effects;
+        erase_at(fewer, i);
+        const double odds =
+            odds_for(all.effects[i], all, problem_.fit(fewer, 0, all_cvs(), kWithoutOneSteps));
+        named_[i].evidence = odds;
+        const bool slow = cause_of(all.effects[i]).may_pass_for_noise();
+        if (odds >= (slow ? kWanderingNoise : settings_.decisive)) continue;
+        accepted_ = std::move(fewer);
+        named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(i));
+        dropped = true;
+      }
+      if (!dropped) accepted_ = all.effects;
+    }
+  }
+
+  Problem& problem_;
+  SearchSettings settings_;
+  double share_ = 0.0;  // of the work done, as last told
+  std::vector<Effect> accepted_;
+  std::vector<Named> named_;
+  Trials trials_;
+  std::vector<CvFit> nulls_;  // of this round, one per CV; what the screening looks at
+  std::optional<Screening> screening_;
+  Fit last_;
+};
+
+}  // namespace
+
+SearchResult search(Problem& problem, const SearchSettings& settings) {
+  return Search(problem, settings).run();
+}
+
+}  // namespace mpm

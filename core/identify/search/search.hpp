@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "core/identify/causes/finding.hpp"
+#include "core/identify/fit/problem.hpp"
+
+namespace mpm {
+
+/// Share of the work of a diagnosis that is done when all causes have been looked for.
+constexpr double kSearched = 0.9;
+
+struct SearchSettings {
+  int max_findings = 6;
+  /// 2 ln odds that a cause must have against the model without it, and against being one of many.
+  double decisive = 3.0;
+  /// Channel errors below these are no findings.
+  Tolerances materiality = {0.05, 0.09, 0.45};
+  /// Nor is what moves a CV by less than this share of its own s.d.
+  double visible = 0.015;
+  /// Called at least once per fit with the share done; may throw to end the search at once.
+  std::function<bool(double)> progress = {};
+};
+
+/// A cause as the search came upon it.
+struct Named {
+  Effect effect;
+  double evidence = 0.0;  ///< 2 ln odds against leaving it out
+  double confidence = 0.0;
+  std::vector<Rival> rivals;
+};
+
+struct SearchResult {
+  std::vector<Named> named;  ///< in the order of the effects in `fit`, with their fitted numbers
+  Fit fit;                   ///< all of them together, all CVs
+};
+
+/// Finds what explains the data, one cause after the other: the most probable of all candidates is
+/// accepted if the odds are decisive, and everything is fitted anew; at the end, what has become
+/// superfluous goes.
+[[nodiscard]] SearchResult search(Problem& problem, const SearchSettings& settings);
+
+}  // namespace mpm

@@ -1,0 +1,37 @@
+#include "core/text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace mpm {
+
+std::string number_text(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  if (std::isinf(value)) return value > 0.0 ? "infinity" : "-infinity";
+  if (value == 0.0) return "0";
+  char text[48];
+  const double size = std::abs(value);
+  if (size < 1e-4 || size >= 1e7) {
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    return text;
+  }
+  const int decimals = std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(size))));
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  std::string result = text;
+  if (decimals > 0) {
+    result.erase(result.find_last_not_of('0') + 1);
+    if (result.back() == '.') result.pop_back();
+  }
+  return result == "-0" ? "0" : result;
+}
+
+std::string interval_text(double low, double high, int digits) {
+  return number_text(low, digits) + " to " + number_text(high, digits);
+}
+
+std::string percent_text(double share, int digits) {
+  return number_text(100.0 * share, digits) + " %";
+}
+
+}  // namespace mpm

@@ -1,0 +1,115 @@
+#include "daemon/app/commands/detect.hpp"
+
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/load_unit.hpp"
+#include "config/scenario_config.hpp"
+#include "daemon/app/commands/time_zone.hpp"
+#include "daemon/bag/open_recording.hpp"
+#include "daemon/live/journal.hpp"
+#include "daemon/mcap/file_sequence.hpp"
+#include "daemon/report/detect_report.hpp"
+#include "daemon/report/unit_monitor.hpp"
+
+namespace mpm::app {
+namespace {
+
+struct DetectOptions {
+  std::string config;
+  std::vector<std::string> data;
+  std::string scenario;
+  std::string journal;
+  std::string time_zone;
+  bool json = false;
+  bool fail_on_mismatch = false;
+};
+
+report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& source,
+                         live::Journal* journal) {
+  report::UnitMonitor monitor(unit);
+  report::DetectReport report;
+  report.unit = unit.unit;
+  Frame frame(unit.counts());
+  while (source.next(frame)) {
+    monitor.push(frame);
+    report.alarms.insert(report.alarms.end(), monitor.alarms().begin(), monitor.alarms().end());
+    if (journal != nullptr && !journal->write(monitor.channels(), monitor.alarms()))
+      throw std::runtime_error("the journal could not be written");
+  }
+  const MonitorCounters& counters = monitor.counters();
+  report.samples = counters.frames;
+  report.used_samples = counters.used;
+  report.missing = counters.missing;
+  report.out_of_order = counters.out_of_order;
+  report.bad_values = counters.bad_values;
+  report.frozen = counters.implausible.frozen;
+  report.clipped = counters.implausible.clipped;
+  report.spikes = counters.implausible.spikes;
+  report.channels = monitor.channels();
+  return report;
+}
+
+/// Tells every finding; false if one is an error.
+bool report(const std::vector<config::Finding>& findings) {
+  for (const config::Finding& finding : findings) std::cerr << config::format(finding) << '\n';
+  return !config::has_errors(findings);
+}
+
+// 0, 1 if a mismatch was found and that was to fail, 3 on bad input.
+int detect(const DetectOptions& options) {
+  config::LoadResult loaded = config::load_unit(options.config);
+  if (!report(loaded.findings)) return 3;
+  try {
+    if (!options.scenario.empty()) {
+      const config::ScenarioResult scenario = config::load_scenario(
+          config::find_scenario(options.scenario, options.config), loaded.config);
+      if (!report(scenario.findings)) return 3;
+      loaded.config.monitor = scenario.scenario.monitor;
+    }
+    const std::unique_ptr<files::FrameSource> frames =
+        bag::open_recording(options.data, loaded.config, zone_of(options.time_zone));
+    std::optional<live::Journal> journal;
+    if (!options.journal.empty()) journal.emplace(options.journal);
+    const report::DetectReport report = run(loaded.config, *frames, journal ? &*journal : nullptr);
+    for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
+    if (report.samples == 0)
+      throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",
+                                "holds no control interval of unit '" + loaded.config.unit + "'"});
+    std::cout << (options.json ? to_json(report).dump() + "\n" : to_text(report)) << std::flush;
+    return options.fail_on_mismatch && report.mismatch() ? 1 : 0;
+  } catch (const config::InputError& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_detect(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DetectOptions>();
+  CLI::App* command = app.add_subcommand(
+      "detect", "Judge every channel on recorded data, exactly as the daemon would");
+  command->add_option("--config", options->config, "unit file")->required();
+  command
+      ->add_option("--data", options->data,
+                   "data file: CSV in any historian layout, or MCAP recording; several of "
+                   "those, or a folder of them, are one")
+      ->required();
+  command->add_option("--scenario", options->scenario,
+                      "scenario (name or file) whose `monitor` settings replace the unit file's");
+  add_time_zone(*command, options->time_zone);
+  command->add_flag("--json", options->json, "print one JSON object");
+  command->add_option("--journal", options->journal,
+                      "append every sample's verdicts and alarms to this file as JSON lines");
+  command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
+                    "exit with 1 if any channel mismatches");
+  command->footer(
+      "Example:\n  mpm detect --config config/plants/shell3x3.yaml --data last_week.csv --json");
+  command->callback([options, &exit_code] { exit_code = detect(*options); });
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,254 @@
+#include "daemon/app/commands/diagnose.hpp"
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "config/load_unit.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
+#include "daemon/app/commands/progress_bar.hpp"
+#include "daemon/app/commands/time_zone.hpp"
+#include "daemon/bag/open_recording.hpp"
+#include "daemon/files/output_folder.hpp"
+#include "daemon/files/read_recording.hpp"
+#include "daemon/host/signals.hpp"
+#include "daemon/host/version.hpp"
+#include "daemon/report/closed_loop/compare_loops.hpp"
+#include "daemon/report/closed_loop/run_mpmsim.hpp"
+#include "daemon/report/diagnosis/diagnosis_report.hpp"
+#include "daemon/report/report_files.hpp"
+
+namespace mpm::app {
+namespace {
+
+struct DiagnoseOptions {
+  std::string config;
+  std::string data;
+  std::string validate;
+  std::string out;
+  std::string scenario;
+  std::string time_zone;
+  double fit_share = DiagnosisSettings().fit_share;
+  std::uint64_t seed = DiagnosisSettings().seed;
+  bool seed_given = false;
+  bool json = false;
+  bool quiet = false;
+  bool fail_on_mismatch = false;
+};
+
+[[noreturn]] void refuse(const std::string& file, const std::string& message) {
+  throw config::InputError({file, 0, 0, config::Severity::kError, "", message});
+}
+
+/// As it was typed, quoted where a shell would need it.
+std::string command_line() {
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::string text;
+  for (std::string word; std::getline(in, word, '\0');) {
+    const bool plain =
+        !word.empty() && word.find_first_of(" \t\n\"'\\$&|;<>()*?[]#~`!{}") == std::string::npos;
+    if (!text.empty()) text += ' ';
+    if (plain) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char letter : word)
+      text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    text += '\'';
+  }
+  return text;
+}
+
+/// Nothing where the unit file is wrong, which has then been told.
+std::optional<config::UnitConfig> load(const std::string& file) {
+  const config::LoadResult loaded = config::load_unit(file);
+  if (loaded.ok() && !loaded.config.has_model())
+    refuse(file, "holds no model, so there is nothing to diagnose");
+  for (const config::Finding& finding : loaded.findings)
+    std::cerr << config::format(finding) << '\n';
+  if (!loaded.ok()) return std::nullopt;
+  return loaded.config;
+}
+
+Recording read(const std::string& file, const config::UnitConfig& unit,
+               const std::shared_ptr<const files::TimeZone>& zone,
+               std::vector<std::string>& notices) {
+  const std::unique_ptr<files::FrameSource> frames = bag::open_recording(file, unit, zone);
+  const files::RecordingFile data = files::read_recording(*frames, unit, file);
+  const std::string problem = files::recording_problem(data.recording, needed_samples(unit.model));
+  if (!problem.empty()) refuse(file, problem);
+  const std::string prefix = file + ": ";
+  for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
+  const auto count = [&](std::int64_t number, const char* what) {
+    if (number > 0) notices.push_back(prefix + std::to_string(number) + what);
+  };
+  count(data.missing, " intervals without a row");
+  count(data.out_of_order, " rows left out, for their time does not grow");
+  count(data.bad_values, " values of inputs and CVs missing or bad");
+  return data.recording;
+}
+
+report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
+  report::DiagnosisRun run;
+  run.unit = std::move(unit);
+  const std::shared_ptr<const files::TimeZone> zone = zone_of(options.time_zone);
+  run.recording = read(options.data, run.unit, zone, run.notices);
+  if (!options.validate.empty())
+    run.validation = read(options.validate, run.unit, zone, run.notices);
+  run.program = host::version_text("mpm");
+  run.command_line = command_line();
+  run.config_file = options.config;
+  run.data_file = options.data;
+  run.validation_file = options.validate;
+  run.fit_share = run.validation ? 1.0 : options.fit_share;
+  run.seed = options.seed;
+  return run;
+}
+
+/// False where the user stopped it.
+bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
+                  report::DiagnosisRun& run) {
+  ProgressBar bar(options.quiet);
+  DiagnosisSettings settings;
+  settings.mv_count = run.unit.counts().mv;
+  settings.fit_share = options.fit_share;
+  settings.seed = options.seed;
+  bool stopped = false;
+  settings.progress = [&](double share) {
+    bar.show(share);
+    stopped = stopped || stop.received();
+    return !stopped;
+  };
+  run.diagnosis = diagnose(run.unit.model, run.recording,
+                           run.validation ? &*run.validation : nullptr, settings);
+  return !stopped;
+}
+
+/// Nothing where none is wanted; the flag says whether the scenario is fit to be run.
+std::optional<report::LoopPlan> plan(const DiagnoseOptions& options, const config::UnitConfig& unit,
+                                     bool& fit) {
+  fit = true;
+  if (options.scenario.empty()) return std::nullopt;
+  std::vector<config::Finding> findings;
+  std::optional<report::LoopPlan> result =
+      report::plan_loops(unit, options.config, options.scenario,
+                         options.seed_given ? std::optional(options.seed) : std::nullopt, findings);
+  for (const config::Finding& finding : findings) std::cerr << config::format(finding) << '\n';
+  fit = result.has_value();
+  return result;
+}
+
+/// Empty, or why there is no comparison: a reason to fail, but not to lose the diagnosis.
+std::string add_closed_loop(const report::LoopPlan& loops, host::StopSignal& stop,
+                            report::DiagnosisRun& run) {
+  try {
+    run.closed_loop =
+        report::compare_loops(loops, run.unit, run.diagnosis, [&stop] { return stop.received(); });
+    return {};
+  } catch (const report::SimulatorError& error) {
+    return error.what();
+  } catch (const config::InputError& error) {
+    return error.what();
+  }
+}
+
+void print(const DiagnoseOptions& options, const report::DiagnosisRun& run,
+           const std::string& json) {
+  if (options.json)
+    std::cout << json << std::flush;
+  else if (!options.quiet)
+    std::cout << to_text(run) << "\n  written to " << options.out
+              << ": report.html, report.json, extended.yaml\n"
+              << std::flush;
+}
+
+// 0, 1 if something was found and that was to fail, 2 if it was stopped or the simulator failed.
+int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
+  files::OutputFolder folder(options.out);
+  bool fit = false;
+  const std::optional<report::LoopPlan> loops = plan(options, unit, fit);
+  if (!fit) return 3;
+  report::DiagnosisRun run = prepare(options, std::move(unit));
+  if (!options.quiet)
+    for (const std::string& notice : run.notices) std::cerr << notice << '\n';
+  host::StopSignal stop;
+  if (!diagnose_run(options, stop, run)) {
+    std::cerr << "mpm: stopped; nothing was written\n";
+    return 2;
+  }
+  const bool repaired = !run.diagnosis.findings.empty();
+  const std::string failure =
+      loops && repaired ? add_closed_loop(*loops, stop, run) : std::string();
+  const std::string json = report::write_reports(run, folder);
+  folder.commit();
+  print(options, run, json);
+  if (!failure.empty()) {
+    std::cerr << "mpm: error: written without the comparison in closed loop: " << failure << '\n';
+    return 2;
+  }
+  return options.fail_on_mismatch && !run.diagnosis.findings.empty() ? 1 : 0;
+}
+
+int diagnose_file(const DiagnoseOptions& options) {
+  try {
+    std::optional<config::UnitConfig> unit = load(options.config);
+    return unit ? diagnose_unit(options, std::move(*unit)) : 3;
+  } catch (const config::InputError& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DiagnoseOptions>();
+  CLI::App* command = app.add_subcommand(
+      "diagnose",
+      "Show what the simulation gets wrong, name the cause, extend the model, measure the gain");
+  command->add_option("--config", options->config, "unit file")->required();
+  command
+      ->add_option("--data", options->data,
+                   "data file: CSV in any historian layout, MCAP recording, or a folder of one "
+                   "that was split")
+      ->required();
+  command->add_option("--validate", options->validate,
+                      "measure the gain on this data file and fit on all of --data");
+  command
+      ->add_option("--out", options->out,
+                   "folder for report.html, report.json and extended.yaml; made if need be")
+      ->required();
+  command
+      ->add_option("--fit-share", options->fit_share,
+                   "first part of the data that is fitted; the gain is measured on the rest")
+      ->capture_default_str()
+      ->check(CLI::Range(0.2, 0.9));
+  CLI::Option* seed =
+      command
+          ->add_option("--seed", options->seed,
+                       "of the resampling behind the intervals; with a --scenario that draws what "
+                       "it hides, of the run that made the data")
+          ->capture_default_str();
+  command->add_option("--scenario", options->scenario,
+                      "compare how well the simulator's controller does on this scenario with the "
+                      "unit file's model and with the extended one");
+  add_time_zone(*command, options->time_zone);
+  command->add_flag("--json", options->json, "print report.json too");
+  command->add_flag("--quiet", options->quiet, "print nothing but errors");
+  command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
+                    "exit with 1 if anything was found");
+  command->footer(
+      "Example:\n  mpm diagnose --config config/plants/shell3x3.yaml --data last_week.csv --out "
+      "report");
+  command->callback([options, seed, &exit_code] {
+    options->seed_given = seed->count() > 0;
+    exit_code = diagnose_file(*options);
+  });
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,130 @@
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/app/commands/topics.hpp"
+#include "daemon/bus/sample_json.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
+#include "idl/reader.hpp"
+#include "idl/topic_catalog.hpp"
+#include "idl/wait_set.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kLongestWait{50};
+
+struct EchoOptions {
+  std::string topic;
+  std::string unit;
+  idl::DomainOptions domain;
+  bool once = false;
+  bool json = false;
+  std::uint64_t count = 0;  // 0 = no end
+  double duration_s = 0.0;  // 0 = until interrupted
+};
+
+const char* state_name(const dds_sample_info_t& info) {
+  return info.instance_state == DDS_IST_NOT_ALIVE_DISPOSED ? "disposed" : "no_writers";
+}
+
+void print(const EchoOptions& options, const nlohmann::ordered_json& sample,
+           const dds_sample_info_t& info) {
+  if (options.json) {
+    nlohmann::ordered_json line{{"topic", options.topic}, {"written_ns", info.source_timestamp}};
+    if (info.valid_data)
+      line["sample"] = sample;
+    else
+      line.update({{"state", state_name(info)}, {"unit", sample["unit"]}});
+    std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << '\n';
+  } else if (info.valid_data) {
+    std::cout << bus::yaml_text(sample) << "---\n";
+  } else {
+    std::cout << "# " << sample["unit"].get<std::string>() << ": " << state_name(info) << "\n---\n";
+  }
+}
+
+// 0, or 2 if not all that was asked for came in time.
+template <class T>
+int echo(const EchoOptions& options, const idl::KnownTopic& topic) {
+  std::signal(SIGPIPE, SIG_IGN);  // the stream notices
+  host::StopSignal stop;
+  host::set_up_logging("warning");
+  const idl::Participant participant(options.domain);
+  idl::Reader<T> reader(participant, topic.name, topic.reader_qos());
+  idl::WaitSet wait_set;
+  wait_set.attach(reader.readable());
+  const std::uint64_t wanted = options.once         ? 1
+                               : options.count == 0 ? std::numeric_limits<std::uint64_t>::max()
+                                                    : options.count;
+  const Clock::time_point end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(options.duration_s));
+  std::uint64_t printed = 0;
+  const auto on_sample = [&](const T& sample, const dds_sample_info_t& info) {
+    const std::string unit = sample.unit == nullptr ? "" : sample.unit;
+    if (unit.empty() || (!options.unit.empty() && unit != options.unit)) return;
+    if (printed >= wanted) return;
+    print(options, bus::json_of(sample), info);
+    if (info.valid_data) ++printed;
+  };
+  while (printed < wanted && std::cout.good() && !stop.received()) {
+    if (wait_set.wait(kLongestWait)) reader.take_with_info(on_sample);
+    std::cout.flush();
+    if (options.duration_s > 0.0 && Clock::now() >= end) break;
+  }
+  if (printed == 0 && std::cout.good())
+    std::cerr << "mpm echo: no sample of " << options.topic
+              << (options.unit.empty() ? "" : " of unit " + options.unit) << " came\n";
+  const bool bounded = options.once || options.count > 0;
+  return (bounded ? printed < wanted : options.duration_s > 0.0 && printed == 0) ? 2 : 0;
+}
+
+int echo(const EchoOptions& options) {
+  const idl::KnownTopic* topic = idl::find_known_topic(options.topic);
+  if (topic == nullptr) {
+    std::cerr << "mpm echo: error: '" << options.topic
+              << "' is no topic of the monitor; try mpm topics, and mpm hz for what others write\n";
+    return 3;
+  }
+  if (topic->type == &mpm_Layout_desc) return echo<mpm_Layout>(options, *topic);
+  if (topic->type == &mpm_ChannelStatus_desc) return echo<mpm_ChannelStatus>(options, *topic);
+  if (topic->type == &mpm_Alarm_desc) return echo<mpm_Alarm>(options, *topic);
+  if (topic->type == &mpm_AlarmEvent_desc) return echo<mpm_AlarmEvent>(options, *topic);
+  if (topic->type == &mpm_Health_desc) return echo<mpm_Health>(options, *topic);
+  return echo<mpm_Sample>(options, *topic);
+}
+
+}  // namespace
+
+void add_echo(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("echo", "print the samples of a topic");
+  const auto options = std::make_shared<EchoOptions>();
+  command->add_option("topic", options->topic, "mpm/mv, mpm/alarm ...")->required();
+  command->add_option("--unit", options->unit, "only this unit");
+  auto* once = command->add_flag("--once", options->once, "end after one sample");
+  command->add_option("--count", options->count, "end after this many samples")
+      ->check(CLI::PositiveNumber)
+      ->excludes(once);
+  command->add_option("--duration", options->duration_s, "end after this time, as 90 or 1.5h")
+      ->transform(positive_time_value());
+  command->add_flag("--json", options->json, "print each sample as a JSON line");
+  add_domain_flags(*command, options->domain);
+  command->footer(
+      "Examples:\n"
+      "  mpm echo mpm/mv --unit shell --once\n"
+      "  mpm echo mpm/alarm_event --json --duration 3600\n"
+      "Exit codes: 0 done, 2 what was asked for did not come, 3 bad usage");
+  command->callback([options, &exit_code] { exit_code = echo(*options); });
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,209 @@
+#include "daemon/app/commands/record.hpp"
+
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "config/load_unit.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/app/commands/status_line.hpp"
+#include "daemon/bag/record/recorder.hpp"
+#include "daemon/bus/domain_options.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kLongestWait{50};
+constexpr std::chrono::seconds kSearchPeriod{1};
+constexpr double kNsPerSecond = 1e9;
+
+// The schemas of all topics take 16 kB of every file, twice.
+constexpr std::uint64_t kSmallestFile = 100'000;
+constexpr std::uint64_t kSmallestQuota = 1'000'000;
+constexpr std::uint64_t kSmallestChunk = 1024, kLargestChunk = std::uint64_t{64} << 20U;
+
+struct RecordOptions {
+  std::string config;
+  idl::DomainOptions domain;
+  bag::RecorderOptions recorder;
+  std::uint64_t chunk_bytes = 1U << 20U;
+  double chunk_age_s = 1.0;
+  double max_duration_s = 0.0;
+  double duration_s = 0.0;  // 0 = until interrupted
+  std::string compression = "zstd";
+};
+
+mcap::Compression compression_of(const std::string& name) {
+  return name == "none" ? mcap::Compression::kNone : mcap::Compression::kZstd;
+}
+
+std::string seconds_text(double seconds) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f s", seconds);
+  return text.data();
+}
+
+/// Rates over the time since the last line.
+class Rates {
+ public:
+  std::string text(const bag::RecorderState& state, Clock::time_point now) {
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    const double samples = static_cast<double>(state.totals.samples - samples_) / seconds;
+    const double bytes = static_cast<double>(state.totals.bytes - bytes_) / seconds;
+    last_ = now;
+    samples_ = state.totals.samples;
+    bytes_ = state.totals.bytes;
+    std::array<char, 64> rate{};
+    std::snprintf(rate.data(), rate.size(), "%.0f/s", samples);
+    return summary(state) + "; now " + rate.data() + ", " + bytes_text(bytes) + "/s";
+  }
+  [[nodiscard]] std::string summary(const bag::RecorderState& state) const {
+    const bag::RecordingTotals& totals = state.totals;
+    std::string text = seconds_text(std::chrono::duration<double>(Clock::now() - start_).count());
+    text += "  " + std::to_string(totals.samples) + " samples  " +
+            bytes_text(static_cast<double>(totals.bytes)) + "  " + std::to_string(state.dropped) +
+            " dropped";
+    if (state.lost > 0) text += "  " + std::to_string(state.lost) + " lost by DDS";
+    if (totals.missing_intervals > 0)
+      text += "  " + std::to_string(totals.missing_intervals) + " intervals missing";
+    if (totals.files > 1) text += "  " + std::to_string(totals.files) + " files";
+    if (totals.deleted > 0) text += ", " + std::to_string(totals.deleted) + " deleted";
+    return text;
+  }
+
+ private:
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+  std::uint64_t samples_ = 0, bytes_ = 0;
+};
+
+int record(const RecordOptions& options, host::StopSignal& stop) {
+  const idl::Participant participant(options.domain);
+  bag::Recorder recorder(participant, options.recorder);
+  StatusLine status;
+  status.say("mpm record: recording to " + recorder.state().path);
+  Rates rates;
+  const Clock::time_point end =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(options.duration_s));
+  Clock::time_point next_search{};
+  std::string problem, path = recorder.state().path;
+  while (!stop.received() && problem.empty()) {
+    recorder.poll(kLongestWait);
+    const Clock::time_point now = Clock::now();
+    if (options.duration_s > 0.0 && now >= end) break;
+    if (now >= next_search) {
+      recorder.look_for_topics();
+      problem = recorder.state().problem;
+      next_search = now + kSearchPeriod;
+    }
+    if (!status.due(now)) continue;
+    const bag::RecorderState state = recorder.state();
+    if (state.path != path) status.say("mpm record: going on in " + (path = state.path));
+    status.show(rates.text(state, now));
+  }
+  recorder.finish();
+  const bag::RecorderState state = recorder.state();
+  status.say("mpm record: " + rates.summary(state) + "  " + state.path);
+  if (state.totals.samples == 0 && state.dropped == 0)
+    status.say(options.recorder.unit.empty()
+                   ? "mpm record: no sample came"
+                   : "mpm record: no sample of unit " + options.recorder.unit + " came");
+  for (const std::string& topic : recorder.not_found())
+    status.say("mpm record: nobody wrote " + topic + ", or not with a type that can be asked for");
+  if (state.problem.empty()) return 0;
+  std::cerr << "mpm record: error: " << state.problem << '\n';
+  return 2;
+}
+
+int record(RecordOptions options) {
+  if (!options.config.empty()) {
+    const config::LoadResult loaded = config::load_unit(options.config);
+    for (const config::Finding& finding : loaded.findings) std::cerr << format(finding) << '\n';
+    if (!loaded.ok()) return 3;
+    const idl::DomainOptions given = options.domain;
+    options.domain = bus::domain_options(loaded.config.dds);
+    if (given.domain != 0) options.domain.domain = given.domain;
+    if (!given.partition.empty()) options.domain.partition = given.partition;
+    options.domain.use_environment = given.use_environment;
+    options.recorder.unit = loaded.config.unit;
+  }
+  bag::RecordingOptions& recording = options.recorder.recording;
+  if (recording.quota_bytes > 0 && recording.max_size_bytes > recording.quota_bytes / 2) {
+    std::cerr << "mpm record: error: --quota must hold two files of --max-size at least: one that "
+                 "is full and the next\n";
+    return 3;
+  }
+  recording.max_duration_ns = static_cast<std::int64_t>(options.max_duration_s * kNsPerSecond);
+  recording.file.compression = compression_of(options.compression);
+  recording.file.chunk_bytes = options.chunk_bytes;
+  recording.file.chunk_age_ns = static_cast<std::int64_t>(options.chunk_age_s * kNsPerSecond);
+  host::StopSignal stop;  // before any thread
+  host::set_up_logging("warning");
+  try {
+    return record(options, stop);
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "mpm record: error: " << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("record", "record what goes over the bus (MCAP)");
+  const auto options = std::make_shared<RecordOptions>();
+  bag::RecorderOptions& recorder = options->recorder;
+  auto* config =
+      command->add_option("-c,--config", options->config, "unit file: this unit, on its domain");
+  command->add_option("--unit", recorder.unit, "only this unit (default: all)")->excludes(config);
+  command->add_option("--topics", recorder.topics, "only these topics (default: all of mpm/*)")
+      ->delimiter(',');
+  command->add_option("-o,--output", recorder.recording.output, "file.mcap, or a folder")
+      ->required();
+  command
+      ->add_option("--max-size", recorder.recording.max_size_bytes,
+                   "begin another file after this much, as 100MB or 1.5GB; at least 100 kB, since "
+                   "every file holds all types")
+      ->transform(size_value(kSmallestFile));
+  command
+      ->add_option("--max-duration", options->max_duration_s,
+                   "begin another file after this time, as 90 or 1.5h (s, min, h, d)")
+      ->transform(positive_time_value());
+  command
+      ->add_option("--quota", recorder.recording.quota_bytes,
+                   "delete the oldest of the recording's files beyond this, as 10GB; at least 1 MB "
+                   "and two files of --max-size")
+      ->transform(size_value(kSmallestQuota));
+  command->add_option("--chunk-size", options->chunk_bytes, "of the file's chunks")
+      ->transform(size_value(kSmallestChunk))
+      ->check(CLI::Range(kSmallestChunk, kLargestChunk));
+  command
+      ->add_option("--chunk-duration", options->chunk_age_s,
+                   "at most this much is lost if the recorder is killed")
+      ->capture_default_str()
+      ->transform(time_value())
+      ->check(CLI::Range(0.01, 3600.0));
+  command->add_option("--compression", options->compression, "of the file's chunks")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"zstd", "none"}));
+  command->add_option("--duration", options->duration_s, "end after this time, as 90 or 1.5h")
+      ->transform(positive_time_value());
+  add_domain_flags(*command, options->domain);
+  command->footer(
+      "Examples:\n"
+      "  mpm record --config shell.yaml --output monday.mcap\n"
+      "  mpm record --output /var/lib/mpm/recordings --max-duration 1h --quota 20GB\n"
+      "Exit codes: 0 done, 2 failed (the disk is full, say), 3 bad usage or bad unit file");
+  command->callback([options, &exit_code] { exit_code = record(*options); });
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,63 @@
+#include "daemon/app/commands/recover.hpp"
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "config/finding.hpp"
+#include "daemon/files/replacement_file.hpp"
+#include "daemon/mcap/recover.hpp"
+
+namespace mpm::app {
+namespace {
+
+/// night.mcap -> night.recovered.mcap
+std::string default_output(const std::string& input) {
+  constexpr std::string_view kEnding = ".mcap";
+  const bool ends = input.ends_with(kEnding);
+  return (ends ? input.substr(0, input.size() - kEnding.size()) : input) + ".recovered.mcap";
+}
+
+// 0, or 3 on bad input.
+int run_recover(const std::string& input, const std::string& output) {
+  try {
+    if (files::same_file(input, output))
+      throw config::InputError(
+          {output, 0, 0, config::Severity::kError, "", "is the file that is read"});
+    files::ReplacementFile file(output);
+    const mcap::RecoverReport report = mcap::recover(input, file.temporary());
+    file.commit();
+    for (const std::string& problem : report.problems)
+      std::cerr << input << ": " << problem << '\n';
+    if (report.whole) std::cout << input << ": was whole; its index is new\n";
+    std::cout << output << ": " << report.messages << " messages of " << report.channels
+              << " channels in " << report.chunks << " chunks";
+    if (report.torn_messages > 0)
+      std::cout << ", " << report.torn_messages << " of them from the chunk that was cut off";
+    std::cout << "; " << report.lost_bytes << " bytes of the old file are lost\n" << std::flush;
+    return 0;
+  } catch (const config::InputError& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_recover(CLI::App& app, int& exit_code) {
+  auto input = std::make_shared<std::string>();
+  auto output = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "recover", "Mend a recording that has no end or is damaged: keep all that can be read");
+  command->add_option("input", *input, "MCAP recording")->required();
+  command->add_option(
+      "--output", *output,
+      "where to write it, not over IN (default: IN.recovered.mcap); replaces an older "
+      "file when it is whole");
+  command->footer("Example:\n  mpm recover night.mcap --output night_mended.mcap");
+  command->callback([input, output, &exit_code] {
+    exit_code = run_recover(*input, output->empty() ? default_output(*input) : *output);
+  });
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,96 @@
+#include "daemon/app/commands/watch.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/bus/output_readers.hpp"
+#include "daemon/bus/watch/viewer.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
+
+namespace mpm::app {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{100};
+
+struct WatchOptions {
+  std::string unit;
+  idl::DomainOptions domain;
+  bool json = false;
+  bool no_color = false;
+  bool alarms_only = false;
+  bool until_alarm = false;
+  double for_s = 0.0;  // 0 = until interrupted
+};
+
+bus::ViewMode mode_of(const WatchOptions& options) {
+  if (options.json) return bus::ViewMode::kJson;
+  return isatty(STDOUT_FILENO) ? bus::ViewMode::kTable : bus::ViewMode::kLines;
+}
+
+bool wants_color(const WatchOptions& options) {
+  const char* no_color = std::getenv("NO_COLOR");
+  return !options.no_color && (no_color == nullptr || *no_color == '\0');
+}
+
+// 0, or 2 if the alarm that was waited for did not come.
+int watch(const WatchOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  std::signal(SIGPIPE, SIG_IGN);  // has_reader() notices
+  host::StopSignal stop;
+  host::set_up_logging("warning");
+  const idl::Participant participant(options.domain);
+  // The table also shows the health; lines and JSON of alarms need nothing but alarms.
+  const bus::ViewMode mode = mode_of(options);
+  bus::OutputReaders readers(participant, options.alarms_only && mode != bus::ViewMode::kTable
+                                              ? bus::OutputReaders::Scope::kAlarms
+                                              : bus::OutputReaders::Scope::kEverything);
+  idl::WaitSet wait_set;
+  readers.attach_to(wait_set);
+  bus::Viewer viewer(mode, {wants_color(options), options.alarms_only}, options.unit);
+
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(options.for_s));
+  bool last_look = false;
+  while (viewer.has_reader() && !stop.received()) {
+    if (wait_set.wait(kLongestWait))
+      for (const bus::Output& output : readers.take()) viewer.show(output);
+    const Clock::time_point now = Clock::now();
+    last_look = options.for_s > 0.0 && now >= end;
+    viewer.tick(now);
+    if (options.until_alarm && viewer.any_alarm()) return 0;
+    if (last_look) break;
+  }
+  return options.until_alarm ? 2 : 0;
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("watch", "show what the monitors say, live");
+  const auto options = std::make_shared<WatchOptions>();
+  command->add_option("--unit", options->unit, "only this unit");
+  add_domain_flags(*command, options->domain);
+  command->add_flag("--json", options->json, "print each record as a JSON line");
+  command->add_flag("--no-color", options->no_color, "words only; also with NO_COLOR set");
+  command->add_flag("--alarms-only", options->alarms_only, "leave out what is not an alarm");
+  command->add_flag("--until-alarm", options->until_alarm,
+                    "end when an alarm is active; exit code 2 if none came");
+  command->add_option("--for", options->for_s, "end after this time, as 90 or 1.5h")
+      ->transform(positive_time_value());
+  command->footer(
+      "Examples:\n"
+      "  mpm watch --unit shell\n"
+      "  mpm watch --json --alarms-only --for 60\n"
+      "  mpm watch --until-alarm --for 3600 && mail -s 'model mismatch' apc@plant");
+  command->callback([options, &exit_code] { exit_code = watch(*options); });
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,61 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "daemon/app/commands/convert.hpp"
+#include "daemon/app/commands/detect.hpp"
+#include "daemon/app/commands/diagnose.hpp"
+#include "daemon/app/commands/info.hpp"
+#include "daemon/app/commands/publish.hpp"
+#include "daemon/app/commands/record.hpp"
+#include "daemon/app/commands/recover.hpp"
+#include "daemon/app/commands/replay.hpp"
+#include "daemon/app/commands/topics.hpp"
+#include "daemon/app/commands/watch.hpp"
+#include "daemon/host/standard_output.hpp"
+#include "daemon/host/version.hpp"
+
+namespace mpm::app {
+namespace {
+
+int run(int argc, char** argv) {
+  // Exit codes of all programs of the project: 0 done, 1 found, 2 failed, 3 bad usage or input.
+  int exit_code = 0;
+  CLI::App app("The engineer's side of the model-plant-mismatch monitor.");
+  app.set_version_flag("--version", host::version_text("mpm"));
+  app.require_subcommand(1);
+  add_detect(app, exit_code);
+  add_diagnose(app, exit_code);
+  add_info(app, exit_code);
+  add_convert(app, exit_code);
+  add_recover(app, exit_code);
+  add_watch(app, exit_code);
+  add_record(app, exit_code);
+  add_replay(app, exit_code);
+  add_publish(app, exit_code);
+  add_topics(app, exit_code);
+  add_echo(app, exit_code);
+  add_hz(app, exit_code);
+  add_delay(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 3;
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace mpm::app
+
+int main(int argc, char** argv) {
+  int exit_code = 2;
+  try {
+    exit_code = mpm::app::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "mpm: error: " << error.what() << '\n';
+  }
+  if (mpm::host::finish_standard_output()) return exit_code;
+  std::cerr << "mpm: error: standard output cannot be written to\n";
+  return 2;
+}

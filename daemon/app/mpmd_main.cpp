@@ -1,0 +1,143 @@
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/load_unit.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
+#include "daemon/host/version.hpp"
+#include "daemon/live/diagnosis_worker.hpp"
+#include "daemon/live/make_diagnosis.hpp"
+#include "daemon/live/monitor_service.hpp"
+#include "daemon/live/report_store.hpp"
+
+namespace mpm::app {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{500};  // with a diagnosis that is to end
+// Exit codes of all programs of the project.
+constexpr int kDone = 0, kFound = 1, kFailed = 2, kBadInput = 3;
+
+/// The one that systemd made for the service; the first if there are several.
+std::string default_state_folder() {
+  const char* folders = std::getenv("STATE_DIRECTORY");
+  const std::string text = folders == nullptr ? "" : folders;
+  return text.substr(0, text.find(':'));
+}
+
+struct Options {
+  std::vector<std::string> config;
+  bool check = false;
+  bool print_config = false;
+  std::optional<int> domain;
+  std::optional<std::string> partition;
+  live::ServiceOptions service;
+  std::string state_folder = default_state_folder();
+  std::string log_level = "info";
+};
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("-c,--config", options.config, "unit file, or folder of unit files; repeatable")
+      ->required();
+  app.add_flag("--check", options.check, "check the unit files, print all findings and exit");
+  app.add_flag("--print-config", options.print_config,
+               "print the effective unit files, defaults included, and exit");
+  app.add_option("--domain", options.domain, "DDS domain of all units, instead of the unit files'")
+      ->check(CLI::Range(0, 230));
+  app.add_option("--partition", options.partition,
+                 "discovery tag of all units, instead of the unit files'");
+  app.add_option("--journal", options.service.journal,
+                 "append every record to this file as JSON lines");
+  app.add_option("--state-dir", options.state_folder,
+                 "keep the reports of diagnosed alarms in this folder (default: $STATE_DIRECTORY)");
+  app.add_flag("--dds-from-environment", options.service.use_environment,
+               "take the DDS settings from CYCLONEDDS_URI instead of the unit files");
+  app.add_option("--log-level", options.log_level, "what to log")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
+  app.set_version_flag("--version", host::version_text("mpmd"));
+  app.footer(
+      "Examples:\n"
+      "  mpmd --config /etc/mpm/shell.yaml\n"
+      "  mpmd --config /etc/mpm/units --journal /var/lib/mpm/journal.jsonl\n"
+      "  mpmd --config /etc/mpm/units --check\n"
+      "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or bad unit file");
+}
+
+int run(const Options& options) {
+  config::LoadUnitsResult loaded = config::load_units(options.config);
+  for (const config::Finding& finding : loaded.findings)
+    (options.check ? std::cout : std::cerr) << config::format(finding) << '\n';
+  if (!loaded.ok()) return options.check ? kFound : kBadInput;
+  if (options.check) return kDone;
+
+  for (config::UnitConfig& unit : loaded.units) {
+    if (options.domain) unit.dds.domain = *options.domain;
+    if (options.partition) unit.dds.partition = *options.partition;
+  }
+  if (options.print_config) {
+    for (std::size_t i = 0; i < loaded.units.size(); ++i) {
+      if (i > 0) std::cout << "---\n";
+      config::print_unit(loaded.units[i], std::cout);
+    }
+    return kDone;
+  }
+  if (loaded.units.empty()) {
+    std::cerr << options.config.front() << ": error: no unit files\n";
+    return kBadInput;
+  }
+
+  host::StopSignal stop;  // before any thread
+  host::set_up_logging(options.log_level);
+  spdlog::info("{} starts", host::version_text("mpmd"));
+  const live::ReportStore store(options.state_folder);
+  live::DiagnosisWorker worker(
+      [&store](const live::DiagnosisJob& job, const live::DiagnosisWorker::GoOn& go_on) {
+        return live::make_diagnosis(job, store, go_on);
+      });
+  {
+    live::MonitorService service(loaded.units, options.service, worker);
+    service.run([&] { return stop.received(); });
+  }
+  const bool idle = worker.stop(kPatience);
+  spdlog::info("stopped");
+  if (!idle) {
+    // On a busy machine a thread of low priority may take long to hear of it. Nothing that it does
+    // matters any more, but what it uses must stay.
+    spdlog::default_logger()->flush();
+    std::_Exit(kDone);
+  }
+  return kDone;
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app("Monitors MPC units for model-plant mismatch: DDS in, verdicts and alarms out.");
+  Options options;
+  declare(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  }
+  return run(options);
+}
+
+}  // namespace
+}  // namespace mpm::app
+
+int main(int argc, char** argv) {
+  using namespace mpm::app;
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "mpmd: error: " << error.what() << '\n';
+    return kFailed;
+  }
+}

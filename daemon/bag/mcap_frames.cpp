@@ -1,0 +1,151 @@
+#include "daemon/bag/mcap_frames.hpp"
+
+#include <algorithm>
+
+#include "config/finding.hpp"
+#include "config/unit_layout.hpp"
+#include "daemon/bag/contents.hpp"
+#include "daemon/bag/kind_name.hpp"
+#include "daemon/files/aligning.hpp"
+#include "daemon/mcap/printable.hpp"
+
+namespace mpm::bag {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& message) {
+  throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
+}
+
+}  // namespace
+
+McapFrames::McapFrames(const std::vector<std::string>& paths, const config::UnitConfig& unit,
+                       files::Purpose purpose)
+    : unit_(unit),
+      purpose_(purpose),
+      aligner_(unit.counts(), look_into(paths, purpose),
+               [this](const Frame& frame) {
+                 last_frame_ns_ = now_ns_;
+                 ready_.push_back(frame);
+               }),
+      samples_(paths),
+      patience_ns_(files::frame_patience(unit).count()) {}
+
+// Which kinds to wait for: as the daemon does, but what is nowhere in the file will not come.
+std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::string>& paths,
+                                                         files::Purpose purpose) {
+  std::array<bool, kSignalKindCount> wanted = files::needed_kinds(unit_);
+  wanted[static_cast<std::size_t>(SignalKind::kAux)] = !unit_.aux.empty();
+  if (purpose == files::Purpose::kKeep)
+    for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+      wanted[kind] = unit_.counts().of(static_cast<SignalKind>(kind)) > 0;
+  const Contents contents = survey(paths, [&](const Contents& so_far) {
+    const auto found = so_far.find(unit_.unit);
+    if (found == so_far.end()) return false;
+    for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+      if (wanted[kind] && !found->second.kinds[kind].seen) return false;
+    return true;
+  });
+  const std::string path = mcap::name_of(paths);
+  const auto found = contents.find(unit_.unit);
+  if (found == contents.end())
+    refuse(path, "holds no samples of unit '" + unit_.unit + "'" +
+                     (contents.empty() ? "; it holds none of any unit"
+                                       : "; its units are " + names_of(contents)));
+  if (purpose == files::Purpose::kJudge) check_needed(path, found->second);
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+    wanted[kind] = wanted[kind] && found->second.kinds[kind].seen;
+  return wanted;
+}
+
+void McapFrames::check_needed(const std::string& path, const RecordedUnit& recorded) {
+  const SignalCounts counts = unit_.counts();
+  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kDv})
+    if (counts.of(kind) > 0 && !recorded[kind].seen)
+      refuse(path, std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
+  const bool predicted =
+      files::needed_kinds(unit_)[static_cast<std::size_t>(SignalKind::kPrediction)];
+  if (!recorded[SignalKind::kPrediction].seen) {
+    if (!unit_.has_model())
+      refuse(path, "holds no mpm/prediction of unit '" + unit_.unit +
+                       "', and its unit file has no model to simulate them");
+    if (predicted)
+      notices_.emplace_back(
+          "no predictions in the file, so the unit file's model simulates them instead");
+  }
+  if (counts.aux > 0 && !recorded[SignalKind::kAux].seen)
+    notices_.emplace_back("no aux signals in the file");
+}
+
+void McapFrames::check_layout(const mpm_Layout& layout) {
+  if (layout.unit != unit_.unit) return;
+  for (std::size_t k = 0; k < kSignalKindCount; ++k) {
+    const auto kind = static_cast<SignalKind>(k);
+    if (std::string_view(layout.kind) != name_of(kind)) continue;
+    const std::vector<std::string> tags = tags_of(unit_, kind);
+    if (std::equal(tags.begin(), tags.end(), layout.tags._buffer,
+                   layout.tags._buffer + layout.tags._length))
+      continue;
+    std::string notice = std::string("the recorded ") + name_of(kind) +
+                         " layout has other tags, or another order, than the unit file; its order "
+                         "is taken";
+    if (std::find(notices_.begin(), notices_.end(), notice) == notices_.end())
+      notices_.push_back(std::move(notice));
+  }
+}
+
+void McapFrames::push(const idl::SampleView& sample, std::int64_t now_ns) {
+  if (aligner_.pending() && now_ns - last_frame_ns_ > patience_ns_) aligner_.expire();
+  now_ns_ = now_ns;
+  if (!aligner_.pending()) last_frame_ns_ = now_ns;  // patience counts from here
+  aligner_.push(
+      {sample.kind, sample.interval, sample.source_time_ns, sample.values, sample.quality});
+}
+
+bool McapFrames::next(Frame& frame) {
+  while (ready_.empty() && !done_) {
+    switch (samples_.next()) {
+      case SampleStream::Event::kSample:
+        if (samples_.sample().unit == unit_.unit)
+          push(samples_.sample(), samples_.log_time_ns());
+        else
+          ++of_other_units_;
+        break;
+      case SampleStream::Event::kLayout:
+        check_layout(samples_.layout());
+        break;
+      case SampleStream::Event::kEnd:
+        done_ = true;
+        // What the daemon would still wait for at the end is of use to somebody who wants all.
+        if (purpose_ == files::Purpose::kKeep)
+          aligner_.finish();
+        else
+          aligner_.expire();
+        tell_counters();
+        break;
+    }
+  }
+  if (ready_.empty()) return false;
+  std::swap(frame, ready_.front());
+  ready_.pop_front();
+  return true;
+}
+
+void McapFrames::tell_counters() {
+  const auto tell = [this](std::uint64_t count, const char* what) {
+    if (count > 0) notices_.push_back(std::to_string(count) + what);
+  };
+  const AlignerCounters& counters = aligner_.counters();
+  tell(counters.incomplete, " control intervals of which a needed topic is missing");
+  tell(counters.late, " samples left out that came too late for their control interval");
+  tell(counters.repeated, " samples left out that repeat a control interval");
+  tell(counters.wrong_length, " samples left out that have the wrong number of values");
+  tell(counters.infinite, " values taken as missing: they are not finite");
+  tell(counters.restarts, " restarts of the controller's count of intervals");
+  if (purpose_ != files::Purpose::kKeep) return;
+  tell(of_other_units_, " samples of other units left out");
+  for (const auto& [topic, count] : samples_.others())
+    notices_.push_back(std::to_string(count) + " messages on " + mcap::printable(topic) +
+                       " left out: they hold no signals");
+}
+
+}  // namespace mpm::bag

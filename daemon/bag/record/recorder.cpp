@@ -1,0 +1,135 @@
+#include "daemon/bag/record/recorder.hpp"
+
+#include <algorithm>
+#include <exception>
+
+#include "daemon/host/clock.hpp"
+#include "idl/topic_catalog.hpp"
+#include "idl/topics.hpp"
+
+namespace mpm::bag {
+namespace {
+
+constexpr std::chrono::milliseconds kTick{200};
+constexpr int kForeignDepth = 4096;  // samples that wait per instance of a topic not ours
+constexpr std::size_t kLayoutKeys = 2;
+
+RecordedTopic description_of(const idl::KnownTopic& topic) {
+  return {topic.name, topic.type->m_typename, std::string(idl::idl_text()),
+          topic.name == std::string_view(idl::kLayoutTopic) ? kLayoutKeys : 0, topic.input};
+}
+
+}  // namespace
+
+Recorder::Recorder(const idl::Participant& participant, const RecorderOptions& options)
+    : participant_(participant),
+      discovery_(participant),
+      unit_(options.unit),
+      queue_(options.queue_bytes),
+      recording_(options.recording, host::wall_time_ns()) {
+  for (const idl::KnownTopic& topic : idl::known_topics())
+    if (options.topics.empty())
+      add_reader(topic.name, *topic.type, topic.reader_qos(), description_of(topic));
+  for (const std::string& name : options.topics) {
+    if (const idl::KnownTopic* topic = idl::find_known_topic(name))
+      add_reader(name, *topic->type, topic->reader_qos(), description_of(*topic));
+    else
+      not_found_.insert(name);
+  }
+  writer_ = std::thread([this] { write_all(); });
+}
+
+Recorder::~Recorder() {
+  queue_.close();
+  if (writer_.joinable()) writer_.join();
+}
+
+void Recorder::add_reader(const std::string& topic, const dds_topic_descriptor_t& type,
+                          const idl::Qos& qos, const RecordedTopic& description) {
+  readers_.emplace_back(participant_, topic, type, qos);
+  wait_set_.attach(readers_.back().readable());
+  const std::lock_guard lock(mutex_);
+  recording_.add_topic(description);
+}
+
+void Recorder::look_for_topics() {
+  for (auto name = not_found_.begin(); name != not_found_.end();) {
+    const idl::DiscoveredType type = discovery_.type_of(*name);
+    if (!type) {
+      ++name;
+      continue;
+    }
+    const idl::Qos qos(dds_create_qos());
+    dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);  // matches any writer
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kForeignDepth);
+    add_reader(*name, *type, qos, {*name, type->m_typename, "", 0, false});
+    name = not_found_.erase(name);
+  }
+}
+
+void Recorder::poll(std::chrono::milliseconds longest) {
+  if (wait_set_.wait(longest)) take();
+}
+
+int Recorder::take() {
+  int count = 0;
+  const std::int64_t now_ns = host::wall_time_ns();
+  for (std::size_t topic = 0; topic < readers_.size(); ++topic) {
+    const bool ours = idl::find_known_topic(readers_[topic].topic()) != nullptr;
+    count += readers_[topic].take([&](idl::RawSample& sample) {
+      if (ours) {
+        const std::string unit = idl::unit_of(sample.cdr);
+        if (unit.empty() || (!unit_.empty() && unit != unit_)) return;  // "": a writer's greeting
+      }
+      batch_.push_back({topic, now_ns, std::move(sample)});
+    });
+  }
+  if (!batch_.empty()) queue_.push(batch_);
+  return count;
+}
+
+void Recorder::write_all() {
+  std::vector<RecordedSample> samples;
+  std::size_t written = 0;  // of `samples`
+  try {
+    while (queue_.pop(samples, kTick)) {
+      const std::lock_guard lock(mutex_);
+      for (written = 0; written < samples.size(); ++written) recording_.write(samples[written]);
+      recording_.tick(host::wall_time_ns());
+    }
+    const std::lock_guard lock(mutex_);
+    recording_.finish();
+  } catch (const std::exception& error) {
+    const std::lock_guard lock(mutex_);
+    problem_ = error.what();
+    unwritten_ = samples.size() - std::min(written, samples.size());
+  }
+  while (queue_.pop(samples, kTick)) {  // after a problem: what was taken has no place any more
+    const std::lock_guard lock(mutex_);
+    unwritten_ += samples.size();
+  }
+}
+
+void Recorder::finish() {
+  while (take() > 0) {
+  }
+  queue_.close();
+  if (writer_.joinable()) writer_.join();
+}
+
+RecorderState Recorder::state() const {
+  RecorderState state;
+  for (const idl::RawReader& reader : readers_) state.lost += reader.lost();
+  state.dropped = queue_.dropped();
+  const std::lock_guard lock(mutex_);
+  state.totals = recording_.totals();
+  state.path = recording_.path();
+  state.problem = problem_;
+  if (!problem_.empty()) {
+    state.totals.samples -= recording_.unsaved();
+    state.dropped += recording_.unsaved() + unwritten_;
+  }
+  return state;
+}
+
+}  // namespace mpm::bag

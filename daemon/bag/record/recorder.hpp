@@ -1,0 +1,78 @@
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "daemon/bag/record/recording.hpp"
+#include "idl/discovery.hpp"
+#include "idl/raw_reader.hpp"
+#include "idl/wait_set.hpp"
+
+namespace mpm::bag {
+
+struct RecorderOptions {
+  RecordingOptions recording;
+  std::vector<std::string> topics;  ///< empty = all of ours
+  std::string unit;                 ///< only this one's samples; empty = all
+  std::size_t queue_bytes = std::size_t{64} << 20U;
+};
+
+struct RecorderState {
+  RecordingTotals totals;
+  std::uint64_t dropped = 0;  ///< taken but not in the file: the disk did not follow, or is full
+  std::uint64_t lost = 0;     ///< DDS says so
+  std::string path;           ///< of the open file
+  std::string problem;        ///< why the disk takes nothing any more; empty = it does
+};
+
+/// Takes samples in the caller's thread and writes them in one of its own, so that a slow disk
+/// never slows down the process that is recorded.
+class Recorder {
+ public:
+  /// Throws as Recording does.
+  Recorder(const idl::Participant& participant, const RecorderOptions& options);
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  ~Recorder();
+
+  /// Waits for samples at most `longest` and takes what is there.
+  void poll(std::chrono::milliseconds longest);
+  /// Looks for chosen topics whose type only their writers know. About once a second is enough.
+  void look_for_topics();
+  /// Takes what is there, writes all and closes the file.
+  void finish();
+
+  [[nodiscard]] RecorderState state() const;
+  /// Chosen topics that nobody writes yet, or not with a type that could be asked for.
+  [[nodiscard]] const std::set<std::string>& not_found() const { return not_found_; }
+
+ private:
+  void add_reader(const std::string& topic, const dds_topic_descriptor_t& type, const idl::Qos& qos,
+                  const RecordedTopic& description);
+  /// Returns how many samples there were.
+  int take();
+  void write_all();
+
+  const idl::Participant& participant_;
+  idl::Discovery discovery_;
+  std::string unit_;
+  std::set<std::string> not_found_;
+
+  // Of the thread that takes; topic i of the recording is read by reader i.
+  std::vector<idl::RawReader> readers_;
+  idl::WaitSet wait_set_;
+  std::vector<RecordedSample> batch_;
+
+  SampleQueue queue_;
+  mutable std::mutex mutex_;  // of the next three
+  Recording recording_;
+  std::string problem_;
+  std::uint64_t unwritten_ = 0;  // samples that came too late for the file after a problem
+  std::thread writer_;
+};
+
+}  // namespace mpm::bag

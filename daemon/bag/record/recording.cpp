@@ -1,0 +1,161 @@
+#include "daemon/bag/record/recording.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/bag/lifecycle.hpp"
+
+namespace mpm::bag {
+namespace {
+
+// With a quota and no size for one file: so many files share it, and the oldest can go.
+constexpr std::uint64_t kFilesPerQuota = 8;
+
+// A file is split behind a chunk, so its chunks must be small against it.
+constexpr std::uint64_t kChunksPerFile = 4;
+constexpr std::uint64_t kSmallestChunk = 4096;
+
+RecordingOptions with_size(RecordingOptions options) {
+  if (options.quota_bytes > 0 && options.max_size_bytes == 0)
+    options.max_size_bytes = std::max<std::uint64_t>(options.quota_bytes / kFilesPerQuota, 1);
+  if (options.max_size_bytes > 0)
+    options.file.chunk_bytes =
+        std::min<std::size_t>(options.file.chunk_bytes,
+                              std::max(options.max_size_bytes / kChunksPerFile, kSmallestChunk));
+  return options;
+}
+
+mcap::ByteView bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+}  // namespace
+
+Recording::Recording(const RecordingOptions& options, std::int64_t now_ns)
+    : options_(with_size(options)),
+      files_(options_.output, options_.max_size_bytes > 0 || options_.max_duration_ns > 0,
+             options_.quota_bytes, now_ns) {
+  open(now_ns);
+}
+
+std::size_t Recording::add_topic(RecordedTopic topic) {
+  topics_.push_back(std::move(topic));
+  return topics_.size() - 1;
+}
+
+void Recording::open(std::int64_t now_ns) {
+  // The last chunk may go beyond the size, and the indexes come on top.
+  files_.make_room(options_.max_size_bytes + options_.max_size_bytes / 4 +
+                   options_.file.chunk_bytes);
+  path_ = files_.next();
+  writer_.emplace(path_, options_.file);
+  opened_ns_ = now_ns;
+  chunks_seen_ = 0;
+  saved_ = totals_.samples;
+  channels_.clear();
+  schemas_.clear();
+  ++totals_.files;
+  for (auto& [instance, sample] : last_) {
+    sample.log_time_ns = now_ns;
+    put(sample);
+  }
+}
+
+void Recording::close() {
+  writer_->finish();
+  const std::uint64_t bytes = writer_->bytes_written();
+  writer_.reset();
+  totals_.bytes += bytes;
+  files_.finished(path_, bytes);
+}
+
+void Recording::rotate_if_due(std::int64_t now_ns) {
+  const bool full =
+      options_.max_size_bytes > 0 && writer_->bytes_written() >= options_.max_size_bytes;
+  const bool old = options_.max_duration_ns > 0 && now_ns - opened_ns_ >= options_.max_duration_ns;
+  if (!full && !old) return;
+  close();
+  open(now_ns);
+}
+
+void Recording::write(const RecordedSample& sample) {
+  rotate_if_due(sample.log_time_ns);
+  if (!sample.sample.valid) return put_lifecycle(sample);
+  look_for_gap(sample);
+  if (const std::size_t keys = topics_[sample.topic].repeat_last_by; keys > 0)
+    last_[{sample.topic, idl::leading_texts(sample.sample.cdr, keys)}] = sample;
+  put(sample);
+  ++totals_.samples;
+  if (writer_->chunks() == chunks_seen_) return;
+  chunks_seen_ = writer_->chunks();
+  saved_ = totals_.samples - (writer_->has_open_chunk() ? 1 : 0);
+}
+
+void Recording::put(const RecordedSample& sample) {
+  writer_->write(channel_of(sample.topic), sample.log_time_ns, sample.sample.source_time_ns,
+                 sample.sample.cdr);
+}
+
+void Recording::put_lifecycle(const RecordedSample& sample) {
+  const std::string text = lifecycle_text(sample.sample);
+  writer_->write(lifecycle_channel_of(sample.topic), sample.log_time_ns,
+                 sample.sample.source_time_ns, bytes_of(text));
+}
+
+mcap::ChannelId Recording::channel_of(std::size_t index) {
+  mcap::ChannelId& channel = channels_[index].samples;
+  if (channel != 0) return channel;
+  const RecordedTopic& topic = topics_[index];
+  mcap::SchemaId& schema = schemas_[topic.type];
+  if (schema == 0)
+    schema = writer_->add_schema(topic.type, topic.idl.empty() ? "" : "omgidl", topic.idl);
+  channel = writer_->add_channel(schema, topic.name, "cdr");
+  return channel;
+}
+
+mcap::ChannelId Recording::lifecycle_channel_of(std::size_t index) {
+  mcap::ChannelId& channel = channels_[index].lifecycle;
+  if (channel != 0) return channel;
+  mcap::SchemaId& schema = schemas_[kLifecycleSchema];
+  if (schema == 0) schema = writer_->add_schema(kLifecycleSchema, "jsonschema", lifecycle_schema());
+  channel = writer_->add_channel(schema, topics_[index].name + kLifecycleSuffix, "json");
+  return channel;
+}
+
+// Says what DDS does not: that a writer had thrown samples away before this reader had them.
+void Recording::look_for_gap(const RecordedSample& sample) {
+  if (!topics_[sample.topic].counts_intervals) return;
+  const std::optional<idl::SampleStamp> stamp = idl::stamp_of(sample.sample.cdr);
+  if (!stamp) return;
+  UnitIntervals& unit = units_[idl::unit_of(sample.sample.cdr)];
+  const auto [entry, is_new] = unit.topics.try_emplace(sample.topic);
+  TopicIntervals& topic = entry->second;
+  if (!is_new && stamp->interval > topic.last)  // else the controller restarted
+    topic.missing += static_cast<std::uint64_t>(stamp->interval - topic.last - 1);
+  topic.last = stamp->interval;
+  if (topic.missing <= unit.missing) return;
+  totals_.missing_intervals += topic.missing - unit.missing;
+  unit.missing = topic.missing;
+}
+
+void Recording::tick(std::int64_t now_ns) {
+  writer_->close_old_chunk(now_ns);
+  rotate_if_due(now_ns);
+}
+
+void Recording::finish() {
+  if (writer_) close();
+}
+
+std::uint64_t Recording::unsaved() const {
+  return writer_ && writer_->has_open_chunk() ? totals_.samples - saved_ : 0;
+}
+
+RecordingTotals Recording::totals() const {
+  RecordingTotals totals = totals_;
+  if (writer_) totals.bytes += writer_->bytes_written();
+  totals.deleted = files_.deleted();
+  return totals;
+}
+
+}  // namespace mpm::bag

@@ -1,0 +1,123 @@
+#include "daemon/bag/record/recording_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <ctime>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace mpm::bag {
+namespace {
+
+constexpr std::string_view kExtension = ".mcap";
+
+std::string time_name(std::int64_t time_ns) {
+  const auto seconds = static_cast<std::time_t>(time_ns / 1'000'000'000);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "mpm-%Y%m%dT%H%M%SZ", &utc);
+  return text.data();
+}
+
+// mpm-YYYYMMDDThhmmssZ
+bool is_time_name(std::string_view stem) {
+  static constexpr std::string_view kShape = "mpm-ddddddddTddddddZ";
+  return std::equal(stem.begin(), stem.end(), kShape.begin(), kShape.end(), [](char c, char shape) {
+    return shape == 'd' ? c >= '0' && c <= '9' : c == shape;
+  });
+}
+
+struct NumberedName {
+  std::string stem;
+  int number = 0;
+};
+
+// STEM-NNNN.mcap, more digits allowed.
+std::optional<NumberedName> numbered_name(const std::string& name) {
+  constexpr std::size_t kFewest = 4, kMost = 9;
+  if (!name.ends_with(kExtension)) return std::nullopt;
+  const std::string_view whole = std::string_view(name).substr(0, name.size() - kExtension.size());
+  const std::size_t dash = whole.rfind('-');
+  if (dash == std::string_view::npos) return std::nullopt;
+  const std::string_view digits = whole.substr(dash + 1);
+  if (digits.size() < kFewest || digits.size() > kMost) return std::nullopt;
+  NumberedName found{std::string(whole.substr(0, dash)), 0};
+  const auto [end, status] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), found.number);
+  if (status != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return found;
+}
+
+}  // namespace
+
+RecordingFiles::RecordingFiles(const std::string& output, bool split, std::uint64_t quota_bytes,
+                               std::int64_t start_ns)
+    : quota_bytes_(quota_bytes) {
+  const std::filesystem::path path(output);
+  const bool is_folder = path.extension() != kExtension || std::filesystem::is_directory(path);
+  numbered_ = is_folder || split;
+  folder_ = is_folder ? path : path.parent_path();
+  stem_ = is_folder ? time_name(start_ns) : path.stem().string();
+  if (!folder_.empty()) std::filesystem::create_directories(folder_);
+  if (numbered_) find_earlier(is_folder);
+}
+
+void RecordingFiles::find_earlier(bool of_any_time) {
+  struct Earlier {
+    NumberedName name;
+    File file;
+  };
+  std::vector<Earlier> earlier;
+  const std::filesystem::path here = folder_.empty() ? "." : folder_;
+  for (const auto& entry : std::filesystem::directory_iterator(here)) {
+    if (!entry.is_regular_file()) continue;
+    std::optional<NumberedName> name = numbered_name(entry.path().filename().string());
+    if (!name || (name->stem != stem_ && !(of_any_time && is_time_name(name->stem)))) continue;
+    if (name->stem == stem_) number_ = std::max(number_, name->number);
+    earlier.push_back({std::move(*name), {entry.path(), entry.file_size()}});
+  }
+  std::sort(earlier.begin(), earlier.end(), [](const Earlier& a, const Earlier& b) {
+    return std::tie(a.name.stem, a.name.number) < std::tie(b.name.stem, b.name.number);
+  });
+  for (Earlier& file : earlier) files_.push_back(std::move(file.file));
+}
+
+std::string RecordingFiles::next() {
+  std::filesystem::path path = folder_ / (stem_ + std::string(kExtension));
+  if (!numbered_) {
+    if (std::filesystem::exists(path))
+      throw std::invalid_argument(path.string() + ": there is such a file already");
+    return path.string();
+  }
+  do {  // another recorder may have made some since
+    std::array<char, 16> number{};
+    std::snprintf(number.data(), number.size(), "-%04d", ++number_);
+    path = folder_ / (stem_ + number.data() + std::string(kExtension));
+  } while (std::filesystem::exists(path));
+  return path.string();
+}
+
+void RecordingFiles::finished(const std::string& path, std::uint64_t bytes) {
+  files_.push_back({path, bytes});
+}
+
+void RecordingFiles::make_room(std::uint64_t room) {
+  if (quota_bytes_ == 0) return;
+  std::uint64_t total = room;
+  for (const File& file : files_) total += file.bytes;
+  while (total > quota_bytes_ && files_.size() > 1) {
+    std::error_code ignored;  // somebody else may have been quicker
+    if (std::filesystem::remove(files_.front().path, ignored)) ++deleted_;
+    total -= files_.front().bytes;
+    files_.pop_front();
+  }
+}
+
+}  // namespace mpm::bag

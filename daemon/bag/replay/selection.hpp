@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "daemon/bag/replay/player.hpp"
+#include "daemon/bag/replay/replay_source.hpp"
+
+namespace mpm::bag {
+
+/// True where a sample of `unit`, so long after the recording's first one, is to be replayed.
+[[nodiscard]] bool selects(const PlayerOptions& options, std::int64_t since_ns,
+                           const std::string& unit);
+
+/// Throws std::invalid_argument where the options choose no sample of `source`, or rename a unit
+/// that it does not hold. Reads no more than that takes and leaves `source` at its first sample.
+void check_selection(ReplaySource& source, const PlayerOptions& options);
+
+}  // namespace mpm::bag

@@ -1,0 +1,126 @@
+#include "daemon/bus/watch/board.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace mpm::bus {
+namespace {
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+std::size_t digits_end(const std::string& text, std::size_t from) {
+  while (from < text.size() && is_digit(text[from])) ++from;
+  return from;
+}
+
+// Tags in the order of the layout, those it does not know after them in natural order.
+void order(std::vector<std::string>& tags, const std::vector<std::string>& layout) {
+  const auto rank = [&](const std::string& tag) {
+    return std::find(layout.begin(), layout.end(), tag) - layout.begin();
+  };
+  std::sort(tags.begin(), tags.end(), [&](const std::string& a, const std::string& b) {
+    return rank(a) != rank(b) ? rank(a) < rank(b) : natural_less(a, b);
+  });
+}
+
+void order(UnitBoard& board) {
+  std::vector<std::string> inputs = board.layout["mv"];
+  const std::vector<std::string>& dvs = board.layout["dv"];
+  inputs.insert(inputs.end(), dvs.begin(), dvs.end());
+  order(board.inputs, inputs);
+  order(board.cvs, board.layout["cv"]);
+}
+
+bool add_once(std::vector<std::string>& tags, const std::string& tag) {
+  if (std::find(tags.begin(), tags.end(), tag) != tags.end()) return false;
+  tags.push_back(tag);
+  return true;
+}
+
+}  // namespace
+
+bool natural_less(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::size_t i_end = digits_end(a, i), j_end = digits_end(b, j);
+      while (i + 1 < i_end && a[i] == '0') ++i;
+      while (j + 1 < j_end && b[j] == '0') ++j;
+      if (i_end - i != j_end - j) return i_end - i < j_end - j;
+      if (const int order = a.compare(i, i_end - i, b, j, j_end - j); order != 0) return order < 0;
+      i = i_end;
+      j = j_end;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i;
+      ++j;
+    }
+  }
+  return a.size() - i < b.size() - j;
+}
+
+void Board::update(const Output& output) {
+  std::visit([this](const auto& record) { show(record); }, output);
+}
+
+UnitBoard* Board::board_of(const std::string& unit) {
+  return wanted(unit) ? &units_[unit] : nullptr;
+}
+
+void Board::show(const LayoutRecord& layout) {
+  // Of a unit that no monitor watches there is nothing to show.
+  UnitBoard* board = board_of(layout.unit);
+  if (board == nullptr) return;
+  board->layout[layout.kind] = layout.tags;
+  order(*board);
+}
+
+void Board::show(const report::ChannelRecord& channel) {
+  UnitBoard* board = board_of(channel.unit);
+  if (board == nullptr) return;
+  board->gone = false;
+  if (board->samples == 0 || channel.interval != board->last_interval) ++board->samples;
+  board->last_interval = channel.interval;
+  const bool new_input = add_once(board->inputs, channel.mv);
+  const bool new_cv = add_once(board->cvs, channel.cv);
+  if (new_input || new_cv) order(*board);
+  board->channels[{channel.mv, channel.cv}] = channel;
+}
+
+void Board::show(const AlarmStateRecord& state) {
+  UnitBoard* board = board_of(state.alarm.unit);
+  if (board == nullptr) return;
+  if (state.alarm.to == "active")
+    board->alarms[{state.alarm.mv, state.alarm.cv}] = state.alarm;
+  else
+    board->alarms.erase({state.alarm.mv, state.alarm.cv});
+}
+
+void Board::show(const report::AlarmRecord&) {}  // the state follows each change
+
+void Board::show(const report::HealthRecord& health) {
+  UnitBoard* board = board_of(health.unit);
+  if (board == nullptr) return;
+  board->gone = false;
+  board->health = health;
+}
+
+void Board::show(const MonitorGone& gone) {
+  const auto it = units_.find(gone.unit);
+  if (it != units_.end()) it->second.gone = true;
+}
+
+void Board::take_rate(std::chrono::duration<double> elapsed) {
+  for (auto& [name, board] : units_) {
+    board.samples_per_s =
+        static_cast<double>(board.samples - board.samples_at_rate) / elapsed.count();
+    board.samples_at_rate = board.samples;
+  }
+}
+
+bool Board::any_alarm() const {
+  return std::any_of(units_.begin(), units_.end(),
+                     [](const auto& unit) { return !unit.second.alarms.empty(); });
+}
+
+}  // namespace mpm::bus

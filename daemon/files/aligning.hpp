@@ -1,0 +1,18 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+
+#include "config/unit_config.hpp"
+
+/// How the samples of a unit become frames: the same for the daemon and for a recording.
+namespace mpm::files {
+
+/// Which kinds a frame of the unit waits for. No statistic uses set-points, so they are not among
+/// them.
+[[nodiscard]] std::array<bool, kSignalKindCount> needed_kinds(const config::UnitConfig& unit);
+
+/// How long a frame may be awaited while something else of the unit is there.
+[[nodiscard]] std::chrono::nanoseconds frame_patience(const config::UnitConfig& unit);
+
+}  // namespace mpm::files

@@ -1,0 +1,82 @@
+#include "daemon/files/csv/cell.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <system_error>
+
+namespace mpm::files {
+namespace {
+
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+
+/// Besides empty, NaN and everything that begins with "bad": what historians write for no value.
+constexpr std::array<std::string_view, 18> kNoValueWords = {
+    "no data",     "i/o timeout", "null",      "none",       "na",        "n/a",
+    "#n/a",        "-",           "no value",  "comm fail",  "scan off",  "scan timeout",
+    "not connect", "shutdown",    "intf shut", "pt created", "configure", "arc off-line"};
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+bool begins_with(std::string_view text, std::string_view word) {
+  return same_word(text.substr(0, word.size()), word);
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  if (text.size() > 1 && text.front() == '+') text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end != text.data() + text.size()) return std::nullopt;
+  // Too large or too small; from_chars does not say which. strtod gives infinity, or what is left.
+  if (status == std::errc::result_out_of_range)
+    return std::strtod(std::string(text).c_str(), nullptr);
+  if (status != std::errc()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+bool same_word(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                            [](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::optional<double> parse_value(std::string_view text, bool decimal_comma) {
+  if (text.empty()) return kNoValue;
+  if (const std::optional<double> number = parse_number(text)) return number;
+  if (decimal_comma && std::count(text.begin(), text.end(), ',') == 1) {
+    std::string with_point(text);
+    std::replace(with_point.begin(), with_point.end(), ',', '.');
+    if (const std::optional<double> number = parse_number(with_point)) return number;
+  }
+  const auto same = [text](std::string_view word) { return same_word(text, word); };
+  if (begins_with(text, "bad") || std::any_of(kNoValueWords.begin(), kNoValueWords.end(), same))
+    return kNoValue;
+  return std::nullopt;
+}
+
+std::optional<Quality> parse_quality(std::string_view text) {
+  if (text.empty() || begins_with(text, "good")) return Quality::kGood;
+  if (begins_with(text, "uncertain") || same_word(text, "questionable")) return Quality::kUncertain;
+  if (begins_with(text, "bad")) return Quality::kBad;
+  std::uint64_t code = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), code);
+  if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  // Severity sits in the top two of 32 bits in OPC UA, in bits 6 and 7 in OPC DA.
+  if (code >= 0x40000000U) return code >= 0x80000000U ? Quality::kBad : Quality::kUncertain;
+  switch (code & 0xC0U) {
+    case 0xC0U:
+      return Quality::kGood;
+    case 0x40U:
+      return Quality::kUncertain;
+    default:
+      return Quality::kBad;
+  }
+}
+
+}  // namespace mpm::files

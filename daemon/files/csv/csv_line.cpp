@@ -1,0 +1,120 @@
+#include "daemon/files/csv/csv_line.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+namespace mpm::files {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+}  // namespace
+
+std::unique_ptr<std::istream> open_file(const std::string& path) {
+  const auto fail = [&path](const char* message) {
+    throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
+  };
+  std::error_code failure;
+  const auto status = std::filesystem::status(path, failure);
+  if (!std::filesystem::exists(status)) fail("no such file");
+  if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
+  auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
+  if (!*file) fail("cannot be read");
+  return file;
+}
+
+LineReader::LineReader(std::unique_ptr<std::istream> input, std::string name)
+    : input_(std::move(input)), name_(std::move(name)) {}
+
+bool LineReader::next() {
+  while (std::getline(*input_, line_)) {
+    complete_ = !input_->eof();
+    ++number_;
+    if (number_ == 1) {
+      if (line_.size() > 1 &&
+          (line_.substr(0, 2) == "\xFF\xFE" || line_.substr(0, 2) == "\xFE\xFF"))
+        fail(1, "is UTF-16 text; save it as UTF-8");
+      if (line_.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
+        line_.erase(0, kByteOrderMark.size());
+    }
+    if (line_.find('\0') != std::string::npos) fail(1, "is no text file: it holds a zero byte");
+    std::size_t first = 0;
+    while (first < line_.size() && is_blank(line_[first])) ++first;
+    if (first < line_.size() && line_[first] != '#') return true;
+  }
+  return false;
+}
+
+void LineReader::split(char delimiter, std::vector<Cell>& cells) {
+  cells.clear();
+  while (!line_.empty() && line_.back() == '\r') line_.pop_back();
+  std::size_t at = 0;
+  while (true) {
+    const auto skip = [&] {
+      while (at < line_.size() && is_blank(line_[at]) && line_[at] != delimiter) ++at;
+    };
+    skip();
+    const std::size_t begin = at;
+    std::size_t end;  // set either way below
+    if (at < line_.size() && line_[at] == '"') {
+      end = ++at;  // doubled quotes shrink to one in place
+      while (true) {
+        if (at >= line_.size()) fail(static_cast<int>(begin) + 1, "a quote is not closed");
+        if (line_[at] == '"' && !(at + 1 < line_.size() && line_[at + 1] == '"')) break;
+        if (line_[at] == '"') ++at;
+        line_[end++] = line_[at++];
+      }
+      ++at;
+      skip();
+      if (at < line_.size() && line_[at] != delimiter)
+        fail(static_cast<int>(at) + 1, "text after a closing quote");
+      cells.push_back({std::string_view(line_).substr(begin + 1, end - begin - 1),
+                       static_cast<int>(begin) + 1});
+    } else {
+      while (at < line_.size() && line_[at] != delimiter) ++at;
+      end = at;
+      while (end > begin && is_blank(line_[end - 1])) --end;
+      cells.push_back(
+          {std::string_view(line_).substr(begin, end - begin), static_cast<int>(begin) + 1});
+    }
+    if (at >= line_.size()) return;
+    ++at;
+  }
+}
+
+void LineReader::rewind() {
+  input_->clear();
+  input_->seekg(0);
+  number_ = 0;
+}
+
+void LineReader::fail(int column, const std::string& message) const {
+  fail(number_, column, message);
+}
+
+void LineReader::fail(int line, int column, const std::string& message) const {
+  throw config::InputError({name_, line, column, config::Severity::kError, "", message});
+}
+
+char find_delimiter(std::string_view header) {
+  char best = ',';
+  std::size_t most = 0;
+  for (const char candidate : {',', ';', '\t'}) {
+    std::size_t count = 0;
+    bool quoted = false;
+    for (const char c : header) {
+      quoted ^= c == '"';
+      count += !quoted && c == candidate;
+    }
+    if (count > most) {
+      most = count;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace mpm::files

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <istream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/finding.hpp"
+
+/// Lines and cells of a text file with their places.
+namespace mpm::files {
+
+struct Cell {
+  std::string_view text;  ///< trimmed, without quotes
+  int column = 1;         ///< where it begins, from 1
+};
+
+/// Non-empty lines that are no `#` comment. Takes off the byte order mark and carriage returns.
+class LineReader {
+ public:
+  LineReader(std::unique_ptr<std::istream> input, std::string name);
+
+  /// Moves to the next line; false at the end.
+  [[nodiscard]] bool next();
+  [[nodiscard]] const std::string& text() const { return line_; }
+  /// Cuts the line into cells, which stay valid until `next`.
+  void split(char delimiter, std::vector<Cell>& cells);
+  /// Back to the first line.
+  void rewind();
+
+  /// True if the line ended with a newline, as all but the last one of a cut-off file do.
+  [[nodiscard]] bool complete() const { return complete_; }
+  [[nodiscard]] int number() const { return number_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[noreturn]] void fail(int column, const std::string& message) const;
+  [[noreturn]] void fail(int line, int column, const std::string& message) const;
+
+ private:
+  std::unique_ptr<std::istream> input_;
+  std::string name_;
+  std::string line_;
+  int number_ = 0;
+  bool complete_ = true;
+};
+
+/// A file to read lines from. Throws config::InputError where it cannot be read.
+[[nodiscard]] std::unique_ptr<std::istream> open_file(const std::string& path);
+
+/// Of `;`, tab and comma the one that the header uses most; comma if none.
+[[nodiscard]] char find_delimiter(std::string_view header);
+
+}  // namespace mpm::files

@@ -1,0 +1,139 @@
+#include "daemon/files/csv/csv_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "config/finding.hpp"
+#include "daemon/files/csv/cell.hpp"
+
+namespace mpm::files {
+namespace {
+
+constexpr std::size_t kRowsAhead = 200;
+constexpr double kSampleTimeTolerance = 0.1;
+constexpr double kNsPerSecond = 1e9;
+
+// A clock was set back by more intervals than these if that many rows in a row say so.
+constexpr double kClockStep = 10.0;
+constexpr std::size_t kRowsToBelieve = 3;
+
+// Part of a time stamp's deviation that is taken for the clock's own drift.
+constexpr double kFollow = 0.02;
+
+std::string seconds(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text + " s";
+}
+
+}  // namespace
+
+CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit,
+                     std::shared_ptr<const TimeZone> zone, Purpose purpose)
+    : CsvReader(open_file(path), path, unit, std::move(zone), purpose) {}
+
+CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
+                     const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone,
+                     Purpose purpose)
+    : sample_time_s_(unit.sample_time_s), lines_(std::move(input), name), tags_(unit, purpose) {
+  open(unit.counts(), std::move(zone));
+}
+
+void CsvReader::open(const SignalCounts& counts, std::shared_ptr<const TimeZone> zone) {
+  if (!lines_.next()) lines_.fail(1, 1, "the file is empty");
+  const int header_line = lines_.number();
+  const CsvFormat format{find_delimiter(lines_.text()), std::move(zone)};
+  std::vector<Cell> header;
+  lines_.split(format.delimiter, header);
+  rows_ = is_long_header(header) ? read_long(lines_, format, header, tags_, counts, row_notices_)
+                                 : read_wide(lines_, format, header, tags_, counts, row_notices_);
+  notices_ = tags_.notices();
+
+  for (std::size_t i = 0; i < kRowsAhead; ++i) {
+    Frame frame;
+    if (!rows_->next(frame)) break;
+    if (i == 0) first_ns_ = frame.source_time_ns;
+    ahead_.push_back(std::move(frame));
+  }
+  if (ahead_.empty()) lines_.fail(header_line, 1, "no data below the header");
+  check_sample_time(header_line);
+}
+
+void CsvReader::check_sample_time(int first_line) const {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < ahead_.size(); ++i) {
+    const auto step_ns =
+        static_cast<double>(ahead_[i].source_time_ns - ahead_[i - 1].source_time_ns);
+    if (step_ns > 0.0) steps_s.push_back(step_ns / kNsPerSecond);
+  }
+  if (steps_s.empty()) return;
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::nth_element(steps_s.begin(), middle, steps_s.end());
+  if (std::abs(*middle - sample_time_s_) > kSampleTimeTolerance * sample_time_s_)
+    lines_.fail(first_line, 1,
+                "the rows are " + seconds(*middle) + " apart (median), the unit's sample_time is " +
+                    seconds(sample_time_s_));
+}
+
+bool CsvReader::read(Frame& frame) {
+  if (ahead_.empty()) return rows_->next(frame);
+  frame = std::move(ahead_.front());
+  ahead_.pop_front();
+  return true;
+}
+
+bool CsvReader::next(Frame& frame) {
+  if (!read(frame)) {
+    notices_.insert(notices_.end(), row_notices_.begin(), row_notices_.end());
+    row_notices_.clear();
+    return false;
+  }
+  number(frame);
+  return true;
+}
+
+double CsvReader::elapsed(const Frame& frame) const {
+  const auto elapsed_ns = static_cast<double>(frame.source_time_ns - first_ns_);
+  return elapsed_ns / (sample_time_s_ * kNsPerSecond) - phase_;
+}
+
+// Time stamps that jitter round to their interval; a clock that runs a little fast or slow is
+// followed; one that was set back goes on counting after a gap. A clock set forward looks like a
+// gap.
+void CsvReader::number(Frame& frame) {
+  double at = elapsed(frame);
+  if (at < static_cast<double>(last_) - kClockStep && clock_stays_back(at)) {
+    notices_.push_back("the clock went back by " +
+                       seconds((static_cast<double>(last_) - at) * sample_time_s_) +
+                       "; the rows after it are taken as they follow");
+    phase_ += at - static_cast<double>(last_ + 2);
+    at = static_cast<double>(last_ + 2);
+  }
+  frame.interval = std::llround(at);
+  if (frame.interval != last_ + 1) {
+    last_ = std::max(last_, frame.interval);
+    return;
+  }
+  last_ = frame.interval;
+  phase_ += kFollow * (at - static_cast<double>(frame.interval));
+}
+
+// The next rows go on from there rather than from the last interval.
+bool CsvReader::clock_stays_back(double at) {
+  while (ahead_.size() < kRowsToBelieve) {
+    Frame frame;
+    if (!rows_->next(frame)) return false;
+    ahead_.push_back(std::move(frame));
+  }
+  double before = at;
+  for (std::size_t i = 0; i < kRowsToBelieve; ++i) {
+    const double next = elapsed(ahead_[i]);
+    if (next <= before || next >= static_cast<double>(last_) - kClockStep) return false;
+    before = next;
+  }
+  return true;
+}
+
+}  // namespace mpm::files

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "daemon/files/csv/column.hpp"
+#include "daemon/files/csv/row_source.hpp"
+#include "daemon/files/frame_source.hpp"
+
+namespace mpm::files {
+
+/// The rows of a data file as they stand there: no unit has to know its tags and no sample time
+/// its rows. The frames have no interval numbers.
+class CsvRows : public FrameSource {
+ public:
+  /// All tags of the file, as aux signals. Throws config::InputError where it cannot be read.
+  explicit CsvRows(const std::string& path, std::shared_ptr<const TimeZone> zone = nullptr);
+
+  [[nodiscard]] bool next(Frame& frame) override;
+  [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
+  /// In the order of the file.
+  [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  [[nodiscard]] bool is_long() const { return is_long_; }
+  [[nodiscard]] char delimiter() const { return format_.delimiter; }
+
+ private:
+  LineReader lines_;
+  CsvFormat format_;
+  bool is_long_ = false;
+  std::vector<Column> columns_;
+  std::unique_ptr<TagTable> tags_;
+  std::unique_ptr<RowSource> rows_;
+  std::vector<std::string> notices_;
+};
+
+}  // namespace mpm::files

@@ -1,0 +1,58 @@
+#include "daemon/files/output_folder.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+
+#include "config/finding.hpp"
+
+namespace mpm::files {
+namespace fs = std::filesystem;
+
+OutputFolder::OutputFolder(const std::string& path) : path_(fs::absolute(path)) {
+  const auto fail = [&](const std::string& message) {
+    throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
+  };
+  std::error_code ignored;
+  fs::path parent = path_;
+  while (!fs::exists(parent, ignored) && parent.has_relative_path()) parent = parent.parent_path();
+  if (!fs::is_directory(parent, ignored))
+    fail(parent == path_ ? "is a file; --out takes a folder" : parent.string() + " is no folder");
+  if (access(parent.c_str(), W_OK | X_OK) != 0) fail("cannot be written to");
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  for (const auto& file : files_) fs::remove(file.first, ignored);
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
+    fs::remove(*folder, ignored);  // fails, as it should, on one that is not empty
+}
+
+void OutputFolder::make() {
+  std::vector<fs::path> wanted;
+  for (fs::path folder = path_; !fs::exists(folder); folder = folder.parent_path())
+    wanted.push_back(folder);
+  std::reverse(wanted.begin(), wanted.end());
+  for (const fs::path& folder : wanted)
+    if (fs::create_directory(folder)) made_.push_back(folder);
+}
+
+void OutputFolder::write(const std::string& name, const std::string& text) {
+  make();
+  const fs::path place = path_ / ("." + name + "." + std::to_string(getpid()));
+  files_.emplace_back(place, path_ / name);
+  std::ofstream out(place, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + (path_ / name).string());
+}
+
+void OutputFolder::commit() {
+  for (const auto& [from, to] : files_) fs::rename(from, to);
+  files_.clear();
+  made_.clear();
+}
+
+}  // namespace mpm::files

@@ -1,0 +1,130 @@
+#include "daemon/files/read_recording.hpp"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "config/finding.hpp"
+
+namespace mpm::files {
+namespace {
+
+// 160 MB as doubles; at 50 tags more than half a year of minutes.
+constexpr std::int64_t kMostValues = 20'000'000;
+
+// Less movement than this share of its level is rounding, not a move.
+constexpr double kStill = 1e-9;
+
+/// Rows one after the other; frames do not tell how many will come.
+class Table {
+ public:
+  explicit Table(const SignalCounts& counts)
+      : counts_(counts), width_(counts.inputs() + counts.cv + counts.aux) {}
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] std::int64_t rows() const {
+    return static_cast<std::int64_t>(values_.size()) / width_;
+  }
+  void skip_to(std::int64_t row) {
+    values_.resize(static_cast<std::size_t>(row) * static_cast<std::size_t>(width_),
+                   std::numeric_limits<double>::quiet_NaN());
+  }
+  /// Returns how many inputs and CVs are unusable.
+  int add(const Frame& frame) {
+    int bad = 0;
+    for (const SignalKind kind :
+         {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kAux}) {
+      const SignalBlock& block = frame[kind];
+      for (int i = 0; i < block.size(); ++i) {
+        const bool usable = block.usable(i);
+        values_.push_back(usable ? block.values(i) : std::numeric_limits<double>::quiet_NaN());
+        bad += !usable && kind != SignalKind::kAux ? 1 : 0;
+      }
+    }
+    return bad;
+  }
+  void copy_to(Recording& recording) const {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Eigen::Map<const RowMajor> all(values_.data(), rows(), width_);
+    recording.inputs = all.leftCols(counts_.inputs());
+    recording.cvs = all.middleCols(counts_.inputs(), counts_.cv);
+    recording.aux = all.rightCols(counts_.aux);
+  }
+
+ private:
+  SignalCounts counts_;
+  int width_;
+  std::vector<double> values_;
+};
+
+std::string seconds_text(double seconds) {
+  std::string text = std::to_string(seconds);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text + " s";
+}
+
+bool moves(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return high - low > kStill * std::max(std::abs(low), std::abs(high));
+}
+
+}  // namespace
+
+RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit,
+                             const std::string& name) {
+  RecordingFile file;
+  file.recording.sample_time_s = unit.sample_time_s;
+  Table table(unit.counts());
+  const std::int64_t most_rows = kMostValues / table.width();
+  std::int64_t first = 0;
+  Frame frame(unit.counts());
+  while (source.next(frame)) {
+    if (table.rows() == 0) {
+      first = frame.interval;
+      file.recording.start_s = static_cast<double>(frame.source_time_ns) * 1e-9;
+    }
+    const std::int64_t row = frame.interval - first;
+    if (row < table.rows()) {
+      ++file.out_of_order;
+      continue;
+    }
+    if (row >= most_rows)
+      throw config::InputError(
+          {name, 0, 0, config::Severity::kError, "",
+           "spans more than the " + std::to_string(most_rows) +
+               " control intervals that a diagnosis of this unit takes (from row " +
+               std::to_string(table.rows() - file.missing) + " on it is " +
+               seconds_text(static_cast<double>(row - table.rows()) * unit.sample_time_s) +
+               " later); cut the file"});
+    file.missing += row - table.rows();
+    table.skip_to(row);
+    file.bad_values += table.add(frame);
+  }
+  table.copy_to(file.recording);
+  return file;
+}
+
+std::string recording_problem(const Recording& recording, Eigen::Index needed) {
+  const auto usable = [](const Eigen::MatrixXd& block, Eigen::Index row) {
+    return block.row(row).array().isFinite().any();
+  };
+  Eigen::Index rows = 0;
+  for (Eigen::Index row = 0; row < recording.samples(); ++row)
+    if (usable(recording.cvs, row) && usable(recording.inputs, row)) ++rows;
+  if (rows < needed)
+    return "too short: " + std::to_string(rows) +
+           " usable samples, a diagnosis of this model needs " + std::to_string(needed) + " (" +
+           seconds_text(static_cast<double>(needed) * recording.sample_time_s) + ")";
+  for (Eigen::Index i = 0; i < recording.inputs.cols(); ++i)
+    if (moves(recording.inputs.col(i))) return {};
+  return "no excitation: no MV or DV of the model moves, so nothing can be told about it";
+}
+
+}  // namespace mpm::files

@@ -1,0 +1,72 @@
+#include "daemon/host/logging.hpp"
+
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <memory>
+
+#include "idl/log.hpp"
+
+namespace mpm::host {
+namespace {
+
+/// %L as syslog priority, see sd-daemon(3).
+class SyslogPriority : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& out) override {
+    out.push_back(priority_of(message.level));
+  }
+  [[nodiscard]] std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<SyslogPriority>();
+  }
+
+ private:
+  static char priority_of(spdlog::level::level_enum level) {
+    switch (level) {
+      case spdlog::level::critical:
+        return '2';
+      case spdlog::level::err:
+        return '3';
+      case spdlog::level::warn:
+        return '4';
+      case spdlog::level::info:
+        return '6';
+      default:
+        return '7';
+    }
+  }
+};
+
+void log_dds(idl::LogLevel level, const std::string& line) {
+  switch (level) {
+    case idl::LogLevel::kError:
+      spdlog::error("dds: {}", line);
+      break;
+    case idl::LogLevel::kWarning:
+      spdlog::warn("dds: {}", line);
+      break;
+    default:
+      spdlog::debug("dds: {}", line);
+  }
+}
+
+}  // namespace
+
+void set_up_logging(const std::string& level) {
+  auto logger = spdlog::stderr_color_mt("mpm");
+  if (isatty(STDERR_FILENO)) {
+    logger->set_pattern("%Y-%m-%d %H:%M:%S %^%l%$ %v");
+  } else {
+    auto formatter = std::make_unique<spdlog::pattern_formatter>();
+    formatter->add_flag<SyslogPriority>('*').set_pattern("<%*>%v");
+    logger->set_formatter(std::move(formatter));
+  }
+  logger->set_level(spdlog::level::from_str(level));
+  spdlog::set_default_logger(std::move(logger));
+  idl::set_log_handler(log_dds);
+}
+
+}  // namespace mpm::host

@@ -1,0 +1,9 @@
+#pragma once
+
+namespace mpm::host {
+
+/// Writes out what standard output still holds. False if anything was lost although somebody reads;
+/// that a reader has left its pipe is no failure.
+[[nodiscard]] bool finish_standard_output();
+
+}  // namespace mpm::host

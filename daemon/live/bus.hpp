@@ -1,0 +1,46 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "config/unit_config.hpp"
+#include "daemon/bus/output_writers.hpp"
+#include "daemon/host/rate_limiter.hpp"
+#include "daemon/live/unit_pipeline.hpp"
+#include "idl/sample_readers.hpp"
+
+namespace mpm::live {
+
+/// One DDS domain with the units that live on it. Reads the input topics and never writes them.
+class Bus {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit Bus(const idl::DomainOptions& options);
+
+  UnitPipeline& add_unit(const config::UnitConfig& unit, Journal* journal, Clock::time_point now);
+  void attach_to(idl::WaitSet& wait_set) const;
+  /// Takes one batch of each topic.
+  void poll(Clock::time_point now);
+  void tick(Clock::time_point now);
+
+  [[nodiscard]] const std::map<std::string, std::unique_ptr<UnitPipeline>, std::less<>>& units()
+      const {
+    return units_;
+  }
+
+ private:
+  void report_unknown(std::string_view unit, Clock::time_point now);
+
+  idl::Participant participant_;
+  idl::SampleReaders samples_;
+  idl::Reader<mpm_Layout> layouts_;
+  bus::OutputWriters outputs_;
+  std::map<std::string, std::unique_ptr<UnitPipeline>, std::less<>> units_;
+  std::uint64_t unknown_unit_ = 0;
+  host::RateLimiter unknown_limit_;
+};
+
+}  // namespace mpm::live

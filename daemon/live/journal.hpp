@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/report/records.hpp"
+
+namespace mpm::live {
+
+/// JSON lines of every record, appended to a file; on disk (as far as the kernel) after each frame.
+class Journal {
+ public:
+  /// Throws std::system_error if the file cannot be written.
+  explicit Journal(const std::string& path);
+
+  /// All channels after one frame, then the alarms that it changed. False if the file would not
+  /// take it (full disk ...).
+  [[nodiscard]] bool write(const std::vector<report::ChannelRecord>& channels,
+                           const std::vector<report::AlarmRecord>& alarms);
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
+  std::string lines_;
+};
+
+}  // namespace mpm::live

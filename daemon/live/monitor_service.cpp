@@ -1,0 +1,72 @@
+#include "daemon/live/monitor_service.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <map>
+
+#include "daemon/bus/domain_options.hpp"
+
+namespace mpm::live {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{200};
+constexpr std::chrono::seconds kStatusPeriod{1};
+
+}  // namespace
+
+MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
+                               const ServiceOptions& options, DiagnosisWorker& worker) {
+  if (!options.journal.empty()) journal_.emplace(options.journal);
+  const Clock::time_point now = Clock::now();
+  std::map<std::string, Bus*> bus_of;  // by its settings
+  int asker = 0;
+  for (const config::UnitConfig& unit : units) {
+    idl::DomainOptions domain = bus::domain_options(unit.dds);
+    domain.use_environment = options.use_environment;
+    Bus*& bus = bus_of[idl::domain_xml(domain)];
+    if (bus == nullptr) {
+      bus = buses_.emplace_back(std::make_unique<Bus>(domain)).get();
+      bus->attach_to(wait_set_);
+    }
+    bus->add_unit(unit, journal_ ? &*journal_ : nullptr, now).diagnose_with(worker, asker++);
+    spdlog::info("{}: watching {} channels on domain {}{}", unit.unit,
+                 unit.counts().inputs() * unit.counts().cv, unit.dds.domain,
+                 unit.dds.partition.empty() ? "" : ", partition " + unit.dds.partition);
+  }
+}
+
+void MonitorService::run(const std::function<bool()>& stop) {
+  notifier_.ready();
+  Clock::time_point next_status{};
+  while (!stop()) {
+    const bool readable = wait_set_.wait(kLongestWait);
+    const Clock::time_point now = Clock::now();
+    for (const auto& bus : buses_) {
+      if (readable) bus->poll(now);
+      bus->tick(now);
+    }
+    notifier_.feed_watchdog(now);
+    if (now < next_status) continue;
+    next_status = now + kStatusPeriod;
+    notifier_.status(status());
+  }
+  notifier_.stopping();
+}
+
+std::string MonitorService::status() const {
+  std::uint64_t units = 0, matching = 0, mismatching = 0, undetermined = 0, alarms = 0;
+  for (const auto& bus : buses_) {
+    for (const auto& [name, unit] : bus->units()) {
+      const report::HealthRecord& health = unit->health();
+      ++units;
+      matching += health.matching;
+      mismatching += health.mismatching;
+      undetermined += health.undetermined;
+      alarms += health.active_alarms;
+    }
+  }
+  return fmt::format("{} units; channels: {} match, {} mismatch, {} undetermined; {} alarms", units,
+                     matching, mismatching, undetermined, alarms);
+}
+
+}  // namespace mpm::live

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "daemon/host/notifier.hpp"
+#include "daemon/live/bus.hpp"
+
+namespace mpm::live {
+
+struct ServiceOptions {
+  std::string journal;           ///< file; empty: none
+  bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
+};
+
+/// All units of a daemon and the loop that drives them. Everything but the diagnoses happens in the
+/// thread that calls `run`; Cyclone's own threads only fill the readers.
+class MonitorService {
+ public:
+  /// `worker` diagnoses alarms and must outlive the service. Throws if DDS or the journal cannot be
+  /// set up.
+  MonitorService(const std::vector<config::UnitConfig>& units, const ServiceOptions& options,
+                 DiagnosisWorker& worker);
+
+  /// Until `stop()` says so, which is asked at least five times a second.
+  void run(const std::function<bool()>& stop);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] std::string status() const;
+
+  std::optional<Journal> journal_;
+  std::vector<std::unique_ptr<Bus>> buses_;  // one per distinct DDS setting
+  idl::WaitSet wait_set_;
+  host::Notifier notifier_;
+};
+
+}  // namespace mpm::live

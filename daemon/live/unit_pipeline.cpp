@@ -1,0 +1,229 @@
+#include "daemon/live/unit_pipeline.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+#include "config/unit_layout.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
+#include "daemon/files/aligning.hpp"
+#include "idl/topics.hpp"
+
+namespace mpm::live {
+namespace {
+
+constexpr std::chrono::seconds kHealthPeriod{1};
+constexpr int kSilentSamples = 10;
+
+host::RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
+                                              std::chrono::seconds at_least) {
+  return std::max<host::RateLimiter::Clock::duration>(
+      at_least, std::chrono::duration_cast<host::RateLimiter::Clock::duration>(
+                    std::chrono::duration<double>(sample_time_s * samples)));
+}
+
+std::vector<std::string> tags_of(const config::UnitConfig& unit, std::string_view kind) {
+  for (std::size_t k = 0; k < kSignalKindCount; ++k) {
+    const auto candidate = static_cast<SignalKind>(k);
+    if (candidate != SignalKind::kAux && kind == idl::kind_name(candidate))
+      return config::tags_of(unit, candidate);
+  }
+  return {};
+}
+
+}  // namespace
+
+UnitPipeline::UnitPipeline(const config::UnitConfig& config, const bus::OutputWriters& outputs,
+                           Journal* journal, Clock::time_point now)
+    : config_(config),
+      outputs_(outputs),
+      journal_(journal),
+      monitor_(config),
+      aligner_(config.counts(), files::needed_kinds(config),
+               [this](const Frame& frame) { on_frame(frame); }),
+      patience_(files::frame_patience(config)),
+      silence_(samples_or(config.sample_time_s, kSilentSamples, std::chrono::seconds(5))),
+      now_(now),
+      last_frame_(now),
+      last_sample_(now),
+      next_health_(now) {
+  health_.unit = config.unit;
+  publish_initial_alarms();
+}
+
+void UnitPipeline::diagnose_with(DiagnosisWorker& worker, int asker) {
+  if (config_.monitor.diagnosis_samples == 0 || !config_.has_model()) return;
+  const auto needed = needed_samples(config_.model);
+  if (config_.monitor.diagnosis_samples < needed)
+    spdlog::warn(
+        "{}: no alarm will be diagnosed: that takes {} samples, and diagnosis_samples is {}",
+        config_.unit, needed, config_.monitor.diagnosis_samples);
+  else
+    diagnosis_.emplace(std::make_shared<const config::UnitConfig>(config_), worker, asker);
+}
+
+// Tells "no alarm" from "no monitor", and clears what a daemon before this one left behind.
+void UnitPipeline::publish_initial_alarms() {
+  for (const report::ChannelRecord& channel : monitor_.channels()) {
+    report::AlarmRecord record;
+    record.unit = channel.unit;
+    record.mv = channel.mv;
+    record.cv = channel.cv;
+    record.to = "cleared";
+    if (!outputs_.write_state(record))
+      spdlog::warn("{}: cannot publish the alarm of {} -> {}", record.unit, record.mv, record.cv);
+  }
+}
+
+void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
+  now_ = now;
+  if (!aligner_.pending()) last_frame_ = now;  // patience counts from here
+  last_sample_ = now;
+  const AlignerCounters before = aligner_.counters();
+  aligner_.push(
+      {sample.kind, sample.interval, sample.source_time_ns, sample.values, sample.quality});
+  const AlignerCounters& after = aligner_.counters();
+  if (after.wrong_length != before.wrong_length) report_refused(sample);
+  if (after.restarts != before.restarts)
+    spdlog::info("{}: the controller restarted: interval {} after {}", config_.unit,
+                 sample.interval, health_.interval);
+}
+
+void UnitPipeline::report_refused(const idl::SampleView& sample) {
+  if (!refused_limit_.admit(now_)) return;
+  spdlog::warn(
+      "{}: {} sample of interval {} has {} values and {} qualities, expected {}; ignored{}",
+      config_.unit, idl::sample_topic(sample.kind), sample.interval, sample.values.size(),
+      sample.quality.size(), config_.counts().of(sample.kind),
+      refused_limit_.held_back() == 0
+          ? ""
+          : fmt::format(" ({} more like this before)", refused_limit_.held_back()));
+}
+
+void UnitPipeline::on_frame(const Frame& frame) {
+  last_frame_ = now_;
+  health_.interval = frame.interval;
+  health_.source_time_ns = frame.source_time_ns;
+  monitor_.push(frame);
+
+  bool written = true;
+  for (const report::ChannelRecord& channel : monitor_.channels())
+    written = outputs_.write(channel) && written;
+  for (const report::AlarmRecord& alarm : monitor_.alarms()) {
+    written = outputs_.write(alarm) && written;
+    spdlog::log(alarm.to == "active" ? spdlog::level::warn : spdlog::level::info,
+                "{}: {} -> {}: alarm {} at interval {} (p {:.1e}, gain error {:.3g})", alarm.unit,
+                alarm.mv, alarm.cv, alarm.to, alarm.interval, alarm.p_value, alarm.effect_size);
+  }
+  if (!written && output_limit_.admit(now_))
+    spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
+  if (journal_ != nullptr && !journal_->write(monitor_.channels(), monitor_.alarms()) &&
+      journal_limit_.admit(now_))
+    spdlog::error("{}: cannot write the journal: {}", config_.unit, std::strerror(errno));
+  // Last, when everybody has been told: it may copy the unit's samples.
+  if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
+}
+
+// Not into the journal: when a diagnosis is through depends on the machine, not on the data.
+void UnitPipeline::publish_diagnosis() {
+  const std::optional<DiagnosisOutcome> outcome = diagnosis_->poll();
+  if (!outcome) return;
+  if (!outcome->problem.empty()) {
+    spdlog::warn("{}: the alarms could not be diagnosed: {}", config_.unit, outcome->problem);
+    return;
+  }
+  spdlog::warn("{}: diagnosed up to interval {}: {}{}", config_.unit, outcome->interval,
+               outcome->headline,
+               outcome->folder.empty() ? "" : " Report in " + outcome->folder + ".");
+  if (!outcome->file_problem.empty())
+    spdlog::error("{}: the report could not be written: {}", config_.unit, outcome->file_problem);
+  bool written = true;
+  for (report::AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
+    written = outputs_.write_state(alarm) && written;  // the alarm is as old as it was
+    alarm.interval = outcome->interval;
+    alarm.source_time_ns = outcome->time_ns;
+    written = outputs_.write_event(alarm) && written;
+  }
+  if (!written && output_limit_.admit(now_))
+    spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
+}
+
+void UnitPipeline::check_layout(const mpm_Layout& layout) {
+  const std::string kind = layout.kind;
+  const std::vector<std::string> expected = tags_of(config_, kind);
+  const bool same =
+      std::equal(expected.begin(), expected.end(), layout.tags._buffer,
+                 layout.tags._buffer + layout.tags._length,
+                 [](const std::string& a, const char* b) { return b != nullptr && a == b; });
+  if (same && layout.sample_time_s == config_.sample_time_s) return;
+  if (wrong_layout_.find(kind) != std::string::npos) return;
+  wrong_layout_ += (wrong_layout_.empty() ? "" : ", ") + kind;
+  spdlog::warn("{}: the {} layout of the control system differs from the unit file ({})",
+               config_.unit, kind, same ? "sample time" : "tags or their order");
+}
+
+void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit) {
+  now_ = now;
+  if (aligner_.pending() && now - last_frame_ > patience_) aligner_.expire();
+  if (diagnosis_) publish_diagnosis();
+  if (now < next_health_) return;
+  next_health_ = now + kHealthPeriod;
+  publish_health(unknown_unit);
+}
+
+void UnitPipeline::publish_health(std::uint64_t unknown_unit) {
+  const AlignerCounters& aligner = aligner_.counters();
+  health_.frames = aligner.frames;
+  health_.used = monitor_.counters().used;
+  health_.missing = aligner.missing;
+  health_.incomplete = aligner.incomplete;
+  health_.late = aligner.late;
+  health_.repeated = aligner.repeated;
+  health_.out_of_order = aligner.out_of_order;
+  health_.bad_values = monitor_.counters().bad_values;
+  health_.wrong_length = aligner.wrong_length;
+  health_.unknown_unit = unknown_unit;
+  health_.restarts = aligner.restarts;
+  health_.undetermined = health_.matching = health_.mismatching = health_.active_alarms = 0;
+  for (const report::ChannelRecord& channel : monitor_.channels()) {
+    if (channel.verdict == "match")
+      ++health_.matching;
+    else if (channel.verdict == "mismatch")
+      ++health_.mismatching;
+    else
+      ++health_.undetermined;
+    if (channel.alarm_active) ++health_.active_alarms;
+  }
+  judge_health();
+  incomplete_before_ = aligner.incomplete;
+  if (!outputs_.write(health_) && output_limit_.admit(now_))
+    spdlog::warn("{}: the health could not be published", config_.unit);
+}
+
+// The worst of what NE 107 has a word for.
+void UnitPipeline::judge_health() {
+  const auto set = [this](const char* state, std::string detail) {
+    health_.state = state;
+    health_.detail = std::move(detail);
+  };
+  const auto silent_s = std::chrono::duration_cast<std::chrono::seconds>(now_ - last_sample_);
+  if (health_.frames == 0)
+    set("function_check", "no complete data yet");
+  else if (now_ - last_sample_ > silence_)
+    set("failure", "no data for " + std::to_string(silent_s.count()) + " s");
+  else if (!wrong_layout_.empty())
+    set("out_of_specification", "layout differs from the unit file: " + wrong_layout_);
+  else if (health_.incomplete != incomplete_before_)
+    set("out_of_specification", "data incomplete");
+  else if (health_.active_alarms > 0)
+    set("maintenance_required", std::to_string(health_.active_alarms) + " alarms");
+  else if (health_.matching + health_.mismatching == 0)
+    set("function_check", "nothing determined yet");
+  else
+    set("normal", "");
+}
+
+}  // namespace mpm::live

@@ -1,0 +1,260 @@
+#include "daemon/report/diagnosis/diagnosis_report.hpp"
+
+#include <cstdio>
+
+#include "core/identify/causes/cause.hpp"
+#include "core/text/number_text.hpp"
+#include "daemon/report/diagnosis/explain.hpp"
+#include "daemon/report/diagnosis/names_of.hpp"
+
+namespace mpm::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json tag_or_null(const std::string& tag) { return tag.empty() ? Json(nullptr) : Json(tag); }
+
+/// Keys that say what a finding or a rival is about.
+Json subject_json(const Subject& subject, const SignalNames& names) {
+  const Place& place = subject.place;
+  // What a model leaves out may be an input of other channels of it: then both keys name it.
+  const bool by_tag = place.aux >= 0 || subject.cause->names_its_source();
+  return {
+      {"cause", subject.cause->name().text},
+      {"cv", tag_or_null(place.cv >= 0 ? names.cv(place.cv).tag : "")},
+      {"mv", tag_or_null(place.input >= 0 && place.aux < 0 ? names.input(place.input).tag : "")},
+      {"tag", tag_or_null(by_tag ? names.source(place).tag : "")}};
+}
+
+void add_kind(const Cause& cause, Json& json) {
+  if (*cause.kind() != '\0') json[cause.name().kind_key] = cause.kind();
+}
+
+Json parameters_json(const Finding& finding) {
+  const Cause& cause = *finding.subject.cause;
+  Json json = Json::object();
+  add_kind(cause, json);
+  for (const Parameter& parameter : finding.parameters) json[parameter.name()] = parameter.value;
+  if (cause.has_onset_parameter() && finding.onset_s && !json.contains("onset"))
+    json["onset"] = *finding.onset_s;
+  return json;
+}
+
+Json interval_json(const Parameter& parameter) {
+  return Json::array({parameter.low, parameter.high});
+}
+
+Json rival_json(const DiagnosisRun& run, const Rival& rival, const SignalNames& names) {
+  Json json = subject_json(rival.subject, names);
+  add_kind(*rival.subject.cause, json);
+  json["worse"] = rival.worse;
+  json["inseparable"] = rival.inseparable;
+  json["text"] = rival_text(run, rival);
+  return json;
+}
+
+Json finding_json(const DiagnosisRun& run, const Finding& finding) {
+  const SignalNames names = names_of(run);
+  Json json = subject_json(finding.subject, names);
+  json["title"] = finding.subject.cause->name().title;
+  json["parameters"] = parameters_json(finding);
+  json["interval"] = Json::object();
+  json["units"] = Json::object();
+  for (const Parameter& parameter : finding.parameters) {
+    json["interval"][parameter.name()] = interval_json(parameter);
+    json["units"][parameter.name()] =
+        names.unit_text(parameter.quantity->unit, finding.subject.place);
+  }
+  json["confidence"] = finding.confidence;
+  json["onset"] = finding.onset_s ? Json(*finding.onset_s) : Json(nullptr);
+  json["explanation"] = explain(run, finding);
+  json["against"] = Json::array();
+  json["rivals"] = Json::array();
+  for (const Rival& rival : finding.rivals) {
+    json["against"].push_back(rival_text(run, rival));
+    json["rivals"].push_back(rival_json(run, rival, names));
+  }
+  json["evidence"] = finding.evidence;
+  return json;
+}
+
+Json findings_json(const DiagnosisRun& run, const std::vector<Finding>& findings) {
+  Json json = Json::array();
+  for (const Finding& finding : findings) json.push_back(finding_json(run, finding));
+  return json;
+}
+
+Json scores_json(const DiagnosisRun& run) {
+  Json json = Json::array();
+  for (std::size_t cv = 0; cv < run.diagnosis.scores.size(); ++cv) {
+    const CvScore& score = run.diagnosis.scores[cv];
+    json.push_back({{"cv", run.unit.cv.at(cv).tag},
+                    {"rmse_before", score.rmse_before},
+                    {"rmse_after", score.rmse_after},
+                    {"fit_before", score.fit_before},
+                    {"fit_after", score.fit_after},
+                    {"gain_interval", {score.gain_low, score.gain_high}},
+                    {"refused", score.refused},
+                    {"unit", run.unit.cv[cv].unit}});
+  }
+  return json;
+}
+
+Json channels_json(const DiagnosisRun& run) {
+  const SignalNames names = names_of(run);
+  Json json = Json::array();
+  for (const ChannelEstimate& channel : run.diagnosis.channels) {
+    Json entry{{"cv", names.cv(channel.cv).tag}, {"mv", names.input(channel.input).tag}};
+    for (const Parameter* parameter :
+         {&channel.gain_ratio, &channel.time_constant_ratio, &channel.dead_time_error}) {
+      entry["parameters"][parameter->name()] = parameter->value;
+      entry["interval"][parameter->name()] = interval_json(*parameter);
+    }
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json unexplained_json(const DiagnosisRun& run) {
+  const SignalNames names = names_of(run);
+  Json json = Json::array();
+  for (const Unexplained& left : run.diagnosis.unexplained) {
+    const Place& place = left.subject.place;
+    json.push_back({{"cv", names.cv(place.cv).tag},
+                    {"mv", tag_or_null(place.input >= 0 ? names.input(place.input).tag : "")},
+                    {"manner", left.subject.cause->kind()},
+                    {"p_value", left.p_value},
+                    {"share", left.share},
+                    {"text", unexplained_text(run, left)}});
+  }
+  return json;
+}
+
+Json closed_loop_json(const DiagnosisRun& run) {
+  if (!run.closed_loop) return nullptr;
+  const ClosedLoop& loop = *run.closed_loop;
+  Json json{{"scenario", loop.scenario},
+            {"seeds", loop.seeds},
+            {"samples", loop.samples},
+            {"inputs_left_out", loop.inputs_left_out}};
+  json["cvs"] = Json::array();
+  json["mvs"] = Json::array();
+  for (const ClosedLoop::Cv& cv : loop.cvs)
+    json["cvs"].push_back({{"cv", run.unit.cv.at(static_cast<std::size_t>(cv.cv)).tag},
+                           {"error_variance_before", cv.variance_before},
+                           {"error_variance_after", cv.variance_after}});
+  for (const ClosedLoop::Mv& mv : loop.mvs)
+    json["mvs"].push_back({{"mv", run.unit.mv.at(static_cast<std::size_t>(mv.mv)).tag},
+                           {"at_limit_before", mv.at_limit_before},
+                           {"at_limit_after", mv.at_limit_after}});
+  return json;
+}
+
+std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
+  const SignalNames names = names_of(run);
+  std::string text = names.subject(finding.subject);
+  text +=
+      "  (confidence " +
+      (finding.confidence > 0.999 ? std::string("> 0.999") : number_text(finding.confidence, 2)) +
+      ")\n     " + explain(run, finding) + '\n';
+  for (const Parameter& parameter : finding.parameters) {
+    const std::string unit = names.unit_text(parameter.quantity->unit, finding.subject.place);
+    text += "     " + parameter.name() + " " + number_text(parameter.value) + "  [" +
+            interval_text(parameter.low, parameter.high) + "]" + (unit.empty() ? "" : " " + unit) +
+            '\n';
+  }
+  for (const Rival& rival : finding.rivals)
+    if (rival.inseparable) text += "     or: " + rival_text(run, rival) + '\n';
+  return text;
+}
+
+std::string score_table(const DiagnosisRun& run) {
+  std::string text =
+      "\n  on samples that the fit has not seen (" +
+      std::to_string(run.diagnosis.validation_samples) +
+      "):\n    CV            RMSE before    after   fit before    after   error less by\n";
+  for (std::size_t cv = 0; cv < run.diagnosis.scores.size(); ++cv) {
+    const CvScore& score = run.diagnosis.scores[cv];
+    char line[200];
+    std::snprintf(line, sizeof line, "    %-12s %12s %8s %10.1f %% %6.1f %%   ",
+                  run.unit.cv.at(cv).tag.c_str(), number_text(score.rmse_before).c_str(),
+                  number_text(score.rmse_after).c_str(), score.fit_before, score.fit_after);
+    text += line;
+    if (score.refused)
+      text += "an extension was tried and did not carry over";
+    else if (score.gain_low == score.gain_high)
+      text += "unchanged";
+    else
+      text += interval_text(100.0 * score.gain_low, 100.0 * score.gain_high, 2) + " %";
+    text += '\n';
+  }
+  return text;
+}
+
+std::string loop_table(const DiagnosisRun& run) {
+  const ClosedLoop& loop = *run.closed_loop;
+  std::string text = "\n  in closed loop on scenario " + loop.scenario + " (" +
+                     std::to_string(loop.seeds.size()) + " x " + std::to_string(loop.samples) +
+                     " samples):\n";
+  const auto row = [&text](const std::string& tag, const char* what, double before, double after) {
+    char line[160];
+    std::snprintf(line, sizeof line, "    %-12s %-24s %10s -> %s\n", tag.c_str(), what,
+                  number_text(before).c_str(), number_text(after).c_str());
+    text += line;
+  };
+  for (const ClosedLoop::Cv& cv : loop.cvs)
+    row(run.unit.cv.at(static_cast<std::size_t>(cv.cv)).tag, "variance of SP - CV",
+        cv.variance_before, cv.variance_after);
+  for (const ClosedLoop::Mv& mv : loop.mvs)
+    row(run.unit.mv.at(static_cast<std::size_t>(mv.mv)).tag, "% of time at a limit",
+        100.0 * mv.at_limit_before, 100.0 * mv.at_limit_after);
+  return text;
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const DiagnosisRun& run) {
+  const Diagnosis& diagnosis = run.diagnosis;
+  Json json{{"unit", run.unit.unit},
+            {"samples", diagnosis.samples},
+            {"fit_samples", diagnosis.fit_samples},
+            {"validation_samples", diagnosis.validation_samples},
+            {"verdict", name_of(diagnosis.verdict)},
+            {"reason", diagnosis.reason},
+            {"headline", verdict_headline(run)},
+            {"details", verdict_details(run)},
+            {"findings", findings_json(run, diagnosis.findings)},
+            {"validation", scores_json(run)},
+            {"extended_model", "extended.yaml"},
+            {"refused", findings_json(run, diagnosis.refused)},
+            {"unexplained", unexplained_json(run)},
+            {"channels", channels_json(run)},
+            {"closed_loop", closed_loop_json(run)}};
+  json["made_by"] = {{"program", run.program},
+                     {"command", run.command_line},
+                     {"config", run.config_file},
+                     {"data", run.data_file},
+                     {"validation_data", tag_or_null(run.validation_file)},
+                     {"fit_share", run.fit_share},
+                     {"seed", run.seed},
+                     {"notices", run.notices}};
+  return json;
+}
+
+std::string to_text(const DiagnosisRun& run) {
+  const Diagnosis& diagnosis = run.diagnosis;
+  std::string text = verdict_sentence(run) + '\n';
+  int number = 0;
+  for (const Finding& finding : diagnosis.findings)
+    text += "\n  " + std::to_string(++number) + ". " + finding_text(run, finding);
+  for (const Finding& finding : diagnosis.refused)
+    text += "\n  refused, for its repair did not carry over: " +
+            names_of(run).subject(finding.subject) + '\n';
+  for (const Unexplained& left : diagnosis.unexplained)
+    text += "\n  " + unexplained_text(run, left) + '\n';
+  if (!diagnosis.scores.empty()) text += score_table(run);
+  if (run.closed_loop) text += loop_table(run);
+  return text;
+}
+
+}  // namespace mpm::report

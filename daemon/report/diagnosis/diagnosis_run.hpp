@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/identify/fit/recording.hpp"
+
+/// All that the reports of `mpm diagnose` are made from.
+namespace mpm::report {
+
+/// How well the MPC controls with the unit file's model and with the extended one, on the same
+/// simulated plant, over all seeds together.
+struct ClosedLoop {
+  struct Cv {
+    int cv = 0;
+    double variance_before = 0.0, variance_after = 0.0;  ///< of set-point minus CV, CV units^2
+  };
+  struct Mv {
+    int mv = 0;
+    double at_limit_before = 0.0, at_limit_after = 0.0;  ///< share of the samples, 0..1
+  };
+  std::string scenario;
+  std::vector<std::uint64_t> seeds;
+  int samples = 0;  ///< of each run
+  /// Tags that the extended model takes and that the simulated controller does without.
+  std::vector<std::string> inputs_left_out;
+  std::vector<Cv> cvs;
+  std::vector<Mv> mvs;
+};
+
+struct DiagnosisRun {
+  config::UnitConfig unit;  ///< as its file says it
+  Recording recording;
+  std::optional<Recording> validation;
+  Diagnosis diagnosis;
+  std::optional<ClosedLoop> closed_loop;
+
+  std::string program;  ///< with its version
+  std::string command_line;
+  std::string config_file, data_file, validation_file;
+  double fit_share = 0.0;
+  std::uint64_t seed = 0;
+  std::vector<std::string> notices;  ///< on the data
+};
+
+}  // namespace mpm::report

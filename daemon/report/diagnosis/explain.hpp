@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/report/diagnosis/diagnosis_run.hpp"
+
+/// A diagnosis in plain sentences for operators and engineers.
+namespace mpm::report {
+
+/// The verdict in one sentence, and what belongs to it in some more; the latter may be empty.
+[[nodiscard]] std::string verdict_headline(const DiagnosisRun& run);
+[[nodiscard]] std::string verdict_details(const DiagnosisRun& run);
+/// Both.
+[[nodiscard]] std::string verdict_sentence(const DiagnosisRun& run);
+/// What a finding means, with its numbers, tags and units.
+[[nodiscard]] std::string explain(const DiagnosisRun& run, const Finding& finding);
+/// "dead_time of u1 -> y1: 14.2 worse (odds 1 to 1200)"
+[[nodiscard]] std::string rival_text(const DiagnosisRun& run, const Rival& rival);
+[[nodiscard]] std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left);
+
+[[nodiscard]] const char* name_of(DiagnosisVerdict verdict);
+
+}  // namespace mpm::report

@@ -1,9 +1,0 @@
-#pragma once
-
-namespace mpm::daemon {
-
-/// Writes out what standard output still holds. False if anything was lost although somebody reads;
-/// that a reader has left its pipe is no failure.
-[[nodiscard]] bool finish_standard_output();
-
-}  // namespace mpm::daemon
