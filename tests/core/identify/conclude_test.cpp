@@ -1,4 +1,4 @@
-#include "core/identify/conclude.hpp"
+#include "core/identify/search/conclude.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

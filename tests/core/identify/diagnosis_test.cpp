@@ -1,9 +1,9 @@
-#include "core/identify/diagnosis.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/identify/search.hpp"
+#include "core/identify/search/search.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {

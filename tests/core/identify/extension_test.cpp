@@ -1,4 +1,4 @@
-#include "core/identify/extension.hpp"
+#include "core/identify/diagnosis/extension.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

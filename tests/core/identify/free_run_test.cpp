@@ -1,4 +1,4 @@
-#include "core/identify/free_run.hpp"
+#include "core/identify/fit/free_run.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/identify/extension.hpp"
+#include "core/identify/diagnosis/extension.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {

@@ -1,4 +1,4 @@
-#include "core/identify/problem.hpp"
+#include "core/identify/fit/problem.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/identify/refine.hpp"
+#include "core/identify/search/refine.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "core/identify/screening.hpp"
+#include "core/identify/search/screening.hpp"
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "core/identify/simulator.hpp"
+#include "core/identify/fit/simulator.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/identify/trial.hpp"
+#include "core/identify/search/trial.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
