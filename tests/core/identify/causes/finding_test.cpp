@@ -1,40 +1,37 @@
 #include "core/identify/causes/finding.hpp"
 
 #include <catch2/catch.hpp>
-#include <string>
+
+#include "core/identify/causes/catalog.hpp"
 
 namespace mpm {
 namespace {
 
-// The words of the reports' contract.
-TEST_CASE("causes are called what the reports call them") {
-  const std::pair<Cause, const char*> names[] = {
-      {Cause::kGain, "gain"},
-      {Cause::kDeadTime, "dead_time"},
-      {Cause::kTimeConstant, "time_constant"},
-      {Cause::kDynamics, "dynamics"},
-      {Cause::kInputScale, "input_scale"},
-      {Cause::kOutputScale, "output_scale"},
-      {Cause::kInputNonlinearity, "input_nonlinearity"},
-      {Cause::kStiction, "stiction"},
-      {Cause::kOutputNonlinearity, "output_nonlinearity"},
-      {Cause::kUnmodelledInput, "unmodelled_input"},
-      {Cause::kOutputDisturbance, "output_disturbance"},
-      {Cause::kNoise, "noise"},
-      {Cause::kStateNonlinearity, "state_nonlinearity"},
-      {Cause::kUnnamed, "unnamed"},
-  };
-  for (const auto& [cause, name] : names) CHECK(std::string(name_of(cause)) == name);
+TEST_CASE("a subject is another where any of its parts is") {
+  const Subject subject{&causes::step_disturbance(), {1}};
+  CHECK(subject == Subject{&causes::step_disturbance(), {1, -1, -1}});
+  CHECK_FALSE(subject == Subject{&causes::noise(), {1, -1, -1}});
+  CHECK_FALSE(subject == Subject{&causes::step_disturbance(), {0, -1, -1}});
+  CHECK_FALSE(subject == Subject{&causes::step_disturbance(), {1, 0, -1}});
+  CHECK_FALSE(subject == Subject{&causes::step_disturbance(), {1, -1, 0}});
+  CHECK_FALSE(subject == Subject{&causes::drift_disturbance(), {1, -1, -1}});
 }
 
-TEST_CASE("a subject is another where any of its parts is") {
-  const Subject subject{Cause::kOutputDisturbance, 1, -1, -1, "step"};
-  CHECK(subject == Subject{Cause::kOutputDisturbance, 1, -1, -1, "step"});
-  CHECK_FALSE(subject == Subject{Cause::kNoise, 1, -1, -1, "step"});
-  CHECK_FALSE(subject == Subject{Cause::kOutputDisturbance, 0, -1, -1, "step"});
-  CHECK_FALSE(subject == Subject{Cause::kOutputDisturbance, 1, 0, -1, "step"});
-  CHECK_FALSE(subject == Subject{Cause::kOutputDisturbance, 1, -1, 0, "step"});
-  CHECK_FALSE(subject == Subject{Cause::kOutputDisturbance, 1, -1, -1, "drift"});
+// The words of the reports' contract.
+TEST_CASE("a parameter has its quantity's name, and a number where there are several") {
+  constexpr Quantity kOverflow{"overflow", Form::kPlain, Unit::kNone};
+  CHECK(Parameter{&kGainRatio, 1.2, 1.1, 1.3}.name() == "gain_ratio");
+  CHECK(Parameter{&kOverflow, 1.5, 1.4, 1.6, 1}.name() == "overflow_1");
+  CHECK(Parameter{&kOverflow, 1.5, 1.4, 1.6, 12}.name() == "overflow_12");
+}
+
+TEST_CASE("a finding knows its numbers by their quantity, not by its name") {
+  constexpr Quantity kLike{"gain_ratio", Form::kPlain, Unit::kOfModel};
+  Finding finding;
+  finding.parameters = {{&kDeadTimeError, 3.0, 2.0, 4.0}, {&kGainRatio, 1.2, 1.1, 1.3}};
+  REQUIRE(finding.find(kGainRatio) != nullptr);
+  CHECK(finding.find(kGainRatio)->value == 1.2);
+  CHECK(finding.find(kLike) == nullptr);
 }
 
 }  // namespace

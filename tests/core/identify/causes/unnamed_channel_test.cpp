@@ -1,9 +1,10 @@
-#include "core/identify/unnamed.hpp"
+#include "core/identify/causes/unnamed_channel.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/identify/causes/catalog.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -40,15 +41,29 @@ struct Bench {
     result.tail(x.size() - 1) = x.head(x.size() - 1);
     return result;
   }
+  /// What has no name and still may be looked for.
   std::vector<Effect> find(const std::vector<Effect>& accepted = {}) {
-    return unnamed_candidates(problem, accepted, fit);
+    return unnamed(problem, accepted, {fit});
+  }
+  static std::vector<Effect> unnamed(Problem& problem, const std::vector<Effect>& accepted,
+                                     const std::vector<CvFit>& without) {
+    std::vector<Effect> found;
+    for (const Cause* cause :
+         {&causes::unnamed_product(), &causes::unnamed_swing(), &causes::unnamed_direction()})
+      cause->propose({problem, accepted, without}, found);
+    std::erase_if(found, [&](const Effect& mine) {
+      return std::any_of(accepted.begin(), accepted.end(), [&](const Effect& other) {
+        return !cause_of(mine).goes_with(other, mine);
+      });
+    });
+    return found;
   }
 };
 
-std::vector<Effect> of_kind(const std::vector<Effect>& effects, int input, const char* kind) {
+std::vector<Effect> of_kind(const std::vector<Effect>& effects, int input, const Cause& cause) {
   std::vector<Effect> result;
   for (const Effect& effect : effects)
-    if (effect.subject == Subject{Cause::kUnnamed, 0, input, -1, kind}) result.push_back(effect);
+    if (subject_of(effect) == Subject{&cause, {0, input}}) result.push_back(effect);
   return result;
 }
 
@@ -57,7 +72,7 @@ std::vector<Effect> of_kind(const std::vector<Effect>& effects, int input, const
 TEST_CASE("a channel's gain may move with another input") {
   Bench bench(0.1 * test::white(3, kRows));
   const std::vector<Effect> found = bench.find();
-  const std::vector<Effect> products = of_kind(found, 0, "product");
+  const std::vector<Effect> products = of_kind(found, 0, causes::unnamed_product());
   REQUIRE(products.size() == 1);
   REQUIRE(products[0].shape);
   const VectorXd by = bench.v.array() - bench.v.mean();
@@ -65,7 +80,7 @@ TEST_CASE("a channel's gain may move with another input") {
   CHECK(products[0].coordinates.size() == 1);
   // 2 ln of two inputs, and of two channels.
   CHECK(products[0].search_cost == Approx(2.0 * std::log(2.0) + 2.0 * std::log(2.0)));
-  CHECK(of_kind(found, 1, "product").size() == 1);
+  CHECK(of_kind(found, 1, causes::unnamed_product()).size() == 1);
 }
 
 // A gain that swings seven times in the data: the channel's response times a sine of that
@@ -76,7 +91,7 @@ TEST_CASE("a channel's gain may swing with time") {
   Bench bench(0.1 * test::white(4, kRows));
   Bench swinging(0.1 * test::white(4, kRows) +
                  0.3 * 2.0 * Bench::delayed(bench.u).cwiseProduct(sine));
-  const std::vector<Effect> swings = of_kind(swinging.find(), 0, "swing");
+  const std::vector<Effect> swings = of_kind(swinging.find(), 0, causes::unnamed_swing());
   REQUIRE(swings.size() == 2);
   REQUIRE(swings[0].coordinates.size() == 2);
   const VectorXd response = 2.0 * Bench::delayed(bench.u);
@@ -86,7 +101,7 @@ TEST_CASE("a channel's gain may swing with time") {
 // With one sample of lag the pole is e^-1. The response rises or falls by 2 where u does.
 TEST_CASE("a channel may rise slower than it falls") {
   Bench bench(0.1 * test::white(5, kRows));
-  const std::vector<Effect> found = of_kind(bench.find(), 0, "direction");
+  const std::vector<Effect> found = of_kind(bench.find(), 0, causes::unnamed_direction());
   REQUIRE(found.size() == 1);
   const VectorXd response = 2.0 * Bench::delayed(bench.u);
   double expected = 0.0;
@@ -98,18 +113,19 @@ TEST_CASE("a channel may rise slower than it falls") {
 
 TEST_CASE("what was accepted is not looked for again, and what never moves moves no gain") {
   Bench bench(0.1 * test::white(6, kRows));
-  const std::vector<Effect> accepted = of_kind(bench.find(), 0, "product");
+  const std::vector<Effect> accepted = of_kind(bench.find(), 0, causes::unnamed_product());
   const std::vector<Effect> rest = bench.find(accepted);
-  CHECK(of_kind(rest, 0, "product").empty());
-  CHECK(of_kind(rest, 1, "product").size() == 1);
-  CHECK(of_kind(rest, 0, "direction").size() == 1);
+  CHECK(of_kind(rest, 0, causes::unnamed_product()).empty());
+  CHECK(of_kind(rest, 1, causes::unnamed_product()).size() == 1);
+  CHECK(of_kind(rest, 0, causes::unnamed_direction()).size() == 1);
 
   ModelSpec model = test::model_of({test::lag(0, 0, 2.0, 10.0)}, 2, 1);
   Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(kRows, 2);
   inputs.col(0) = bench.u;
   const Recording still = test::recording_of(inputs, test::white(7, kRows));
   Problem problem(model, 2, still, Tolerances{}, NoiseModel{});
-  CHECK(of_kind(unnamed_candidates(problem, {}, problem.fit({}, 0, {0}).cvs[0]), 0, "product")
+  CHECK(of_kind(Bench::unnamed(problem, {}, problem.fit({}, 0, {0}).cvs), 0,
+                causes::unnamed_product())
             .empty());
 }
 

@@ -1,9 +1,10 @@
-#include "core/identify/measured_gain.hpp"
+#include "core/identify/diagnosis/selection.hpp"
 
 #include <catch2/catch.hpp>
-#include <cmath>
 
+#include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/extension.hpp"
+#include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -24,19 +25,12 @@ struct Bench {
   Recording all, first;
   Problem problem;
   SearchResult found;
-  Diagnosis diagnosis;
-  DiagnosisSettings settings;
+  int told = 0;
 
   Bench(double fitted, double unseen)
       : all(plant(fitted, unseen)),
-        first(test::recording_of(all.inputs.topRows(kFitted), all.cvs.topRows(kFitted))),
-        problem(model, 2, first, Tolerances{}, NoiseModel{}) {
-    settings.progress = [](double) { return true; };
-    diagnosis.samples = kRows;
-    diagnosis.fit_samples = kFitted;
-    diagnosis.validation_samples = kRows - kFitted;
-    diagnosis.extended = model;
-  }
+        first(part(all, 0, kFitted)),
+        problem(model, 2, first, Tolerances{}, NoiseModel{}) {}
 
   static Recording plant(double fitted, double unseen) {
     MatrixXd u(kRows, 2), y(kRows, 2);
@@ -50,92 +44,69 @@ struct Bench {
   }
 
   void find_gain() {
-    Effect gain;
-    gain.subject = {Cause::kGain, 0, 0, -1, ""};
-    gain.coordinates = {{"gain_ratio", 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}};
+    const Effect gain{&causes::gain(), {0, 0}, {{&kGainRatio, 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}}};
     found.fit = problem.fit({gain}, 0, {0, 1}, 10);
     found.named = {{found.fit.effects[0], 80.0, 1.0, {}}};
-    diagnosis.findings = {to_finding(found, 0, problem)};
   }
 
-  void measure(const Recording* validation = nullptr) {
-    measure_gain(problem, found, model, model, all, validation, settings, diagnosis);
+  Selection select_on(const Recording& recording, Index rows) {
+    Unseen unseen(recording, rows, model, 1);
+    return select(problem, found, unseen, [this] { ++told; });
   }
 };
 
-double rms(const VectorXd& values) { return std::sqrt(values.cwiseAbs2().mean()); }
-
-// What the extended model leaves is the noise, whose rms over 300 rows is known to 2.6 %.
-TEST_CASE("a repair that carries over is measured on rows that no fit has seen") {
+TEST_CASE("a repair that carries over is taken") {
   Bench bench(1.5, 1.5);
   bench.find_gain();
-  bench.measure();
-  REQUIRE(bench.diagnosis.scores.size() == 2);
-  const CvScore& repaired = bench.diagnosis.scores[0];
-  const VectorXd response = test::first_order(bench.all.inputs.col(0), 2.0, 10.0);
-  CHECK(repaired.rmse_before ==
-        Approx(rms((0.5 * response + kNoise * test::white(3, kRows)).tail(300))).epsilon(0.01));
-  CHECK(repaired.rmse_after == Approx(kNoise).epsilon(0.08));
-  const double gain = 1.0 - repaired.rmse_after / repaired.rmse_before;
-  CHECK(repaired.gain_low < gain);
-  CHECK(repaired.gain_high > gain);
-  CHECK(repaired.gain_low > 0.5);
-  CHECK_FALSE(repaired.refused);
-  CHECK(bench.diagnosis.findings.size() == 1);
-  CHECK(bench.diagnosis.findings[0].repaired);
-  CHECK(bench.diagnosis.refused.empty());
-  CHECK(std::get<TransferFunction>(bench.diagnosis.extended.channels[0].dynamics).gain ==
-        Approx(3.0).epsilon(0.02));
-
-  const CvScore& other = bench.diagnosis.scores[1];
-  CHECK(other.rmse_after == other.rmse_before);
-  CHECK(other.gain_low == 0.0);
-  CHECK(other.gain_high == 0.0);
-  CHECK(bench.diagnosis.before.rows() == kRows);
-  CHECK(bench.diagnosis.after.col(1) == bench.diagnosis.before.col(1));
-  CHECK(bench.diagnosis.validation_before.size() == 0);
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRepaired});
+  CHECK(selection.order == std::vector<std::size_t>{0});
+  CHECK(repaired(selection) == std::vector<bool>{true});
+  CHECK(bench.told == 1);
 }
 
 TEST_CASE("a repair that makes the unseen rows worse is refused") {
   Bench bench(1.5, 1.0);
   bench.find_gain();
-  bench.measure();
-  CHECK(bench.diagnosis.findings.empty());
-  REQUIRE(bench.diagnosis.refused.size() == 1);
-  CHECK(bench.diagnosis.refused[0].subject.cause == Cause::kGain);
-  CHECK_FALSE(bench.diagnosis.refused[0].repaired);
-  CHECK(bench.diagnosis.scores[0].refused);
-  CHECK(bench.diagnosis.scores[0].rmse_after == bench.diagnosis.scores[0].rmse_before);
-  CHECK(std::get<TransferFunction>(bench.diagnosis.extended.channels[0].dynamics).gain == 2.0);
-  CHECK(bench.diagnosis.after == bench.diagnosis.before);
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRefused});
+  CHECK(repaired(selection) == std::vector<bool>{false});
 }
 
 TEST_CASE("a second recording is what no fit has seen") {
   Bench bench(1.5, 1.5);
   bench.find_gain();
   const Recording unseen = Bench::plant(1.0, 1.0);  // there the model is right
-  bench.diagnosis.validation_samples = kRows;
-  bench.measure(&unseen);
-  CHECK(bench.diagnosis.refused.size() == 1);
-  CHECK(bench.diagnosis.validation_before.rows() == kRows);
-  CHECK(bench.diagnosis.scores[0].rmse_before == Approx(kNoise).epsilon(0.08));
-  CHECK(rms(bench.all.cvs.col(0) - bench.diagnosis.before.col(0)) > 0.5);
+  CHECK(bench.select_on(unseen, kRows).fates == std::vector<Fate>{Fate::kRefused});
 }
 
 // What has no name repairs nothing, and what the data show to the last digit is not asked.
 TEST_CASE("what is certain stays and what has no name is no repair") {
   Bench bench(1.0, 1.0);
   Named clipping;
-  clipping.effect.subject = {Cause::kOutputNonlinearity, 0, -1, -1, "saturation"};
-  clipping.effect.coordinates = {{"high", 100.0}};
+  const Quantity& high = test::quantity_of(causes::output_saturation(), "high");
+  clipping.effect = {&causes::output_saturation(), {0}, {{&high, 100.0}}};
   clipping.effect.certain = true;
   Named unnamed;
-  unnamed.effect.subject = {Cause::kUnnamed, 0, 0, -1, "direction"};
+  unnamed.effect = {&causes::unnamed_direction(), {0, 0}, {}};
   bench.found.named = {clipping, unnamed};
-  bench.measure();
-  CHECK(bench.diagnosis.extended.output_blocks[0].has_value());
-  CHECK(bench.diagnosis.refused.empty());
-  CHECK_FALSE(bench.diagnosis.scores[0].refused);
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRepaired, Fate::kNoBetter});
+  const ModelSpec extended = extend(bench.problem, bench.found, repaired(selection), {true, true});
+  CHECK(extended.output_blocks[0].has_value());
+}
+
+TEST_CASE("the weakest evidence is judged first") {
+  Bench bench(1.5, 1.5);
+  bench.find_gain();
+  Named other = bench.found.named[0];
+  other.effect.place = {1, 1};
+  other.effect.coordinates[0].value = 0.5;  // the second CV is as the model says
+  other.evidence = 5.0;
+  bench.found.named.push_back(other);
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.order == std::vector<std::size_t>{1, 0});
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRepaired, Fate::kRefused});
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
+#include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 #include "tests/core/oracle.hpp"
 
@@ -46,17 +49,11 @@ Recording measured(double gain_ratio, double time_constant_ratio = 1.0, Index la
   return test::recording_of(u, cvs);
 }
 
-const Coordinate kGain{"gain_ratio", 1.0, 1.0, 0.25, 0.01, 0.02, 20.0};
-const Coordinate kLogTimeConstant{"log_time_constant_ratio", 0.0, 0.0, 0.35, 0.01, -2.5, 2.5};
-const Coordinate kDeadTime{"dead_time_samples", 0.3, 0.0, 3.0, 0.25, -3.0, 60.0};
+const Coordinate kGain{&kGainRatio, 1.0, 1.0, 0.25, 0.01, 0.02, 20.0};
+const Coordinate kLogTimeConstant{&kTimeConstantRatio, 0.0, 0.0, 0.35, 0.01, -2.5, 2.5};
+const Coordinate kDeadTime{&kDeadTimeError, 0.3, 0.0, 3.0, 0.25, -3.0, 60.0};
 
-Effect effect_of(const Subject& subject, std::vector<Coordinate> coordinates, Index onset = 0) {
-  Effect effect;
-  effect.subject = subject;
-  effect.coordinates = std::move(coordinates);
-  effect.onset = onset;
-  return effect;
-}
+Effect gain_of(const Place& place) { return {&causes::gain(), place, {kGain}}; }
 
 /// A Gauss-Newton fit ends where a step is no longer worth its while: a twentieth of an s.d.
 void check_fit(const Fit& fit, const nlohmann::json& expected) {
@@ -66,7 +63,7 @@ void check_fit(const Fit& fit, const nlohmann::json& expected) {
   REQUIRE(found.size() == values.size());
   REQUIRE(fit.covariance.rows() == static_cast<Index>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) {
-    CAPTURE(found[i].name);
+    CAPTURE(found[i].quantity->name);
     CHECK(found[i].value == Approx(values[i]).margin(0.05 * std::sqrt(covariance[i][i])));
     for (std::size_t j = 0; j < values.size(); ++j)
       CHECK(fit.covariance(static_cast<Index>(i), static_cast<Index>(j)) ==
@@ -94,7 +91,7 @@ TEST_CASE("a number that two CVs share is fitted to both") {
   const nlohmann::json expected = test::read_oracle("identify_fit.json")["input_scale"];
   const Recording recording = measured(1.2);
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  const Fit fit = problem.fit({effect_of({Cause::kInputScale, -1, 0, -1, ""}, {kGain})}, 0, {0, 1});
+  const Fit fit = problem.fit({{&causes::input_scale(), {-1, 0}, {kGain}}}, 0, {0, 1});
   check_fit(fit, expected);
   check_noise_and_cost(fit, expected);
 }
@@ -103,8 +100,7 @@ TEST_CASE("numbers that bend the simulation are fitted with their covariance") {
   const nlohmann::json expected = test::read_oracle("identify_fit.json")["dynamics"];
   const Recording recording = measured(0.9, 1.3, 1);
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  const Effect effect =
-      effect_of({Cause::kDynamics, 1, 0, -1, ""}, {kGain, kLogTimeConstant, kDeadTime});
+  const Effect effect{&causes::dynamics(), {1, 0}, {kGain, kLogTimeConstant, kDeadTime}};
   const Fit fit = problem.fit({effect}, 0, {1});
   check_fit(fit, expected);
   check_noise_and_cost(fit, expected);
@@ -116,7 +112,7 @@ TEST_CASE("rows that were not measured take no part, nor do those that have them
   for (const Index k : {100, 101, 102, 103, 104, 250})
     recording.cvs(k, 0) = std::numeric_limits<double>::quiet_NaN();
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  const Fit fit = problem.fit({effect_of({Cause::kGain, 0, 0, -1, ""}, {kGain})}, 0, {0});
+  const Fit fit = problem.fit({gain_of({0, 0})}, 0, {0});
   check_fit(fit, expected);
   check_noise_and_cost(fit, expected);
 }
@@ -138,7 +134,7 @@ TEST_CASE("without an effect the small errors and the noise are fitted") {
 TEST_CASE("with the noise held, leaving a cause out costs what its tolerance cannot take") {
   const Recording recording = measured(1.2);
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  const Fit fit = problem.fit({effect_of({Cause::kGain, 0, 0, -1, ""}, {kGain})}, 0, {0});
+  const Fit fit = problem.fit({gain_of({0, 0})}, 0, {0});
   const double prior = 0.25 * 0.25, tolerance = 0.02 * 0.02;
   const double posterior = fit.covariance(0, 0), data = 1.0 / (1.0 / posterior - 1.0 / prior);
   const double fitted = fit.effects[0].coordinates[0].value;
@@ -152,9 +148,9 @@ TEST_CASE("with the noise held, leaving a cause out costs what its tolerance can
 TEST_CASE("coordinates that are not free stay, and bounds hold") {
   const Recording recording = measured(1.2);
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  Effect held = effect_of({Cause::kTimeConstant, 0, 1, -1, ""}, {kLogTimeConstant});
+  Effect held{&causes::time_constant(), {0, 1}, {kLogTimeConstant}};
   held.coordinates[0].value = 0.1;
-  Effect bounded = effect_of({Cause::kGain, 0, 0, -1, ""}, {kGain});
+  Effect bounded = gain_of({0, 0});
   bounded.coordinates[0].high = 1.1;
   const Fit fit = problem.fit({held, bounded}, 1, {0});
   CHECK(fit.effects[0].coordinates[0].value == 0.1);
@@ -165,7 +161,7 @@ TEST_CASE("coordinates that are not free stay, and bounds hold") {
 TEST_CASE("an effect's search cost is part of what its fit costs") {
   const Recording recording = measured(1.2);
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  Effect effect = effect_of({Cause::kGain, 0, 0, -1, ""}, {kGain});
+  Effect effect = gain_of({0, 0});
   const double cost = problem.fit({effect}, 0, {0}).cost;
   effect.search_cost = 7.0;
   CHECK(problem.fit({effect}, 0, {0}).cost == Approx(cost + 7.0));
@@ -174,10 +170,12 @@ TEST_CASE("an effect's search cost is part of what its fit costs") {
 TEST_CASE("a start that is no model costs without end") {
   const Recording recording = measured(1.2);
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  Effect effect =
-      effect_of({Cause::kUnmodelledInput, 0, 1, 0, ""},
-                {{"gain", 1.0, 0.0, 1.0, 0.1}, {"log_time_constant", std::nan(""), 0.0, 1.0, 0.1}});
-  effect.subject.aux = -1;
+  const auto number = [](const char* name, double value) {
+    return Coordinate{&test::quantity_of(causes::unmodelled_input(), name), value, 0.0, 1.0, 0.1};
+  };
+  const Effect effect{&causes::unmodelled_input(),
+                      {0, 1},
+                      {number("gain", 1.0), number("time_constant", std::nan(""))}};
   CHECK(problem.fit({effect}, 0, {0}).cost == std::numeric_limits<double>::infinity());
 }
 
@@ -185,7 +183,8 @@ TEST_CASE("a start that is no model costs without end") {
 TEST_CASE("an effect acts from its onset on") {
   const Recording recording = measured(1.0);
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  Effect effect = effect_of({Cause::kGain, 0, 0, -1, ""}, {kGain}, 200);
+  Effect effect = gain_of({0, 0});
+  effect.onset = 200;
   effect.coordinates[0].value = 1.5;
   const MatrixXd u = two_inputs();
   const VectorXd first = test::first_order(u.col(0), 2.0, 10.0, 2);
@@ -200,7 +199,7 @@ TEST_CASE("an effect acts from its onset on") {
 TEST_CASE("a sensitivity is per prior s.d.") {
   const Recording recording = measured(1.0);
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  Effect effect = effect_of({Cause::kGain, 0, 0, -1, ""}, {kGain});
+  Effect effect = gain_of({0, 0});
   const VectorXd expected = 0.25 * test::first_order(two_inputs().col(0), 2.0, 10.0, 2);
   const auto sensitivity = [&] {
     return problem.sensitivity({effect}, 0, 0, 0, problem.simulate({effect}, 0));
@@ -219,8 +218,9 @@ TEST_CASE("the best onset is where the plant changed") {
     const VectorXd more = 0.4 * test::first_order(u.col(0), 2.0, 10.0, 2);
     recording.cvs.col(0).tail(kRows - onset) += more.tail(kRows - onset);
     Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-    const Fit fit =
-        problem.fit({effect_of({Cause::kGain, 0, 0, -1, ""}, {kGain}, onset + 12)}, 0, {0});
+    Effect effect = gain_of({0, 0});
+    effect.onset = onset + 12;
+    const Fit fit = problem.fit({effect}, 0, {0});
     CHECK(std::abs(problem.best_onset(fit, onset - 60, onset + 60) - onset) <= 2);
   }
 }
@@ -266,8 +266,8 @@ TEST_CASE("settling with a fit weighs its rows, with a step's own shock in them"
   Recording recording = measured(1.0);
   recording.cvs.col(1).tail(200).array() += 5.0;  // a step, which whitened is a shock
   Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  Effect step = effect_of({Cause::kOutputDisturbance, 1, -1, -1, "step"},
-                          {{"size", 5.0, 0.0, 10.0, 0.1, -1e12, 1e12}}, 200);
+  const Effect step{
+      &causes::step_disturbance(), {1}, {{&kSize, 5.0, 0.0, 10.0, 0.1, -1e12, 1e12}}, 200};
   const Fit with = problem.fit({step}, 0, {1});
   CHECK(with.effects[0].coordinates[0].value == Approx(5.0).epsilon(0.1));
   problem.settle({step}, &with);
@@ -285,12 +285,9 @@ TEST_CASE("a CV that clips is known where it does not") {
   const auto clipped = (recording.cvs.col(0).array() == 1.5).count();
   REQUIRE(clipped > 20);
   const Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
-  REQUIRE(problem.clipping().size() == 1);
-  const Effect& clipping = problem.clipping()[0];
-  CHECK(clipping.subject == Subject{Cause::kOutputNonlinearity, 0, -1, -1, "saturation"});
-  CHECK(clipping.certain);
-  REQUIRE(clipping.coordinates.size() == 1);
-  CHECK(clipping.value("high", 0.0) == 1.5);
+  CHECK_FALSE(problem.plateaus(0).low);
+  CHECK(problem.plateaus(0).high == 1.5);
+  CHECK_FALSE(problem.plateaus(1).high);
   CHECK(problem.data(0).known.sum() == Approx(double(kRows - clipped)));
   CHECK(problem.data(1).known.sum() == Approx(double(kRows)));
 }
@@ -308,6 +305,19 @@ TEST_CASE("a triangle has the same normal equations as what it came from") {
     for (Index i = 0; i < r.rows(); ++i)
       for (Index j = 0; j < i; ++j) CHECK(r(i, j) == 0.0);
   }
+}
+
+TEST_CASE("an effect touches the CVs of its channels") {
+  const Recording recording = test::recording_of(two_inputs(), MatrixXd::Zero(kRows, 2));
+  const Problem problem(
+      test::model_of({lag(0, 0, 2.0, 10.0), lag(1, 0, 1.0, 5.0), lag(1, 1, -3.0, 8.0)}, 2, 2), 2,
+      recording, Tolerances{}, NoiseModel{});
+  const auto of_input = [&](int input) {
+    return touched({&causes::input_scale(), {-1, input}, {kGain}}, problem);
+  };
+  CHECK(of_input(0) == std::vector<int>{0, 1});
+  CHECK(of_input(1) == std::vector<int>{1});
+  CHECK(touched(gain_of({1, 0}), problem) == std::vector<int>{1});
 }
 
 // By hand: 1 - 0.5 q^-1 on 2, 4, (unknown), 4, over an s.d. of 2, weights 0, 1, 4, 1.

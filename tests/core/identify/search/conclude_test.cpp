@@ -4,6 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
+#include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -43,14 +46,14 @@ TEST_CASE("a level that is far off is a disturbance as old as the data") {
   name_levels(bench.problem, bench.result);
   REQUIRE(bench.result.named.size() == 1);
   const Effect& level = bench.result.named[0].effect;
-  CHECK(level.subject == Subject{Cause::kOutputDisturbance, 0, -1, -1, "step"});
+  CHECK(subject_of(level) == Subject{&causes::step_disturbance(), {0}});
   CHECK(level.onset == 0);
   const double sd = 0.1 / std::sqrt(592.0);
-  CHECK(level.value("size", 0.0) == Approx(0.5).margin(5.0 * sd));
+  CHECK(level.value(kSize, 0.0) == Approx(0.5).margin(5.0 * sd));
   REQUIRE(bench.result.fit.covariance.rows() == 1);
   CHECK(std::sqrt(bench.result.fit.covariance(0, 0)) == Approx(sd).epsilon(0.5));
   CHECK(bench.result.named[0].evidence ==
-        Approx(std::pow(level.value("size", 0.0), 2) / bench.result.fit.covariance(0, 0)));
+        Approx(std::pow(level.value(kSize, 0.0), 2) / bench.result.fit.covariance(0, 0)));
   CHECK(bench.result.fit.effects.size() == 1);
   CHECK(bench.result.fit.cvs[0].beta(0) == 0.0);  // told once
 }
@@ -69,7 +72,8 @@ TEST_CASE("the level of a CV with a new input is that input's operating point") 
   const VectorXd u = test::telegraph(1, kRows, 12);
   Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.5);
   Named named;
-  named.effect.subject = {Cause::kUnmodelledInput, 0, -1, 0, ""};
+  named.effect.edit = &causes::unmodelled_input();
+  named.effect.place = {0, -1, 0};
   bench.result.named.push_back(named);
   name_levels(bench.problem, bench.result);
   CHECK(bench.result.named.size() == 1);
@@ -83,10 +87,8 @@ VectorXd play(const VectorXd& u, double width) {
 }
 
 Effect deadband(double width) {
-  Effect effect;
-  effect.subject = {Cause::kInputNonlinearity, 0, 0, -1, "deadband"};
-  effect.coordinates = {{"width", width, 0.0, 0.5, 0.02, 1e-4, 4.0}};
-  return effect;
+  const Quantity& quantity = test::quantity_of(causes::deadband(), "width");
+  return {&causes::deadband(), {0, 0}, {{&quantity, width, 0.0, 0.5, 0.02, 1e-4, 4.0}}};
 }
 
 /// What the fit costs with the width held there, all else fitted.
@@ -125,9 +127,7 @@ TEST_CASE("the interval of a play holds the truth, and nothing beyond it is like
 
 TEST_CASE("what is smooth keeps the interval of its curvature") {
   const VectorXd u = test::telegraph(1, kRows, 12);
-  Effect gain;
-  gain.subject = {Cause::kGain, 0, 0, -1, ""};
-  gain.coordinates = {{"gain_ratio", 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}};
+  const Effect gain{&causes::gain(), {0, 0}, {{&kGainRatio, 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}}};
   Bench bench(u, 1.2 * plant(u) + 0.1 * test::white(2, kRows), {gain});
   const MatrixXd before = bench.result.fit.covariance;
   widen_kinked(bench.problem, bench.result, [] {});

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 
+#include "core/identify/causes/catalog.hpp"
+#include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -28,16 +30,12 @@ struct Bench {
 };
 
 Effect gain(double start) {
-  Effect effect;
-  effect.subject = {Cause::kGain, 0, 0, -1, ""};
-  effect.coordinates = {{"gain_ratio", start, 1.0, 0.25, 0.01, 0.02, 20.0}};
-  return effect;
+  return {&causes::gain(), {0, 0}, {{&kGainRatio, start, 1.0, 0.25, 0.01, 0.02, 20.0}}};
 }
 
 Effect shaped(const VectorXd& shape, double sd) {
-  Effect effect;
-  effect.subject = {Cause::kUnnamed, 0, 0, -1, "product"};
-  effect.coordinates = {{"part_1", 0.0, 0.0, sd, 0.1 * sd, -1e3, 1e3}};
+  const Quantity& part = test::quantity_of(causes::unnamed_product(), "part");
+  Effect effect{&causes::unnamed_product(), {0, 0}, {{&part, 0.0, 0.0, sd, 0.1 * sd, -1e3, 1e3}}};
   effect.shape = std::make_shared<MatrixXd>(shape);
   return effect;
 }
@@ -106,8 +104,8 @@ TEST_CASE("the search is paid for, and what touches nothing or is no model is to
   effect.search_cost = 4.0;
   CHECK(screening.score(effect) == Approx(-4.0));
   effect = gain(1.0);
-  effect.subject.cause = Cause::kTimeConstant;
-  effect.coordinates = {{"log_time_constant_ratio", std::nan(""), 0.0, 0.35, 0.01, -2.5, 2.5}};
+  effect.edit = &causes::time_constant();
+  effect.coordinates = {{&kTimeConstantRatio, std::nan(""), 0.0, 0.35, 0.01, -2.5, 2.5}};
   CHECK(screening.score(effect) < -1e100);
 }
 
