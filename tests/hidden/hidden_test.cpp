@@ -188,8 +188,8 @@ TEST_CASE("half size is half the deviation of the same draw") {
   wanted.size = Size::kHalf;
   const HiddenCase half = draw_case(wanted);
   REQUIRE(full.attempts == half.attempts);
-  CHECK(half.truth[0].cv == full.truth[0].cv);
-  CHECK(half.truth[0].input == full.truth[0].input);
+  CHECK(half.truth[0].place.cv == full.truth[0].place.cv);
+  CHECK(half.truth[0].place.input == full.truth[0].place.input);
   CHECK(half.truth[0].parameters.at("gain_ratio") - 1.0 ==
         Approx(0.5 * (full.truth[0].parameters.at("gain_ratio") - 1.0)));
 }
@@ -199,7 +199,7 @@ TEST_CASE("an unmodelled input comes with signals that do nothing") {
   REQUIRE(hidden.data.aux.cols() >= 2);
   MatrixXd aux = hidden.data.aux;
   for (Index i = 0; i < aux.cols(); ++i)
-    if (i != hidden.truth[0].aux) aux.col(i).setConstant(-1000.0);
+    if (i != hidden.truth[0].place.aux) aux.col(i).setConstant(-1000.0);
   CHECK(simulate(hidden.plant, hidden.data.inputs, aux) == hidden.noise_free);
 }
 

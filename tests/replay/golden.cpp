@@ -75,7 +75,7 @@ const std::array kCases = {
 
 void run_or_throw(const std::vector<std::string>& arguments, const TemporaryFolder& folder) {
   Process program(arguments, folder.file("out"), folder.file("err"));
-  if (program.wait(std::chrono::minutes(4)) == 0) return;
+  if (program.wait(std::chrono::minutes(10)) == 0) return;
   throw std::runtime_error(arguments[0] + " failed: " + read_file(folder.file("err")));
 }
 

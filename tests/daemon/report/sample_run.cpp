@@ -5,7 +5,10 @@
 #include <random>
 
 #include "config/load_unit.hpp"
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/model/linear_model.hpp"
+#include "tests/core/identify/proposals.hpp"
 
 namespace mpm::test {
 namespace {
@@ -72,21 +75,22 @@ Eigen::MatrixXd simulate(const ModelSpec& spec, const Recording& recording) {
 
 Finding gain_finding() {
   Finding finding;
-  finding.subject = {Cause::kGain, 2, 2, -1, {}};
-  finding.parameters = {{"gain_ratio", 1.402, 1.381, 1.424}};
+  finding.subject = {&causes::gain(), {2, 2}};
+  finding.parameters = {{&kGainRatio, 1.402, 1.381, 1.424}};
   finding.confidence = 0.991;
   finding.evidence = 812.0;
-  finding.rivals = {{{Cause::kOutputScale, 2, -1, -1, {}}, 14.2, false},
-                    {{Cause::kInputScale, -1, 2, -1, {}}, 91.0, false}};
+  finding.rivals = {{{&causes::output_scale(), {2}}, 14.2, false},
+                    {{&causes::input_scale(), {-1, 2}}, 91.0, false}};
   return finding;
 }
 
 Finding input_finding() {
   Finding finding;
-  finding.subject = {Cause::kUnmodelledInput, 0, -1, 1, {}};
-  finding.parameters = {{"gain", 1.49, 1.41, 1.58},
-                        {"time_constant", 20.6, 17.9, 23.8},
-                        {"dead_time", 3.9, 2.8, 5.1}};
+  const Cause& cause = causes::unmodelled_input();
+  finding.subject = {&cause, {0, -1, 1}};
+  finding.parameters = {{&quantity_of(cause, "gain"), 1.49, 1.41, 1.58},
+                        {&quantity_of(cause, "time_constant"), 20.6, 17.9, 23.8},
+                        {&quantity_of(cause, "dead_time"), 3.9, 2.8, 5.1}};
   finding.confidence = 0.97;
   finding.evidence = 403.0;
   return finding;
@@ -94,12 +98,12 @@ Finding input_finding() {
 
 Finding step_finding() {
   Finding finding;
-  finding.subject = {Cause::kOutputDisturbance, 1, -1, -1, "step"};
-  finding.parameters = {{"size", 0.61, 0.55, 0.66}};
+  finding.subject = {&causes::step_disturbance(), {1}};
+  finding.parameters = {{&kSize, 0.61, 0.55, 0.66}};
   finding.confidence = 0.94;
   finding.evidence = 230.0;
   finding.onset_s = kOnset;
-  finding.rivals = {{{Cause::kOutputDisturbance, 1, -1, -1, "drift"}, 1.2, true}};
+  finding.rivals = {{{&causes::drift_disturbance(), {1}}, 1.2, true}};
   return finding;
 }
 
@@ -158,20 +162,21 @@ report::DiagnosisRun sample_run(int samples) {
   diagnosis.validation_samples = samples - diagnosis.fit_samples;
   diagnosis.findings = {gain_finding(), input_finding(), step_finding()};
   Finding refused;
-  refused.subject = {Cause::kStiction, -1, 1, -1, {}};
-  refused.parameters = {{"band", 0.02, 0.0, 0.05}, {"jump", 0.01, 0.0, 0.03}};
+  refused.subject = {&causes::stiction(), {-1, 1}};
+  refused.parameters = {{&quantity_of(causes::stiction(), "band"), 0.02, 0.0, 0.05},
+                        {&quantity_of(causes::stiction(), "jump"), 0.01, 0.0, 0.03}};
   refused.confidence = 0.61;
   refused.evidence = 9.5;
   diagnosis.refused = {refused};
-  diagnosis.unexplained = {{1, 0, "swing", 0.003, 0.08}};
+  diagnosis.unexplained = {{{&causes::unnamed_swing(), {1, 0}}, 0.003, 0.08}};
   for (int cv = 0; cv < 3; ++cv)
     for (int input = 0; input < 3; ++input) {
       const double gain = cv == 2 && input == 2 ? 1.4 : 1.0;
       diagnosis.channels.push_back({cv,
                                     input,
-                                    {"gain_ratio", gain, gain - 0.03, gain + 0.03},
-                                    {"time_constant_ratio", 1.0, 0.96, 1.05},
-                                    {"dead_time_error", 0.1, -0.6, 0.8}});
+                                    {&kGainRatio, gain, gain - 0.03, gain + 0.03},
+                                    {&kTimeConstantRatio, 1.0, 0.96, 1.05},
+                                    {&kDeadTimeError, 0.1, -0.6, 0.8}});
     }
   const Eigen::Index unseen = diagnosis.validation_samples;
   for (int cv = 0; cv < 3; ++cv)

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "daemon/bag/mcap_recording.hpp"
+#include "daemon/bag/mcap_frame_writer.hpp"
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
@@ -16,7 +16,7 @@ TEST_CASE("The programs: exit codes, files, messages") {
     return run(arguments, bench.folder.file("out"), bench.folder.file("err")).value_or(-1);
   };
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 300)) a.write(frame);
   a.finish();
   CHECK(mpm({"info", path("a.mcap"), "--json"}) == 0);
@@ -44,7 +44,7 @@ TEST_CASE("The programs: exit codes, files, messages") {
 TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell beside it") {
   Bench bench;
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
   a.finish();
   REQUIRE(run({"mpm", "convert", path("a.mcap"), path("a.csv")}, path("out"), path("err")) == 0);
@@ -59,7 +59,7 @@ TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell b
 TEST_CASE("what standard output does not take is a failure") {
   Bench bench;
   const auto path = [&](const char* name) { return bench.folder.file(name); };
-  bag::McapRecording a(path("a.mcap"), bench.unit, all_columns());
+  bag::McapFrameWriter a(path("a.mcap"), bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) a.write(frame);
   a.finish();
   for (const std::vector<std::string>& arguments :
@@ -79,7 +79,7 @@ TEST_CASE("what standard output does not take is a failure") {
 TEST_CASE("mpm recover never writes over the file that it mends") {
   Bench bench;
   const std::string file = bench.folder.file("torn.mcap");
-  bag::McapRecording writer(file, bench.unit, all_columns());
+  bag::McapFrameWriter writer(file, bench.unit, all_columns());
   for (const Frame& frame : any_frames(bench.unit, 30)) writer.write(frame);
   writer.finish();
   const std::string torn = read_file(file).substr(0, read_file(file).size() - 50);

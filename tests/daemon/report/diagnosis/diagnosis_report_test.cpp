@@ -1,10 +1,14 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 
 #include "config/load_unit.hpp"
+#include "core/identify/causes/catalog.hpp"
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
 #include "daemon/report/diagnosis/extended_unit.hpp"
+#include "tests/core/identify/proposals.hpp"
 #include "tests/daemon/report/sample_run.hpp"
 
 namespace mpm::test {
@@ -37,6 +41,10 @@ TEST_CASE("report.json has the keys of its contract") {
   CHECK(gain["cv"] == "y3");
   CHECK(gain["mv"] == "u3");
   CHECK(gain["tag"].is_null());
+  CHECK(gain["title"] == "Gain");
+  const std::vector<std::string> begin = {"cause", "cv", "mv", "tag", "title", "parameters"};
+  const std::vector<std::string> given_of_gain = keys(gain);
+  CHECK(std::equal(begin.begin(), begin.end(), given_of_gain.begin()));
   CHECK(gain["parameters"] == ordered_json{{"gain_ratio", 1.402}});
   CHECK(gain["interval"]["gain_ratio"] == ordered_json{1.381, 1.424});
   CHECK(gain["confidence"] == 0.991);
@@ -48,6 +56,7 @@ TEST_CASE("report.json has the keys of its contract") {
   const ordered_json& input = report["findings"][1];
   CHECK(input["cause"] == "unmodelled_input");
   CHECK(input["tag"] == "t_amb");
+  CHECK(input["title"] == "Input that the model leaves out");
   CHECK(input["mv"].is_null());
 
   const ordered_json& step = report["findings"][2];
@@ -91,47 +100,63 @@ TEST_CASE("what is not a number is null, and the report stays JSON") {
   CHECK(report["findings"][0]["interval"]["gain_ratio"][1].is_null());
 }
 
+/// All numbers that a cause has, as far as sentences say them.
+std::vector<Parameter> parameters_of(const Cause& cause) {
+  struct Number {
+    double value, low, high;
+  };
+  const std::map<std::string, Number> numbers = {{"gain_ratio", {0.75, 0.7, 0.8}},
+                                                 {"time_constant_ratio", {1.5, 1.4, 1.6}},
+                                                 {"dead_time_error", {-3.0, -4, -2}},
+                                                 {"width", {0.3, 0.2, 0.4}},
+                                                 {"low", {-1.0, -1.1, -0.9}},
+                                                 {"high", {1.0, 0.9, 1.1}},
+                                                 {"band", {0.4, 0.3, 0.5}},
+                                                 {"jump", {0.2, 0.1, 0.3}},
+                                                 {"gain", {1.0, 0.9, 1.1}},
+                                                 {"size", {-0.4, -0.5, -0.3}},
+                                                 {"variance_ratio", {9.0, 8.0, 10.0}},
+                                                 {"period", {60.0, 59.0, 61.0}},
+                                                 {"force", {0.1, 0.05, 0.15}}};
+  std::vector<Parameter> parameters;
+  for (const Finding& finding : findings_of(cause))
+    for (const Parameter& parameter : finding.parameters) {
+      const auto number = numbers.find(parameter.quantity->name);
+      const bool given =
+          std::any_of(parameters.begin(), parameters.end(),
+                      [&](const Parameter& other) { return other.quantity == parameter.quantity; });
+      if (number == numbers.end() || given) continue;
+      const auto [value, low, high] = number->second;
+      parameters.push_back({parameter.quantity, value, low, high});
+    }
+  return parameters;
+}
+
 TEST_CASE("every cause is explained in a sentence with its tags") {
-  DiagnosisRun run = sample_run(600);
-  const std::vector<Parameter> parameters = {{"gain_ratio", 0.75, 0.7, 0.8},
-                                             {"time_constant_ratio", 1.5, 1.4, 1.6},
-                                             {"dead_time_error", -3.0, -4, -2},
-                                             {"width", 0.3, 0.2, 0.4},
-                                             {"low", -1.0, -1.1, -0.9},
-                                             {"high", 1.0, 0.9, 1.1},
-                                             {"band", 0.4, 0.3, 0.5},
-                                             {"jump", 0.2, 0.1, 0.3},
-                                             {"gain", 1.0, 0.9, 1.1},
-                                             {"size", -0.4, -0.5, -0.3},
-                                             {"variance_ratio", 9.0, 8.0, 10.0},
-                                             {"period", 60.0, 59.0, 61.0},
-                                             {"force", 0.1, 0.05, 0.15}};
-  const auto explained = [&](Subject subject, bool with_parameters) {
+  const DiagnosisRun run = sample_run(600);
+  const auto explained = [&](const Subject& subject, bool with_parameters) {
     Finding finding;
-    finding.subject = std::move(subject);
-    if (with_parameters) finding.parameters = parameters;
+    finding.subject = subject;
+    if (with_parameters) finding.parameters = parameters_of(*subject.cause);
     return report::explain(run, finding);
   };
   for (const bool with : {true, false}) {
-    for (int i = 0; i <= static_cast<int>(Cause::kStateNonlinearity); ++i) {
-      const auto cause = static_cast<Cause>(i);
-      for (const char* kind : {"", "saturation", "deadband", "polynomial", "step", "drift",
-                               "periodic", "square_root_outflow", "coulomb_friction"}) {
-        const bool aux = cause == Cause::kUnmodelledInput;
-        const std::string text = explained({cause, 0, aux ? -1 : 1, aux ? 1 : -1, kind}, with);
-        INFO(name_of(cause) << ' ' << kind << ": " << text);
-        CHECK(text.size() > 20);
-        CHECK(text.back() == '.');
-        CHECK((holds(text, "y1") || holds(text, "u2")));
-        CHECK_FALSE(holds(text, "nan"));
-        CHECK_FALSE(holds(text, "  "));
-      }
+    for (const Cause* cause : causes::all()) {
+      if (causes::is_unnamed(*cause)) continue;
+      const bool aux = cause == &causes::unmodelled_input();
+      const std::string text = explained({cause, {0, aux ? -1 : 1, aux ? 1 : -1}}, with);
+      INFO(cause->name().text << ' ' << cause->kind() << ": " << text);
+      CHECK(text.size() > 20);
+      CHECK(text.back() == '.');
+      CHECK((holds(text, "y1") || holds(text, "u2")));
+      CHECK_FALSE(holds(text, "nan"));
+      CHECK_FALSE(holds(text, "  "));
     }
   }
-  CHECK(explained({Cause::kGain, 0, 0, -1, ""}, true) ==
+  CHECK(explained({&causes::gain(), {0, 0}}, true) ==
         "y1 answers u1 25 % less than the model says (gain 3.04 instead of 4.05 degC per m3/h; "
         "95 % interval 0.7 to 0.8 of the ratio).");
-  CHECK(explained({Cause::kDeadTime, 0, 0, -1, ""}, true) ==
+  CHECK(explained({&causes::dead_time(), {0, 0}}, true) ==
         "y1 answers u1 3 s sooner than the model says (dead time error 95 % interval -4 to -2 s).");
 }
 

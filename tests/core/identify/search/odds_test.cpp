@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/identify/causes/catalog.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -22,26 +23,6 @@ CvFit with_innovations(const VectorXd& innovations, double variance) {
 /// `run` rows of +1, as many of -1, and so on.
 VectorXd runs(Index rows, Index run) {
   return VectorXd::NullaryExpr(rows, [&](Index k) { return (k / run) % 2 == 0 ? 1.0 : -1.0; });
-}
-
-TEST_CASE("errors of channels are expected, anything else is rarer and the unnamed rarest") {
-  for (const Cause cause : {Cause::kGain, Cause::kDeadTime, Cause::kTimeConstant, Cause::kDynamics,
-                            Cause::kInputScale, Cause::kOutputScale})
-    CHECK(rarity(cause) == 0.0);
-  // As 2 ln of odds: 1 to 12, 1 to 24, 1 to 1000.
-  for (const Cause cause : {Cause::kInputNonlinearity, Cause::kStiction, Cause::kOutputNonlinearity,
-                            Cause::kUnmodelledInput, Cause::kOutputDisturbance})
-    CHECK(std::exp(0.5 * rarity(cause)) == Approx(12.0));
-  CHECK(std::exp(0.5 * rarity(Cause::kStateNonlinearity)) == Approx(24.0));
-  CHECK(std::exp(0.5 * rarity(Cause::kUnnamed)) == Approx(1000.0));
-}
-
-TEST_CASE("what is slow and without an edge may pass for noise") {
-  CHECK(may_pass_for_noise({Cause::kUnmodelledInput, 0, -1, 1, ""}));
-  CHECK(may_pass_for_noise({Cause::kOutputDisturbance, 0, -1, -1, "drift"}));
-  CHECK(may_pass_for_noise({Cause::kOutputDisturbance, 0, -1, -1, "periodic"}));
-  CHECK_FALSE(may_pass_for_noise({Cause::kOutputDisturbance, 0, -1, -1, "step"}));
-  CHECK_FALSE(may_pass_for_noise({Cause::kGain, 0, 0, -1, ""}));
 }
 
 // A first-order correlation r leaves (1 - r) / (1 + r) of the rows. Runs of three: neighbours agree
@@ -64,7 +45,8 @@ TEST_CASE("innovations that hang together count as fewer") {
 // 40 in the misfit, less 7 that the cause costs more, less the search, less 2 ln 12.
 TEST_CASE("the odds for an effect are what it saves less what it costs") {
   Effect effect;
-  effect.subject = {Cause::kStiction, -1, 0, -1, ""};
+  effect.edit = &causes::stiction();
+  effect.place = {-1, 0};
   effect.search_cost = 5.0;
   Fit with, without;
   with.cvs = without.cvs = {with_innovations(test::white(2, 1000), 1.0)};

@@ -1,0 +1,113 @@
+#include "core/identify/diagnosis/selection.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/diagnosis/extension.hpp"
+#include "tests/core/identify/proposals.hpp"
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::lag;
+
+constexpr Index kFitted = 600, kRows = 900;
+constexpr double kNoise = 0.1;
+
+/// The first input acts with `fitted` times its gain in the rows that are fitted, with `unseen`
+/// times in the others; the second CV is as the model says.
+struct Bench {
+  ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0), lag(1, 1, 1.0, 5.0)}, 2, 2);
+  Recording all, first;
+  Problem problem;
+  SearchResult found;
+  int told = 0;
+
+  Bench(double fitted, double unseen)
+      : all(plant(fitted, unseen)),
+        first(part(all, 0, kFitted)),
+        problem(model, 2, first, Tolerances{}, NoiseModel{}) {}
+
+  static Recording plant(double fitted, double unseen) {
+    MatrixXd u(kRows, 2), y(kRows, 2);
+    u << test::telegraph(1, kRows, 12), test::telegraph(2, kRows, 9);
+    const VectorXd response = test::first_order(u.col(0), 2.0, 10.0);
+    y.col(0) = response + kNoise * test::white(3, kRows);
+    y.col(0).head(kFitted) += (fitted - 1.0) * response.head(kFitted);
+    y.col(0).tail(kRows - kFitted) += (unseen - 1.0) * response.tail(kRows - kFitted);
+    y.col(1) = test::first_order(u.col(1), 1.0, 5.0) + kNoise * test::white(4, kRows);
+    return test::recording_of(u, y);
+  }
+
+  void find_gain() {
+    const Effect gain{&causes::gain(), {0, 0}, {{&kGainRatio, 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}}};
+    found.fit = problem.fit({gain}, 0, {0, 1}, 10);
+    found.named = {{found.fit.effects[0], 80.0, 1.0, {}}};
+  }
+
+  Selection select_on(const Recording& recording, Index rows) {
+    Unseen unseen(recording, rows, model, 1);
+    return select(problem, found, unseen, [this] { ++told; });
+  }
+};
+
+TEST_CASE("a repair that carries over is taken") {
+  Bench bench(1.5, 1.5);
+  bench.find_gain();
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRepaired});
+  CHECK(selection.order == std::vector<std::size_t>{0});
+  CHECK(repaired(selection) == std::vector<bool>{true});
+  CHECK(bench.told == 1);
+}
+
+TEST_CASE("a repair that makes the unseen rows worse is refused") {
+  Bench bench(1.5, 1.0);
+  bench.find_gain();
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRefused});
+  CHECK(repaired(selection) == std::vector<bool>{false});
+}
+
+TEST_CASE("a second recording is what no fit has seen") {
+  Bench bench(1.5, 1.5);
+  bench.find_gain();
+  const Recording unseen = Bench::plant(1.0, 1.0);  // there the model is right
+  CHECK(bench.select_on(unseen, kRows).fates == std::vector<Fate>{Fate::kRefused});
+}
+
+// What has no name repairs nothing, and what the data show to the last digit is not asked.
+TEST_CASE("what is certain stays and what has no name is no repair") {
+  Bench bench(1.0, 1.0);
+  Named clipping;
+  const Quantity& high = test::quantity_of(causes::output_saturation(), "high");
+  clipping.effect = {&causes::output_saturation(), {0}, {{&high, 100.0}}};
+  clipping.effect.certain = true;
+  Named unnamed;
+  unnamed.effect = {&causes::unnamed_direction(), {0, 0}, {}};
+  bench.found.named = {clipping, unnamed};
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRepaired, Fate::kNoBetter});
+  const ModelSpec extended = extend(bench.problem, bench.found, repaired(selection), {true, true});
+  CHECK(extended.output_blocks[0].has_value());
+}
+
+TEST_CASE("the weakest evidence is judged first") {
+  Bench bench(1.5, 1.5);
+  bench.find_gain();
+  Named other = bench.found.named[0];
+  other.effect.place = {1, 1};
+  other.effect.coordinates[0].value = 0.5;  // the second CV is as the model says
+  other.evidence = 5.0;
+  bench.found.named.push_back(other);
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.order == std::vector<std::size_t>{1, 0});
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRepaired, Fate::kRefused});
+}
+
+}  // namespace
+}  // namespace mpm

@@ -1,0 +1,138 @@
+#include "core/identify/search/conclude.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
+#include "tests/core/identify/proposals.hpp"
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::lag;
+
+constexpr Index kRows = 600;
+
+struct Bench {
+  VectorXd u;
+  Recording recording;
+  Problem problem;
+  SearchResult result;
+
+  Bench(const VectorXd& inputs, const VectorXd& y, const std::vector<Effect>& effects = {})
+      : u(inputs),
+        recording(test::recording_of(u, y)),
+        problem(test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), 1, recording, Tolerances{},
+                NoiseModel{}) {
+    result.fit = problem.fit(effects, 0, {0}, 10);
+    for (const Effect& effect : result.fit.effects) result.named.push_back({effect, 50.0, 1.0, {}});
+  }
+};
+
+VectorXd plant(const VectorXd& u) { return test::first_order(u, 2.0, 10.0); }
+
+// White noise of s.d. 0.1 and an offset of 0.5 throughout: known to 0.1 / sqrt(592), within what a
+// fitted noise model of order 8 leaves.
+TEST_CASE("a level that is far off is a disturbance as old as the data") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.5);
+  REQUIRE(bench.result.named.empty());
+  name_levels(bench.problem, bench.result);
+  REQUIRE(bench.result.named.size() == 1);
+  const Effect& level = bench.result.named[0].effect;
+  CHECK(subject_of(level) == Subject{&causes::step_disturbance(), {0}});
+  CHECK(level.onset == 0);
+  const double sd = 0.1 / std::sqrt(592.0);
+  CHECK(level.value(kSize, 0.0) == Approx(0.5).margin(5.0 * sd));
+  REQUIRE(bench.result.fit.covariance.rows() == 1);
+  CHECK(std::sqrt(bench.result.fit.covariance(0, 0)) == Approx(sd).epsilon(0.5));
+  CHECK(bench.result.named[0].evidence ==
+        Approx(std::pow(level.value(kSize, 0.0), 2) / bench.result.fit.covariance(0, 0)));
+  CHECK(bench.result.fit.effects.size() == 1);
+  CHECK(bench.result.fit.cvs[0].beta(0) == 0.0);  // told once
+}
+
+// 1.5 s.d. of the noise is the rule.
+TEST_CASE("a level within the noise is a small error") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.13);
+  const VectorXd beta = bench.result.fit.cvs[0].beta;
+  name_levels(bench.problem, bench.result);
+  CHECK(bench.result.named.empty());
+  CHECK(bench.result.fit.cvs[0].beta == beta);
+}
+
+TEST_CASE("the level of a CV with a new input is that input's operating point") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.5);
+  Named named;
+  named.effect.edit = &causes::unmodelled_input();
+  named.effect.place = {0, -1, 0};
+  bench.result.named.push_back(named);
+  name_levels(bench.problem, bench.result);
+  CHECK(bench.result.named.size() == 1);
+}
+
+VectorXd play(const VectorXd& u, double width) {
+  VectorXd position = u;
+  for (Index k = 1; k < u.size(); ++k)
+    position(k) = std::clamp(position(k - 1), u(k) - 0.5 * width, u(k) + 0.5 * width);
+  return position;
+}
+
+Effect deadband(double width) {
+  const Quantity& quantity = test::quantity_of(causes::deadband(), "width");
+  return {&causes::deadband(), {0, 0}, {{&quantity, width, 0.0, 0.5, 0.02, 1e-4, 4.0}}};
+}
+
+/// What the fit costs with the width held there, all else fitted.
+double cost_at(Bench& bench, double width) {
+  Effect held = deadband(width);
+  held.coordinates[0].prior_mean = width;
+  held.coordinates[0].prior_sd = 1e-7;
+  return bench.problem.fit({held}, 0, {0}, 3).cost;
+}
+
+// The truth is known to the test: 95 of 100 intervals should hold it. By what an interval is, the
+// misfit has risen by 3.84 (chi square) beyond its ends; they are looked for in steps of a half.
+TEST_CASE("the interval of a play holds the truth, and nothing beyond it is likely") {
+  int inside = 0, wider = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    const VectorXd u = 0.3 * test::autoregressive(test::normal(100 + seed, kRows), 0.9);
+    Bench bench(u, plant(play(u, 0.4)) + 0.1 * test::normal(200 + seed, kRows), {deadband(0.4)});
+    const double before = bench.result.fit.covariance(0, 0);
+    int told = 0;
+    widen_kinked(bench.problem, bench.result, [&told] { ++told; });
+    const double after = bench.result.fit.covariance(0, 0);
+    CHECK(told == 1);
+    CHECK(after >= before);
+    wider += after > before ? 1 : 0;
+    const double width = bench.result.fit.effects[0].coordinates[0].value;
+    const double reach = std::sqrt(3.84 * after);
+    if (std::abs(width - 0.4) < reach) ++inside;
+    const double least = cost_at(bench, width);
+    for (const double side : {-1.0, 1.0})
+      CHECK(cost_at(bench, width + side * 2.05 * reach) > least + 3.84);
+  }
+  CHECK(inside >= 17);
+  CHECK(wider >= 1);
+}
+
+TEST_CASE("what is smooth keeps the interval of its curvature") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  const Effect gain{&causes::gain(), {0, 0}, {{&kGainRatio, 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}}};
+  Bench bench(u, 1.2 * plant(u) + 0.1 * test::white(2, kRows), {gain});
+  const MatrixXd before = bench.result.fit.covariance;
+  widen_kinked(bench.problem, bench.result, [] {});
+  CHECK(bench.result.fit.covariance == before);
+}
+
+}  // namespace
+}  // namespace mpm

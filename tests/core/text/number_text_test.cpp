@@ -1,0 +1,29 @@
+#include "core/text/number_text.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+// All by hand.
+TEST_CASE("numbers read as people write them") {
+  CHECK(number_text(0.25) == "0.25");
+  CHECK(number_text(-0.0) == "0");
+  CHECK(number_text(1234.5) == "1234");
+  CHECK(number_text(812.0, 6) == "812");
+  CHECK(number_text(2.0e-9) == "2e-09");
+  CHECK(number_text(std::nan("")) == "-");
+}
+
+TEST_CASE("intervals and shares read as people write them") {
+  CHECK(interval_text(0.72, 0.78) == "0.72 to 0.78");
+  CHECK(interval_text(-4.0, 1.23456, 2) == "-4 to 1.2");
+  CHECK(percent_text(0.25) == "25 %");
+  CHECK(percent_text(0.004) == "0.4 %");
+  CHECK(percent_text(0.1234) == "12 %");
+  CHECK(percent_text(0.1234, 3) == "12.3 %");
+}
+
+}  // namespace
+}  // namespace mpm
