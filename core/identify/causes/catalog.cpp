@@ -6,9 +6,9 @@ namespace mpm::causes {
 
 const std::vector<const Cause*>& all() {
 #define MPM_ADDRESS(cause) &cause(),
-  static const std::vector<const Cause*> kAll = {MPM_CAUSES(MPM_ADDRESS)};
+  static const std::vector<const Cause*> list = {MPM_CAUSES(MPM_ADDRESS)};
 #undef MPM_ADDRESS
-  return kAll;
+  return list;
 }
 
 const Cause* find(std::string_view name, std::string_view kind) {

@@ -100,8 +100,8 @@ class DryFriction : public StateNonlinearity {
 }  // namespace
 
 const Cause& coulomb_friction() {
-  static const DryFriction kCause;
-  return kCause;
+  static const DryFriction cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -65,8 +65,8 @@ class CubicStiffness : public StateNonlinearity {
 }  // namespace
 
 const Cause& cubic_stiffness() {
-  static const CubicStiffness kCause;
-  return kCause;
+  static const CubicStiffness cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

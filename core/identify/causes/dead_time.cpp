@@ -52,8 +52,8 @@ std::vector<double> dead_time_starts(double removable_samples) {
 }
 
 const Cause& dead_time() {
-  static const DeadTime kCause;
-  return kCause;
+  static const DeadTime cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

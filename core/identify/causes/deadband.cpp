@@ -67,8 +67,8 @@ class PlayOfInput : public InputBlockCause {
 }  // namespace
 
 const Cause& deadband() {
-  static const PlayOfInput kCause;
-  return kCause;
+  static const PlayOfInput cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -71,8 +71,8 @@ class DriftDisturbance : public OutputDisturbance {
 }  // namespace
 
 const Cause& drift_disturbance() {
-  static const DriftDisturbance kCause;
-  return kCause;
+  static const DriftDisturbance cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

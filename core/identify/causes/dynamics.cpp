@@ -60,8 +60,8 @@ class Dynamics : public Cause {
 }  // namespace
 
 const Cause& dynamics() {
-  static const Dynamics kCause;
-  return kCause;
+  static const Dynamics cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

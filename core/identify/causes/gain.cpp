@@ -31,8 +31,8 @@ class Gain : public SingleChannelError {
 }  // namespace
 
 const Cause& gain() {
-  static const Gain kCause;
-  return kCause;
+  static const Gain cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -67,8 +67,8 @@ class InputPolynomial : public InputBlockCause {
 }  // namespace
 
 const Cause& input_polynomial() {
-  static const InputPolynomial kCause;
-  return kCause;
+  static const InputPolynomial cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -68,8 +68,8 @@ class InputSaturation : public InputBlockCause {
 }  // namespace
 
 const Cause& input_saturation() {
-  static const InputSaturation kCause;
-  return kCause;
+  static const InputSaturation cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

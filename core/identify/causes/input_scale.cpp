@@ -82,8 +82,8 @@ class InputScale : public Cause {
 }  // namespace
 
 const Cause& input_scale() {
-  static const InputScale kCause;
-  return kCause;
+  static const InputScale cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -55,8 +55,8 @@ class Noise : public Cause {
 }  // namespace
 
 const Cause& noise() {
-  static const Noise kCause;
-  return kCause;
+  static const Noise cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

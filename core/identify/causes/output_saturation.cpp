@@ -96,8 +96,8 @@ class OutputSaturation : public Cause {
 }  // namespace
 
 const Cause& output_saturation() {
-  static const OutputSaturation kCause;
-  return kCause;
+  static const OutputSaturation cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

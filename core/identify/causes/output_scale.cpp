@@ -52,8 +52,8 @@ class OutputScale : public Cause {
 }  // namespace
 
 const Cause& output_scale() {
-  static const OutputScale kCause;
-  return kCause;
+  static const OutputScale cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -199,8 +199,8 @@ class PeriodicDisturbance : public OutputDisturbance {
 }  // namespace
 
 const Cause& periodic_disturbance() {
-  static const PeriodicDisturbance kCause;
-  return kCause;
+  static const PeriodicDisturbance cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

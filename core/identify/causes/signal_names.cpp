@@ -24,9 +24,9 @@ const SignalName& SignalNames::cv(int index) const {
 }
 
 const SignalName& SignalNames::source(const Place& place) const {
-  static const SignalName kNone;
+  static const SignalName none;
   if (place.aux >= 0) return aux.at(static_cast<std::size_t>(place.aux));
-  return place.input >= 0 ? input(place.input) : kNone;
+  return place.input >= 0 ? input(place.input) : none;
 }
 
 std::string SignalNames::subject(const Subject& subject) const {

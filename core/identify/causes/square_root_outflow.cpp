@@ -125,8 +125,8 @@ class SquareRootOutflowCause : public StateNonlinearity {
 }  // namespace
 
 const Cause& square_root_outflow() {
-  static const SquareRootOutflowCause kCause;
-  return kCause;
+  static const SquareRootOutflowCause cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -90,8 +90,8 @@ class StepDisturbance : public OutputDisturbance {
 };
 
 const StepDisturbance& the_step() {
-  static const StepDisturbance kCause;
-  return kCause;
+  static const StepDisturbance cause;
+  return cause;
 }
 
 }  // namespace

@@ -177,8 +177,8 @@ std::vector<Effect> sticking_near(double width, int input, const std::vector<Eff
 }
 
 const Cause& stiction() {
-  static const StickingValve kCause;
-  return kCause;
+  static const StickingValve cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

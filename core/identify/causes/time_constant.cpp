@@ -35,8 +35,8 @@ class TimeConstant : public SingleChannelError {
 }  // namespace
 
 const Cause& time_constant() {
-  static const TimeConstant kCause;
-  return kCause;
+  static const TimeConstant cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -131,8 +131,8 @@ class UnmodelledInput : public Cause {
 }  // namespace
 
 const Cause& unmodelled_input() {
-  static const UnmodelledInput kCause;
-  return kCause;
+  static const UnmodelledInput cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -45,8 +45,8 @@ class Direction : public UnnamedBehaviour {
 }  // namespace
 
 const Cause& unnamed_direction() {
-  static const Direction kCause;
-  return kCause;
+  static const Direction cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

@@ -61,8 +61,8 @@ class Product : public UnnamedBehaviour {
 }  // namespace
 
 const Cause& unnamed_product() {
-  static const Product kCause;
-  return kCause;
+  static const Product cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

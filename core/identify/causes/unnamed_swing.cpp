@@ -65,8 +65,8 @@ class Swing : public UnnamedBehaviour {
 }  // namespace
 
 const Cause& unnamed_swing() {
-  static const Swing kCause;
-  return kCause;
+  static const Swing cause;
+  return cause;
 }
 
 }  // namespace mpm::causes

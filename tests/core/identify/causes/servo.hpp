@@ -10,7 +10,7 @@ namespace mpm::test {
 /// with true sticking where nothing overcomes the friction. Integrated in 500 steps a sample, apart
 /// from any simulator of ours.
 struct Servo {
-  double mass = 30.0, damping = 3.0, spring = 1.0;
+  double mass = 270.0, damping = 9.0, spring = 1.0;
   double friction = 0.0;  ///< input units
 
   [[nodiscard]] Eigen::VectorXd respond(const Eigen::VectorXd& input) const {
