@@ -12,19 +12,19 @@
 
 namespace mpm::report {
 
-/// Gathers a record's fields as JSON.
+/// Adds a record's fields to a JSON object.
 class JsonMaker {
  public:
+  using Json = nlohmann::ordered_json;
+
+  explicit JsonMaker(Json& json) : json_(json) {}
+
   // One row of a list of fields.
-  void operator()(const FieldKey& key, const auto& member) {
+  void operator()(const FieldKey& key, const auto& member) const {
     if (key.shown) json_[key.name] = value_of(member);
   }
 
-  [[nodiscard]] nlohmann::ordered_json take() { return std::move(json_); }
-
  private:
-  using Json = nlohmann::ordered_json;
-
   template <class T>
   static const T& value_of(const T& value) {
     return value;
@@ -43,16 +43,16 @@ class JsonMaker {
   /// First lag, values.
   static Json value_of(const std::tuple<const int&, const std::vector<double>&>& correlations);
 
-  Json json_;
+  Json& json_;
 };
 
 /// What the monitor says as JSON. The lines of journal and `mpm watch`, `mpm echo` and `mpm detect`
 /// all come from here, so that they are the same bytes.
 template <class Record>
 [[nodiscard]] nlohmann::ordered_json json_of(const Record& record) {
-  JsonMaker maker;
-  Record::fields(maker, record);
-  return maker.take();
+  nlohmann::ordered_json json;
+  Record::fields(JsonMaker(json), record);
+  return json;
 }
 
 }  // namespace mpm::report
