@@ -10,6 +10,7 @@
 
 #include "config/load_unit.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
@@ -33,11 +34,13 @@ struct DiagnoseOptions {
   std::string scenario;
   std::string time_zone;
   double fit_share = DiagnosisSettings().fit_share;
+  int max_findings = DiagnosisSettings().max_findings;
   std::uint64_t seed = DiagnosisSettings().seed;
   bool seed_given = false;
   bool json = false;
   bool quiet = false;
   bool fail_on_mismatch = false;
+  bool print_settings = false;
 };
 
 [[noreturn]] void refuse(const std::string& file, const std::string& message) {
@@ -117,6 +120,7 @@ bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
   DiagnosisSettings settings;
   settings.mv_count = run.unit.counts().mv;
   settings.fit_share = options.fit_share;
+  settings.max_findings = options.max_findings;
   settings.seed = options.seed;
   bool stopped = false;
   settings.progress = [&](double share) {
@@ -194,6 +198,15 @@ int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
   return options.fail_on_mismatch && !run.diagnosis.findings.empty() ? 1 : 0;
 }
 
+/// What a user may set, as it would be used, in YAML.
+int print_settings(const DiagnoseOptions& options) {
+  std::cout << "fit_share: " << number_text(options.validate.empty() ? options.fit_share : 1.0, 6)
+            << "  # first part of the data that is fitted, 0..1; all of it with --validate\n"
+            << "max_findings: " << options.max_findings << "  # causes named at most\n"
+            << "seed: " << options.seed << "  # of the resampling behind the intervals of gains\n";
+  return 0;
+}
+
 int diagnose_file(const DiagnoseOptions& options) {
   try {
     std::optional<config::UnitConfig> unit = load(options.config);
@@ -211,23 +224,23 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "diagnose",
       "Show what the simulation gets wrong, name the cause, extend the model, measure the gain");
-  command->add_option("--config", options->config, "unit file")->required();
-  command
-      ->add_option("--data", options->data,
-                   "data file: CSV in any historian layout, MCAP recording, or a folder of one "
-                   "that was split")
-      ->required();
+  command->add_option("--config", options->config, "unit file (required)");
+  command->add_option("--data", options->data,
+                      "data file (required): CSV in any historian layout, MCAP recording, or a "
+                      "folder of one that was split");
   command->add_option("--validate", options->validate,
                       "measure the gain on this data file and fit on all of --data");
-  command
-      ->add_option("--out", options->out,
-                   "folder for report.html, report.json and extended.yaml; made if need be")
-      ->required();
+  command->add_option("--out", options->out,
+                      "folder (required) for report.html, report.json and extended.yaml; made if "
+                      "need be");
   command
       ->add_option("--fit-share", options->fit_share,
                    "first part of the data that is fitted; the gain is measured on the rest")
       ->capture_default_str()
       ->check(CLI::Range(0.2, 0.9));
+  command->add_option("--max-findings", options->max_findings, "causes named at most")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 20));
   CLI::Option* seed =
       command
           ->add_option("--seed", options->seed,
@@ -242,10 +255,20 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
                     "exit with 1 if anything was found");
+  command->add_flag("--print-settings", options->print_settings,
+                    "print what may be set, as it would be used, and do nothing");
   command->footer(
       "Example:\n  mpm diagnose --config config/plants/shell3x3.yaml --data last_week.csv --out "
       "report");
   command->callback([options, seed, &exit_code] {
+    if (options->print_settings) {
+      exit_code = print_settings(*options);
+      return;
+    }
+    for (const auto& [name, value] : {std::pair{"--config", &options->config},
+                                      {"--data", &options->data},
+                                      {"--out", &options->out}})
+      if (value->empty()) throw CLI::RequiredError(name);
     options->seed_given = seed->count() > 0;
     exit_code = diagnose_file(*options);
   });

@@ -89,6 +89,17 @@ TEST_CASE("bad input is refused in one line and leaves nothing behind") {
   refused(bench.folder.file("bare.yaml"), bench.data(rows(400, 2.0)), "holds no model");
 }
 
+TEST_CASE("what may be set is printed as it would be used, and nothing is done") {
+  const TemporaryFolder folder;
+  CHECK(run({"mpm", "diagnose", "--print-settings", "--fit-share", "0.5", "--max-findings", "2"},
+            folder.file("out"), folder.file("err")) == 0);
+  const std::string text = read_file(folder.file("out"));
+  CHECK(text.find("fit_share: 0.5 ") == 0);
+  CHECK(text.find("max_findings: 2 ") != std::string::npos);
+  CHECK(text.find("seed: 1 ") != std::string::npos);
+  CHECK(read_file(folder.file("err")).empty());
+}
+
 TEST_CASE("a file where the folder should be is refused and kept") {
   const Bench bench;
   write_file(bench.out, "mine");
