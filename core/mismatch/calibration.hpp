@@ -52,7 +52,7 @@ namespace row_weights {
 inline constexpr double kNoiseRows = 300.0;
 inline constexpr double kClip = 3.0;
 /// The same where a change is looked for: after one many rows surprise, and they are what tells of
-/// it. Chosen (tests/core/change_scan_test.cpp).
+/// it. Chosen (tests/core/mismatch/change_scan_test.cpp).
 inline constexpr double kLenientClip = 6.0;
 /// Rows per column that give the first estimate of the noise level. Chosen: half of them are left
 /// for it.
@@ -135,7 +135,8 @@ inline constexpr double kIndependentShare = 1e-6;
 inline constexpr double kFreeShare = 1e-12;
 /// An input whose own movement (residual sum of squares given the others) is below this fraction of
 /// its total carries rounding noise only: relative s.d. 1e-9, well above eps and well below any
-/// collinearity that double precision can still resolve (tests/core/lagged_correlation_test.cpp).
+/// collinearity that double precision can still resolve
+/// (tests/core/mismatch/lagged_correlation_test.cpp).
 inline constexpr double kOwnMovementSquare = 1e-18;
 }  // namespace rounding
 

@@ -40,8 +40,8 @@ inline constexpr double kPerLogTolerance = 2.0;
 /// Tanks that are integrated within the sample.
 namespace tanks {
 /// Steps per fastest time constant. Errors of a level: 1e-6, and up to 2e-4 for a while after a
-/// tank has run empty or begun to overflow (tests/core/tank_channel_test.cpp). A tank much faster
-/// than the sample time follows its inflow: L-stability makes finer steps needless there.
+/// tank has run empty or begun to overflow (tests/core/model/tank_channel_test.cpp). A tank much
+/// faster than the sample time follows its inflow: L-stability makes finer steps needless there.
 inline constexpr double kStepsPerTimeConstant = 20.0;
 inline constexpr double kMostSteps = 200.0;
 /// Below this level (of the operating point's) the root bends sharply and a tank that fills again
