@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "config/load_unit.hpp"
-#include "tests/idl/test_domain.hpp"
 #include "tests/daemon/live/live_frames.hpp"
+#include "tests/idl/test_domain.hpp"
 
 namespace mpm::live {
 namespace {

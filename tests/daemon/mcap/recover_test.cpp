@@ -6,8 +6,8 @@
 #include "daemon/mcap/reader.hpp"
 #include "daemon/mcap/recover.hpp"
 #include "daemon/mcap/writer.hpp"
-#include "tests/fuzz/exercise_mcap.hpp"
 #include "tests/daemon/mcap/files.hpp"
+#include "tests/fuzz/exercise_mcap.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {
