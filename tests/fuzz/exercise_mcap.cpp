@@ -1,5 +1,6 @@
 #include "tests/fuzz/exercise_mcap.hpp"
 
+#include <filesystem>
 #include <stdexcept>
 
 #include "config/finding.hpp"
@@ -60,6 +61,7 @@ void exercise_mcap(const std::string& path, const std::string& scratch) {
     mcap::Reader mended(scratch);
     if (drain(mended) != report.messages) throw std::logic_error("the mended file is not whole");
   });
+  std::filesystem::remove(scratch);
 }
 
 }  // namespace mpm::test
