@@ -100,15 +100,15 @@ TEST_CASE("an error of another kind matters where no allowed combination comes n
   const MaterialityLimits limits{0.05, 0.10, 0.5};
   const Eigen::VectorXd x = draw(52);
   const Eigen::MatrixXd basis = d.leftCols(3);
-  const Eigen::VectorXd outside = x - basis * basis.colPivHouseholderQr().solve(x);
+  const Eigen::VectorXd outside = 60.0 * (x - basis * basis.colPivHouseholderQr().solve(x));
   ChannelEvidence large, small;
   const std::uint64_t before = test::allocation_count();
-  materiality.judge(60.0 * outside, d, space, limits, noise, large);
+  materiality.judge(outside, d, space, limits, noise, large);
   CHECK(test::allocation_count() == before);
   CHECK_FALSE(large.usual);
   CHECK_FALSE(large.harmless);
   CHECK(large.p_value_material < 1e-6);
-  materiality.judge(0.01 * outside, d, space, limits, noise, small);
+  materiality.judge(1e-4 * outside, d, space, limits, noise, small);
   CHECK(small.usual);
   CHECK(small.p_value_material == 1.0);
 }
