@@ -4,7 +4,7 @@
 
 /// The numbers of this room that decide what is said of a channel. Where each comes from:
 ///
-///   fitted   on seeds from 100001 on, which score nothing; the command beside it fits it again;
+///   fitted   on seeds from 100001 on, which score nothing;
 ///   derived  from the paper or formula that is named;
 ///   chosen   by hand on prototypes with other generators and seeds. `./run study` shows what the
 ///            choice gives (docs/validation.md), the named test what it is for.
@@ -20,7 +20,7 @@ inline constexpr double kDeadTimeSamples = 0.5;  ///< half the resolution of a c
 
 /// In a regression on its own past F is too large on few rows, by 1 + factor columns / freedom
 /// (Bartlett 1937 on such factors): the residuals' lags come out too fast, and what moves slowly
-/// seems too certain. Fitted on Shell, seeds 100001-101000: ./run calibrate --only few_rows
+/// seems too certain. Fitted on Shell, seeds from 100001 on (docs/validation.md)
 namespace few_rows {
 inline constexpr double kDirected = 1.35;  ///< of the test for the usual errors, 1
 inline constexpr double kBlock = 0.26;     ///< of the test of the whole block, 1
@@ -28,7 +28,7 @@ inline constexpr double kBlock = 0.26;     ///< of the test of the whole block, 
 
 /// Rows that a memory must hold before anything is said. With four per column p < 1e-4 still comes
 /// seven times too often, with five as often as it should; heavy tails (t with 2.5 degrees of
-/// freedom) take up to 25. Fitted: ./run calibrate --only rows_needed
+/// freedom) take up to 25. Fitted likewise (docs/validation.md)
 namespace rows_needed {
 inline constexpr double kPerColumn = 5.0;
 inline constexpr double kMorePerColumn = 20.0;  ///< where tails are as heavy as below
@@ -36,7 +36,7 @@ inline constexpr double kMorePerColumn = 20.0;  ///< where tails are as heavy as
 
 /// Shares of clipped rows (beyond row_weights::kClip) from which on tails count as somewhat and as
 /// very heavy; normal noise has 0.0027. With heavy tails and 528 rows p < 0.01 came in 10 % of
-/// healthy channels. Fitted: ./run calibrate --only heavy_tails
+/// healthy channels. Fitted likewise (docs/validation.md)
 namespace heavy_tails {
 inline constexpr double kFromShare = 0.008;
 inline constexpr double kFullShare = 0.02;
