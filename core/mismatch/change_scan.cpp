@@ -36,132 +36,136 @@ ChangeScan::ChangeScan(const RegressionShape& shape)
 }
 
 std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, int cv) {
-  const int span = detector.span(cv);
+  const Rows rows{detector.history(), detector.regression(cv), cv};
+  const int span = rows.regression.span();
   if (span < 2 * kMoments) return std::nullopt;
   moments_.clear();  // ages at which a part ends, newest first
   for (int m = 1; m < kMoments; ++m) moments_.push_back(m * span / kMoments);
-  pass(detector, cv, true, true, after_with_);
-  pass(detector, cv, true, false, after_without_);
-  pass(detector, cv, false, true, before_with_);
-  const double constant = whole_.residual_square(0);
-  const double freedom = detector.memory(cv).rows - shape_.columns();
-  pass(detector, cv, false, false, before_without_);
-  if (!(constant > 0.0) || freedom <= 0.0) return std::nullopt;
+  pass(rows, true, true, after_with_);
+  pass(rows, true, false, after_without_);
+  pass(rows, false, true, before_with_);
+  pass(rows, false, false, before_without_);
+  constant_ = whole_.residual_square(0);
+  const double freedom = rows.regression.memory(0).rows - shape_.columns();
+  if (!(constant_ > 0.0) || freedom <= 0.0) return std::nullopt;
+  per_square_ = freedom / constant_;
 
   const double inputs = shape_.inputs * shape_.block();
   const double chance =
       inputs + calibration::change_scan::kChanceDeviations * std::sqrt(2.0 * inputs);
-  const double per_square = freedom / constant;
-  // The gain, where it can exceed `least` at all: joining the parts only leaves more.
-  const auto gain_of = [&](const Part& after, const Part& before, double least) {
-    // Where one side is noisier than all rows together, so is what it gains by chance.
-    const double noise =
-        std::max({1.0, variance_of(after) * per_square, variance_of(before) * per_square});
-    const double scale = per_square / noise;
-    if ((constant - after.square - before.square) * scale <= least) return least;
-    return (constant - joined(after, before)) * scale;
-  };
-  ChangePoint best{ChangeKind::kBegan, 0, kMargin};
-  ChangePoint end{ChangeKind::kEnded, 0, kMargin};
-  for (std::size_t m = 0; m < moments_.size(); ++m) {
-    const double began = gain_of(after_with_[m], before_without_[m], best.gain);
-    if (began > best.gain) best = {ChangeKind::kBegan, moments_[m], began};
-    const double ended = gain_of(after_without_[m], before_with_[m], end.gain);
-    if (ended > end.gain) end = {ChangeKind::kEnded, moments_[m], ended};
-  }
-  if (end.gain > best.gain) best = end;
-  double bar = best.gain + chance;
-  for (std::size_t m = 0; m < moments_.size(); ++m) {
-    if (moments_[m] < calibration::change_scan::kRowsPerColumn * shape_.columns()) continue;
-    const double other = gain_of(after_with_[m], before_with_[m], bar);
-    if (other <= bar) continue;
-    best = {ChangeKind::kOther, moments_[m], other};
-    bar = other;
-  }
+  const int fewest = calibration::change_scan::kRowsPerColumn * shape_.columns();
+  const ChangePoint began = strongest(ChangeKind::kBegan, after_with_, before_without_, kMargin, 0);
+  const ChangePoint ended = strongest(ChangeKind::kEnded, after_without_, before_with_, kMargin, 0);
+  ChangePoint best = ended.gain > began.gain ? ended : began;
+  const ChangePoint other =
+      strongest(ChangeKind::kOther, after_with_, before_with_, best.gain + chance, fewest);
+  if (other.samples > 0) best = other;
   if (best.samples == 0) return std::nullopt;
-  if (best.kind != ChangeKind::kEnded) name_input(detector, cv, best);
+  if (best.kind != ChangeKind::kEnded) name_input(rows, best);
   // The rows between the change and the nearest moment looked at fit neither side of an end; twice
   // as many parameters hide them, and then find nothing in all that came since.
-  const bool over = best.kind == ChangeKind::kOther && end.samples > 0 &&
+  const bool over = best.kind == ChangeKind::kOther && ended.samples > 0 &&
                     best.p_value > calibration::change_scan::kNothingPValue;
-  return over ? end : best;
+  return over ? ended : best;
+}
+
+ChangePoint ChangeScan::strongest(ChangeKind kind, const std::vector<Part>& after,
+                                  const std::vector<Part>& before, double least, int fewest) {
+  ChangePoint best{kind, 0, least};
+  for (std::size_t m = 0; m < moments_.size(); ++m) {
+    if (moments_[m] < fewest) continue;
+    const double gain = gain_of(after[m], before[m], best.gain);
+    if (gain > best.gain) best = {kind, moments_[m], gain};
+  }
+  return best;
+}
+
+// In residual variances, where it can exceed `least` at all: joining the parts only leaves more.
+double ChangeScan::gain_of(const Part& after, const Part& before, double least) {
+  // Where one side is noisier than all rows together, so is what it gains by chance.
+  const double noise =
+      std::max({1.0, variance_of(after) * per_square_, variance_of(before) * per_square_});
+  const double scale = per_square_ / noise;
+  if ((constant_ - after.square - before.square) * scale <= least) return least;
+  return (constant_ - joined(after, before)) * scale;
 }
 
 // The input that alone explains the rows since the change best, and its F on these rows alone: with
-// rows clipped as leniently as above and as strictly as in the detector, the larger p. A burst of
-// noise passes the first, hardly both.
-void ChangeScan::name_input(const MismatchDetector& detector, int cv, ChangePoint& change) {
-  const InputFit lenient = best_input(detector, cv, change.samples, false);
-  const InputFit strict = best_input(detector, cv, change.samples, true);
+// rows clipped as leniently as above and as strictly as in the test, the larger p. A burst of noise
+// passes the first, hardly both.
+void ChangeScan::name_input(const Rows& rows, ChangePoint& change) {
+  const InputFit lenient = best_input(rows, change.samples, false);
+  const InputFit strict = best_input(rows, change.samples, true);
   change.input = lenient.input;
   change.p_value = std::max(lenient.p_value, strict.p_value);
 }
 
-ChangeScan::InputFit ChangeScan::best_input(const MismatchDetector& detector, int cv, int samples,
-                                            bool strict) {
-  const int block = shape_.block();
-  const RegressionHistory& history = detector.history();
+ChangeScan::InputFit ChangeScan::best_input(const Rows& rows, int samples, bool strict) {
+  const int count = fit_input(rows, -1, samples, strict, lead_in_);
+  const double nothing = lead_in_.residual_square(0);
   double least = std::numeric_limits<double>::infinity();
-  double nothing = 0.0;
-  int rows = 0;
   InputFit best;
-  for (int input = -1; input < shape_.inputs; ++input) {
-    GivensQr& factor = input < 0 ? lead_in_ : one_input_;
-    factor.clear();
-    rows = 0;
-    for (int age = samples - 1; age >= 0; --age) {
-      const double weight =
-          strict ? detector.row_weight(cv, age) : detector.lenient_weight(cv, age);
-      if (!(weight > 0.0)) continue;
-      double* row = next_row(factor);
-      history.fill_lead_in(age, row);
-      if (input >= 0) {
-        history.fill_inputs(age, inputs_.data());
-        std::copy_n(inputs_.data() + input * block, block, row + shape_.lead_in());
-      }
-      row[factor.columns()] = history.residual(cv, age);
-      for (int c = 0; c <= factor.columns(); ++c) row[c] *= weight;
-      ++rows;
-    }
-    flush(factor);
-    if (input < 0) nothing = factor.residual_square(0);
-    if (input < 0 || factor.residual_square(0) >= least) continue;
-    least = factor.residual_square(0);
+  for (int input = 0; input < shape_.inputs; ++input) {
+    fit_input(rows, input, samples, strict, one_input_);
+    if (one_input_.residual_square(0) >= least) continue;
+    least = one_input_.residual_square(0);
     best.input = input;
   }
-  const int freedom = rows - shape_.lead_in() - block;
+  const int block = shape_.block();
+  const int freedom = count - shape_.lead_in() - block;
   if (freedom < calibration::change_scan::kFewestFreedom || !(least > 0.0)) return best;
   const double statistic = (nothing - least) / block / (least / freedom);
   best.p_value = std::min(1.0, shape_.inputs * f_upper_tail(statistic, block, freedom));
   return best;
 }
 
+// The last samples' rows on the lead-in and, where `input` >= 0, its block; how many they are.
+int ChangeScan::fit_input(const Rows& rows, int input, int samples, bool strict, GivensQr& factor) {
+  factor.clear();
+  int count = 0;
+  for (int age = samples - 1; age >= 0; --age) {
+    const double weight =
+        strict ? rows.regression.row_weight(age) : rows.regression.lenient_weight(age);
+    if (!(weight > 0.0)) continue;
+    double* row = next_row(factor);
+    rows.history.fill_lead_in(age, row);
+    if (input >= 0) {
+      rows.history.fill_inputs(age, inputs_.data());
+      std::copy_n(inputs_.data() + input * shape_.block(), shape_.block(), row + shape_.lead_in());
+    }
+    row[factor.columns()] = rows.history.residual(rows.cv, age);
+    for (int c = 0; c <= factor.columns(); ++c) row[c] *= weight;
+    ++count;
+  }
+  flush(factor);
+  return count;
+}
+
 // parts[m] holds the rows younger than moments_[m] (newest first) or at least as old.
-void ChangeScan::pass(const MismatchDetector& detector, int cv, bool newest_first, bool with_inputs,
+void ChangeScan::pass(const Rows& rows, bool newest_first, bool with_inputs,
                       std::vector<Part>& parts) {
   GivensQr& factor = with_inputs ? whole_ : lead_in_;
   factor.clear();
-  const RegressionHistory& history = detector.history();
   const int first = with_inputs ? shape_.inputs * shape_.block() : 0;
-  const int span = detector.span(cv);
-  int rows = 0;
+  const int span = rows.regression.span();
+  int count = 0;
   const auto store_at = [&](int age) {
     const auto found = std::find(moments_.begin(), moments_.end(), age);
     if (found == moments_.end()) return;
     flush(factor);
-    store(factor, first, rows, parts[static_cast<std::size_t>(found - moments_.begin())]);
+    store(factor, first, count, parts[static_cast<std::size_t>(found - moments_.begin())]);
   };
   for (int step = 0; step < span; ++step) {
     const int age = newest_first ? step : span - 1 - step;
     if (newest_first) store_at(age);
-    const double weight = detector.lenient_weight(cv, age);
+    const double weight = rows.regression.lenient_weight(age);
     if (weight > 0.0) {
       double* row = next_row(factor);
-      if (with_inputs) history.fill_inputs(age, row);
-      history.fill_lead_in(age, row + first);
-      row[first + shape_.lead_in()] = history.residual(cv, age);
+      if (with_inputs) rows.history.fill_inputs(age, row);
+      rows.history.fill_lead_in(age, row + first);
+      row[first + shape_.lead_in()] = rows.history.residual(rows.cv, age);
       for (int c = 0; c <= first + shape_.lead_in(); ++c) row[c] *= weight;
-      ++rows;
+      ++count;
     }
     if (!newest_first) store_at(age);
   }

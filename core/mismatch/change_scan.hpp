@@ -37,6 +37,12 @@ class ChangeScan {
   [[nodiscard]] std::optional<ChangePoint> scan(const MismatchDetector& detector, int cv);
 
  private:
+  /// One CV's rows.
+  struct Rows {
+    const RegressionHistory& history;
+    const ResidualRegression& regression;
+    int cv;
+  };
   /// What a part of the rows leaves once the inputs' blocks are eliminated (or, where the inputs
   /// take no part, were never there): the triangle of the lead-in columns and the residual square.
   struct Part {
@@ -50,17 +56,22 @@ class ChangeScan {
                                                                     : 0.0;
   }
 
-  void pass(const MismatchDetector& detector, int cv, bool newest_first, bool with_inputs,
-            std::vector<Part>& parts);
+  void pass(const Rows& rows, bool newest_first, bool with_inputs, std::vector<Part>& parts);
+  void store(const GivensQr& factor, int first, int rows, Part& part) const;
+  /// The moment, at least `fewest` samples ago, at which the two parts beat no change by most, and
+  /// by more than `least`; 0 samples if none does.
+  [[nodiscard]] ChangePoint strongest(ChangeKind kind, const std::vector<Part>& after,
+                                      const std::vector<Part>& before, double least, int fewest);
+  [[nodiscard]] double gain_of(const Part& after, const Part& before, double least);
+  [[nodiscard]] double joined(const Part& a, const Part& b);
+
   struct InputFit {
     int input = -1;
     double p_value = 1.0;
   };
-  void name_input(const MismatchDetector& detector, int cv, ChangePoint& change);
-  [[nodiscard]] InputFit best_input(const MismatchDetector& detector, int cv, int samples,
-                                    bool strict);
-  void store(const GivensQr& factor, int first, int rows, Part& part) const;
-  [[nodiscard]] double joined(const Part& a, const Part& b);
+  void name_input(const Rows& rows, ChangePoint& change);
+  [[nodiscard]] InputFit best_input(const Rows& rows, int samples, bool strict);
+  int fit_input(const Rows& rows, int input, int samples, bool strict, GivensQr& factor);
 
   /// The next free row of the batch, and taking it; `flush` gives the factor all that wait.
   [[nodiscard]] double* next_row(GivensQr& factor);
@@ -70,6 +81,8 @@ class ChangeScan {
   RowBatch batch_;
   int waiting_ = 0;
   std::vector<int> moments_;  // ages
+  double constant_ = 0.0;     // residual square of no change
+  double per_square_ = 0.0;   // 1 / its residual variance
   GivensQr whole_;            // [inputs | lead-in]
   GivensQr lead_in_;
   GivensQr one_input_;  // [lead-in | one input]

@@ -76,7 +76,7 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
     const bool changed = conditions_[i].update(condition_p(evidence, before), limits);
     risen = risen || (changed && before == AlarmState::kCleared);
   }
-  const bool urgent = detector.surprise(cv) > change_search::kUrgentSurprise;
+  const bool urgent = detector.regression(cv).noise().surprise() > change_search::kUrgentSurprise;
   const bool due = evaluated && since_scan_ >= (urgent ? change_search::kBetweenUrgent
                                                        : change_search::kBetween);
   const bool suspicious =
@@ -118,7 +118,7 @@ void CvAlarms::settle(int cv, const MismatchDetector& detector, const Condition:
 }
 
 bool CvAlarms::something_wrong(int cv, bool quiet, const MismatchDetector& detector) const {
-  if (detector.surprise(cv) > change_search::kSuspiciousSurprise) return true;
+  if (detector.regression(cv).noise().surprise() > change_search::kSuspiciousSurprise) return true;
   if (!quiet) return false;
   for (std::size_t i = 0; i < conditions_.size(); ++i)
     if (combined(cv, static_cast<int>(i), detector).any < change_search::kSuspiciousPValue)

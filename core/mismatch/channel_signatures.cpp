@@ -1,0 +1,43 @@
+#include "core/mismatch/channel_signatures.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace mpm {
+namespace {
+
+Eigen::VectorXd lag_with_slowest_tail(const BlockBasis& basis) {
+  Eigen::VectorXd pulse = Eigen::VectorXd::Zero(basis.length());
+  const double pole = std::exp(-1.0 / basis.slowest());
+  for (int l = 1; l < basis.length(); ++l) pulse(l) = (1.0 - pole) * std::pow(pole, l - 1);
+  return pulse;
+}
+
+}  // namespace
+
+std::vector<ChannelSignatures> channel_signatures(const RegressionShape& shape,
+                                                  const LinearModel& model) {
+  const BlockBasis basis(shape.fir_lags, shape.tail_poles);
+  const Eigen::MatrixXd gains = model.steady_gain();
+  const Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> integrating = model.integrating();
+  std::vector<ChannelSignatures> channels;
+  for (int i = 0; i < shape.inputs; ++i) {
+    for (int j = 0; j < shape.cvs; ++j) {
+      ChannelSignatures channel;
+      const Eigen::VectorXd pulse = model.impulse_response(j, i, basis.length());
+      if (pulse.cwiseAbs().maxCoeff() > 0.0) {
+        channel.gain = gains(j, i) * (integrating(j, i) ? basis.slowest() : 1.0);
+        for (const Eigen::VectorXd& error : usual_errors(pulse))
+          channel.errors.emplace_back(basis, error, shape.residual_order);
+        for (const int shift : {1, -1})
+          channel.shifts.emplace_back(basis, shifted(pulse, shift) - pulse, shape.residual_order);
+      } else {
+        channel.errors.emplace_back(basis, lag_with_slowest_tail(basis), shape.residual_order);
+      }
+      channels.push_back(std::move(channel));
+    }
+  }
+  return channels;
+}
+
+}  // namespace mpm

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/mismatch/channel_evidence.hpp"
+#include "core/mismatch/error_reduction.hpp"
+#include "core/mismatch/estimate_noise.hpp"
+#include "core/mismatch/usual_error_space.hpp"
+
+namespace mpm {
+
+/// Whether a channel's error matters. Where errors of gain, time constant and dead time explain
+/// what is seen, each is estimated and tested against its limit (one-sided t, three times). Where
+/// they do not, both tests of the channel are made again of the hypothesis that the error is some
+/// combination of these three within their limits: the distance from the estimate to the nearest
+/// such error takes the place of the distance to none. No allocation after construction.
+class Materiality {
+ public:
+  /// `block`: coefficients of a channel.
+  explicit Materiality(int block);
+
+  /// `estimate` and `directions` (block x error_column::kCount): whitened; `usual`: the space that
+  /// the directed test looks at.
+  void judge(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
+             const UsualErrorSpace& usual, const MaterialityLimits& limits,
+             const EstimateNoise& noise, ChannelEvidence& evidence);
+
+ private:
+  /// Estimates the three errors; what they leave, in squares.
+  [[nodiscard]] double fit(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
+                           const EstimateNoise& noise, ChannelEvidence& evidence);
+  static void judge_usual(const MaterialityLimits& limits, const EstimateNoise& noise,
+                          ChannelEvidence& evidence);
+  void judge_unusual(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
+                     const UsualErrorSpace& usual, const MaterialityLimits& limits,
+                     const EstimateNoise& noise, ChannelEvidence& evidence);
+
+  ErrorReduction reduction_;
+  // The directions and the estimate as the directed test sees them.
+  Eigen::MatrixXd usual_directions_;
+  Eigen::VectorXd usual_estimate_;
+};
+
+}  // namespace mpm

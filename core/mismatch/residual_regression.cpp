@@ -1,0 +1,188 @@
+#include "core/mismatch/residual_regression.hpp"
+
+#include <stdexcept>
+
+namespace mpm {
+namespace {
+
+// Weight of a row that waits for its own.
+constexpr double kWaiting = -1.0;
+
+}  // namespace
+
+RowWorkspace::RowWorkspace(int columns, int capacity)
+    : rows(columns + 1, capacity),
+      weighed(columns + 1, capacity),
+      previews(static_cast<std::size_t>(capacity)) {
+  ages.reserve(previews.size());
+}
+
+ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
+                                       const std::vector<MemoryLength>& lengths, int remembered)
+    : cv_(cv),
+      columns_(shape.columns()),
+      remembered_(remembered),
+      weights_(remembered),
+      scales_(remembered),
+      slides_(lengths.size(), 0) {
+  if (lengths.empty()) throw std::invalid_argument("the mismatch detector needs a memory");
+  for (const MemoryLength& length : lengths) {
+    if (!(length.lambda > 0.0 && length.lambda <= 1.0) || length.window < 0 ||
+        length.window + length.window / calibration::sliding_window::kParts > remembered)
+      throw std::invalid_argument("impossible memory of the mismatch detector");
+    memories_.emplace_back(columns_, length);
+  }
+}
+
+void ResidualRegression::add_sample(const RegressionHistory& history, RowWorkspace& work) {
+  weights_.push(history.usable(cv_) ? kWaiting : 0.0);
+  scales_.push(noise_.scale());
+  span_ = std::min(span_ + 1, remembered_);
+  if (++waiting_ >= patience(work)) fold(history, work);
+  for (std::size_t m = 0; m < memories_.size(); ++m) slide(m, history, work);
+}
+
+void ResidualRegression::add_gap(std::int64_t missing) {
+  for (std::int64_t k = 0; k < std::min(missing, static_cast<std::int64_t>(remembered_)); ++k) {
+    weights_.push(0.0);
+    scales_.push(noise_.scale());
+    span_ = std::min(span_ + 1, remembered_);
+  }
+}
+
+int ResidualRegression::patience(const RowWorkspace& work) const {
+  const int together = calibration::row_weights::kTogetherRowsPerColumn * columns_;
+  return memories_.front().rows >= together ? work.rows.capacity() : 1;
+}
+
+void ResidualRegression::fold(const RegressionHistory& history, RowWorkspace& work) {
+  if (waiting_ > 0) take(std::min(waiting_, span_) - 1, 0, history, work);
+  waiting_ = 0;
+}
+
+// The rows that wait of these ages (oldest >= newest), as many as fit into a batch.
+void ResidualRegression::take(int oldest, int newest, const RegressionHistory& history,
+                              RowWorkspace& work) {
+  gather(oldest, newest, history, work);
+  if (noise_.known()) preview(work);
+  weigh(oldest, newest, work);
+  const int count = static_cast<int>(work.ages.size());
+  for (RegressionMemory& memory : memories_) {
+    for (int k = 0; k < count; ++k)
+      copy_weighed(k, row_weight(work.ages[static_cast<std::size_t>(k)]), work);
+    memory.take(work.weighed, count);
+  }
+  if (!noise_.known()) begin_noise();
+}
+
+void ResidualRegression::gather(int oldest, int newest, const RegressionHistory& history,
+                                RowWorkspace& work) const {
+  work.ages.clear();
+  for (int age = oldest; age >= newest; --age) {
+    if (row_weight(age) != kWaiting) continue;
+    double* row = work.rows.row(static_cast<int>(work.ages.size()));
+    history.fill(age, row);
+    row[columns_] = history.residual(cv_, age);
+    work.ages.push_back(age);
+  }
+}
+
+// In units of the noise level: rounding noise is told by the size of what was taken.
+void ResidualRegression::preview(RowWorkspace& work) const {
+  const int count = static_cast<int>(work.ages.size());
+  const double scale = noise_.scale();
+  for (int k = 0; k < count; ++k) copy_weighed(k, 1.0 / scale, work);
+  memories_.front().factor.preview_batch(work.weighed, count, work.previews.data());
+  for (int k = 0; k < count; ++k) {
+    GivensQr::Preview& preview = work.previews[static_cast<std::size_t>(k)];
+    preview.error *= scale;
+    preview.leverage *= scale * scale;
+  }
+}
+
+void ResidualRegression::weigh(int oldest, int newest, const RowWorkspace& work) {
+  const std::size_t count = work.ages.size();
+  std::size_t k = 0;
+  for (int age = oldest; age >= newest; --age) {
+    scales_.set(age, noise_.scale());
+    if (k == count || work.ages[k] != age) continue;
+    weights_.set(age, noise_.known() ? noise_.weigh(work.previews[k], count > 1) : 1.0);
+    ++k;
+  }
+  if (!noise_.known() || count == 0) return;
+  for (RegressionMemory& memory : memories_) memory.heavy_tails = noise_.heavy_tails();
+}
+
+void ResidualRegression::copy_weighed(int k, double weight, RowWorkspace& work) const {
+  const double* from = work.rows.row(k);
+  double* to = work.weighed.row(k);
+  for (int c = 0; c <= columns_; ++c) to[c] = from[c] * weight;
+}
+
+// The first rows come as they are; once they are twice as many as the columns they give the first
+// estimate of the noise level, by which they are then divided like all that follow.
+void ResidualRegression::begin_noise() {
+  const RegressionMemory& first = memories_.front();
+  if (first.rows < calibration::row_weights::kFirstRowsPerColumn * columns_) return;
+  const double freedom = first.freedom();
+  const double mean_square = first.factor.residual_square(0) / first.weight_sum *
+                             (freedom + columns_) / std::max(freedom, 1.0);
+  if (!(mean_square > 0.0)) return;
+  noise_.begin(mean_square, freedom);
+  const double weight = 1.0 / noise_.scale();
+  for (RegressionMemory& memory : memories_) memory.factor.scale(weight);
+  for (int age = 0; age < span_; ++age) {
+    weights_.set(age, row_weight(age) > 0.0 ? weight : 0.0);
+    scales_.set(age, noise_.scale());
+  }
+}
+
+// The window is rebuilt now and then: never a row is taken out of a factor, which would lose digits
+// after an outlier.
+void ResidualRegression::slide(std::size_t index, const RegressionHistory& history,
+                               RowWorkspace& work) {
+  const int window = memories_[index].length.window;
+  if (window == 0 || span_ <= window) return;
+  if (++slides_[index] < window / calibration::sliding_window::kParts) return;
+  slides_[index] = 0;
+  fold(history, work);
+  refill(memories_[index], window, history, work);
+}
+
+// From the rows as they were weighed.
+void ResidualRegression::refill(RegressionMemory& memory, int samples,
+                                const RegressionHistory& history, RowWorkspace& work) const {
+  memory.clear();
+  int count = 0;
+  for (int age = samples - 1; age >= 0; --age) {
+    const double weight = row_weight(age);
+    if (weight > 0.0) {
+      double* row = work.weighed.row(count++);
+      history.fill(age, row);
+      row[columns_] = history.residual(cv_, age);
+      for (int c = 0; c <= columns_; ++c) row[c] *= weight;
+    }
+    if (count < work.weighed.capacity() && age > 0) continue;
+    memory.take(work.weighed, count);
+    count = 0;
+  }
+}
+
+void ResidualRegression::start_afresh(int samples, const RegressionHistory& history,
+                                      RowWorkspace& work) {
+  fold(history, work);
+  span_ = std::min(samples, span_);
+  for (RegressionMemory& memory : memories_) memory.clear();
+  std::fill(slides_.begin(), slides_.end(), 0);
+  if (span_ == 0) return;
+  noise_.restart(scales_.window()[span_ - 1]);
+  for (int age = span_ - 1; age >= 0; --age)
+    if (row_weight(age) > 0.0) weights_.set(age, kWaiting);
+  for (int oldest = span_ - 1; oldest >= 0;) {
+    const int newest = std::max(oldest - patience(work) + 1, 0);
+    take(oldest, newest, history, work);
+    oldest = newest - 1;
+  }
+}
+
+}  // namespace mpm

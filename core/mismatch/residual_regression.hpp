@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/mismatch/calibration.hpp"
+#include "core/mismatch/noise_level.hpp"
+#include "core/mismatch/regression_history.hpp"
+#include "core/mismatch/regression_memory.hpp"
+#include "core/regression/row_batch.hpp"
+
+namespace mpm {
+
+/// Room for rows that are taken together; the CVs share one.
+struct RowWorkspace {
+  /// `capacity`: rows (>= 1).
+  RowWorkspace(int columns, int capacity);
+
+  RowBatch rows;     ///< as they are
+  RowBatch weighed;  ///< consumed by the factors
+  std::vector<int> ages;
+  std::vector<GivensQr::Preview> previews;
+};
+
+/// One CV's residual, regressed on the rows of `RegressionHistory` over several memories at once.
+/// Every row is weighed by its own prediction error (`NoiseLevel`), that of the first memory, and
+/// taken into the factor of each memory.
+///
+/// Once there are rows enough, new ones wait for each other and are taken together (`fold`), which
+/// loads a factor once for all of them. The prediction that weighs a row is that of the rows before
+/// the first one that waits with it.
+class ResidualRegression {
+ public:
+  /// `lengths`: the first one is the longest. `remembered`: samples from which it can start afresh.
+  ResidualRegression(const RegressionShape& shape, int cv, const std::vector<MemoryLength>& lengths,
+                     int remembered);
+
+  /// After the history took a sample.
+  void add_sample(const RegressionHistory& history, RowWorkspace& work);
+  /// Before the history skips `missing` samples, folded.
+  void add_gap(std::int64_t missing);
+  /// Takes the rows that wait; before, nothing else that is asked here knows of them.
+  void fold(const RegressionHistory& history, RowWorkspace& work);
+  /// Forgets what is older than the last `samples` samples (>= 0). Rows are weighed anew: what was
+  /// surprising under what is now forgotten may be usual after it.
+  void start_afresh(int samples, const RegressionHistory& history, RowWorkspace& work);
+
+  [[nodiscard]] const RegressionMemory& memory(int index) const {
+    return memories_[static_cast<std::size_t>(index)];
+  }
+  [[nodiscard]] const NoiseLevel& noise() const { return noise_; }
+  /// Samples that the memories may rest on, at most `remembered`.
+  [[nodiscard]] int span() const { return span_; }
+  /// Weight that multiplies the row of age `age`, 0 where there is none; 1 / CV units.
+  [[nodiscard]] double row_weight(int age) const { return weights_.window()[age]; }
+  /// The same with rows clipped later: after a change many rows surprise, and they are what tells
+  /// of it.
+  [[nodiscard]] double lenient_weight(int age) const {
+    constexpr double kLenience =
+        calibration::row_weights::kLenientClip / calibration::row_weights::kClip;
+    return std::min(kLenience * row_weight(age), 1.0 / scales_.window()[age]);
+  }
+
+ private:
+  [[nodiscard]] int patience(const RowWorkspace& work) const;
+  void take(int oldest, int newest, const RegressionHistory& history, RowWorkspace& work);
+  void gather(int oldest, int newest, const RegressionHistory& history, RowWorkspace& work) const;
+  void preview(RowWorkspace& work) const;
+  void weigh(int oldest, int newest, const RowWorkspace& work);
+  void copy_weighed(int k, double weight, RowWorkspace& work) const;
+  void begin_noise();
+  void slide(std::size_t index, const RegressionHistory& history, RowWorkspace& work);
+  void refill(RegressionMemory& memory, int samples, const RegressionHistory& history,
+              RowWorkspace& work) const;
+
+  int cv_;
+  int columns_;
+  int remembered_;
+  int span_ = 0;
+  int waiting_ = 0;  // samples since the last fold
+  NoiseLevel noise_;
+  LagWindow weights_;  // per sample: 1 / scale, times the clip; 0 = no row, < 0: it waits
+  LagWindow scales_;   // per sample: the noise level before it
+  std::vector<RegressionMemory> memories_;
+  std::vector<int> slides_;  // per memory: samples since its window was rebuilt
+};
+
+}  // namespace mpm

@@ -1,0 +1,88 @@
+#include "core/mismatch/residual_regression.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "tests/core/counter_noise.hpp"
+
+namespace mpm {
+namespace {
+
+const RegressionShape kShape{1, 1, 2, 1, {0.5}};  // 5 columns
+
+struct Run {
+  Run(const std::vector<MemoryLength>& lengths, int remembered, int patience)
+      : history(kShape, remembered),
+        regression(kShape, 0, lengths, remembered),
+        work(kShape.columns(), patience) {}
+  void sample(int k) {
+    Eigen::VectorXd u(1), e(1);
+    u(0) = test::coloured(1, k);
+    e(0) = test::uniform(2, k);
+    history.push(u, e);
+    regression.add_sample(history, work);
+  }
+  RegressionHistory history;
+  ResidualRegression regression;
+  RowWorkspace work;
+};
+
+TEST_CASE("rows wait once there are ten per column, and are taken when asked for") {
+  Run run({{1.0, 0}}, 500, 8);
+  int k = 0;
+  while (run.regression.memory(0).rows < 10 * kShape.columns()) run.sample(k++);
+  const int before = run.regression.memory(0).rows;
+  for (int more = 0; more < 5; ++more) run.sample(k++);
+  CHECK(run.regression.memory(0).rows == before);
+  CHECK(run.regression.row_weight(0) < 0.0);
+  run.regression.fold(run.history, run.work);
+  CHECK(run.regression.memory(0).rows == before + 5);
+  CHECK(run.regression.row_weight(0) > 0.0);
+}
+
+TEST_CASE("a sliding window holds what it says") {
+  // It is rebuilt each time it has grown by an eighth: never more than 100 + 12 rows, and every
+  // sample gives one.
+  Run run({{1.0, 0}, {1.0, 100}}, 500, 1);
+  for (int k = 0; k < 450; ++k) {
+    run.sample(k);
+    if (k < 200) continue;
+    CHECK(run.regression.memory(1).rows >= 100);
+    CHECK(run.regression.memory(1).rows < 100 + 100 / 8 + 1);
+  }
+  CHECK(run.regression.memory(0).rows > 400);
+}
+
+TEST_CASE("a fresh start rests on the last samples alone") {
+  Run run({{1.0, 0}, {0.99, 0}}, 500, 8);
+  for (int k = 0; k < 300; ++k) run.sample(k);
+  run.regression.start_afresh(60, run.history, run.work);
+  CHECK(run.regression.span() == 60);
+  CHECK(run.regression.memory(0).rows == 60);
+  CHECK(run.regression.memory(1).rows == 60);
+  run.regression.start_afresh(0, run.history, run.work);
+  CHECK(run.regression.memory(0).rows == 0);
+  run.sample(300);
+  CHECK(run.regression.memory(0).rows == 1);
+}
+
+TEST_CASE("gaps have no rows") {
+  Run run({{1.0, 0}}, 500, 8);
+  for (int k = 0; k < 100; ++k) run.sample(k);
+  run.regression.fold(run.history, run.work);
+  const int before = run.regression.memory(0).rows;
+  run.history.skip(3);
+  run.regression.add_gap(3);
+  for (int age = 0; age < 3; ++age) CHECK(run.regression.row_weight(age) == 0.0);
+  CHECK(run.regression.memory(0).rows == before);
+}
+
+TEST_CASE("impossible memories are refused") {
+  CHECK_THROWS_AS(Run({}, 100, 1), std::invalid_argument);
+  CHECK_THROWS_AS(Run({{1.5, 0}}, 100, 1), std::invalid_argument);
+  CHECK_THROWS_AS(Run({{1.0, 100}}, 100, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mpm
