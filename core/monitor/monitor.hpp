@@ -48,10 +48,16 @@ class Monitor {
   /// before it.
   void push(const Frame& frame);
 
+  /// Brings the reported correlations up to the last frame. Not done by `push`: rows that wait for
+  /// each other cost a fraction.
+  void correlate();
+
+  /// After the last frame; `partial_correlation` and `lag` as of the last `correlate`.
   [[nodiscard]] const ChannelStatus& channel(int cv, int input) const;
   [[nodiscard]] AlarmState alarm(int cv, int input) const;
   /// Correlations of a channel, of the kind that the settings name ((3.15) if none), for lags
-  /// first_lag()..last_lag(). Undefined ones (silent or collinear input) are 0.
+  /// first_lag()..last_lag(), as of the last `correlate`. Undefined ones (silent or collinear
+  /// input) are 0.
   [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> partial_correlations(int cv, int input) const;
   [[nodiscard]] int first_lag() const;
   [[nodiscard]] int last_lag() const;

@@ -81,8 +81,9 @@ void UnitMonitor::push(const Frame& frame) {
 }
 
 // Nobody reads all records of every frame of a recording.
-void UnitMonitor::fill() const {
+void UnitMonitor::fill() {
   filled_ = true;
+  monitor_.correlate();
   const SignalCounts counts = config_.counts();
   for (int i = 0; i < counts.inputs(); ++i) {
     for (int j = 0; j < counts.cv; ++j) {

@@ -18,7 +18,7 @@ class UnitMonitor {
   void push(const Frame& frame);
 
   /// All channels after the last frame; inputs outermost, CVs innermost.
-  [[nodiscard]] const std::vector<ChannelRecord>& channels() const {
+  [[nodiscard]] const std::vector<ChannelRecord>& channels() {
     if (!filled_) fill();
     return channels_;
   }
@@ -27,14 +27,14 @@ class UnitMonitor {
   [[nodiscard]] const MonitorCounters& counters() const { return monitor_.counters(); }
 
  private:
-  void fill() const;
+  void fill();
 
   config::UnitConfig config_;
   Monitor monitor_;
   std::int64_t interval_ = 0;  // of the last frame
   std::int64_t source_time_ns_ = 0;
-  mutable bool filled_ = false;  // the records say what the monitor does
-  mutable std::vector<ChannelRecord> channels_;
+  bool filled_ = false;  // the records say what the monitor does
+  std::vector<ChannelRecord> channels_;
   std::vector<AlarmRecord> alarms_;
 };
 

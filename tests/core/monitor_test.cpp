@@ -110,6 +110,7 @@ TEST_CASE("a hidden gain error raises the alarm of its channel alone") {
     CHECK(monitor.channel(1, 0).verdict == Verdict::kMatch);
     CHECK(monitor.channel(1, 1).verdict == Verdict::kMatch);
     // The plant gain is less negative than the model says, so the residual rises with the input.
+    monitor.correlate();
     CHECK(monitor.channel(0, 1).partial_correlation > 0.1);
     CHECK(monitor.channel(0, 1).lag >= 1);
   }
@@ -249,6 +250,8 @@ TEST_CASE("the mean line decides where the settings say so, on the correlation t
     usual.push(frame);
     monitor.push(frame);
   });
+  usual.correlate();
+  monitor.correlate();
   double sum = 0.0;
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) sum += monitor.partial_correlations(j, i).cwiseAbs().mean();
@@ -401,6 +404,7 @@ TEST_CASE("an input that stands still is undetermined") {
     frame[SignalKind::kMv].values(1) = -3.0;
     monitor.push(frame);
   });
+  monitor.correlate();
   for (int j = 0; j < 2; ++j) {
     CHECK(monitor.channel(j, 1).verdict == Verdict::kUndetermined);
     CHECK(monitor.channel(j, 1).reason == Reason::kNotExcited);
@@ -487,7 +491,10 @@ TEST_CASE("the monitor allocates nothing per sample and repeats itself exactly")
   Monitor first = experiment.monitor();
   Monitor second = experiment.monitor();
   const std::uint64_t before = test::allocation_count();
-  for (const Frame& frame : frames) first.push(frame);
+  for (const Frame& frame : frames) {
+    first.push(frame);
+    first.correlate();
+  }
   CHECK(test::allocation_count() == before);
   for (const Frame& frame : frames) second.push(frame);
   for (int j = 0; j < 2; ++j)
@@ -495,6 +502,28 @@ TEST_CASE("the monitor allocates nothing per sample and repeats itself exactly")
       CHECK(first.channel(j, i).p_value == second.channel(j, i).p_value);
       CHECK(first.channel(j, i).statistic == second.channel(j, i).statistic);
     }
+  // Whether correlations are asked for after each frame or after the last changes no bit of them.
+  second.correlate();
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i)
+      CHECK(first.partial_correlations(j, i) == second.partial_correlations(j, i));
+}
+
+TEST_CASE("correlations stay as they were until they are asked for again") {
+  const Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  Eigen::VectorXd early;
+  int k = 0;
+  experiment.run(1200, [&](const Frame& frame) {
+    monitor.push(frame);
+    if (++k == 600) {
+      monitor.correlate();
+      early = monitor.partial_correlations(0, 0);
+    }
+  });
+  CHECK(monitor.partial_correlations(0, 0) == early);
+  monitor.correlate();
+  CHECK(monitor.partial_correlations(0, 0) != early);
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "core/mismatch/channel_evidence.hpp"
+#include "core/mismatch/regression_memory.hpp"
+#include "core/mismatch/verdict.hpp"
+#include "core/monitor/cv_alarms.hpp"
+#include "core/monitor/derived_settings.hpp"
+#include "core/monitor/f_thresholds.hpp"
+#include "core/monitor/reported_correlation.hpp"
+#include "core/signal/frame.hpp"
+
+namespace mpm {
+
+/// What a verdict on one channel rests on, after one sample.
+struct JudgedChannel {
+  int input = 0;
+  bool bad_data = false;           ///< no verdict can be drawn of these data
+  bool overdue = false;            ///< there ought to be rows enough by now
+  const RegressionMemory& memory;  ///< the CV's long one
+  const ChannelEvidence& evidence;
+  const CvAlarms& alarms;  ///< the CV's
+  bool mvs_still = false;  ///< no MV moves
+  bool at_limit = false;   ///< the input rests at the end of its range
+  CorrelationPeak peak;    ///< with ThresholdKind::kMeanLine, else unused
+  double mean_line = 0.0;  ///< likewise
+};
+
+/// Turns evidence into verdicts: first whether there can be one at all, then whether an error of
+/// interest would show, and only then the p-value (or the mean line). No allocation after
+/// construction.
+class ChannelJudge {
+ public:
+  ChannelJudge(const SignalCounts& counts, const DerivedSettings& settings);
+
+  /// Brings the status up to the sample, but for the reported correlation.
+  void judge(const JudgedChannel& channel, ChannelStatus& status);
+
+ private:
+  [[nodiscard]] static bool has_evidence(const JudgedChannel& channel, ChannelStatus& status);
+  void read_evidence(const JudgedChannel& channel, ChannelStatus& status);
+  [[nodiscard]] bool exceeds(const JudgedChannel& channel, ChannelStatus& status) const;
+  [[nodiscard]] Reason why_not_excited(const JudgedChannel& channel) const;
+
+  int mvs_;
+  double gain_error_of_interest_;
+  bool mean_line_;
+  double channel_rate_;  // false alarms of one channel
+  FThresholds thresholds_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,79 @@
+#include "core/monitor/predictions.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/monitor/calibration.hpp"
+
+namespace mpm {
+
+using calibration::bad_data::kHeldSamples;
+
+std::vector<bool> channels_of(const LinearModel& model, int length) {
+  std::vector<bool> acts;
+  for (int i = 0; i < model.input_count(); ++i)
+    for (int j = 0; j < model.cv_count(); ++j)
+      acts.push_back(model.impulse_response(j, i, length).cwiseAbs().maxCoeff() > 0.0);
+  return acts;
+}
+
+Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_predict,
+                         const std::vector<bool>& acts, int settling_samples)
+    : model_(model),
+      may_predict_(may_predict),
+      acts_(acts),
+      has_model_(std::find(acts.begin(), acts.end(), true) != acts.end()),
+      settling_samples_(settling_samples),
+      given_(may_predict.size(), false),
+      settling_(may_predict.size(), 0) {}
+
+double Predictions::residual(int cv, const Frame& frame) const {
+  const SignalBlock& measured = frame[SignalKind::kCv];
+  const SignalBlock& predicted = frame[SignalKind::kPrediction];
+  if (measured.usable(cv)) {
+    if (given(cv)) {
+      if (predicted.usable(cv)) return measured.values(cv) - predicted.values(cv);
+    } else if (started_ && !settling(cv)) {
+      return measured.values(cv) - model_.output()(cv);
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+void Predictions::begin(const Frame& frame, const UnitInputs& inputs) {
+  if (simulates_) model_.set_time_s(1e-9 * static_cast<double>(frame.source_time_ns));
+  for (int i = 0; i < model_.input_count(); ++i)
+    if (inputs.unknown_run(i) > kHeldSamples) distrust(i);
+}
+
+void Predictions::distrust(int input) {
+  const std::size_t cvs = given_.size();
+  for (std::size_t j = 0; j < cvs; ++j)
+    if (!given_[j] && acts_[static_cast<std::size_t>(input) * cvs + j])
+      settling_[j] = settling_samples_;
+}
+
+void Predictions::advance(const UnitInputs& inputs) {
+  for (std::int64_t& samples : settling_)
+    if (samples > 0) --samples;
+  if (!simulates_) return;
+  // Where the plant stood before the first sample is unknown: at rest with the first inputs is the
+  // least wrong, and what is wrong about it has died out once the model has settled.
+  if (!started_) {
+    if (!inputs.values().allFinite()) return;
+    model_.reset_steady(inputs.values());
+    started_ = true;
+    std::fill(settling_.begin(), settling_.end(), settling_samples_);
+  }
+  model_.advance(inputs.held());
+}
+
+void Predictions::skip(std::int64_t missing, const UnitInputs& inputs) {
+  if (!started_) return;
+  for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, settling_samples_); ++k)
+    model_.advance(inputs.held());
+  if (missing > kHeldSamples)
+    for (int i = 0; i < model_.input_count(); ++i) distrust(i);
+}
+
+}  // namespace mpm

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/model/linear_model.hpp"
+#include "core/monitor/unit_inputs.hpp"
+#include "core/signal/frame.hpp"
+#include "core/signal/screen.hpp"
+
+namespace mpm {
+
+/// Whether the model has a channel, per channel, input-major: whether it moves the CV within
+/// `length` samples.
+[[nodiscard]] std::vector<bool> channels_of(const LinearModel& model, int length);
+
+/// Each CV's prediction: what comes with the frames or, as long as none came, what the model makes
+/// of the inputs. Where the control system says what its model predicts, no simulation is asked.
+/// No allocation after construction.
+class Predictions {
+ public:
+  /// `may_predict[j]`: CV j's may come with the frames; `acts`: see `channels_of`;
+  /// `settling_samples`: until the model has forgotten where it started.
+  Predictions(const LinearModel& model, const std::vector<bool>& may_predict,
+              const std::vector<bool>& acts, int settling_samples);
+
+  /// Some CV's is simulated.
+  [[nodiscard]] bool simulates() const { return simulates_; }
+  /// Comes with the frames.
+  [[nodiscard]] bool given(int cv) const { return given_[static_cast<std::size_t>(cv)]; }
+  /// Is simulated, but cannot be trusted yet.
+  [[nodiscard]] bool settling(int cv) const { return settling_[static_cast<std::size_t>(cv)] > 0; }
+  /// Measured minus predicted; NaN where the prediction is not known, or the measurement is not.
+  [[nodiscard]] double residual(int cv, const Frame& frame) const;
+
+  /// Where a CV's first one came with the screen's frames, it is given from now on: `begins(cv)`.
+  template <class Begins>
+  void follow(const Screen& screen, Begins begins);
+  /// Before the residuals of a frame are read. What disturbs in the model keeps to the clock of the
+  /// data, over gaps too. An input that was unknown for long moved unseen: what is simulated from
+  /// it is wrong until it has forgotten that.
+  void begin(const Frame& frame, const UnitInputs& inputs);
+  /// After they were read.
+  void advance(const UnitInputs& inputs);
+  /// `missing` intervals of which nothing is known.
+  void skip(std::int64_t missing, const UnitInputs& inputs);
+
+ private:
+  void distrust(int input);
+
+  LinearModel model_;
+  std::vector<bool> may_predict_;
+  std::vector<bool> acts_;
+  bool has_model_;
+  int settling_samples_;
+  bool simulates_ = true;
+  bool started_ = false;
+  std::vector<bool> given_;
+  std::vector<std::int64_t> settling_;  // samples until a simulated one can be trusted
+};
+
+template <class Begins>
+void Predictions::follow(const Screen& screen, Begins begins) {
+  simulates_ = false;
+  for (std::size_t j = 0; j < given_.size(); ++j) {
+    const int cv = static_cast<int>(j);
+    if (!given_[j] && screen.predicted(cv)) {
+      given_[j] = true;
+      settling_[j] = 0;
+      begins(cv);
+    }
+    // Without any model only the control system can predict.
+    simulates_ = simulates_ || (!given_[j] && (has_model_ || !may_predict_[j]));
+  }
+}
+
+}  // namespace mpm

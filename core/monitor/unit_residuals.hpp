@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/monitor/predictions.hpp"
+#include "core/signal/frame.hpp"
+
+namespace mpm {
+
+/// The residuals of a unit, and what is taken where they are unknown.
+class UnitResiduals {
+ public:
+  explicit UnitResiduals(int cvs);
+
+  /// Takes a frame's; how many measurements and predictions that come with the frames are unknown.
+  int read(const Frame& frame, const Predictions& predictions);
+  /// `missing` intervals of which nothing is known.
+  void skip(std::int64_t missing);
+
+  /// NaN where unknown.
+  [[nodiscard]] const Eigen::VectorXd& values() const { return values_; }
+  /// The last known values, 0 before the first.
+  [[nodiscard]] const Eigen::VectorXd& held() const { return held_; }
+  /// Samples for which one has been unknown, and the longest of these.
+  [[nodiscard]] std::int64_t unknown_run(int cv) const {
+    return unknown_runs_[static_cast<std::size_t>(cv)];
+  }
+  [[nodiscard]] std::int64_t longest_unknown_run() const;
+
+ private:
+  Eigen::VectorXd values_, held_;
+  std::vector<std::int64_t> unknown_runs_;
+};
+
+}  // namespace mpm

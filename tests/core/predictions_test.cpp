@@ -1,0 +1,122 @@
+#include "core/monitor/predictions.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/monitor/unit_residuals.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int kSettling = 20;
+
+ModelSpec first_order() {
+  ModelSpec spec;
+  spec.input_count = spec.cv_count = 1;
+  spec.input_blocks.resize(1);
+  spec.output_blocks.resize(1);
+  spec.input_origin = spec.output_origin = Eigen::VectorXd::Zero(1);
+  spec.channels = {{0, 0, TransferFunction{2.0, {4.0}, 0, 1, false}}};
+  return spec;
+}
+
+// One input, one CV; the frames go through a screen as in the monitor.
+struct Unit {
+  Unit()
+      : model(first_order()),
+        plant(first_order()),
+        screen(counts, {true}, {true}, 0),
+        inputs(counts, 100.0),
+        predictions(model, {true}, {true}, kSettling),
+        residuals(1) {}
+
+  // Measured: the model's own output plus 1. NaN: unknown.
+  void step(double u, double predicted) {
+    Frame frame(counts);
+    for (SignalBlock& block : frame.blocks)
+      std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
+    const auto set = [&](SignalKind kind, double value) {
+      frame[kind].values(0) = value;
+      if (!std::isfinite(value)) frame[kind].quality[0] = Quality::kBad;
+    };
+    set(SignalKind::kMv, u);
+    set(SignalKind::kCv, plant.output()(0) + 1.0);
+    set(SignalKind::kPrediction, predicted);
+    (void)screen.push(frame);
+    if (predictions.simulates()) predictions.follow(screen, [&](int) { ++begun; });
+    unknown_inputs = inputs.read(frame);
+    predictions.begin(frame, inputs);
+    unknown = residuals.read(frame, predictions);
+    predictions.advance(inputs);
+    if (std::isfinite(u)) held = u;
+    plant.advance(Eigen::VectorXd::Constant(1, held));
+  }
+
+  SignalCounts counts{1, 0, 1, 0};
+  LinearModel model, plant;
+  Screen screen;
+  UnitInputs inputs;
+  Predictions predictions;
+  UnitResiduals residuals;
+  double held = 0.0;
+  int begun = 0, unknown = 0, unknown_inputs = 0;
+};
+
+const double kNone = std::nan("");
+
+TEST_CASE("as long as no prediction comes it is simulated, once the model has settled") {
+  Unit unit;
+  for (int k = 0; k <= kSettling; ++k) {
+    unit.step(k % 7 - 3.0, kNone);
+    CHECK(std::isnan(unit.residuals.values()(0)));
+  }
+  CHECK(unit.residuals.unknown_run(0) == kSettling + 1);
+  for (int k = 0; k < 40; ++k) unit.step(k % 5 - 2.0, kNone);
+  // What the plant began with differs from what was assumed: exp(-5) of it is left, and less.
+  CHECK(unit.residuals.values()(0) == Approx(1.0).margin(1e-3));
+  CHECK(unit.residuals.unknown_run(0) == 0);
+  CHECK(unit.unknown == 0);
+  CHECK(unit.begun == 0);
+}
+
+TEST_CASE("the first prediction that comes takes over for good") {
+  Unit unit;
+  for (int k = 0; k < 40; ++k) unit.step(k % 5 - 2.0, kNone);
+  unit.step(1.0, unit.plant.output()(0) - 0.5);
+  CHECK(unit.begun == 1);
+  CHECK(unit.predictions.given(0));
+  CHECK_FALSE(unit.predictions.simulates());
+  CHECK(unit.residuals.values()(0) == Approx(1.5));
+  unit.step(1.0, kNone);
+  CHECK(std::isnan(unit.residuals.values()(0)));
+  CHECK(unit.unknown == 1);
+  CHECK(unit.residuals.held()(0) == Approx(1.5));
+}
+
+TEST_CASE("an input that was unknown for long moved unseen: its simulation is not trusted") {
+  Unit unit;
+  for (int k = 0; k < 60; ++k) unit.step(k % 5 - 2.0, kNone);
+  for (int k = 0; k < 5; ++k) unit.step(kNone, kNone);  // as if unchanged
+  CHECK(unit.unknown_inputs == 1);
+  CHECK_FALSE(unit.predictions.settling(0));
+  CHECK(std::isfinite(unit.residuals.values()(0)));
+  unit.step(kNone, kNone);
+  CHECK(unit.predictions.settling(0));
+  CHECK(std::isnan(unit.residuals.values()(0)));
+  for (int k = 0; k < kSettling; ++k) unit.step(k % 5 - 2.0, kNone);
+  CHECK(std::isfinite(unit.residuals.values()(0)));
+}
+
+TEST_CASE("a long gap is distrusted likewise, a short one is not") {
+  for (const int missing : {5, 6}) {
+    Unit unit;
+    for (int k = 0; k < 60; ++k) unit.step(k % 5 - 2.0, kNone);
+    unit.predictions.skip(missing, unit.inputs);
+    unit.residuals.skip(missing);
+    CHECK(unit.predictions.settling(0) == (missing > 5));
+    CHECK(unit.residuals.unknown_run(0) == missing);
+  }
+}
+
+}  // namespace
+}  // namespace mpm
