@@ -2,9 +2,9 @@
 
 #include "core/identify/fit/whitening.hpp"
 
-/// Numbers that decide a diagnosis after the search. Where nothing else is said they were set on
-/// the tuning seeds of `mpm_hidden` and on the measured plants of docs/cases.md, and are scored on
-/// others.
+/// Numbers that decide a diagnosis after the search. Chosen by hand where nothing else is said; no
+/// command fits them. What they give together is scored by `mpm_hidden` (docs/validation.md) and on
+/// the measured plants of docs/cases.md.
 namespace mpm {
 
 /// A free noise model, which may swallow structure, and one that leaves structure alone.

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-/// Numbers that decide how a fit goes, none of which a user sets. Judged from what they mean, and
-/// unchanged since `mpm_hidden` was first scored (docs/validation.md); the priors are with the
-/// causes.
+/// Numbers that decide how a fit goes, none of which a user sets. Chosen by hand from what they
+/// mean; no command fits them. The priors are with the causes. What they give together is scored by
+/// `mpm_hidden` (docs/validation.md).
 namespace mpm {
 
 // Gauss-Newton.
