@@ -3,7 +3,7 @@
 #include "core/identify/fit/whitening.hpp"
 
 /// Numbers that decide a diagnosis after the search. Chosen by hand where nothing else is said; no
-/// command fits them. What they give together is scored by `mpm_hidden` (docs/validation.md) and on
+/// command fits them. What they give together is scored by `mpm_hidden` (tests/hidden) and on
 /// the measured plants of docs/cases.md.
 namespace mpm {
 

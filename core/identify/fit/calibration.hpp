@@ -4,7 +4,7 @@
 
 /// Numbers that decide how a fit goes, none of which a user sets. Chosen by hand from what they
 /// mean; no command fits them. The priors are with the causes. What they give together is scored by
-/// `mpm_hidden` (docs/validation.md).
+/// `mpm_hidden` (tests/hidden).
 namespace mpm {
 
 // Gauss-Newton.

@@ -5,7 +5,7 @@
 /// Numbers that decide what the search accepts and how sure it says it is. 2 ln of odds unless said
 /// otherwise. Chosen by hand where nothing else is said; no command fits them. What they give
 /// together is scored by `mpm_hidden` on seeds below 1000, which nothing is tuned on
-/// (docs/validation.md).
+/// (tests/hidden).
 namespace mpm {
 
 /// Candidates fitted in full in every round, and of each cause at least so many of those that the
