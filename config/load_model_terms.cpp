@@ -75,7 +75,8 @@ std::optional<double> read_clock(const Value& value) {
     return std::nullopt;
   }
   constexpr std::int64_t kSecond = 1000000000;
-  return static_cast<double>(*time_ns / kSecond) + 1e-9 * static_cast<double>(*time_ns % kSecond);
+  const std::int64_t whole = *time_ns / kSecond;  // apart, so that no digit of the rest is lost
+  return static_cast<double>(whole) + 1e-9 * static_cast<double>(*time_ns % kSecond);
 }
 
 std::vector<std::string> own_keys(DisturbanceShape shape) {

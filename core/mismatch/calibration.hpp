@@ -4,7 +4,7 @@
 
 /// The numbers of this room that decide what is said of a channel. Where each comes from:
 ///
-///   fitted   on seeds from 100001 on, which score nothing;
+///   fitted   on seeds from 100001 on, which score nothing; `./run calibrate` fits them again;
 ///   derived  from the paper or formula that is named;
 ///   chosen   by hand on prototypes with other generators and seeds. `./run study` shows what the
 ///            choice gives (docs/validation.md), the named test what it is for.

@@ -96,6 +96,8 @@ void ChannelEvaluator::test_usual_errors(const ChannelSignatures& channel, int i
   if (usual_.rank() == 0) return;
   const double statistic = usual_.explained(estimate_) / (usual_.rank() * noise.variance);
   const double p_value = f_upper_tail(statistic, usual_.rank(), noise.freedom);
+  evidence.directed_statistic = statistic;
+  evidence.directed_freedom = usual_.rank();
   if (p_value < evidence.p_value) {
     evidence.p_value = p_value;
     evidence.statistic = statistic;

@@ -27,6 +27,8 @@ struct ChannelEvidence {
   double numerator_freedom = 0.0;     ///< of F; 0 = nothing to test with
   int tests = 1;                      ///< that were made
   double block_statistic = 0.0;       ///< F of the whole block
+  double directed_statistic = 0.0;    ///< F of the usual errors
+  int directed_freedom = 0;           ///< its numerator's; 0 = not tested
   double p_value_material = 1.0;      ///< the same where the error is within the limits, at most
   double reference_gain = 0.0;        ///< what 100 % means, CV units per input unit
   double gain_error_ratio = 0.0;      ///< (plant gain - model gain) / reference, were it only gain

@@ -26,11 +26,12 @@ std::vector<std::complex<double>> poles_of(const std::vector<double>& denominato
 std::vector<double> polynomial_of(const std::vector<std::complex<double>>& roots) {
   std::vector<std::complex<double>> coefficients = {1.0};
   for (const std::complex<double>& root : roots) {
-    coefficients.push_back(0.0);
+    coefficients.emplace_back(0.0);
     for (std::size_t i = coefficients.size() - 1; i > 0; --i)
       coefficients[i] -= root * coefficients[i - 1];
   }
   std::vector<double> real;
+  real.reserve(coefficients.size());
   for (const std::complex<double>& value : coefficients) real.push_back(value.real());
   return real;
 }

@@ -58,6 +58,7 @@ void place_onset(Trials& trials, Trial& trial) {
 
 void look_closer(Trials& tries, Screening& screening, std::vector<Trial>& trials) {
   std::vector<Effect> tried;
+  tried.reserve(trials.size());
   for (const Trial& trial : trials) tried.push_back(trial.candidate);
   std::vector<std::pair<double, Effect>> scored;
   for (Effect& effect : cause_of(tried[0]).closer_look(tried[0], tried)) {

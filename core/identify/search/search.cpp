@@ -191,9 +191,9 @@ class Search {
     const std::vector<Effect> old_effects = accepted_;
     const std::vector<Named> old_named = named_;
     const double old_cost = everything().cost;
-    for (auto index = rewrite.without.rbegin(); index != rewrite.without.rend(); ++index) {
-      erase_at(accepted_, *index);
-      named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(*index));
+    for (std::size_t k = rewrite.without.size(); k-- > 0;) {  // the last ones first
+      erase_at(accepted_, rewrite.without[k]);
+      named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(rewrite.without[k]));
     }
     const std::size_t first_new = named_.size();
     for (const Effect& effect : rewrite.with) {
