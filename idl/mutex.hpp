@@ -41,6 +41,7 @@ class MPM_THREADS(scoped_lockable) MutexLock {
   MutexLock(Mutex& mutex, std::adopt_lock_t adopt) MPM_REQUIRES(mutex) : lock_(mutex, adopt) {}
   MutexLock(const MutexLock&) = delete;
   MutexLock& operator=(const MutexLock&) = delete;
+  // NOLINTNEXTLINE(modernize-use-equals-default): the annotation is read of bodies only
   ~MutexLock() MPM_THREADS(release_capability()) {}
 
   void lock() MPM_THREADS(acquire_capability()) { lock_.lock(); }

@@ -85,7 +85,7 @@ class ReadersOf<std::tuple<Record...>> {
 
   template <class One>
   void take_records() {
-    OptionalReader<One>& reader = std::get<OptionalReader<One>>(readers_);
+    auto& reader = std::get<OptionalReader<One>>(readers_);
     if (!reader) return;
     reader->take_with_info([this](const SampleOf<One>& sample, const SampleInfo& info) {
       if (info.valid)

@@ -55,6 +55,7 @@ std::vector<TopicRow> Survey::rows() const {
       row.units = units->second;
   }
   std::vector<TopicRow> list;
+  list.reserve(rows.size());
   for (auto& [name, row] : rows) list.push_back(std::move(row));
   return list;
 }

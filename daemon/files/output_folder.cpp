@@ -26,8 +26,8 @@ OutputFolder::OutputFolder(const std::string& path) : path_(fs::absolute(path)) 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   for (const auto& file : files_) fs::remove(file.first, ignored);
-  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder)
-    fs::remove(*folder, ignored);  // fails, as it should, on one that is not empty
+  for (std::size_t k = made_.size(); k-- > 0;)  // the innermost first
+    fs::remove(made_[k], ignored);              // fails, as it should, on one that is not empty
 }
 
 void OutputFolder::make() {

@@ -8,7 +8,7 @@
 namespace mpm::host {
 namespace {
 
-constexpr int kLongestWait_ms = 100;
+constexpr int kLongestWaitMs = 100;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ InterruptibleInput::InterruptibleInput(int descriptor, std::function<bool()> sto
 InterruptibleInput::int_type InterruptibleInput::underflow() {
   while (!stop_()) {
     pollfd poller{descriptor_, POLLIN, 0};
-    if (poll(&poller, 1, kLongestWait_ms) == 0) continue;
+    if (poll(&poller, 1, kLongestWaitMs) == 0) continue;
     const ssize_t count = read(descriptor_, bytes_.data(), bytes_.size());
     if (count <= 0) break;
     setg(bytes_.data(), bytes_.data(), bytes_.data() + count);

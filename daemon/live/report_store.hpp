@@ -18,7 +18,8 @@ class ReportStore {
 
   /// Returns where the report lies; empty if nothing is kept. Throws std::exception where it cannot
   /// be written.
-  std::string write(const report::DiagnosisRun& run, std::int64_t alarm_time_ns) const;
+  [[nodiscard]] std::string write(const report::DiagnosisRun& run,
+                                  std::int64_t alarm_time_ns) const;
 
  private:
   std::string folder_;

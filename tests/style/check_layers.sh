@@ -67,9 +67,10 @@ mismatch text signal regression statistics model
 record text alarm mismatch
 monitor text signal statistics model alarm mismatch
 identify/fit model
+identify/evidence model mismatch monitor identify/fit
 identify/causes text model identify/fit
 identify/search identify/fit identify/causes
-identify/diagnosis statistics model identify/fit identify/causes identify/search
+identify/diagnosis text statistics model identify/fit identify/evidence identify/causes identify/search
 TABLE
 
 floors daemon <<'TABLE'

@@ -46,6 +46,10 @@ std::vector<Rewrite> Cause::rewrites(std::size_t, const std::vector<Effect>&, co
 
 std::vector<Finding> Cause::left_in(const Problem&, const Fit&) const { return {}; }
 
+bool Cause::may_be_nothing(const Finding& finding) const {
+  return !finding.parameters.empty() && includes_nothing(finding.parameters.front());
+}
+
 void Cause::restate(const Effect&, const Problem&, Finding&) const {}
 
 Effect Cause::effect(const Place& place, std::vector<Coordinate> coordinates, double search_cost,

@@ -65,6 +65,10 @@ class Cause : public Edit {
   /// Whether this accepted effect has found the linear part of its channel along with itself.
   [[nodiscard]] virtual bool settles_channel(const Effect& mine) const;
 
+  /// Whether it shows as errors of the channels at its place, so that a test of those must see it:
+  /// everything but what disturbs a CV by itself.
+  [[nodiscard]] virtual bool acts_through_channels() const { return true; }
+
   // Weighing.
 
   /// 2 ln of the prior odds against it: errors of channels are what one expects.
@@ -104,6 +108,9 @@ class Cause : public Edit {
   /// What a finding means, in whole sentences, each with a space behind it.
   [[nodiscard]] virtual std::string sentence(const Finding& finding,
                                              const SignalNames& names) const = 0;
+  /// Whether the interval of what it does includes that it does nothing: then it is no finding.
+  /// The first number unless it says otherwise.
+  [[nodiscard]] virtual bool may_be_nothing(const Finding& finding) const;
   /// Whether reports give the onset among the parameters too.
   [[nodiscard]] virtual bool has_onset_parameter() const { return false; }
   /// Whether what acts is named as a signal even where it is an input of the model.

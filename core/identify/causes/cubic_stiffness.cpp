@@ -55,6 +55,24 @@ class CubicStiffness : public StateNonlinearity {
     }
   }
 
+  [[nodiscard]] bool may_be_nothing(const Finding& finding) const override {
+    return includes_nothing(*finding.find(kQuadratic)) && includes_nothing(*finding.find(kCubic));
+  }
+
+  /// One number before four: a channel that is off without a bend.
+  [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
+                                              const Problem&, const Tolerances&) const override {
+    const Effect& spring = accepted[mine];
+    const auto with = [&](const Cause& cause, std::vector<Coordinate> coordinates) {
+      Effect plain = spring;
+      plain.edit = &cause;
+      plain.coordinates = std::move(coordinates);
+      return Rewrite{{mine}, {plain}};
+    };
+    return {with(gain(), {*spring.find(kGainRatio)}),
+            with(dynamics(), {*spring.find(kGainRatio), *spring.find(kTimeConstantRatio)})};
+  }
+
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override {
     return names.cv(finding.subject.place.cv).tag +

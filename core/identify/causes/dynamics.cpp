@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/channel_error.hpp"
 #include "core/identify/causes/dead_time.hpp"
@@ -49,6 +51,10 @@ class Dynamics : public Cause {
   }
 
   [[nodiscard]] const Cause* together_with_others() const override { return this; }
+
+  [[nodiscard]] bool may_be_nothing(const Finding& finding) const override {
+    return std::all_of(finding.parameters.begin(), finding.parameters.end(), includes_nothing);
+  }
 
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override {

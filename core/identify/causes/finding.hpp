@@ -38,6 +38,9 @@ struct Parameter {
   [[nodiscard]] std::string name() const;
 };
 
+/// Whether the interval of a ratio includes 1, of any other number 0.
+[[nodiscard]] bool includes_nothing(const Parameter& parameter);
+
 /// Another explanation of the same difference.
 struct Rival {
   Subject subject;
@@ -53,6 +56,10 @@ struct Finding {
   std::optional<double> onset_s;  ///< clock of the data; where it began inside the data
   std::vector<Rival> rivals;      ///< closest first
   bool repaired = true;           ///< the extended model holds it, and is the better for it
+  std::string refused;            ///< why the extended model does not, for a person; else empty
+  /// Share of the mean square error on unseen samples of the CVs it acts on that goes with it; may
+  /// be negative.
+  double explains = 0.0;
 
   [[nodiscard]] const Parameter* find(const Quantity& quantity) const;
 };

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/channel_error.hpp"
 #include "core/identify/causes/input_block.hpp"
 #include "core/identify/causes/priors.hpp"
 
@@ -45,6 +46,26 @@ class InputPolynomial : public InputBlockCause {
       found.push_back(effect(at.place, {linear, quadratic}, cost_of(at.members)));
       found.push_back(effect(at.place, {linear, quadratic, cubic}, cost_of(at.members)));
     }
+  }
+
+  [[nodiscard]] bool may_be_nothing(const Finding& finding) const override {
+    const Parameter* cubic = finding.find(kCubic);
+    return includes_nothing(*finding.find(kQuadratic)) &&
+           (cubic == nullptr || includes_nothing(*cubic));
+  }
+
+  /// One number before three: all gains of the input are off, and nothing is bent.
+  [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
+                                              const Problem& problem,
+                                              const Tolerances&) const override {
+    Effect plain = accepted[mine];
+    const bool alone = touched(plain, problem).size() == 1;
+    plain.edit = alone ? &gain() : &input_scale();
+    if (alone) plain.place.cv = touched(plain, problem).front();
+    const double linear = plain.value(kLinear, 1.0);
+    plain.coordinates = {gain_ratio_coordinate()};
+    plain.coordinates.front().value = linear;
+    return {{{mine}, {plain}}};
   }
 
   [[nodiscard]] std::string sentence(const Finding& finding,

@@ -44,6 +44,9 @@ class InputSaturation : public InputBlockCause {
 
   [[nodiscard]] int kinked_numbers() const override { return 2; }
 
+  /// A level that nothing reaches is not proposed.
+  [[nodiscard]] bool may_be_nothing(const Finding&) const override { return false; }
+
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override {
     const Place& place = finding.subject.place;

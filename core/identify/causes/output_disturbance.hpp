@@ -17,6 +17,7 @@ class OutputDisturbance : public Cause {
  public:
   explicit OutputDisturbance(const char* shape) : Cause(kOutputDisturbance, shape) {}
   [[nodiscard]] bool goes_with(const Effect& accepted, const Effect& mine) const override;
+  [[nodiscard]] bool acts_through_channels() const override { return false; }
   [[nodiscard]] bool has_onset_parameter() const override { return true; }
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override;

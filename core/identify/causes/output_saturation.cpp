@@ -77,6 +77,9 @@ class OutputSaturation : public Cause {
     return found;
   }
 
+  /// A level that nothing reaches is not proposed.
+  [[nodiscard]] bool may_be_nothing(const Finding&) const override { return false; }
+
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override {
     const int cv = finding.subject.place.cv;

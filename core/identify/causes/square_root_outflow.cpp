@@ -57,6 +57,9 @@ class SquareRootOutflowCause : public StateNonlinearity {
     }
   }
 
+  /// No value of its numbers makes it the linear model.
+  [[nodiscard]] bool may_be_nothing(const Finding&) const override { return false; }
+
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override {
     return names.cv(finding.subject.place.cv).tag +

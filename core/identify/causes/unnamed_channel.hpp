@@ -39,6 +39,8 @@ class UnnamedBehaviour : public Cause {
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override;
   [[nodiscard]] bool goes_with(const Effect& accepted, const Effect& mine) const override;
   [[nodiscard]] double rarity() const override;
+  /// It is of second order in the input's moves, which a test of the linear channel hardly sees.
+  [[nodiscard]] bool acts_through_channels() const override { return false; }
 
  protected:
   virtual void propose_for(const ActiveChannel& channel, const Outlook& outlook,

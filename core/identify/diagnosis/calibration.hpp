@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "core/identify/fit/whitening.hpp"
 
 /// Numbers that decide a diagnosis after the search. Chosen by hand where nothing else is said; no
@@ -36,6 +38,22 @@ inline constexpr int kEstimateSteps = 4;
 /// every CV's fit has beside those of its channels and its noise.
 inline constexpr int kRowsPerNumber = 5;
 inline constexpr int kOtherNumbers = 4;
+
+/// A model that explains less than this share of what a CV does, beyond a constant, matches
+/// nothing.
+inline constexpr double kLeastExplained = 0.1;
+/// Movement of an input counts as coming from outside the loop from this share on.
+inline constexpr double kMostlyOutside = 0.5;
+
+/// One of so many samples of a CV must be known.
+inline constexpr Eigen::Index kFewestKnownParts = 10;
+/// Values beyond this are no measurements and no simulation.
+inline constexpr double kDiverged = 1e100;
+
+/// A model has settled after so many slowest time constants: 5 % are left to come. Horizons of
+/// predictions take at most one of so many parts of the rows.
+inline constexpr double kSettlingTimeConstants = 3.0;
+inline constexpr Eigen::Index kHorizonsInRows = 4;
 
 /// Blocks of the bootstrap: two slowest time constants and so many rows.
 inline constexpr double kBlockTimeConstants = 2.0;

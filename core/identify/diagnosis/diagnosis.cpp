@@ -1,6 +1,8 @@
 #include "core/identify/diagnosis/diagnosis.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/identify/causes/catalog.hpp"
@@ -9,13 +11,18 @@
 #include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
+#include "core/identify/evidence/channel_tests.hpp"
+#include "core/identify/evidence/outside_movement.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
+#include "core/identify/fit/plateau.hpp"
+#include "core/text/number_text.hpp"
 
 namespace mpm {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Thrown where the caller's `progress` says so; ends all loops at once.
@@ -28,41 +35,105 @@ std::function<bool(double)> or_give_up(const std::function<bool(double)>& progre
   };
 }
 
-/// What was named, as findings, and what has no name; most important first.
+/// The channels that an effect changes, as (CV, input).
+std::vector<std::pair<int, int>> channels_of(const Effect& effect, const ModelSpec& model,
+                                             int model_inputs) {
+  const Place& place = effect.place;
+  const int input = place.aux >= 0 ? model_inputs + place.aux : place.input;
+  if (place.cv >= 0 && input >= 0) return {{place.cv, input}};
+  std::vector<std::pair<int, int>> channels;
+  for (const ChannelSpec& channel : model.channels)
+    if ((place.cv < 0 || channel.cv == place.cv) && (input < 0 || channel.input == input))
+      channels.emplace_back(channel.cv, channel.input);
+  return channels;
+}
+
+/// Measured minus free run, on all rows; NaN where a CV is unknown or clips.
+MatrixXd residuals_of(const ModelSpec& model, const Recording& recording) {
+  Simulator simulator(recording);
+  MatrixXd residuals = recording.cvs - free_runs(simulator, model);
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const auto measured = recording.cvs.col(cv);
+    const Plateaus plateaus = find_plateaus(measured);
+    for (Index k = 0; k < measured.size(); ++k)
+      if ((plateaus.low && measured(k) <= *plateaus.low) ||
+          (plateaus.high && measured(k) >= *plateaus.high))
+        residuals(k, cv) = std::numeric_limits<double>::quiet_NaN();
+  }
+  return residuals;
+}
+
+/// Why the extended model does without a finding.
+const char* why_not_in_model(Fate fate) {
+  switch (fate) {
+    case Fate::kNoBetter:
+      return "with it predictions on unseen samples are not better beyond doubt";
+    case Fate::kRefused:
+      return "with it predictions on unseen samples are worse";
+    case Fate::kRepaired:
+      break;
+  }
+  return "";
+}
+
+/// What was named, as findings, and what has no name; most important first, what no repair removes
+/// last.
 void state(const SearchResult& found, const Selection& selection, Problem& problem,
            Diagnosis& diagnosis) {
   std::vector<Finding> all;
+  std::vector<bool> unclear(static_cast<std::size_t>(problem.model().cv_count), false);
+  const auto mark_unclear = [&](const Effect& effect) {
+    for (const int cv : touched(effect, problem)) unclear[static_cast<std::size_t>(cv)] = true;
+  };
   for (std::size_t i = 0; i < found.named.size(); ++i) {
-    all.push_back(to_finding(found, i, problem));
-    all.back().repaired = selection.fates[i] == Fate::kRepaired;
-    if (causes::is_unnamed(*all.back().subject.cause))
+    const Effect& effect = found.named[i].effect;
+    const Cause& cause = cause_of(effect);
+    Finding& finding = all.emplace_back(to_finding(found, i, problem));
+    finding.repaired = selection.fates[i] == Fate::kRepaired;
+    finding.refused = why_not_in_model(selection.fates[i]);
+    finding.explains = selection.explains[i];
+    const bool refused = selection.fates[i] == Fate::kRefused;
+    if (causes::is_unnamed(cause))
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
-    else if (selection.fates[i] != Fate::kRefused)
-      diagnosis.findings.push_back(all.back());
+    else if (!refused && !(cause.may_be_nothing(finding) && !effect.certain))
+      diagnosis.findings.push_back(finding);
+    if (refused || causes::is_unnamed(cause)) mark_unclear(effect);
   }
   for (const std::size_t i : selection.order)
     if (selection.fates[i] == Fate::kRefused) diagnosis.refused.push_back(all[i]);
-  for (const Cause* cause : causes::all())
-    for (Finding& finding : cause->left_in(problem, found.fit))
-      diagnosis.findings.push_back(std::move(finding));
   std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.evidence > b.evidence; });
+  if (found.suspect) {
+    diagnosis.suspect = Finding{};
+    diagnosis.suspect->subject = subject_of(found.suspect->effect);
+    diagnosis.suspect->evidence = found.suspect->evidence;
+    mark_unclear(found.suspect->effect);
+  }
+  // Where structure is missing what is left is no noise.
+  for (const Cause* cause : causes::all())
+    for (Finding& finding : cause->left_in(problem, found.fit))
+      if (!unclear[static_cast<std::size_t>(finding.subject.place.cv)]) {
+        finding.repaired = false;
+        finding.refused = "no repair of a model removes it";
+        diagnosis.findings.push_back(std::move(finding));
+      }
 }
 
 /// The model with all that was repaired. The small corrections that came with the findings have to
 /// carry over too, CV by CV.
 ModelSpec extended_model(const Problem& problem, const SearchResult& found,
-                         const Selection& selection, const ModelSpec& model, Unseen& unseen) {
+                         const Selection& selection, const ModelSpec& model, const Judges& judges) {
   const std::vector<bool> in = repaired(selection);
   if (std::find(in.begin(), in.end(), true) == in.end()) return model;
+  Unseen& unseen = judges.unseen;
   std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
-  const ModelSpec with_all = extend(problem, found, in, keep);
+  const ModelSpec with_all = extend(problem, found, in, keep, judges.open);
   for (int cv = 0; cv < model.cv_count; ++cv) {
     const CvScore gain = score(unseen.measured(cv), unseen.simulated(model, cv),
                                unseen.simulated(with_all, cv), unseen.block(), unseen.seed());
     if (gain.rmse_after > gain.rmse_before) keep[static_cast<std::size_t>(cv)] = false;
   }
-  return extend(problem, found, in, keep);
+  return extend(problem, found, in, keep, judges.open);
 }
 
 /// Whether something was named in a CV, and nothing of that is in the extended model.
@@ -78,7 +149,30 @@ bool all_refused(const SearchResult& found, const Selection& selection, const Mo
   return tried;
 }
 
-void decide(Diagnosis& diagnosis) {
+/// The smallest share of what a CV does that the model explains beyond a constant, over the CVs
+/// that were measured.
+double least_explained(const MatrixXd& residuals, const MatrixXd& cvs) {
+  const auto variance = [](const VectorXd& values) {
+    const double mean = values.mean();
+    return (values.array() - mean).square().mean();
+  };
+  double least = 1.0;
+  for (Index cv = 0; cv < cvs.cols(); ++cv) {
+    std::vector<double> left, measured;
+    for (Index k = 0; k < cvs.rows(); ++k)
+      if (std::isfinite(residuals(k, cv))) {
+        left.push_back(residuals(k, cv));
+        measured.push_back(cvs(k, cv));
+      }
+    if (left.empty()) continue;
+    const auto count = static_cast<Index>(left.size());
+    const double all = variance(VectorXd::Map(measured.data(), count));
+    if (all > 0.0) least = std::min(least, 1.0 - variance(VectorXd::Map(left.data(), count)) / all);
+  }
+  return least;
+}
+
+void decide(double explained, Diagnosis& diagnosis) {
   const std::ptrdiff_t blind = unknown_gains(diagnosis.channels);
   const bool strong =
       std::any_of(diagnosis.refused.begin(), diagnosis.refused.end(),
@@ -88,12 +182,60 @@ void decide(Diagnosis& diagnosis) {
     diagnosis.verdict = DiagnosisVerdict::kMismatch;
   else if (strong)
     diagnosis.reason = "what explains the samples that were fitted does not hold on the others";
+  else if (diagnosis.suspect && diagnosis.suspect->evidence > kStrongEvidence)
+    diagnosis.reason =
+        "a free run suggests a cause that the calibrated test of the channels does not confirm: "
+        "feedback, or a disturbance that wanders, can look the same";
   else if (blind > 0)
     diagnosis.reason = "the inputs move too little beside the noise: the gains of " +
                        std::to_string(blind) + " of " + std::to_string(diagnosis.channels.size()) +
                        " channels are not known to within 25 %";
+  else if (explained < kLeastExplained)
+    diagnosis.reason = "the model explains less than " + percent_text(kLeastExplained) +
+                       " of what a CV does, beyond a constant";
   else
     diagnosis.verdict = DiagnosisVerdict::kMatch;
+}
+
+/// How the inputs moved, and whether the channels of each are known.
+std::vector<InputMovement> movements(const std::vector<std::optional<double>>& outside,
+                                     const std::vector<ChannelEstimate>& channels) {
+  std::vector<InputMovement> result;
+  for (std::size_t i = 0; i < outside.size(); ++i) {
+    InputMovement& movement = result.emplace_back();
+    movement.input = static_cast<int>(i);
+    movement.outside_share = outside[i];
+    std::vector<ChannelEstimate> own;
+    for (const ChannelEstimate& channel : channels)
+      if (channel.input == movement.input) own.push_back(channel);
+    movement.excited = outside[i] && unknown_gains(own) < static_cast<std::ptrdiff_t>(own.size());
+  }
+  return result;
+}
+
+void add_horizons(const Unseen& unseen, const VectorXd& before, const VectorXd& after,
+                  CvScore& score) {
+  for (const Index horizon : unseen.horizons())
+    score.horizons.push_back(
+        {horizon, std::sqrt(mean_of_finite(squared_prediction_errors(before, horizon))),
+         std::sqrt(mean_of_finite(squared_prediction_errors(after, horizon)))});
+}
+
+/// Whether the model can be run on the data at all, and every CV was measured now and then.
+bool can_be_judged(const MatrixXd& residuals, Diagnosis& diagnosis) {
+  for (Index cv = 0; cv < residuals.cols(); ++cv) {
+    const auto column = residuals.col(cv);
+    double largest = 0.0;
+    Index known = 0;
+    for (const double value : column)
+      if (std::isfinite(value)) largest = std::max(largest, std::abs(value)), ++known;
+    if (kFewestKnownParts * known >= column.size() && largest < kDiverged) continue;
+    diagnosis.reason = largest < kDiverged
+                           ? "a CV is unknown, clipped or not to be simulated in most samples"
+                           : "the simulation or the measurements diverge";
+    return false;
+  }
+  return true;
 }
 
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
@@ -111,18 +253,35 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
   const ModelSpec base = in_channels(given);
   const ModelSpec model = with_aux_inputs(base, recording);
   const Recording fitted = part(recording, 0, diagnosis.fit_samples);
+  const MatrixXd residuals = residuals_of(model, recording);
+  if (!can_be_judged(residuals, diagnosis)) return diagnosis;
+  const ChannelTests tests(model, recording, residuals);
+  const std::vector<std::optional<double>> outside = outside_shares(recording, residuals);
+
   SearchSettings search_settings;
   search_settings.max_findings = settings.max_findings;
   search_settings.progress = settings.progress;
+  search_settings.may_name = [&](const Effect& effect) {
+    return !cause_of(effect).acts_through_channels() ||
+           tests.reject(channels_of(effect, model, base.input_count));
+  };
   const Explained explained = explain(model, base.input_count, fitted, search_settings);
   Problem& problem = *explained.problem;
   const SearchResult& found = explained.found;
   diagnosis.channels = estimate_channels(problem, found, search_settings);
+  diagnosis.inputs = movements(outside, diagnosis.channels);
 
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
-  const Selection selection = select(problem, found, unseen, [&] { settings.progress(kSearched); });
-  const ModelSpec extended = extended_model(problem, found, selection, model, unseen);
+  const Judges judges{unseen,
+                      [&](int cv, int input) {
+                        const auto i = static_cast<std::size_t>(input);
+                        return tests.reject({{cv, input}}) ||
+                               (i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside);
+                      },
+                      outside};
+  const Selection selection = select(problem, found, judges, [&] { settings.progress(kSearched); });
+  const ModelSpec extended = extended_model(problem, found, selection, model, judges);
   diagnosis.before = unseen.free_runs(model);
   diagnosis.after = unseen.free_runs(extended);
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -131,6 +290,8 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
                                      diagnosis.after.col(cv).tail(rows), unseen.block(),
                                      unseen.seed() + static_cast<std::uint64_t>(cv)));
     diagnosis.scores.back().refused = all_refused(found, selection, model, cv);
+    add_horizons(unseen, unseen.measured(cv) - diagnosis.before.col(cv).tail(rows),
+                 unseen.measured(cv) - diagnosis.after.col(cv).tail(rows), diagnosis.scores.back());
   }
   const std::vector<bool> in = repaired(selection);
   if (std::find(in.begin(), in.end(), true) != in.end())
@@ -143,7 +304,7 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
     diagnosis.after = free_runs(first, extended);
   }
   state(found, selection, problem, diagnosis);
-  decide(diagnosis);
+  decide(least_explained(residuals, recording.cvs), diagnosis);
   return diagnosis;
 }
 

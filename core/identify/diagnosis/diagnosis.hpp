@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,15 @@ struct DiagnosisSettings {
 
 enum class DiagnosisVerdict { kMatch, kMismatch, kUndetermined };
 
+/// How an input moved.
+struct InputMovement {
+  int input = 0;
+  /// From outside the loop: set-points, measured disturbances, operators, test signals. Nothing
+  /// where it stands still or the data do not suffice.
+  std::optional<double> outside_share;
+  bool excited = false;  ///< its gains are known well enough to tell a good model from a bad one
+};
+
 struct Diagnosis {
   DiagnosisVerdict verdict = DiagnosisVerdict::kUndetermined;
   std::string reason;  ///< why undetermined, or what the verdict leaves open; for a person
@@ -34,6 +44,10 @@ struct Diagnosis {
   std::vector<Finding> findings;  ///< most important first
   std::vector<Finding> refused;   ///< found, but their repair did not carry over to unseen data
   std::vector<Unexplained> unexplained;
+  /// What would explain the data best and may not be named, for the calibrated test of the channels
+  /// does not reject them.
+  std::optional<Finding> suspect;
+  std::vector<InputMovement> inputs;  ///< MVs, then DVs
   std::vector<ChannelEstimate> channels;
   ModelSpec extended;             ///< equal to the model where nothing was found
   std::vector<int> new_inputs;    ///< aux signals that `extended` takes as inputs after the model's

@@ -10,7 +10,7 @@ namespace mpm {
 using Eigen::Index;
 
 ModelSpec extend(const Problem& problem, const SearchResult& found, const std::vector<bool>& in,
-                 const std::vector<bool>& keep) {
+                 const std::vector<bool>& keep, const OpenChannels& open) {
   ModelSpec model = problem.model();
   std::vector<bool> touched(keep.size(), false);
   for (std::size_t i = 0; i < found.named.size(); ++i) {
@@ -28,6 +28,7 @@ ModelSpec extend(const Problem& problem, const SearchResult& found, const std::v
     model.output_origin(fit.cv) += data.nuisances(0, 0) * fit.beta(0);
     for (ChannelSpec& channel : model.channels) {
       if (channel.cv != fit.cv) continue;
+      if (open && !open(channel.cv, channel.input)) continue;
       ChannelError error;
       for (std::size_t b = 0; b < data.meaning.size(); ++b) {
         if (data.meaning[b].input != channel.input) continue;

@@ -1,40 +1,99 @@
 #include "core/identify/diagnosis/selection.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "core/identify/causes/catalog.hpp"
-#include "core/identify/diagnosis/extension.hpp"
+#include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/horizons.hpp"
 #include "core/identify/diagnosis/validation.hpp"
 
 namespace mpm {
 
+using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
 
-/// How much better the CVs that an effect touches are with it, each in its own s.d. of error.
-CvScore gain_of(const Effect& effect, const ModelSpec& with, const ModelSpec& without,
-                const ModelSpec& model, Unseen& unseen, std::uint64_t seed) {
-  VectorXd old_errors = VectorXd::Zero(unseen.rows()), new_errors = old_errors;
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    if (!touches(effect, model, cv)) continue;
-    const VectorXd measured = unseen.measured(cv);
-    const VectorXd new_error = (measured - unseen.simulated(with, cv)).cwiseAbs2();
-    const VectorXd old_error = (measured - unseen.simulated(without, cv)).cwiseAbs2();
-    const double scale = mean_of_finite(new_error);
-    old_errors += old_error / scale;
-    new_errors += new_error / scale;
+/// Squared errors of a model with and without an effect in the CVs that it touches, each in units
+/// of the former's mean, row by row.
+class Errors {
+ public:
+  Errors(const Effect& effect, const ModelSpec& with, const ModelSpec& without, Unseen& unseen)
+      : unseen_(unseen) {
+    for (int cv = 0; cv < with.cv_count; ++cv) {
+      if (!touches(effect, with, cv) && !touches(effect, without, cv)) continue;
+      with_.push_back(unseen.residual(with, cv));
+      without_.push_back(unseen.residual(without, cv));
+    }
   }
-  return score_errors(old_errors, new_errors, unseen.block(), seed);
+
+  [[nodiscard]] CvScore free_run(std::uint64_t seed) const {
+    Sum sum(unseen_.rows());
+    for (std::size_t j = 0; j < with_.size(); ++j)
+      sum.add(without_[j].cwiseAbs2(), with_[j].cwiseAbs2());
+    return sum.score(unseen_, seed);
+  }
+
+  [[nodiscard]] CvScore predictions(std::uint64_t seed) const {
+    Sum sum(unseen_.rows());
+    for (std::size_t j = 0; j < with_.size(); ++j)
+      for (const Index horizon : unseen_.horizons())
+        sum.add(squared_prediction_errors(without_[j], horizon),
+                squared_prediction_errors(with_[j], horizon));
+    return sum.score(unseen_, seed);
+  }
+
+ private:
+  struct Sum {
+    explicit Sum(Index rows) : before(VectorXd::Zero(rows)), after(before) {}
+    /// Of the last rows; the others count no more.
+    void add(const VectorXd& old_errors, const VectorXd& new_errors) {
+      const double scale = mean_of_finite(new_errors);
+      const Index rows = old_errors.size();
+      before.head(before.size() - rows).setConstant(std::numeric_limits<double>::quiet_NaN());
+      before.tail(rows) += old_errors / scale;
+      after.tail(rows) += new_errors / scale;
+    }
+    [[nodiscard]] CvScore score(const Unseen& unseen, std::uint64_t seed) const {
+      return score_errors(before, after, unseen.block(), seed);
+    }
+    VectorXd before, after;
+  };
+
+  Unseen& unseen_;
+  std::vector<VectorXd> with_, without_;
+};
+
+/// Whether an effect acts through inputs that move mostly from outside the loop, or nobody knows.
+bool moved_from_outside(const Effect& effect, const std::vector<std::optional<double>>& shares) {
+  const int input = effect.place.input;
+  if (input < 0 || static_cast<std::size_t>(input) >= shares.size()) return true;
+  return shares[static_cast<std::size_t>(input)].value_or(1.0) >= kMostlyOutside;
+}
+
+Fate judged(const Effect& effect, const Errors& errors, const Judges& judges, std::uint64_t seed) {
+  const CvScore free_run = errors.free_run(seed);
+  if (!cause_of(effect).acts_through_channels()) {
+    if (free_run.gain_low > 0.0) return Fate::kRepaired;
+    return free_run.rmse_after < free_run.rmse_before ? Fate::kNoBetter : Fate::kRefused;
+  }
+  const CvScore predictions = errors.predictions(seed);
+  if (!(predictions.rmse_after < predictions.rmse_before)) return Fate::kRefused;
+  if (moved_from_outside(effect, judges.outside_shares) &&
+      !(free_run.rmse_after < free_run.rmse_before))
+    return Fate::kRefused;
+  return predictions.gain_low > 0.0 ? Fate::kRepaired : Fate::kNoBetter;
 }
 
 }  // namespace
 
-Selection select(const Problem& problem, const SearchResult& found, Unseen& unseen,
+Selection select(const Problem& problem, const SearchResult& found, const Judges& judges,
                  const std::function<void()>& tell) {
   const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
   Selection selection;
+  selection.explains.assign(found.named.size(), 0.0);
   selection.order.resize(found.named.size());
   std::iota(selection.order.begin(), selection.order.end(), std::size_t{0});
   std::sort(selection.order.begin(), selection.order.end(), [&](std::size_t a, std::size_t b) {
@@ -43,18 +102,30 @@ Selection select(const Problem& problem, const SearchResult& found, Unseen& unse
   for (const Named& named : found.named)
     selection.fates.push_back(causes::is_unnamed(cause_of(named.effect)) ? Fate::kNoBetter
                                                                          : Fate::kRepaired);
+  const auto model_of = [&](std::vector<bool> in, std::size_t i, bool taken) {
+    in[i] = taken;
+    return extend(problem, found, in, keep, judges.open);
+  };
   for (const std::size_t i : selection.order) {
     tell();
     const Effect& effect = found.named[i].effect;
     if (effect.certain || selection.fates[i] != Fate::kRepaired) continue;
-    const ModelSpec with = extend(problem, found, repaired(selection), keep);
-    selection.fates[i] = Fate::kNoBetter;
-    const ModelSpec without = extend(problem, found, repaired(selection), keep);
-    const CvScore gain = gain_of(effect, with, without, problem.model(), unseen, unseen.seed() + i);
-    if (gain.gain_low > 0.0)
-      selection.fates[i] = Fate::kRepaired;
-    else if (!(gain.rmse_after < gain.rmse_before))
-      selection.fates[i] = Fate::kRefused;
+    const std::vector<bool> in = repaired(selection);
+    const Errors errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen);
+    selection.fates[i] = judged(effect, errors, judges, judges.unseen.seed() + i);
+  }
+  // Beside all that stayed.
+  const std::vector<bool> in = repaired(selection);
+  for (const std::size_t i : selection.order) {
+    tell();
+    const Effect& effect = found.named[i].effect;
+    const CvScore score =
+        Errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen)
+            .free_run(judges.unseen.seed());
+    if (score.rmse_before > 0.0) {
+      const double left = score.rmse_after / score.rmse_before;
+      selection.explains[i] = 1.0 - left * left;
+    }
   }
   return selection;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
+#include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/search/search.hpp"
 
@@ -10,22 +12,34 @@ namespace mpm {
 
 /// What unseen data say of something that was named.
 enum class Fate {
-  kRepaired,  ///< with it the free run is better: the extended model holds it
+  kRepaired,  ///< with it the model is better: the extended model holds it
   kNoBetter,  ///< not beyond doubt: named, but the extended model does without
   kRefused,   ///< worse: it does not carry over
 };
 
 /// Everything named and taken into a model at first; then, the weakest first, what does not make
-/// the free run better on unseen samples (95 % interval of the bootstrap above zero) goes.
+/// the model better on unseen samples goes. What acts through channels is judged by predictions
+/// over the horizons (95 % interval of the bootstrap above zero), and where its inputs move mostly
+/// from outside the loop the free run may not get worse; what disturbs a CV by itself is judged by
+/// the free run, for a prediction that knows the last error does not feel a level.
 struct Selection {
   std::vector<Fate> fates;         ///< of each that was named
+  std::vector<double> explains;    ///< likewise: Finding::explains
   std::vector<std::size_t> order;  ///< in which they were judged: the weakest evidence first
+};
+
+/// What a selection is made by.
+struct Judges {
+  Unseen& unseen;
+  /// Which channels may be corrected a little with what was found.
+  OpenChannels open;
+  const std::vector<std::optional<double>>& outside_shares;  ///< per input
 };
 
 /// `tell` is called before each and may throw to end it all. What has no name repairs nothing, what
 /// the data show themselves is not judged.
-[[nodiscard]] Selection select(const Problem& problem, const SearchResult& found, Unseen& unseen,
-                               const std::function<void()>& tell);
+[[nodiscard]] Selection select(const Problem& problem, const SearchResult& found,
+                               const Judges& judges, const std::function<void()>& tell);
 
 /// Those with the fate kRepaired.
 [[nodiscard]] std::vector<bool> repaired(const Selection& selection);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/horizons.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
 
@@ -25,6 +26,7 @@ Unseen::Unseen(const Recording& recording, Index rows, const ModelSpec& model, s
     : simulator_(recording),
       rows_(rows),
       block_(static_cast<Index>(kBlockTimeConstants * slowest_samples(model)) + kBlockRows),
+      horizons_(horizons_of(model, rows)),
       seed_(seed) {}
 
 Eigen::VectorXd Unseen::measured(int cv) const {

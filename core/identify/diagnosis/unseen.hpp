@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/identify/fit/simulator.hpp"
 
@@ -17,6 +18,12 @@ class Unseen {
   [[nodiscard]] Eigen::VectorXd simulated(const ModelSpec& model, int cv);
   /// All CVs on the whole recording, samples x CVs.
   [[nodiscard]] Eigen::MatrixXd free_runs(const ModelSpec& model);
+  /// Measured minus simulated on the unseen rows; NaN where unknown.
+  [[nodiscard]] Eigen::VectorXd residual(const ModelSpec& model, int cv) {
+    return measured(cv) - simulated(model, cv);
+  }
+  /// At which predictions are judged, samples; ascending.
+  [[nodiscard]] const std::vector<Eigen::Index>& horizons() const { return horizons_; }
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
   /// Rows of a block of the bootstrap.
   [[nodiscard]] Eigen::Index block() const { return block_; }
@@ -25,6 +32,7 @@ class Unseen {
  private:
   Simulator simulator_;
   Eigen::Index rows_, block_;
+  std::vector<Eigen::Index> horizons_;
   std::uint64_t seed_;
 };
 

@@ -2,6 +2,10 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
+
+#include "core/identify/diagnosis/horizons.hpp"
+
 namespace mpm {
 
 /// One CV's free-running simulation on the samples that no fit has seen.
@@ -11,6 +15,7 @@ struct CvScore {
   /// 95 % block-bootstrap interval of 1 - rmse_after / rmse_before.
   double gain_low = 0.0, gain_high = 0.0;
   bool refused = false;  ///< an extension was fitted and did not carry over
+  std::vector<Horizon> horizons;
 };
 
 /// Of the values that are; 1 where there are none or all are 0.

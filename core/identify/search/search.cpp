@@ -55,6 +55,7 @@ class Search {
     drop_superfluous();
     rewrite();
     SearchResult result;
+    result.suspect = suspect();
     result.fit = everything();
     for (std::size_t i = 0; i < accepted_.size(); ++i) {
       named_[i].effect = result.fit.effects[i];
@@ -71,13 +72,18 @@ class Search {
     if (settings_.progress) settings_.progress(share_);
   }
 
-  /// All that may still be wrong, each cause's starts.
-  [[nodiscard]] std::vector<Effect> proposals() {
+  [[nodiscard]] bool may_name(const Effect& effect) const {
+    return !settings_.may_name || settings_.may_name(effect);
+  }
+
+  /// All that may still be wrong, each cause's starts: what may be named, or what may not.
+  [[nodiscard]] std::vector<Effect> proposals(bool nameable) {
     std::vector<Effect> all;
     for (const Cause* cause : causes::all()) {
       std::vector<Effect> mine;
       cause->propose({problem_, accepted_, nulls_}, mine);
       for (Effect& effect : mine) {
+        if (may_name(effect) != nameable) continue;
         const bool open =
             std::all_of(accepted_.begin(), accepted_.end(),
                         [&](const Effect& accepted) { return cause->goes_with(accepted, effect); });
@@ -87,11 +93,11 @@ class Search {
     return all;
   }
 
-  std::vector<Effect> shortlist() {
+  std::vector<Effect> shortlist(bool nameable) {
     nulls_.clear();
     for (int cv = 0; cv < problem_.model().cv_count; ++cv)
       nulls_.push_back(trials_.without({cv}).cvs.front());
-    const std::vector<Effect> all = proposals();
+    const std::vector<Effect> all = proposals(nameable);
     Screening& screening = screening_.emplace(problem_, accepted_, nulls_);
     std::vector<double> scores;
     for (const Effect& effect : all) {
@@ -121,10 +127,12 @@ class Search {
   bool find_one() {
     trials_.settle(last_.cvs.empty() ? nullptr : &last_);
     std::vector<Trial> trials;
-    for (const Effect& effect : shortlist()) trials.push_back(trials_.attempt(effect, kTrialSteps));
+    for (const Effect& effect : shortlist(true))
+      trials.push_back(trials_.attempt(effect, kTrialSteps));
     if (trials.empty()) return false;
     std::sort(trials.begin(), trials.end(), more_probable);
     look_closer(trials_, *screening_, trials);
+    std::erase_if(trials, [this](const Trial& trial) { return !may_name(trial.candidate); });
     std::sort(trials.begin(), trials.end(), more_probable);
     for (std::size_t i = 0; i < std::min(kRefined, trials.size()); ++i) {
       if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - kOnsetWorthMoving)
@@ -147,6 +155,19 @@ class Search {
     if (again[0].odds < settings_.decisive) return false;
     accept(again);
     return true;
+  }
+
+  /// The best of what may not be named, beside all that was.
+  std::optional<Named> suspect() {
+    if (!settings_.may_name) return std::nullopt;
+    trials_.settle(last_.cvs.empty() ? nullptr : &last_);
+    std::optional<Named> best;
+    for (const Effect& effect : shortlist(false)) {
+      const Trial trial = trials_.attempt(effect, kTrialSteps);
+      if (trial.odds < settings_.decisive || (best && best->evidence >= trial.odds)) continue;
+      best = Named{trial.candidate, trial.odds, 0.0, {}};
+    }
+    return best;
   }
 
   void accept(const std::vector<Trial>& trials) {
@@ -183,7 +204,10 @@ class Search {
     for (std::size_t i = 0; i < accepted_.size(); ++i)
       for (const Rewrite& rewrite :
            cause_of(accepted_[i]).rewrites(i, accepted_, problem_, settings_.materiality))
-        if (take(rewrite, i)) return;
+        if (std::all_of(rewrite.with.begin(), rewrite.with.end(),
+                        [this](const Effect& effect) { return may_name(effect); }) &&
+            take(rewrite, i))
+          return;
   }
 
   /// The effects that come in stand for the one at `mine`, which stays as their rival.

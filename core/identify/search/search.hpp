@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/identify/causes/finding.hpp"
@@ -19,6 +20,8 @@ struct SearchSettings {
   Tolerances materiality = {0.05, 0.09, 0.45};
   /// Nor is what moves a CV by less than this share of its own s.d.
   double visible = 0.015;
+  /// Which effects may be named at all; empty = all. Others are only told of as suspects.
+  std::function<bool(const Effect&)> may_name = {};
   /// Called at least once per fit with the share done; may throw to end the search at once.
   std::function<bool(double)> progress = {};
 };
@@ -34,6 +37,8 @@ struct Named {
 struct SearchResult {
   std::vector<Named> named;  ///< in the order of the effects in `fit`, with their fitted numbers
   Fit fit;                   ///< all of them together, all CVs
+  /// What would explain more than all that was named and may not be named; the most probable one.
+  std::optional<Named> suspect;
 };
 
 /// Finds what explains the data, one cause after the other: the most probable of all candidates is

@@ -9,7 +9,7 @@ namespace {
 
 // Rates may be tiny and recordings long: no overflow on the way back to ns.
 std::int64_t plus(std::int64_t time, double ns) {
-  constexpr auto kMost = static_cast<double>(std::numeric_limits<std::int64_t>::max() / 2);
+  constexpr auto kMost = 0.5 * static_cast<double>(std::numeric_limits<std::int64_t>::max());
   return time + std::llround(std::clamp(ns, -kMost, kMost));
 }
 

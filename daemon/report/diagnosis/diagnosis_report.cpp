@@ -75,12 +75,45 @@ Json finding_json(const DiagnosisRun& run, const Finding& finding) {
     json["rivals"].push_back(rival_json(run, rival, names));
   }
   json["evidence"] = finding.evidence;
+  json["in_model"] = finding.repaired;
+  if (!finding.refused.empty()) json["refused"] = finding.refused;
+  json["explains"] = finding.explains;
   return json;
 }
 
 Json findings_json(const DiagnosisRun& run, const std::vector<Finding>& findings) {
   Json json = Json::array();
   for (const Finding& finding : findings) json.push_back(finding_json(run, finding));
+  return json;
+}
+
+Json horizons_json(const CvScore& score) {
+  Json json = Json::array();
+  for (const Horizon& horizon : score.horizons)
+    json.push_back({{"samples", horizon.samples},
+                    {"rmse_before", horizon.rmse_before},
+                    {"rmse_after", horizon.rmse_after}});
+  return json;
+}
+
+Json inputs_json(const DiagnosisRun& run) {
+  const SignalNames names = names_of(run);
+  Json json = Json::array();
+  for (const InputMovement& movement : run.diagnosis.inputs)
+    json.push_back(
+        {{"mv", names.input(movement.input).tag},
+         {"outside_share", movement.outside_share ? Json(*movement.outside_share) : Json(nullptr)},
+         {"excited", movement.excited}});
+  return json;
+}
+
+/// What may not be named and would explain most, or null.
+Json suspect_json(const DiagnosisRun& run) {
+  if (!run.diagnosis.suspect) return nullptr;
+  const SignalNames names = names_of(run);
+  Json json = subject_json(run.diagnosis.suspect->subject, names);
+  json["evidence"] = run.diagnosis.suspect->evidence;
+  json["text"] = names.subject(run.diagnosis.suspect->subject);
   return json;
 }
 
@@ -95,7 +128,8 @@ Json scores_json(const DiagnosisRun& run) {
                     {"fit_after", score.fit_after},
                     {"gain_interval", {score.gain_low, score.gain_high}},
                     {"refused", score.refused},
-                    {"unit", run.unit.cv[cv].unit}});
+                    {"unit", run.unit.cv[cv].unit},
+                    {"horizons", horizons_json(score)}});
   }
   return json;
 }
@@ -228,6 +262,8 @@ nlohmann::ordered_json to_json(const DiagnosisRun& run) {
             {"extended_model", "extended.yaml"},
             {"refused", findings_json(run, diagnosis.refused)},
             {"unexplained", unexplained_json(run)},
+            {"suspect", suspect_json(run)},
+            {"inputs", inputs_json(run)},
             {"channels", channels_json(run)},
             {"closed_loop", closed_loop_json(run)}};
   json["made_by"] = {{"program", run.program},

@@ -1,0 +1,95 @@
+#include "core/identify/evidence/channel_tests.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/identify/evidence/calibration.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
+#include "core/model/linear_model.hpp"
+#include "core/monitor/derived_settings.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+RegressionShape shape_of(const ModelSpec& model, const DerivedSettings& derived) {
+  return {model.input_count, model.cv_count, derived.fir_lags, derived.residual_order,
+          derived.tail_poles};
+}
+
+/// The monitor's regression, with ever fewer lags until the rows suffice for it; nothing where they
+/// never do.
+std::optional<DerivedSettings> settings_for(const ModelSpec& model, const LinearModel& linear,
+                                            double rows) {
+  MonitorSettings monitor;
+  for (;;) {
+    DerivedSettings derived = derive_settings(model, linear, monitor, AlarmSettings{});
+    if (kTestRowsPerColumn * shape_of(model, derived).columns() <= rows) return derived;
+    if (derived.residual_order > kFewestResidualLags)
+      monitor.residual_order = std::max(kFewestResidualLags, derived.residual_order / 2);
+    else if (derived.fir_lags > kFewestLags)
+      monitor.fir_lags = std::max(kFewestLags, derived.fir_lags / 2);
+    else
+      return std::nullopt;
+  }
+}
+
+double fewest_known(const MatrixXd& residuals) {
+  double fewest = std::numeric_limits<double>::infinity();
+  for (Index j = 0; j < residuals.cols(); ++j) {
+    const auto known = static_cast<double>(residuals.col(j).array().isFinite().count());
+    if (known > 0.0) fewest = std::min(fewest, known);
+  }
+  return std::isfinite(fewest) ? fewest : 0.0;
+}
+
+}  // namespace
+
+ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
+                           const MatrixXd& residuals)
+    : cvs_(model.cv_count),
+      p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)) {
+  const LinearModel linear(model);
+  const std::optional<DerivedSettings> settings =
+      settings_for(model, linear, fewest_known(residuals));
+  if (!settings) return;
+  const RegressionShape shape = shape_of(model, *settings);
+  MismatchDetector detector(shape, {MemoryLength{}}, settings->remembered,
+                            settings->evaluation_stride, linear);
+  VectorXd inputs(model.input_count);
+  for (Index k = 0; k < recording.samples(); ++k) {
+    inputs.head(recording.inputs.cols()) = recording.inputs.row(k);
+    inputs.tail(recording.aux.cols()) = recording.aux.row(k);
+    detector.update(inputs, residuals.row(k).transpose());
+  }
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    detector.fold(cv);
+    if (!(detector.memory(cv).freedom() >= shape.columns())) continue;
+    detector.evaluate(cv);
+    for (int input = 0; input < model.input_count; ++input) {
+      const ChannelEvidence& evidence = detector.evidence(cv, input);
+      if (evidence.numerator_freedom > 0.0)
+        p_values_[static_cast<std::size_t>(input * cvs_ + cv)] = evidence.p_value;
+    }
+  }
+}
+
+bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels) const {
+  double smallest = 1.0;
+  double tested = 0.0;
+  for (const auto& [cv, input] : channels) {
+    const std::optional<double> p = p_value(cv, input);
+    if (!p) continue;
+    smallest = std::min(smallest, *p);
+    tested += 1.0;
+  }
+  return tested > 0.0 && smallest * tested <= kRejected;
+}
+
+}  // namespace mpm

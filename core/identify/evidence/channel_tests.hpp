@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/identify/fit/recording.hpp"
+#include "core/model/model_spec.hpp"
+
+namespace mpm {
+
+/// What the calibrated test of the monitor (`MismatchDetector`) says of every channel on a whole
+/// recording, all rows counting alike: whether the model's error of a CV goes with the past of an
+/// input. It is valid under feedback and whatever disturbs the CV, which no free run is: what it
+/// does not reject is no reason to name anything in that channel.
+class ChannelTests {
+ public:
+  /// `model` in channels, with the recording's aux signals as inputs after its own. `residuals`:
+  /// samples x CVs, measured minus free run, NaN where unknown.
+  ChannelTests(const ModelSpec& model, const Recording& recording,
+               const Eigen::MatrixXd& residuals);
+
+  /// 0..1 of the channel's match; nothing where the data do not suffice for a test or the input
+  /// does not move. Aux signals are numbered after the inputs.
+  [[nodiscard]] std::optional<double> p_value(int cv, int input) const {
+    return p_values_[static_cast<std::size_t>(input * cvs_ + cv)];
+  }
+  /// Whether some of these channels do not match: the smallest p-value times their number.
+  [[nodiscard]] bool reject(const std::vector<std::pair<int, int>>& channels) const;
+
+ private:
+  int cvs_;
+  std::vector<std::optional<double>> p_values_;  // per channel, input-major
+};
+
+}  // namespace mpm
