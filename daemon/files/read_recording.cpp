@@ -19,7 +19,7 @@ constexpr double kStill = 1e-9;
 class Table {
  public:
   explicit Table(const SignalCounts& counts)
-      : counts_(counts), width_(counts.inputs() + counts.cv + counts.aux) {}
+      : counts_(counts), width_(counts.inputs() + 2 * counts.cv + counts.aux) {}
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] std::int64_t rows() const {
@@ -32,13 +32,14 @@ class Table {
   /// Returns how many inputs and CVs are unusable.
   int add(const Frame& frame) {
     int bad = 0;
-    for (const SignalKind kind :
-         {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kAux}) {
+    for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
+                                  SignalKind::kAux, SignalKind::kSetpoint}) {
       const SignalBlock& block = frame[kind];
       for (int i = 0; i < block.size(); ++i) {
         const bool usable = block.usable(i);
         values_.push_back(usable ? block.values(i) : std::numeric_limits<double>::quiet_NaN());
-        bad += !usable && kind != SignalKind::kAux ? 1 : 0;
+        const bool needed = kind != SignalKind::kAux && kind != SignalKind::kSetpoint;
+        bad += !usable && needed ? 1 : 0;
       }
     }
     return bad;
@@ -48,7 +49,8 @@ class Table {
     const Eigen::Map<const RowMajor> all(values_.data(), rows(), width_);
     recording.inputs = all.leftCols(counts_.inputs());
     recording.cvs = all.middleCols(counts_.inputs(), counts_.cv);
-    recording.aux = all.rightCols(counts_.aux);
+    recording.aux = all.middleCols(counts_.inputs() + counts_.cv, counts_.aux);
+    recording.setpoints = all.rightCols(counts_.cv);
   }
 
  private:

@@ -39,6 +39,7 @@ class OutputDisturbance : public Cause {
 namespace causes {
 /// A constant offset of a CV, throughout the data, as a step.
 [[nodiscard]] Effect constant_offset(int cv, double level, double noise_sd);
+[[nodiscard]] bool is_constant_offset(const Effect& effect);
 }  // namespace causes
 
 }  // namespace mpm

@@ -98,6 +98,10 @@ const StepDisturbance& the_step() {
 
 const Cause& step_disturbance() { return the_step(); }
 
+bool is_constant_offset(const Effect& effect) {
+  return effect.edit == &the_step() && effect.onset == 0;
+}
+
 Effect constant_offset(int cv, double level, double noise_sd) {
   return the_step().offset(cv, level, noise_sd);
 }

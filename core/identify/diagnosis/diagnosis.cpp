@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
@@ -76,11 +77,60 @@ const char* why_not_in_model(Fate fate) {
   return "";
 }
 
+/// What stays of what was found, once nothing stands on what unseen data refuse.
+struct Kept {
+  SearchResult found;
+  Selection selection;  ///< refuses nothing of it
+  std::vector<Effect> refused_effects;
+  std::vector<Finding> refused;  ///< the same, most important last
+};
+
+bool is_refused(const SearchResult& found, const Selection& selection, std::size_t i) {
+  return selection.fates[i] == Fate::kRefused && !found.named[i].effect.certain;
+}
+
+/// Takes out what is refused and fits the rest anew, until nothing is refused any more: what only
+/// made sense beside it goes too.
+Kept keep(Problem& problem, const SearchResult& found, const Judges& judges,
+          const SearchSettings& settings) {
+  const auto judge = [&](const SearchResult& of) {
+    return select(problem, of, judges, [&] { settings.progress(kSearched); });
+  };
+  Kept kept{found, judge(found), {}, {}};
+  for (;;) {
+    const SearchResult& before = kept.found;
+    std::vector<bool> out;
+    for (std::size_t i = 0; i < before.named.size(); ++i)
+      out.push_back(is_refused(before, kept.selection, i));
+    if (std::find(out.begin(), out.end(), true) == out.end()) return kept;
+    SearchResult rest = without(problem, before, out, settings);
+    const auto stays = [&](const Effect& effect) {
+      return std::any_of(rest.named.begin(), rest.named.end(), [&](const Named& named) {
+        return subject_of(named.effect) == subject_of(effect) && named.effect.onset == effect.onset;
+      });
+    };
+    for (const std::size_t i : kept.selection.order) {
+      const Effect& effect = before.named[i].effect;
+      if (causes::is_unnamed(cause_of(effect)) || (!out[i] && stays(effect))) continue;
+      if (!out[i] && causes::is_constant_offset(effect)) continue;
+      Finding finding = to_finding(before, i, problem);
+      finding.repaired = false;
+      finding.refused = out[i] ? why_not_in_model(Fate::kRefused)
+                               : "without what was refused it explains nothing";
+      finding.explains = kept.selection.explains[i];
+      kept.refused.push_back(std::move(finding));
+      kept.refused_effects.push_back(effect);
+    }
+    kept.selection = judge(rest);
+    kept.found = std::move(rest);
+  }
+}
+
 /// What was named, as findings, and what has no name; most important first, what no repair removes
 /// last.
-void state(const SearchResult& found, const Selection& selection, Problem& problem,
-           Diagnosis& diagnosis) {
-  std::vector<Finding> all;
+void state(const Kept& kept, Problem& problem, const Judges& judges, Diagnosis& diagnosis) {
+  const SearchResult& found = kept.found;
+  const Selection& selection = kept.selection;
   std::vector<bool> unclear(static_cast<std::size_t>(problem.model().cv_count), false);
   const auto mark_unclear = [&](const Effect& effect) {
     for (const int cv : touched(effect, problem)) unclear[static_cast<std::size_t>(cv)] = true;
@@ -88,19 +138,20 @@ void state(const SearchResult& found, const Selection& selection, Problem& probl
   for (std::size_t i = 0; i < found.named.size(); ++i) {
     const Effect& effect = found.named[i].effect;
     const Cause& cause = cause_of(effect);
-    Finding& finding = all.emplace_back(to_finding(found, i, problem));
+    Finding finding = to_finding(found, i, problem);
     finding.repaired = selection.fates[i] == Fate::kRepaired;
-    finding.refused = why_not_in_model(selection.fates[i]);
+    finding.refused = effect.place.aux >= judges.aux ? "a set-point is no input of a model"
+                                                     : why_not_in_model(selection.fates[i]);
     finding.explains = selection.explains[i];
-    const bool refused = selection.fates[i] == Fate::kRefused;
-    if (causes::is_unnamed(cause))
+    if (causes::is_unnamed(cause)) {
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
-    else if (!refused && !(cause.may_be_nothing(finding) && !effect.certain))
-      diagnosis.findings.push_back(finding);
-    if (refused || causes::is_unnamed(cause)) mark_unclear(effect);
+      mark_unclear(effect);
+    } else if (effect.certain || !cause.may_be_nothing(finding)) {
+      diagnosis.findings.push_back(std::move(finding));
+    }
   }
-  for (const std::size_t i : selection.order)
-    if (selection.fates[i] == Fate::kRefused) diagnosis.refused.push_back(all[i]);
+  diagnosis.refused = kept.refused;
+  for (const Effect& effect : kept.refused_effects) mark_unclear(effect);
   std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.evidence > b.evidence; });
   if (found.suspect) {
@@ -137,9 +188,11 @@ ModelSpec extended_model(const Problem& problem, const SearchResult& found,
 }
 
 /// Whether something was named in a CV, and nothing of that is in the extended model.
-bool all_refused(const SearchResult& found, const Selection& selection, const ModelSpec& model,
-                 int cv) {
-  bool tried = false;
+bool all_refused(const Kept& kept, const ModelSpec& model, int cv) {
+  const SearchResult& found = kept.found;
+  const Selection& selection = kept.selection;
+  bool tried = std::any_of(kept.refused_effects.begin(), kept.refused_effects.end(),
+                           [&](const Effect& effect) { return touches(effect, model, cv); });
   for (std::size_t i = 0; i < found.named.size(); ++i) {
     const Effect& effect = found.named[i].effect;
     if (causes::is_unnamed(cause_of(effect)) || !touches(effect, model, cv)) continue;
@@ -239,8 +292,12 @@ bool can_be_judged(const MatrixXd& residuals, Diagnosis& diagnosis) {
 }
 
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
-Diagnosis run(const ModelSpec& given, const Recording& recording, const Recording* validation,
+Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {
+  const Recording recording = with_setpoints(measured);
+  std::optional<Recording> validation;
+  if (unseen_runs != nullptr) validation = with_setpoints(*unseen_runs);
+  const auto aux = static_cast<int>(measured.aux.cols());
   const Index samples = recording.samples();
   Diagnosis diagnosis;
   diagnosis.samples = samples;
@@ -255,33 +312,31 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
   const Recording fitted = part(recording, 0, diagnosis.fit_samples);
   const MatrixXd residuals = residuals_of(model, recording);
   if (!can_be_judged(residuals, diagnosis)) return diagnosis;
-  const ChannelTests tests(model, recording, residuals);
+  const ChannelTests tests(with_aux_inputs(base, measured), measured, residuals);
   const std::vector<std::optional<double>> outside = outside_shares(recording, residuals);
 
   SearchSettings search_settings;
   search_settings.max_findings = settings.max_findings;
   search_settings.progress = settings.progress;
   search_settings.may_name = [&](const Effect& effect) {
-    return !cause_of(effect).acts_through_channels() ||
+    return !cause_of(effect).acts_through_channels() || effect.place.aux >= aux ||
            tests.reject(channels_of(effect, model, base.input_count));
   };
   const Explained explained = explain(model, base.input_count, fitted, search_settings);
   Problem& problem = *explained.problem;
-  const SearchResult& found = explained.found;
-  diagnosis.channels = estimate_channels(problem, found, search_settings);
-  diagnosis.inputs = movements(outside, diagnosis.channels);
-
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
-  const Judges judges{unseen,
+  const Judges judges{unseen, aux,
                       [&](int cv, int input) {
                         const auto i = static_cast<std::size_t>(input);
                         return tests.reject({{cv, input}}) ||
                                (i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside);
                       },
                       outside};
-  const Selection selection = select(problem, found, judges, [&] { settings.progress(kSearched); });
-  const ModelSpec extended = extended_model(problem, found, selection, model, judges);
+  const Kept kept = keep(problem, explained.found, judges, search_settings);
+  diagnosis.channels = estimate_channels(problem, kept.found, search_settings);
+  diagnosis.inputs = movements(outside, diagnosis.channels);
+  const ModelSpec extended = extended_model(problem, kept.found, kept.selection, model, judges);
   diagnosis.before = unseen.free_runs(model);
   diagnosis.after = unseen.free_runs(extended);
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -289,11 +344,11 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
     diagnosis.scores.push_back(score(unseen.measured(cv), diagnosis.before.col(cv).tail(rows),
                                      diagnosis.after.col(cv).tail(rows), unseen.block(),
                                      unseen.seed() + static_cast<std::uint64_t>(cv)));
-    diagnosis.scores.back().refused = all_refused(found, selection, model, cv);
+    diagnosis.scores.back().refused = all_refused(kept, model, cv);
     add_horizons(unseen, unseen.measured(cv) - diagnosis.before.col(cv).tail(rows),
                  unseen.measured(cv) - diagnosis.after.col(cv).tail(rows), diagnosis.scores.back());
   }
-  const std::vector<bool> in = repaired(selection);
+  const std::vector<bool> in = repaired(kept.selection);
   if (std::find(in.begin(), in.end(), true) != in.end())
     diagnosis.extended = finish(extended, base, diagnosis.new_inputs);
   if (validation) {
@@ -303,7 +358,7 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
     diagnosis.before = free_runs(first, model);
     diagnosis.after = free_runs(first, extended);
   }
-  state(found, selection, problem, diagnosis);
+  state(kept, problem, judges, diagnosis);
   decide(least_explained(residuals, recording.cvs), diagnosis);
   return diagnosis;
 }

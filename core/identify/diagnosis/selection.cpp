@@ -99,9 +99,11 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
   std::sort(selection.order.begin(), selection.order.end(), [&](std::size_t a, std::size_t b) {
     return found.named[a].evidence < found.named[b].evidence;
   });
-  for (const Named& named : found.named)
-    selection.fates.push_back(causes::is_unnamed(cause_of(named.effect)) ? Fate::kNoBetter
-                                                                         : Fate::kRepaired);
+  for (const Named& named : found.named) {
+    const bool repairable =
+        !causes::is_unnamed(cause_of(named.effect)) && named.effect.place.aux < judges.aux;
+    selection.fates.push_back(repairable ? Fate::kRepaired : Fate::kNoBetter);
+  }
   const auto model_of = [&](std::vector<bool> in, std::size_t i, bool taken) {
     in[i] = taken;
     return extend(problem, found, in, keep, judges.open);

@@ -31,6 +31,7 @@ struct Selection {
 /// What a selection is made by.
 struct Judges {
   Unseen& unseen;
+  int aux = 0;  ///< aux signals; those after them are set-points, which are no inputs of a model
   /// Which channels may be corrected a little with what was found.
   OpenChannels open;
   const std::vector<std::optional<double>>& outside_shares;  ///< per input

@@ -12,9 +12,15 @@ struct Recording {
   Eigen::MatrixXd inputs;      ///< samples x model inputs (MVs, then DVs), own units
   Eigen::MatrixXd cvs;         ///< samples x CVs, CV units
   Eigen::MatrixXd aux;         ///< samples x measured signals that the model does not use
+  /// Samples x CVs, CV units; a column of NaN for a CV without one, or no columns at all.
+  Eigen::MatrixXd setpoints = {};
 
   [[nodiscard]] Eigen::Index samples() const { return cvs.rows(); }
 };
+
+/// The same with the set-points as measured signals behind the aux ones: what moves with a
+/// set-point is no error of a channel.
+[[nodiscard]] Recording with_setpoints(const Recording& recording);
 
 /// Some rows of a recording, on the same clock.
 [[nodiscard]] Recording part(const Recording& recording, Eigen::Index first, Eigen::Index count);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/search/calibration.hpp"
 #include "core/identify/search/conclude.hpp"
 #include "core/identify/search/odds.hpp"
@@ -54,8 +55,27 @@ class Search {
     }
     drop_superfluous();
     rewrite();
-    SearchResult result;
+    SearchResult result = conclude();
     result.suspect = suspect();
+    return result;
+  }
+
+  /// What was found, without those that are `out`.
+  SearchResult run_without(const SearchResult& found, const std::vector<bool>& out) {
+    for (std::size_t i = 0; i < found.named.size(); ++i) {
+      if (out[i] || causes::is_constant_offset(found.named[i].effect)) continue;
+      accepted_.push_back(found.named[i].effect);
+      named_.push_back(found.named[i]);
+    }
+    drop_superfluous(0);
+    SearchResult result = conclude();
+    result.suspect = found.suspect;
+    return result;
+  }
+
+ private:
+  SearchResult conclude() {
+    SearchResult result;
     result.fit = everything();
     for (std::size_t i = 0; i < accepted_.size(); ++i) {
       named_[i].effect = result.fit.effects[i];
@@ -66,7 +86,6 @@ class Search {
     return result;
   }
 
- private:
   /// May throw, to end it all.
   void report() const {
     if (settings_.progress) settings_.progress(share_);
@@ -201,13 +220,18 @@ class Search {
   /// Says what was accepted with fewer parts wrong, where a cause knows how and that explains the
   /// data no worse.
   void rewrite() {
+    while (rewrite_one()) report();
+  }
+
+  bool rewrite_one() {
     for (std::size_t i = 0; i < accepted_.size(); ++i)
       for (const Rewrite& rewrite :
            cause_of(accepted_[i]).rewrites(i, accepted_, problem_, settings_.materiality))
         if (std::all_of(rewrite.with.begin(), rewrite.with.end(),
                         [this](const Effect& effect) { return may_name(effect); }) &&
             take(rewrite, i))
-          return;
+          return true;
+    return false;
   }
 
   /// The effects that come in stand for the one at `mine`, which stays as their rival.
@@ -272,9 +296,9 @@ class Search {
 
   Fit everything() { return problem_.fit(accepted_, 0, all_cvs(), kJointSteps); }
 
-  void drop_superfluous() {
-    bool dropped = accepted_.size() > 1;
-    while (dropped && accepted_.size() > 1) {
+  void drop_superfluous(std::size_t fewest = 1) {
+    bool dropped = accepted_.size() > fewest;
+    while (dropped && accepted_.size() > fewest) {
       dropped = false;
       const Fit all = everything();
       for (std::size_t i = 0; i < accepted_.size() && !dropped; ++i) {
@@ -310,6 +334,11 @@ class Search {
 
 SearchResult search(Problem& problem, const SearchSettings& settings) {
   return Search(problem, settings).run();
+}
+
+SearchResult without(Problem& problem, const SearchResult& found, const std::vector<bool>& out,
+                     const SearchSettings& settings) {
+  return Search(problem, settings).run_without(found, out);
 }
 
 }  // namespace mpm

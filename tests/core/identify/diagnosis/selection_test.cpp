@@ -51,7 +51,7 @@ struct Bench {
 
   Selection select_on(const Recording& recording, Index rows) {
     Unseen unseen(recording, rows, model, 1);
-    return select(problem, found, {unseen, {}, {1.0, 1.0}}, [this] { ++told; });
+    return select(problem, found, {unseen, 0, {}, {1.0, 1.0}}, [this] { ++told; });
   }
 };
 
