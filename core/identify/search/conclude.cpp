@@ -52,8 +52,9 @@ void widen_kinked(Problem& problem, SearchResult& result, const std::function<vo
   }
 }
 
-void name_levels(const Problem& problem, SearchResult& result) {
+void name_levels(const Problem& problem, const std::vector<int>& except, SearchResult& result) {
   for (CvFit& fit : result.fit.cvs) {
+    if (std::find(except.begin(), except.end(), fit.cv) != except.end()) continue;
     // An input that the model left out has an operating point that nobody knows.
     const bool new_input =
         std::any_of(result.named.begin(), result.named.end(), [&](const Named& named) {

@@ -63,7 +63,10 @@ class Search {
   /// What was found, without those that are `out`.
   SearchResult run_without(const SearchResult& found, const std::vector<bool>& out) {
     for (std::size_t i = 0; i < found.named.size(); ++i) {
-      if (out[i] || causes::is_constant_offset(found.named[i].effect)) continue;
+      const Effect& effect = found.named[i].effect;
+      const bool offset = causes::is_constant_offset(effect);
+      if (offset && out[i]) no_level_.push_back(effect.place.cv);
+      if (out[i] || offset) continue;  // those that stay are named again in the end
       accepted_.push_back(found.named[i].effect);
       named_.push_back(found.named[i]);
     }
@@ -82,7 +85,7 @@ class Search {
       result.named.push_back(named_[i]);
     }
     widen_kinked(problem_, result, [this] { report(); });
-    name_levels(problem_, result);
+    name_levels(problem_, no_level_, result);
     return result;
   }
 
@@ -324,6 +327,7 @@ class Search {
   double share_ = 0.0;  // of the work done, as last told
   std::vector<Effect> accepted_;
   std::vector<Named> named_;
+  std::vector<int> no_level_;  // CVs of which no constant offset is to be named
   Trials trials_;
   std::vector<CvFit> nulls_;  // of this round, one per CV; what the screening looks at
   std::optional<Screening> screening_;

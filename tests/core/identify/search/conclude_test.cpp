@@ -43,7 +43,7 @@ TEST_CASE("a level that is far off is a disturbance as old as the data") {
   const VectorXd u = test::telegraph(1, kRows, 12);
   Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.5);
   REQUIRE(bench.result.named.empty());
-  name_levels(bench.problem, bench.result);
+  name_levels(bench.problem, {}, bench.result);
   REQUIRE(bench.result.named.size() == 1);
   const Effect& level = bench.result.named[0].effect;
   CHECK(subject_of(level) == Subject{&causes::step_disturbance(), {0}});
@@ -63,7 +63,7 @@ TEST_CASE("a level within the noise is a small error") {
   const VectorXd u = test::telegraph(1, kRows, 12);
   Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.13);
   const VectorXd beta = bench.result.fit.cvs[0].beta;
-  name_levels(bench.problem, bench.result);
+  name_levels(bench.problem, {}, bench.result);
   CHECK(bench.result.named.empty());
   CHECK(bench.result.fit.cvs[0].beta == beta);
 }
@@ -75,7 +75,7 @@ TEST_CASE("the level of a CV with a new input is that input's operating point") 
   named.effect.edit = &causes::unmodelled_input();
   named.effect.place = {0, -1, 0};
   bench.result.named.push_back(named);
-  name_levels(bench.problem, bench.result);
+  name_levels(bench.problem, {}, bench.result);
   CHECK(bench.result.named.size() == 1);
 }
 
