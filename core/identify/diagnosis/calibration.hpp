@@ -45,6 +45,13 @@ inline constexpr double kLeastExplained = 0.1;
 /// Movement of an input counts as coming from outside the loop from this share on.
 inline constexpr double kMostlyOutside = 0.5;
 
+/// Something new is looked for in the rows kept for validation where a CV's mean square residual
+/// there is so many times that of the rows before; what begins so much (share of the rows before)
+/// earlier is counted in, and so much is named at most.
+inline constexpr double kGrown = 1.5;
+inline constexpr double kLateMargin = 0.05;
+inline constexpr int kMostLate = 2;
+
 /// One of so many samples of a CV must be known.
 inline constexpr Eigen::Index kFewestKnownParts = 10;
 /// Values beyond this are no measurements and no simulation.

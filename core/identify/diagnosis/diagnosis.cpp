@@ -9,6 +9,7 @@
 #include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/extension.hpp"
+#include "core/identify/diagnosis/late.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
@@ -359,6 +360,10 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
     diagnosis.after = free_runs(first, extended);
   }
   state(kept, problem, judges, diagnosis);
+  if (!validation)
+    for (Finding& late :
+         find_late(extended, base.input_count, recording, diagnosis.fit_samples, search_settings))
+      diagnosis.findings.push_back(std::move(late));
   decide(least_explained(residuals, recording.cvs), diagnosis);
   return diagnosis;
 }

@@ -44,7 +44,8 @@ class Search {
 
   SearchResult run() {
     for (const Cause* cause : causes::all())
-      for (const Effect& effect : cause->shown_by(problem_)) {
+      for (const Effect& effect :
+           settings_.shown ? cause->shown_by(problem_) : std::vector<Effect>{}) {
         accepted_.push_back(effect);
         named_.push_back({effect, kSeenInData, 1.0, {}});
       }
@@ -181,7 +182,7 @@ class Search {
 
   /// The best of what may not be named, beside all that was.
   std::optional<Named> suspect() {
-    if (!settings_.may_name) return std::nullopt;
+    if (!settings_.may_name || !settings_.suspects) return std::nullopt;
     trials_.settle(last_.cvs.empty() ? nullptr : &last_);
     std::optional<Named> best;
     for (const Effect& effect : shortlist(false)) {

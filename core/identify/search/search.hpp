@@ -20,6 +20,10 @@ struct SearchSettings {
   Tolerances materiality = {0.05, 0.09, 0.45};
   /// Nor is what moves a CV by less than this share of its own s.d.
   double visible = 0.015;
+  /// Whether what the data show themselves is taken in (Cause::shown_by).
+  bool shown = true;
+  /// Whether what may not be named is told of as a suspect.
+  bool suspects = true;
   /// Which effects may be named at all; empty = all. Others are only told of as suspects.
   std::function<bool(const Effect&)> may_name = {};
   /// Called at least once per fit with the share done; may throw to end the search at once.

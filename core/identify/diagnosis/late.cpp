@@ -1,0 +1,72 @@
+#include "core/identify/diagnosis/late.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/statement.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr const char* kNotJudged = "it began in the samples on which repairs are measured";
+
+double mean_square(const CvData& data, const VectorXd& residual, Index first, Index count) {
+  const double known = data.known.segment(first, count).sum();
+  return known > 0.0 ? residual.segment(first, count).squaredNorm() / known : 0.0;
+}
+
+bool grew(const Problem& problem, const Fit& fit, Index first) {
+  return std::any_of(fit.cvs.begin(), fit.cvs.end(), [&](const CvFit& cv) {
+    const CvData& data = problem.data(cv.cv);
+    return mean_square(data, cv.residual, first, problem.samples() - first) >
+           kGrown * mean_square(data, cv.residual, 0, first);
+  });
+}
+
+}  // namespace
+
+std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const Recording& recording,
+                               Index first, const SearchSettings& asked) {
+  Problem problem(model, model_inputs, recording, Tolerances{}, kFreeNoise);
+  std::vector<int> cvs;
+  for (int cv = 0; cv < model.cv_count; ++cv) cvs.push_back(cv);
+  SearchResult found;
+  found.fit = problem.fit({}, 0, cvs);
+  if (!std::isfinite(found.fit.cost)) return {};
+  const Index from = first - static_cast<Index>(kLateMargin * static_cast<double>(first));
+  if (grew(problem, found.fit, first)) {
+    SearchSettings settings = asked;
+    settings.max_findings = kMostLate;
+    settings.shown = settings.suspects = false;
+    settings.may_name = [&](const Effect& effect) {
+      return effect.onset >= from && (!asked.may_name || asked.may_name(effect));
+    };
+    found = search(problem, settings);
+  }
+  std::vector<Finding> late;
+  for (std::size_t i = 0; i < found.named.size(); ++i) {
+    const Effect& effect = found.named[i].effect;
+    if (causes::is_unnamed(cause_of(effect)) || effect.onset < from) continue;
+    Finding finding = to_finding(found, i, problem);
+    if (cause_of(effect).may_be_nothing(finding)) continue;
+    late.push_back(std::move(finding));
+  }
+  const double begin = problem.surroundings().start_s +
+                       static_cast<double>(from) * problem.surroundings().sample_time_s;
+  for (const Cause* cause : causes::all())
+    for (Finding& finding : cause->left_in(problem, found.fit))
+      if (finding.onset_s && *finding.onset_s >= begin) late.push_back(std::move(finding));
+  for (Finding& finding : late) {
+    finding.repaired = false;
+    finding.refused = kNotJudged;
+  }
+  return late;
+}
+
+}  // namespace mpm
