@@ -35,7 +35,7 @@ except ImportError:
 
 import effects
 import regimes
-from channels import Simulator, discrete_form, impulse, respond, step_response
+from channels import Simulator, discrete_form, respond, step_response
 from controller import LIMIT, Dmc
 from plants import PLANTS
 
@@ -99,7 +99,7 @@ def left(target, columns, whiten):
 
 
 def noncentrality(plant, healthy, hidden, outside, truth, mvs, positions):
-    cause, cv, mv = truth["cause"], truth["cv"], truth["mv"]
+    cause, mv = truth["cause"], truth["mv"]
     if cause is None:
         return 0.0
     inputs = np.column_stack([mvs, outside.dv])

@@ -41,10 +41,8 @@ Tables, per regime and in all; shares with the 95 % interval of Wilson (1927):
 import argparse
 import concurrent.futures
 import json
-import math
 import pathlib
 import resource
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -57,32 +55,16 @@ except ImportError:
 
 import loop
 from effects import EFFECTS
+from judge import gains_make_scale, judge
 from model_reader import model_steps
 from plants import PLANTS
 from regimes import REGIMES
+from tables import reliability, summary, tables
 
-ACCUSES = {"gain", "dead_time", "time_constant", "dynamics", "input_scale", "output_scale",
-           "input_nonlinearity", "stiction", "state_nonlinearity", "input_stuck", "input_offset"}
-IN_CHANNEL = {"gain": "gain_ratio", "dead_time": "dead_time_error",
-              "time_constant": "time_constant_ratio"}
-OF_INPUT = {"input_scale", "stiction", "input_stuck", "input_offset"}
-SLIGHT_GAIN, SLIGHT_TIME, SLIGHT_DEAD = 0.05, 0.10, 1.0  # ratios; samples
-SEEN = 100.0  # noncentrality
-FARTHER, FAR = 0.05, 0.25
 TIME_LIMIT = 60  # s of CPU time, and ten times that on the clock
-CONFIDENCE = [(0.9, 0.99), (0.99, 0.999), (0.999, 1.01)]
 # Turns of 13, so that every plant meets every effect; gain and dead time twice.
 TURNS = ["gain", "dead_time", "output_scale", "time_constant", "input_scale", "stiction", "gain",
          "aux", "input_stuck", "output_step", "dead_time", "input_offset", "output_drift"]
-
-
-def wilson(hits, runs):
-    if runs == 0:
-        return 0.0, 1.0
-    z, share = 1.96, hits / runs
-    middle = (share + z * z / (2 * runs)) / (1 + z * z / runs)
-    half = z / (1 + z * z / runs) * math.sqrt(share * (1 - share) / runs + z * z / (4 * runs**2))
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def cases(regimes, seeds, plants, effects, per_seed):
@@ -101,68 +83,6 @@ def cases(regimes, seeds, plants, effects, per_seed):
                     if (regime, plant, effect, seed) not in result:
                         result.append((regime, plant, effect, seed))
     return result
-
-
-def only_channel(truth, key, tag):
-    return sum(channel[key] == tag for channel in truth["channels"]) == 1
-
-
-def reaches(truth, mv, cv):
-    return any(c["cv"] == cv and c["input"] == mv for c in truth["channels"])
-
-
-def slight(finding, truth):
-    numbers = finding.get("parameters", {})
-    known = {"gain_ratio": SLIGHT_GAIN, "time_constant_ratio": SLIGHT_TIME}
-    if not numbers or not set(numbers) <= {*known, "dead_time_error"}:
-        return False
-    return all(abs(value) <= SLIGHT_DEAD * truth["sample_time"] if key == "dead_time_error" else
-               abs(value - 1.0) <= known[key] for key, value in numbers.items())
-
-
-def judge(finding, truth):
-    """right, place, slight, wrong or else."""
-    cause, cv, mv = finding["cause"], finding.get("cv"), finding.get("mv")
-    tag = finding.get("tag")
-    true, true_cv, true_mv = truth["cause"], truth["cv"], truth["mv"]
-    for other in truth["others"] + [truth]:
-        if cause == other["cause"] and cause not in ACCUSES:
-            if cv == other["cv"] and tag == other["tag"]:
-                return "right"
-    if cause not in ACCUSES:
-        moved = true in ("input_stuck", "input_offset") and cause == "output_disturbance"
-        return "place" if moved and reaches(truth, true_mv, cv) else "else"
-    # An input's or a CV's only channel is the whole of it.
-    if mv is None and cv is not None and only_channel(truth, "cv", cv):
-        mv = next(c["input"] for c in truth["channels"] if c["cv"] == cv)
-    if cv is None and mv is not None and only_channel(truth, "input", mv):
-        cv = next(c["cv"] for c in truth["channels"] if c["input"] == mv)
-    if true in IN_CHANNEL:
-        if true_cv == cv and true_mv == mv:
-            same = cause == true or (cause == "dynamics" and
-                                     IN_CHANNEL[true] in finding["parameters"])
-            scale = true == "gain" and cause in ("input_scale", "output_scale")
-            return "right" if same or scale else "place"
-        if cause == "state_nonlinearity" and true_cv == cv and mv is None:
-            return "place"
-    elif true in OF_INPUT and true_mv == mv:
-        deadband = true == "stiction" and finding.get("parameters", {}).get("kind",
-                   finding.get("kind")) == "deadband"
-        one = true == "input_scale" and cause == "gain" and only_channel(truth, "input", mv)
-        return "right" if cause == true or deadband or one else "place"
-    elif true == "output_scale" and true_cv == cv:
-        return "right" if cause == true else "place"
-    return "slight" if slight(finding, truth) else "wrong"
-
-
-def gains_make_scale(findings, truth):
-    """Gains of all channels of an input or a CV are its scale."""
-    if truth["cause"] not in ("input_scale", "output_scale"):
-        return False
-    wanted = {(c["cv"], c["input"]) for c in truth["channels"]
-              if (c["input"] == truth["mv"] or c["cv"] == truth["cv"])}
-    named = {(f.get("cv"), f.get("mv")) for f in findings if f["cause"] in ("gain", "dynamics")}
-    return wanted <= named
 
 
 def distances(folder, truth, extended):
@@ -261,111 +181,11 @@ def describe(result):
             f"{result['before']:.2f} -> {result['after']:.2f}")
 
 
-def outcome(result):
-    """Which columns a faulty run counts in."""
-    is_ = [finding["is"] for finding in result["findings"]]
-    mine = [f["is"] for f in result["findings"] if not of_regime(f, result)]
-    columns = set()
-    if "wrong" in is_:
-        columns.add("wrong")
-    if "right" in mine:
-        columns.add("right")
-        if mine[0] == "right":
-            columns.add("first")
-    elif "place" in mine:
-        columns.add("place")
-    elif result["verdict"] == "undetermined":
-        columns.add("undetermined")
-    elif "wrong" not in is_:
-        columns.add("silent")
-    return columns
-
-
-def of_regime(finding, result):
-    """Right, but not what the effect is."""
-    truth = result["truth"]
-    return finding["is"] == "right" and finding["cause"] not in ACCUSES and not (
-        finding["cause"] == truth["cause"] and finding["cv"] == truth["cv"])
-
-
-def share(hits, runs):
-    low, high = wilson(hits, runs)
-    return f"{hits}/{runs} ({100 * low:.0f}-{100 * high:.0f})"
-
-
-def summary(results):
-    """One row of the table."""
-    ran = [r for r in results if r.get("made")]
-    good = [r for r in ran if "failed" not in r]
-    healthy = [r for r in good if r["effect"] == "none"]
-    strong = [r for r in good if r["effect"] != "none" and r["noncentrality"] > SEEN]
-    columns = [outcome(r) for r in strong]
-    seconds = [r["seconds"] for r in ran] or [0.0]
-    row = {"healthy": len(healthy), "strong": len(strong), "runs": len(good),
-           "accused": sum(any(f["is"] == "wrong" for f in r["findings"]) for r in healthy),
-           "farther": sum(r["after"] > r["before"] + FARTHER for r in good),
-           "far": sum(r["after"] > r["before"] + FAR for r in good),
-           "nearer": sum(r["after"] < r["before"] - FARTHER for r in good),
-           "failed": len(ran) - len(good), "not_made": len(results) - len(ran),
-           "cpu_median": statistics.median(seconds), "cpu_max": max(seconds)}
-    for name in ("right", "first", "place", "undetermined", "silent", "wrong"):
-        row[name] = sum(name in c for c in columns)
-    row["wrong_any"] = sum(any(f["is"] == "wrong" for f in r["findings"]) for r in good)
-    return row
-
-
-def reliability(results):
-    rows = []
-    for low, high in CONFIDENCE:
-        row = {"confidence": f"{low} .. {min(high, 1.0)}"}
-        for name, causes in (("accusing", ACCUSES), ("all", None)):
-            of = [f["is"] for r in results for f in r.get("findings", [])
-                  if low <= f["confidence"] < high and f["is"] != "slight" and
-                  (causes is None or f["cause"] in causes)]
-            row[name] = {"right": of.count("right"), "place": of.count("place"), "of": len(of)}
-        rows.append(row)
-    return rows
-
-
-def detect_row(results):
-    seen = [r for r in results if r.get("detect")]
-    strong = [r for r in seen if r["effect"] not in ("none", "aux", "output_step", "output_drift")
-              and r["noncentrality"] > SEEN]
-    false = sum(bool(r["detect"]["false"]) for r in seen)
-    found = sum(r["detect"]["found"] for r in strong)
-    return f"{share(false, len(seen))} | {share(found, len(strong))}"
-
-
-def tables(results, detect):
-    groups = [(regime, [r for r in results if r["regime"] == regime]) for regime in REGIMES]
-    groups = [(name, group) for name, group in groups if group] + [("all", results)]
-    lines = ["| regime | healthy accused | strong: right | first | place | undetermined | silent |"
-             " wrong | all runs: farther | far | nearer | CPU s median, max | failed |",
-             "|---" * 13 + "|"]
-    for name, group in groups:
-        s = summary(group)
-        lines.append(
-            f"| {name} | {share(s['accused'], s['healthy'])} | {share(s['right'], s['strong'])} | "
-            f"{s['first']} | {s['place']} | {s['undetermined']} | {s['silent']} | "
-            f"{share(s['wrong'], s['strong'])} | {share(s['farther'], s['runs'])} | {s['far']} | "
-            f"{s['nearer']} | {s['cpu_median']:.1f}, {s['cpu_max']:.1f} | {s['failed']} |")
-    lines += ["", "| effect (all regimes) | strong: right | first | place | undetermined | silent |"
-              " wrong |", "|---" * 7 + "|"]
-    for effect in EFFECTS[1:]:
-        s = summary([r for r in results if r["effect"] == effect])
-        lines.append(f"| {effect} | {share(s['right'], s['strong'])} | {s['first']} | {s['place']} "
-                     f"| {s['undetermined']} | {s['silent']} | {share(s['wrong'], s['strong'])} |")
-    lines += ["", "| confidence | accusing: right | or of the place | all: right |",
-              "|---" * 4 + "|"]
-    for row in reliability(results):
-        a, b = row["accusing"], row["all"]
-        lines.append(f"| {row['confidence']} | {share(a['right'], a['of'])} | "
-                     f"{share(a['right'] + a['place'], a['of'])} | {share(b['right'], b['of'])} |")
-    if detect:
-        lines += ["", "| detect | runs with a healthy channel called wrong | strong effects seen |",
-                  "|---" * 3 + "|"]
-        lines += [f"| {name} | {detect_row(group)} |" for name, group in groups]
-    return "\n".join(lines) + "\n"
+def save(file, results):
+    whole = {"cases": results, "reliability": reliability(results),
+             "regimes": {r: summary([c for c in results if c["regime"] == r]) for r in REGIMES},
+             "all": summary(results)}
+    pathlib.Path(file).write_text(json.dumps(whole, indent=1) + "\n")
 
 
 def seed_list(text):
@@ -402,16 +222,15 @@ def main():
             results.append(future.result())
             print(f"{' '.join(map(str, case))} ({results[-1].get('noncentrality', 0):.0f}) "
                   f"{describe(results[-1])}", file=sys.stderr, flush=True)
+            if args.json:
+                save(args.json, results)  # so far: a long run may be stopped
+    if args.json:
+        save(args.json, results)
     text = tables(results, args.detect)
     print(text)
     print(f"{len(todo)} cases, {time.monotonic() - started:.0f} s")
     if args.markdown:
         pathlib.Path(args.markdown).write_text(text)
-    if args.json:
-        whole = {"cases": results, "reliability": reliability(results),
-                 "regimes": {r: summary([c for c in results if c["regime"] == r])
-                             for r in REGIMES}, "all": summary(results)}
-        pathlib.Path(args.json).write_text(json.dumps(whole, indent=1) + "\n")
 
 
 if __name__ == "__main__":
