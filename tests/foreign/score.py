@@ -59,7 +59,7 @@ from judge import gains_make_scale, judge
 from model_reader import model_steps
 from plants import PLANTS
 from regimes import REGIMES
-from tables import reliability, summary, tables
+from tables import FARTHER, reliability, summary, tables
 
 TIME_LIMIT = 60  # s of CPU time, and ten times that on the clock
 # Turns of 13, so that every plant meets every effect; gain and dead time twice.
@@ -86,22 +86,26 @@ def cases(regimes, seeds, plants, effects, per_seed):
 
 
 def distances(folder, truth, extended):
-    """Of the given and of the repaired model from the true plant."""
+    """Of the given and of the repaired model from the true plant; the channel that got worst."""
     table = np.genfromtxt(folder / "data.csv", delimiter=",", names=True)
     inputs = {name: table[name] for name in table.dtype.names}
     stride = truth["stride"]
     points = len(truth["channels"][0]["plant"])
     steps = model_steps(extended, truth["sample_time"], (points - 1) * stride + 1, inputs)
-    before = after = 0.0
+    before = after = most = 0.0
+    worst = None
     for channel in truth["channels"]:
         ratio = truth["input_gains"].get(channel["input"], 1.0)
         true = ratio * np.array(channel["plant"])
         size = np.linalg.norm(true)
-        before += np.linalg.norm(np.array(channel["model"]) - true) / size
+        given = np.linalg.norm(np.array(channel["model"]) - true) / size
         key = channel["cv"], channel["input"]
         repaired = steps[key][::stride] if key in steps else np.zeros(points)
-        after += np.linalg.norm(repaired - true) / size
-    return float(before), float(after)
+        now = np.linalg.norm(repaired - true) / size
+        before, after = before + given, after + now
+        if now - given > most:
+            most, worst = now - given, [*key, float(given), float(now)]
+    return float(before), float(after), worst
 
 
 def limit_cpu_time():
@@ -168,7 +172,7 @@ def score_case(case, mpm, keep, detect):
         if gains_make_scale(report["findings"], truth):
             result["findings"][0]["is"] = "right"
         extended = (out / report["extended_model"]).read_text()
-        result["before"], result["after"] = distances(folder, truth, extended)
+        result["before"], result["after"], result["worst"] = distances(folder, truth, extended)
         return result
 
 
@@ -177,8 +181,12 @@ def describe(result):
         return "failed: " + result["failed"].strip().splitlines()[-1]
     named = [f"{f['cause']}({','.join(filter(None, (f['cv'], f['mv'], f['tag'])))}) "
              f"{f['confidence']:.3g} {f['is']}" for f in result["findings"]]
+    worst = ""
+    if result["after"] > result["before"] + FARTHER:
+        cv, tag, before, after = result["worst"]
+        worst = f" ({cv},{tag} {before:.2f} -> {after:.2f})"
     return (f"{result['verdict']}: {'; '.join(named) or 'nothing'}; distance "
-            f"{result['before']:.2f} -> {result['after']:.2f}")
+            f"{result['before']:.2f} -> {result['after']:.2f}{worst}")
 
 
 def save(file, results):
