@@ -188,7 +188,7 @@ def rooms(data, out):
     """Of the two rooms whose camera counted for more than a day, the days on which it did."""
     recording = Recording(data / "rooms_co2.csv")
     tags = ["CO2_bms_ppm", "vent_valve", "persons_camera", "T_out_degC", "sun_W_m2"]
-    for room, first, last in (("917810", 1348, 2268), ("925038", 0, None), ("999169", 1348, 2268)):
+    for room, first, last in (("917810", 1348, 1934), ("925038", 0, None), ("999169", 1348, 1934)):
         copy(recording, out / f"room_{room}.csv", tags,
              only=recording.where("room", room, first, last))
 
@@ -198,6 +198,18 @@ def houses(data, out):
     for house in ("1", "2", "3"):
         copy(recording, out / f"house_{house}.csv", ["heating", "T_out_degC", "sun", "T_in_degC"],
              only=recording.where("house", house))
+
+
+def wall(data, out):
+    """The heat flow answers the temperatures of its own row; it stands one row below them, for that
+    is where a model sampled once per row has it."""
+    recording = Recording(data / "wall_heatflow.csv")
+    inputs = ["T_inside_degC", "T_outside_degC"]
+    columns = [[str(k) for k in range(len(recording.rows))]]
+    columns += [recording.column(tag) for tag in inputs]
+    columns += [[""] + recording.column("heat_flow")[:-1]]
+    comment = "# heat flow one row below its inputs"
+    write(out / "wall.csv", recording.comments + [comment], inputs + ["heat_flow"], columns)
 
 
 def whole(name, *tags):
@@ -234,7 +246,7 @@ CASES = (
     tclab, tclab_points, heating_lamp, silverbox, cascaded_tanks, varennes, refinery, hairdryer,
     ahu, pump, rooms, houses,
     whole("heat_exchanger", "q_liquid", "T_out_degC"),
-    whole("wall_heatflow", "T_inside_degC", "T_outside_degC", "heat_flow"),
+    wall,
     whole("evaporator", "u1_feed_flow", "u2_vapour_flow", "u3_cooling_water_flow", "y1_dry_matter",
           "y2_product_flow", "y3_product_temp"),
     whole("industrial_dryer", "u1_fuel_flow", "u2_fan_speed", "u3_raw_material_flow",
