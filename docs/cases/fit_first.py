@@ -6,16 +6,16 @@
 CUT_FOLDER holds what prepare.py wrote. Prints each model's error and writes UNIT_FOLDER/<unit>.yaml
 where that folder is given. Needs numpy. What is fitted to what is in units.py.
 
-One model per CV: one or two lags that all its inputs share, a gain (with two lags: a lead too) and a
-dead time per input, a constant, and a free initial state per episode. Plain least squares on the
+One model per CV: one or two lags that all its inputs share, a gain (with two lags: a lead too) and
+a dead time per input, a constant, and a free initial state per episode. Plain least squares on the
 free run, over the episodes' first part only. For given lags and dead times that is linear in all
 else; these are searched, the lags on a logarithmic grid that is refined around its best point, the
 dead times input by input, in whole samples. A sampled lag sees no input younger than one sample, so
-none of these models can be the inverse of a controller. One lag or two is decided by what was fitted
-on the first two thirds of the first part and says on the rest of it.
+none of these models has direct feed-through. Where units.py leaves the number of lags open, models
+that were fitted on the first two thirds of the first part are compared on the rest of it.
 
-The error on the unseen part is the root mean square of the free run too, its initial state fitted on
-the first 50 samples; or, where an episode is cut into windows, taken from the window's first sample.
+The error on the unseen part is the root mean square of the free run too, its initial state fitted
+on the first 50 samples; or, where an episode is cut into windows, on the window's first sample.
 """
 
 import itertools
@@ -256,7 +256,7 @@ def wrapped(text, width=98):
 
 
 def unit_file(unit, fits, errors):
-    said = "; ".join(f"{cv} {before:.3g} there" + ("" if np.isnan(after) else f", {after:.3g} unseen")
+    said = "; ".join(f"{cv} {before:.3g} there, {after:.3g} unseen"
                      for cv, (before, after) in errors.items())
     head = f"{unit.what} Error of the free run: {said}. Written by docs/cases/fit_first.py."
     lines = list(wrapped(head)) + [f"unit: {unit.name}", f"sample_time: {unit.sample_time:g}"]

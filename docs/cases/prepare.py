@@ -3,8 +3,9 @@
 
     prepare.py DATA_FOLDER OUTPUT_FOLDER
 
-Writes <case>.csv, and <case>_<name>.csv where a case has unseen recordings beside it. The recordings
-keep their own column names but for `time`, and their head line with origin and licence.
+Writes a CSV per episode (run, day, house, loop, room), and <case>_<name>.csv where a case has
+unseen recordings beside it. The recordings keep their own column names but for `time`, and their
+head line with origin and licence.
 """
 
 import csv
@@ -12,7 +13,8 @@ import pathlib
 import sys
 
 
-# Cut recording and its number in refinery_loops_A.csv: of each loop the first and the last.
+# Cut recording and its number in refinery_loops_A.csv: of each loop the first and the last that has
+# no samples in common with it.
 REFINERY_A = {
     "refinery_sticking": "20", "refinery_sticking_first": "18",
     "refinery_sound": "3", "refinery_sound_2": "4",
@@ -21,7 +23,7 @@ REFINERY_A = {
     "refinery_lic31102b": "7", "refinery_lic31102b_last": "15",
     "refinery_pic23001": "16",
     "refinery_fic20502": "17",
-    "refinery_fic20102": "21", "refinery_fic20102_last": "34",
+    "refinery_fic20102": "21", "refinery_fic20102_last": "33",
 }
 
 

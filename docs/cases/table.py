@@ -15,8 +15,8 @@ An answer is a cause (something is named), nothing (nothing is, verdict match) o
     cannot tell  where more could be said, or nothing is wrong
     wrong        something named that never is to be, nothing named that is true, or "nothing" where
                  something is wrong
-    harmful      the repair makes the free run on unseen samples worse by a tenth or more in some CV,
-                 or what is repaired has a wild number: a ratio to the model below 0 or beyond 20
+    harmful      the repair makes the free run on unseen samples worse by a tenth or more in some
+                 CV, or what is repaired has a wild number: a ratio to the model not in 0..20
     failed       no report within the time limit
 """
 
@@ -162,7 +162,8 @@ def rows_of(case, report, took, outcome, why):
     first = [case["name"], f"**{outcome}**" + (f": {why}" if why else ""), f"{took:.1f}"]
     last = [report["verdict"], findings, case["wrong"]]
     for score in report["validation"]:
-        yield first + [score["cv"], number(score["rmse_before"]), number(score["rmse_after"])] + last
+        errors = [number(score["rmse_before"]), number(score["rmse_after"])]
+        yield first + [score["cv"]] + errors + last
         first, last = ["", "", ""], ["", "", ""]
 
 

@@ -1,4 +1,4 @@
-"""What fit_first.py fits: a unit file per entry, with its signals and the recordings it is fitted to."""
+"""What fit_first.py fits: a unit file per entry, its signals, and the recordings that it saw."""
 
 from dataclasses import dataclass, field
 
@@ -8,7 +8,8 @@ class Unit:
     """`fit`: (recording, share of it from its beginning). `unseen`: (recording, from, to), shares;
     None = the rest of what was fitted. `channels`: inputs of a CV where it has not all of them.
     `order`: number of lags, None = decided on the first part. `shortest_delay`, `longest_delay` in
-    samples, beyond the one that sampling makes. `longest_lag` in s, 0 = half an episode. `window` in samples: free runs of that length instead of one."""
+    samples, beyond the one that sampling makes. `longest_lag` in s, 0 = half an episode.
+    `window` in samples: free runs of that length instead of one."""
 
     name: str
     what: str
@@ -70,10 +71,11 @@ def rooms():
 
 def houses():
     return [Unit(
-        f"house_{house}", f"Dwelling {house} with a thermostat (closed loop), in winter: heating to "
-        "indoor temperature, one lag, on free runs of 24 h. Weather is measured and offered as "
+        f"house_{house}", f"Dwelling {house} with a thermostat (closed loop), in winter: heating "
+        "to indoor temperature, one lag, on free runs of 24 h. Weather is measured and offered as "
         "`aux`.", 900, ["heating"], ["T_in_degC"], [(f"house_{house}", 2 / 3)], order=1,
-        longest_delay=8, longest_lag=2e5, window=96, aux=["T_out_degC", "sun"]) for house in (1, 2, 3)]
+        longest_delay=8, longest_lag=2e5, window=96, aux=["T_out_degC", "sun"])
+        for house in (1, 2, 3)]
 
 
 def varennes():
@@ -81,7 +83,8 @@ def varennes():
         "varennes_outdoor", "The building of varennes.yaml, whose model now knows the outdoor "
         "temperature too: one lag, on free runs of 24 h. Sun and the electricity used indoors are "
         "left out.", 900, ["heating_total"], ["T_int"], [("varennes", 2 / 3)], dv=["T_ext"],
-        order=1, longest_delay=8, longest_lag=2e5, window=96, aux=["GHI", "DNI", "DHI", "cons_noHVAC"])]
+        order=1, longest_delay=8, longest_lag=2e5, window=96,
+        aux=["GHI", "DNI", "DHI", "cons_noHVAC"])]
 
 
 def heat_exchanger():
@@ -110,9 +113,9 @@ def evaporator():
             "and temperature of the product. The time unit is the sample. ")
     found = []
     for left_out in [None] + inputs:
+        has = f"The model leaves {left_out} out." if left_out else "The model has all three."
         found.append(Unit(
-            "evaporator" + (f"_without_{left_out[:2]}" if left_out else ""),
-            what + (f"The model leaves {left_out} out." if left_out else "The model has all three."),
+            "evaporator" + (f"_without_{left_out[:2]}" if left_out else ""), what + has,
             1, [tag for tag in inputs if tag != left_out],
             ["y1_dry_matter", "y2_product_flow", "y3_product_temp"], [("evaporator", 2 / 3)],
             aux=[left_out] if left_out else [], order=2, longest_delay=5,
@@ -132,8 +135,8 @@ def dryer():
 def tclab():
     heaters, sensors = ["Q1_pct", "Q2_pct"], ["T1_degC", "T2_degC"]
     return [
-        Unit("tclab_siso", "Temperature control lab with its old firmware: one heater (pulse width, "
-             "0..255), sensor in kelvin with steps of 0.3 K.", 1, ["Q1_pwm"], ["T1_K"],
+        Unit("tclab_siso", "Temperature control lab with its old firmware: one heater (pulse "
+             "width, 0..255), sensor in kelvin with steps of 0.3 K.", 1, ["Q1_pwm"], ["T1_K"],
              [("tclab_siso", 2 / 3)], longest_delay=30),
         Unit("tclab_uw_prbs", "Temperature control lab of another laboratory, open loop, two-level "
              "pseudo-random steps.", 1, heaters, sensors, [("tclab_uw_prbs", 2 / 3)], order=1,
@@ -148,8 +151,8 @@ def tclab():
 def tennessee_eastman():
     return [Unit(
         "tep", "Tennessee Eastman process (simulated by others, closed loop): cooling water of the "
-        "reactor to its outlet temperature, steam to the stripper's temperature. Fitted on the first "
-        "half of the run without a fault.", 180, ["xmv9", "xmv10"], ["xmeas18", "xmeas21"],
+        "reactor to its outlet temperature, steam to the stripper's temperature. Fitted on the "
+        "first half of the run without a fault.", 180, ["xmv9", "xmv10"], ["xmeas18", "xmeas21"],
         [("tep_idv00", 0.5)], channels={"xmeas18": ["xmv9"], "xmeas21": ["xmv10"]})]
 
 
@@ -162,8 +165,8 @@ def isdb():
 
 
 def refinery_loop(name, tag, recording):
-    return Unit(name, f"Loop {tag} of a refinery, controller output to process value, in closed loop.",
-                10, ["OP_pct"], ["PV"], [(recording, 2 / 3)], order=1, longest_delay=6,
+    what = f"Loop {tag} of a refinery, controller output to process value, in closed loop."
+    return Unit(name, what, 10, ["OP_pct"], ["PV"], [(recording, 2 / 3)], order=1, longest_delay=6,
                 longest_lag=60 if "FIC" in tag else 0, setpoints={"PV": "SP"})
 
 
@@ -177,5 +180,6 @@ def refinery():
     return [refinery_loop(*loop) for loop in loops]
 
 
-UNITS = [unit for plant in (tclab, varennes, refinery, ahu, pump, rooms, houses, heat_exchanger, wall,
-                            evaporator, dryer, tennessee_eastman, isdb) for unit in plant()]
+PLANTS = (tclab, varennes, refinery, ahu, pump, rooms, houses, heat_exchanger, wall, evaporator,
+          dryer, tennessee_eastman, isdb)
+UNITS = [unit for plant in PLANTS for unit in plant()]
