@@ -7,7 +7,8 @@ Prints the counts and a line per case as markdown. The cut recordings go to OUTP
 run's report to a folder of its own beside it. Exit code 1 if a run failed.
 
 An answer is a cause (something is named), nothing (nothing is, verdict match) or cannot tell
-(nothing is, verdict undetermined). It counts as
+(nothing is, another verdict, or the data refused as too short). Noise alone, where it is allowed,
+names nothing. It counts as
 
     right        one that is right there; a cause with all that is wrong named and nothing else but
                  what is allowed, its numbers in range, and the error after within bounds
@@ -80,7 +81,10 @@ def harm(case, report):
 
 def judge(case, report):
     """Outcome and why."""
-    findings = report["findings"]
+    allowed_noise = [one for one in case["allowed"] if "noise" in one["causes"]]
+    findings = [finding for finding in report["findings"] if finding["cause"] != "noise"
+                or not any(matches(finding, one) for one in allowed_noise)
+                or any(matches(finding, one) for one in case["named"])]
     reason = harm(case, report)
     if reason:
         return "harmful", reason
@@ -91,7 +95,7 @@ def judge(case, report):
     false = [finding for finding in left
              if not any(matches(finding, one) for one in case["allowed"] + case["named"])]
     if not findings:
-        answer = "cannot tell" if report["verdict"] == "undetermined" else "nothing"
+        answer = "nothing" if report["verdict"] == "match" else "cannot tell"
         if answer in case["right"]:
             return "right", ""
         return (answer, "") if answer == "cannot tell" else ("wrong", "says match")
@@ -148,6 +152,9 @@ def run(case, options, cut):
         command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (options.limit, options.limit)))
     took = processor_time() - before
+    if done.returncode == 3:
+        return {"verdict": "refused", "reason": done.stderr.strip().split("error: ")[-1],
+                "findings": [], "validation": []}, took, ""
     if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
         return None, took, f"stopped after {options.limit} s"
     if done.returncode != 0:
@@ -161,9 +168,10 @@ def rows_of(case, report, took, outcome, why):
         findings = "nothing" + (f" ({report['reason']})" if report.get("reason") else "")
     first = [case["name"], f"**{outcome}**" + (f": {why}" if why else ""), f"{took:.1f}"]
     last = [report["verdict"], findings, case["wrong"]]
-    for score in report["validation"]:
-        errors = [number(score["rmse_before"]), number(score["rmse_after"])]
-        yield first + [score["cv"]] + errors + last
+    scores = [[score["cv"], number(score["rmse_before"]), number(score["rmse_after"])]
+              for score in report["validation"]]
+    for score in scores or [["", "", ""]]:
+        yield first + score + last
         first, last = ["", "", ""], ["", "", ""]
 
 
