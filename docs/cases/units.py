@@ -57,7 +57,7 @@ def pump():
         "noise, so its gain means nothing: the model is the mean.",
         1, ["motor_V"], ["flow_l_min"], [(f"pump_run{run}", share)], order=1,
         longest_lag=10)
-        for run, share in enumerate((0.49, 0.5, 0.49, 0.5, 0.74, 0.42, 0.49))]
+        for run, share in enumerate((0.49, 0.5, 0.49, 0.5, 0.55, 0.42, 0.49))]
 
 
 def rooms():
