@@ -327,13 +327,15 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
   Problem& problem = *explained.problem;
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
-  const Judges judges{unseen, aux,
-                      [&](int cv, int input) {
-                        const auto i = static_cast<std::size_t>(input);
-                        return tests.reject({{cv, input}}) ||
-                               (i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside);
-                      },
-                      outside};
+  const Judges judges{
+      unseen, aux,
+      [&](int cv, int input, bool wrong) {
+        // Where only a disturbance was found they soak up what it leaves.
+        const auto i = static_cast<std::size_t>(input);
+        return tests.reject({{cv, input}}) ||
+               (wrong && i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside);
+      },
+      outside};
   const Kept kept = keep(problem, explained.found, judges, search_settings);
   diagnosis.channels = estimate_channels(problem, kept.found, search_settings);
   diagnosis.inputs = movements(outside, diagnosis.channels);

@@ -12,12 +12,15 @@ using Eigen::Index;
 ModelSpec extend(const Problem& problem, const SearchResult& found, const std::vector<bool>& in,
                  const std::vector<bool>& keep, const OpenChannels& open) {
   ModelSpec model = problem.model();
-  std::vector<bool> touched(keep.size(), false);
+  std::vector<bool> touched(keep.size(), false), wrong = touched;
   for (std::size_t i = 0; i < found.named.size(); ++i) {
     if (!in[i]) continue;
     const Effect& effect = found.named[i].effect;
     for (int cv = 0; cv < model.cv_count; ++cv)
-      if (touches(effect, model, cv)) touched[static_cast<std::size_t>(cv)] = true;
+      if (touches(effect, model, cv)) {
+        touched[static_cast<std::size_t>(cv)] = true;
+        if (cause_of(effect).acts_through_channels()) wrong[static_cast<std::size_t>(cv)] = true;
+      }
     apply(effect, problem.surroundings(), model);
   }
   for (const CvFit& fit : found.fit.cvs) {
@@ -28,7 +31,7 @@ ModelSpec extend(const Problem& problem, const SearchResult& found, const std::v
     model.output_origin(fit.cv) += data.nuisances(0, 0) * fit.beta(0);
     for (ChannelSpec& channel : model.channels) {
       if (channel.cv != fit.cv) continue;
-      if (open && !open(channel.cv, channel.input)) continue;
+      if (open && !open(channel.cv, channel.input, wrong[j])) continue;
       ChannelError error;
       for (std::size_t b = 0; b < data.meaning.size(); ++b) {
         if (data.meaning[b].input != channel.input) continue;

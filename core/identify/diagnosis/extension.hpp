@@ -8,8 +8,9 @@
 
 namespace mpm {
 
-/// Whether a channel (CV, input) may be corrected a little; empty = all.
-using OpenChannels = std::function<bool(int, int)>;
+/// Whether a channel (CV, input) may be corrected a little where a channel of that CV was found
+/// wrong (or not, the third); empty = all.
+using OpenChannels = std::function<bool(int, int, bool)>;
 
 /// The problem's model with what was found: the effects, and for each CV that they touch the small
 /// channel errors and the level that were fitted beside them. A CV with `keep` false stays as it

@@ -37,6 +37,21 @@ End look(const std::vector<double>& sorted) {
   return end;
 }
 
+/// How often the values came to a level after they had been well away from it.
+int visits(const Eigen::Ref<const Eigen::VectorXd>& values, double level, double range) {
+  int count = 0;
+  bool away = true;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    const double distance = std::abs(value - level);
+    if (distance > kPlateauLeft * range) away = true;
+    if (distance > kPlateauTie * range) continue;
+    count += away ? 1 : 0;
+    away = false;
+  }
+  return count;
+}
+
 }  // namespace
 
 Plateaus find_plateaus(const Eigen::Ref<const Eigen::VectorXd>& values) {
@@ -49,8 +64,12 @@ Plateaus find_plateaus(const Eigen::Ref<const Eigen::VectorXd>& values) {
   const End low = look(sorted);
   std::reverse(sorted.begin(), sorted.end());
   const End high = look(sorted);
-  if (low.plateau) plateaus.low = low.level, plateaus.low_share = low.share;
-  if (high.plateau) plateaus.high = high.level, plateaus.high_share = high.share;
+  const double range = sorted.front() - sorted.back();
+  const auto clips = [&](const End& end) {
+    return end.plateau && visits(values, end.level, range) >= kPlateauVisits;
+  };
+  if (clips(low)) plateaus.low = low.level, plateaus.low_share = low.share;
+  if (clips(high)) plateaus.high = high.level, plateaus.high_share = high.share;
   return plateaus;
 }
 
