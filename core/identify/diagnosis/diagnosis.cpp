@@ -5,12 +5,14 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/clock.hpp"
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
+#include "core/identify/fit/split.hpp"
 
 namespace mpm {
 namespace {
@@ -102,8 +104,7 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
   const Index samples = recording.samples();
   Diagnosis diagnosis;
   diagnosis.samples = samples;
-  diagnosis.fit_samples =
-      validation ? samples : static_cast<Index>(settings.fit_share * static_cast<double>(samples));
+  diagnosis.fit_samples = validation ? samples : fitted_rows(recording, settings.fit_share);
   diagnosis.validation_samples =
       validation ? validation->samples() : samples - diagnosis.fit_samples;
   diagnosis.extended = given;
@@ -144,6 +145,7 @@ Diagnosis run(const ModelSpec& given, const Recording& recording, const Recordin
   }
   state(found, selection, problem, diagnosis);
   decide(diagnosis);
+  tell_on_clock(recording, given, diagnosis);
   return diagnosis;
 }
 
