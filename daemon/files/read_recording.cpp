@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "config/finding.hpp"
+#include "core/identify/fit/runs.hpp"
 
 namespace mpm::files {
 namespace {
@@ -80,36 +81,62 @@ bool moves(const Eigen::Ref<const Eigen::VectorXd>& values) {
 }  // namespace
 
 RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit,
-                             const std::string& name) {
+                             const std::string& name, const TimeChoice& choice) {
+  const auto refuse = [&name](const std::string& message) {
+    throw config::InputError({name, 0, 0, config::Severity::kError, "", message});
+  };
   RecordingFile file;
-  file.recording.sample_time_s = unit.sample_time_s;
+  Recording& recording = file.recording;
+  recording.sample_time_s = unit.sample_time_s;
+  file.longest_gap = longest_gap(unit.model);
   Table table(unit.counts());
   const std::int64_t most_rows = kMostValues / table.width();
-  std::int64_t first = 0;
+  std::int64_t first = 0, next = 0;  // intervals: of the first row, and after the last from there
+  std::int64_t first_ns = 0, last_ns = 0, left_out = 0;
+  bool cut = false;  // since the last row
   Frame frame(unit.counts());
   while (source.next(frame)) {
+    if (table.rows() + left_out == 0) first_ns = frame.source_time_ns;
+    last_ns = frame.source_time_ns;
+    if (!choice.takes(frame.source_time_ns)) {
+      ++left_out;
+      cut = true;
+      continue;
+    }
+    const double time_s = static_cast<double>(frame.source_time_ns) * 1e-9;
     if (table.rows() == 0) {
       first = frame.interval;
-      file.recording.start_s = static_cast<double>(frame.source_time_ns) * 1e-9;
+      recording.start_s = time_s;
+      cut = false;
     }
-    const std::int64_t row = frame.interval - first;
-    if (row < table.rows()) {
+    const std::int64_t row = frame.interval - first, gap = row - next;
+    if (gap < 0) {
       ++file.out_of_order;
       continue;
     }
     if (row >= most_rows)
-      throw config::InputError(
-          {name, 0, 0, config::Severity::kError, "",
-           "spans more than the " + std::to_string(most_rows) +
-               " control intervals that a diagnosis of this unit takes (from row " +
-               std::to_string(table.rows() - file.missing) + " on it is " +
-               seconds_text(static_cast<double>(row - table.rows()) * unit.sample_time_s) +
-               " later); cut the file"});
-    file.missing += row - table.rows();
-    table.skip_to(row);
+      refuse("spans more than the " + std::to_string(most_rows) +
+             " control intervals that a diagnosis of this unit takes (from row " +
+             std::to_string(table.rows() - file.missing) + " on it is " +
+             seconds_text(static_cast<double>(gap) * unit.sample_time_s) + " later); cut the file");
+    if (cut || gap > file.longest_gap) {
+      const double by_rows_s =
+          recording.start_s + static_cast<double>(table.rows()) * unit.sample_time_s;
+      recording.borders.push_back({table.rows(), time_s - by_rows_s});
+      file.long_gaps += cut ? 0 : 1;
+      cut = false;
+    } else {
+      file.missing += gap;
+      table.skip_to(table.rows() + gap);
+    }
     file.bad_values += table.add(frame);
+    next = row + 1;
   }
-  table.copy_to(file.recording);
+  if (table.rows() == 0 && left_out > 0) refuse(nothing_chosen(first_ns, last_ns));
+  table.copy_to(recording);
+  const Eigen::Index rows = recording.samples();
+  recording = without_scraps(recording);
+  file.scraps = rows - recording.samples();
   return file;
 }
 

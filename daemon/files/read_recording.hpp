@@ -6,6 +6,7 @@
 #include "config/unit_config.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "daemon/files/frame_source.hpp"
+#include "daemon/files/times/time_choice.hpp"
 
 namespace mpm::files {
 
@@ -15,13 +16,18 @@ struct RecordingFile {
   std::int64_t missing = 0;       ///< intervals without a row; a row of NaN stands for each
   std::int64_t out_of_order = 0;  ///< rows whose time did not grow; left out
   std::int64_t bad_values = 0;    ///< of inputs and CVs in the rows that are there
+  std::int64_t long_gaps = 0;     ///< after each a new run begins
+  std::int64_t longest_gap = 0;   ///< intervals that a run goes on across
+  std::int64_t scraps = 0;        ///< rows of runs too short to tell anything; left out
 };
 
-/// Reads all frames. What is bad, missing or implausible becomes NaN. Throws config::InputError,
-/// naming the file as `name`, where the grid would hold more than memory should (a clock far off
-/// makes a gap of years).
+/// Reads all frames that `choice` takes. What is bad, missing or implausible becomes NaN. A new run
+/// begins where frames were not taken, and after a gap in which a run would forget more of its past
+/// than it keeps (longest_gap()). Throws config::InputError, naming the file as `name`, where
+/// nothing is taken or the file spans more than memory should hold (a clock far off makes a gap of
+/// years).
 [[nodiscard]] RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit,
-                                           const std::string& name);
+                                           const std::string& name, const TimeChoice& choice = {});
 
 /// Why no model can be diagnosed on this recording, one line for a person; empty where one can.
 /// `needed` rows at least.

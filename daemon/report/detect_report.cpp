@@ -70,6 +70,9 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
                               {"spikes", report.spikes},
                               {"channels", nlohmann::ordered_json::array()},
                               {"alarms", nlohmann::ordered_json::array()}};
+  for (const files::Stretch& stretch : report.used)
+    json["used"].push_back(
+        {{"from", seconds(stretch.from_ns)}, {"until", seconds(stretch.until_ns)}});
   for (const ChannelRecord& channel : report.channels) {
     nlohmann::ordered_json entry = json_of(channel);
     for (const char* key : {"record", "unit", "interval", "time_ns"}) entry.erase(key);

@@ -7,6 +7,7 @@
 
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
+#include "daemon/files/times/time_choice.hpp"
 
 namespace mpm::report {
 
@@ -19,6 +20,8 @@ struct DetectReport {
   std::uint64_t out_of_order = 0;  ///< rows whose time did not grow
   std::uint64_t bad_values = 0;
   std::uint64_t frozen = 0, clipped = 0, spikes = 0;  ///< of these: only by their look
+  /// From the first row to the last of each stretch, where a part of the file was chosen.
+  std::vector<files::Stretch> used;
   std::vector<ChannelRecord> channels;
   std::vector<AlarmRecord> alarms;
 

@@ -85,7 +85,7 @@ mcap mcap/format mcap/read mcap/write
 report/diagnosis
 report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
-report files report/diagnosis report/page
+report files/times files report/diagnosis report/page
 bus
 bus/watch files/times report bus
 bag files/times files files/csv mcap/format mcap/read mcap/write

@@ -22,7 +22,7 @@ constexpr double kMostParts = 1e3;  ///< of the channel's own response
 
 ActiveChannel::ActiveChannel(const Problem& problem, const ModelSpec& model,
                              const ChannelSpec& spec)
-    : model_(model), spec_(spec) {
+    : model_(model), spec_(spec), borders_(problem.recording().borders) {
   const auto input = problem.recording().inputs.col(spec.input);
   moves_.resize(input.size());
   double last = model.input_origin(spec.input);
@@ -38,8 +38,9 @@ VectorXd ActiveChannel::modulated(const VectorXd& by) const {
 }
 
 VectorXd ActiveChannel::response_to(const VectorXd& moves) const {
-  const Recording driven{0.0, model_.sample_time_s, moves, VectorXd::Zero(moves.size()),
-                         MatrixXd(moves.size(), 0)};
+  const Recording driven{
+      0.0,     model_.sample_time_s, moves, VectorXd::Zero(moves.size()), MatrixXd(moves.size(), 0),
+      borders_};
   Simulator simulator(driven);
   return simulator.cv(alone(spec_, model_.sample_time_s), 0);
 }

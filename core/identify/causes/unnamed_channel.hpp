@@ -26,6 +26,7 @@ class ActiveChannel {
 
   const ModelSpec& model_;
   const ChannelSpec& spec_;
+  std::vector<Border> borders_;
   Eigen::VectorXd moves_, response_;
 };
 

@@ -8,6 +8,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/clock.hpp"
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/late.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
@@ -18,6 +19,7 @@
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/plateau.hpp"
+#include "core/identify/fit/split.hpp"
 #include "core/text/number_text.hpp"
 
 namespace mpm {
@@ -270,9 +272,9 @@ std::vector<InputMovement> movements(const std::vector<std::optional<double>>& o
 void add_horizons(const Unseen& unseen, const VectorXd& before, const VectorXd& after,
                   CvScore& score) {
   for (const Index horizon : unseen.horizons())
-    score.horizons.push_back(
-        {horizon, std::sqrt(mean_of_finite(squared_prediction_errors(before, horizon))),
-         std::sqrt(mean_of_finite(squared_prediction_errors(after, horizon)))});
+    score.horizons.push_back({horizon,
+                              std::sqrt(mean_of_finite(unseen.prediction_errors(before, horizon))),
+                              std::sqrt(mean_of_finite(unseen.prediction_errors(after, horizon)))});
 }
 
 /// Whether the model can be run on the data at all, and every CV was measured now and then.
@@ -302,8 +304,7 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
   const Index samples = recording.samples();
   Diagnosis diagnosis;
   diagnosis.samples = samples;
-  diagnosis.fit_samples =
-      validation ? samples : static_cast<Index>(settings.fit_share * static_cast<double>(samples));
+  diagnosis.fit_samples = validation ? samples : fitted_rows(recording, settings.fit_share);
   diagnosis.validation_samples =
       validation ? validation->samples() : samples - diagnosis.fit_samples;
   diagnosis.extended = given;
@@ -367,6 +368,7 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
          find_late(extended, base.input_count, recording, diagnosis.fit_samples, search_settings))
       diagnosis.findings.push_back(std::move(late));
   decide(least_explained(residuals, recording.cvs), diagnosis);
+  tell_on_clock(recording, given, diagnosis);
   return diagnosis;
 }
 

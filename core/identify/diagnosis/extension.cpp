@@ -27,8 +27,7 @@ ModelSpec extend(const Problem& problem, const SearchResult& found, const std::v
     const auto j = static_cast<std::size_t>(fit.cv);
     if (!touched[j] || !keep[j]) continue;
     const CvData& data = problem.data(fit.cv);
-    // The level is the first nuisance.
-    model.output_origin(fit.cv) += data.nuisances(0, 0) * fit.beta(0);
+    model.output_origin(fit.cv) += mean_level(data, fit);
     for (ChannelSpec& channel : model.channels) {
       if (channel.cv != fit.cv) continue;
       if (open && !open(channel.cv, channel.input, wrong[j])) continue;

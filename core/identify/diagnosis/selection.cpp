@@ -6,7 +6,6 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
-#include "core/identify/diagnosis/horizons.hpp"
 #include "core/identify/diagnosis/validation.hpp"
 
 namespace mpm {
@@ -40,8 +39,8 @@ class Errors {
     Sum sum(unseen_.rows());
     for (std::size_t j = 0; j < with_.size(); ++j)
       for (const Index horizon : unseen_.horizons())
-        sum.add(squared_prediction_errors(without_[j], horizon),
-                squared_prediction_errors(with_[j], horizon));
+        sum.add(unseen_.prediction_errors(without_[j], horizon),
+                unseen_.prediction_errors(with_[j], horizon));
     return sum.score(unseen_, seed);
   }
 

@@ -1,6 +1,7 @@
 #include "core/identify/diagnosis/unseen.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/horizons.hpp"
@@ -35,6 +36,19 @@ Eigen::VectorXd Unseen::measured(int cv) const {
 
 Eigen::VectorXd Unseen::simulated(const ModelSpec& model, int cv) {
   return free_run(simulator_, model, cv).tail(rows_);
+}
+
+Eigen::VectorXd Unseen::prediction_errors(const Eigen::Ref<const Eigen::VectorXd>& residual,
+                                          Index horizon) const {
+  Eigen::VectorXd errors = squared_prediction_errors(residual, horizon);
+  const Recording& recording = simulator_.recording();
+  for (const Border& border : recording.borders) {
+    const Index row = border.row - (recording.samples() - rows_);
+    const Index first = std::max<Index>(0, row - horizon), last = std::min(row, errors.size());
+    if (first < last)
+      errors.segment(first, last - first).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return errors;
 }
 
 Eigen::MatrixXd Unseen::free_runs(const ModelSpec& model) {

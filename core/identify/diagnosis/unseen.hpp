@@ -22,6 +22,9 @@ class Unseen {
   [[nodiscard]] Eigen::VectorXd residual(const ModelSpec& model, int cv) {
     return measured(cv) - simulated(model, cv);
   }
+  /// Squared prediction errors at a horizon (horizons.hpp), none across a border of runs.
+  [[nodiscard]] Eigen::VectorXd prediction_errors(const Eigen::Ref<const Eigen::VectorXd>& residual,
+                                                  Eigen::Index horizon) const;
   /// At which predictions are judged, samples; ascending.
   [[nodiscard]] const std::vector<Eigen::Index>& horizons() const { return horizons_; }
   [[nodiscard]] Eigen::Index rows() const { return rows_; }

@@ -54,6 +54,15 @@ inline constexpr Eigen::Index kDecayQuarter = 4;  ///< and at most this part of 
 inline constexpr double kSettledShare = 1e-6;  ///< still to come
 inline constexpr int kLongestResponse = 5000;  ///< samples
 
+/// A border further than this share of all rows from where the fit is to end is not near
+/// (split.hpp): between half and five sixths of the rows are fitted where two thirds are asked for.
+inline constexpr double kFarBorder = 1.0 / 6.0;
+
+// Runs (runs.hpp): no shorter gap parts them, and no shorter one is kept beside others. The first
+// state and the noise model take some 20 rows of each.
+inline constexpr double kShortestLongGap = 20.0;  ///< intervals
+inline constexpr Eigen::Index kShortestRun = 40;  ///< rows
+
 /// Of a sample: two moments are the same.
 inline constexpr double kSameMoment = 1e-6;
 

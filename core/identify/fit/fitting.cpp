@@ -33,6 +33,7 @@ class Problem::Fitting {
       CvFit state;
       state.cv = cv;
       state.beta.setZero(problem_.data(cv).nuisances.cols());
+      start_at_levels(state);
       states_.push_back(std::move(state));
       small_.push_back(problem_.nuisances(effects_, cv));
     }
@@ -81,6 +82,23 @@ class Problem::Fitting {
     MatrixXd triangle;         ///< of [nuisances, its coordinates, right-hand side]
     std::vector<Index> where;  ///< its coordinates among the free ones
   };
+
+  /// Runs far apart in level would at first look like one wandering noise, which leaves the levels
+  /// free and holds the fit there: so each of several runs starts at its own.
+  void start_at_levels(CvFit& state) {
+    const CvData& data = problem_.data(state.cv);
+    if (data.runs.size() < 2) return;
+    const VectorXd misfit =
+        (data.measured - problem_.simulate(effects_, state.cv)).cwiseProduct(data.known);
+    if (!misfit.allFinite()) return;
+    for (std::size_t r = 0; r < data.runs.size(); ++r) {
+      const auto& [first, count] = data.runs[r];
+      const auto column = static_cast<Index>(r);
+      const double known = std::max(1.0, data.known.segment(first, count).sum());
+      state.beta(column) =
+          misfit.segment(first, count).sum() / known / data.nuisances(first, column);
+    }
+  }
 
   [[nodiscard]] Index count() const { return static_cast<Index>(free_.size()); }
 

@@ -45,6 +45,16 @@ double first_error(const Eigen::Ref<const VectorXd>& simulated,
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
+double mean_error(const Eigen::Ref<const VectorXd>& simulated,
+                  const Eigen::Ref<const VectorXd>& measured) {
+  double sum = 0.0, count = 0.0;
+  for (Index k = 0; k < measured.size(); ++k) {
+    const double error = measured(k) - simulated(k);
+    if (std::isfinite(error)) sum += error, ++count;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
 VectorXd start_on_data(const Eigen::Ref<const VectorXd>& simulated,
                        const Eigen::Ref<const VectorXd>& measured,
                        const std::vector<double>& decay_times) {

@@ -22,4 +22,8 @@ namespace mpm {
 [[nodiscard]] double first_error(const Eigen::Ref<const Eigen::VectorXd>& simulated,
                                  const Eigen::Ref<const Eigen::VectorXd>& measured);
 
+/// Mean of measured - simulated where it is known; 0 where it nowhere is.
+[[nodiscard]] double mean_error(const Eigen::Ref<const Eigen::VectorXd>& simulated,
+                                const Eigen::Ref<const Eigen::VectorXd>& measured);
+
 }  // namespace mpm

@@ -32,6 +32,18 @@ MatrixXd triangle(const MatrixXd& matrix) {
   return qr.matrixQR().topRows(std::min(columns, matrix.rows())).triangularView<Eigen::Upper>();
 }
 
+double mean_level(const CvData& data, const CvFit& fit) {
+  const double all = std::max(1.0, data.known.sum());
+  double mean = 0.0;
+  for (std::size_t r = 0; r < data.runs.size(); ++r) {
+    const auto& [first, count] = data.runs[r];
+    const auto column = static_cast<Index>(r);
+    const double share = data.known.segment(first, count).sum() / all;
+    mean += share * (data.nuisances(first, column) * fit.beta(column));
+  }
+  return mean;
+}
+
 VectorXd rows_of(const CvData& data, const CvFit& fit, const Eigen::Ref<const VectorXd>& x) {
   const VectorXd root = (data.weights / fit.variance).cwiseSqrt();
   return fit.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);
@@ -46,6 +58,7 @@ Problem::Problem(const ModelSpec& model, int model_inputs, const Recording& reco
       noise_(noise) {
   for (int cv = 0; cv < model.cv_count; ++cv) {
     CvData data;
+    data.runs = runs_of(recording);
     const auto measured = recording.cvs.col(cv);
     data.known = measured.unaryExpr([](double y) { return std::isfinite(y) ? 1.0 : 0.0; });
     data.measured = measured.unaryExpr([](double y) { return std::isfinite(y) ? y : 0.0; });
@@ -89,9 +102,14 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
   const VectorXd misfit = (data.measured - base).cwiseProduct(data.known);
   // A level far beyond what the simulation is off by would make any noise look like a wandering
   // one, and a wandering one leaves the level free.
-  const double off =
-      std::max(kLeastLevel * scale, misfit.norm() / std::sqrt(std::max(1.0, data.known.sum())));
-  add({}, VectorXd::Constant(samples, off));
+  for (const auto& [first, count] : data.runs) {
+    const double known = std::max(1.0, data.known.segment(first, count).sum());
+    const double off =
+        std::max(kLeastLevel * scale, misfit.segment(first, count).norm() / std::sqrt(known));
+    VectorXd level = VectorXd::Zero(samples);
+    level.segment(first, count).setConstant(off);
+    add({}, level);
+  }
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
     const ChannelSpec& channel = model.channels[c];
     if (channel.cv != cv) continue;
@@ -113,16 +131,24 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
   }
   // A first state that is off by more than it shows would explain whatever one wants.
   // Noise alone is off by a few times what it moves by in a row.
-  const double moves =
-      std::sqrt((misfit.tail(samples - 1) - misfit.head(samples - 1)).squaredNorm() /
-                static_cast<double>(samples));
-  const double first =
-      std::max({kLeastFirstState * scale, first_error(base, recording().cvs.col(cv)),
-                kMovesOfNoise * moves});
-  for (const double decay : decay_times(model, cv))
-    add({}, VectorXd::NullaryExpr(samples, [&](Index k) {
-          return first * std::exp(-static_cast<double>(k) / decay);
-        }));
+  double moved = 0.0;
+  for (const auto& [first, count] : data.runs)
+    moved +=
+        (misfit.segment(first + 1, count - 1) - misfit.segment(first, count - 1)).squaredNorm();
+  const double moves = std::sqrt(moved / static_cast<double>(samples));
+  const std::vector<double> decays = decay_times(model, cv);
+  for (const auto& [first, count] : data.runs) {
+    const double size = std::max(
+        {kLeastFirstState * scale,
+         first_error(base.segment(first, count), recording().cvs.col(cv).segment(first, count)),
+         kMovesOfNoise * moves});
+    for (const double decay : decays) {
+      VectorXd column = VectorXd::Zero(samples);
+      for (Index k = 0; k < count; ++k)
+        column(first + k) = size * std::exp(-static_cast<double>(k) / decay);
+      add({}, column);
+    }
+  }
   data.nuisances.resize(samples, static_cast<Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i)
     data.nuisances.col(static_cast<Index>(i)) = columns[i];
@@ -149,7 +175,8 @@ void Problem::settle(const std::vector<Effect>& effects, const Fit* fit) {
     make_nuisances(model, cv);
     CvData& data = data_[static_cast<std::size_t>(cv)];
     data.weights = data.known;
-    data.weights.head(std::min<Index>(noise_.order, data.weights.size())).setZero();
+    for (const auto& [first, count] : data.runs)
+      data.weights.segment(first, std::min<Index>(noise_.order, count)).setZero();
     for (Index k = 0; k < data.known.size(); ++k)
       if (data.known(k) == 0.0)
         data.weights.segment(k, std::min<Index>(noise_.order + 1, data.known.size() - k)).setZero();
@@ -208,6 +235,7 @@ void Problem::update(CvFit& state, const VectorXd& simulated, const MatrixXd& nu
   const CvData& data = this->data(state.cv);
   state.residual = (data.measured - simulated - nuisances * state.beta).cwiseProduct(data.known);
   state.noise = fit_whitening(state.residual, data.weights, noise_);
+  state.noise.borders = recording().borders;
   state.innovations = state.noise.apply(state.residual);
   const double variance =
       state.innovations.cwiseAbs2().dot(data.weights) / std::max(1.0, data.rows);

@@ -21,20 +21,22 @@ struct Tolerances {
 
 /// A small error of one channel that is fitted beside any effect.
 struct SmallError {
-  int input = -1;                      ///< -1: level or initial state
+  int input = -1;                      ///< -1: level or initial state of a run
   const Quantity* quantity = nullptr;  ///< of the effect that would make it a large one
   double sd = 0.0;                     ///< of the tolerance, in the form of that quantity
 };
 
 /// What one CV's fit works on, whatever is fitted: A(q) (y - ysim - nuisances beta) is white.
 struct CvData {
-  Eigen::VectorXd measured;         ///< 0 where unknown
-  Eigen::VectorXd known;            ///< 1 or 0
-  Eigen::VectorXd weights;          ///< of each row of the whitened residual; 0 = not to be used
-  Eigen::MatrixXd nuisances;        ///< scaled so that beta ~ N(0, I) before the data are seen
+  Eigen::VectorXd measured;  ///< 0 where unknown
+  Eigen::VectorXd known;     ///< 1 or 0
+  Eigen::VectorXd weights;   ///< of each row of the whitened residual; 0 = not to be used
+  /// Scaled so that beta ~ N(0, I) before the data are seen. The first are the levels of the runs.
+  Eigen::MatrixXd nuisances;
   std::vector<SmallError> meaning;  ///< of each nuisance
-  double rows = 0.0;                ///< with a weight
-  double measured_sd = 0.0;         ///< of all that was measured, clipped or not
+  std::vector<Run> runs;
+  double rows = 0.0;         ///< with a weight
+  double measured_sd = 0.0;  ///< of all that was measured, clipped or not
 };
 
 /// One CV's side of a fit.
@@ -49,6 +51,10 @@ struct CvFit {
 
 /// Upper triangle of a QR without Q; the last column is a right-hand side.
 [[nodiscard]] Eigen::MatrixXd triangle(const Eigen::MatrixXd& matrix);
+
+/// How far the CV is off by itself, CV units: the mean over its known rows of the levels that a fit
+/// gave its runs.
+[[nodiscard]] double mean_level(const CvData& data, const CvFit& fit);
 
 /// Whitened and weighted, in s.d. of the innovations; 0 where the CV is unknown: as the rows of a
 /// fit's least squares are.

@@ -83,12 +83,13 @@ const StateTerm* state_term(const ModelSpec& model, const ChannelSpec& channel) 
 
 Simulator::Simulator(const Recording& recording)
     : recording_(&recording),
+      runs_(runs_of(recording)),
       capacity_(std::max<std::size_t>(
           16,
           kRemembered / std::max<std::size_t>(1, static_cast<std::size_t>(recording.samples())))) {}
 
 VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
-                             bool from_origin) const {
+                             const Starts& at_origin) const {
   ModelSpec one = alone(spec, model.sample_time_s);
   one.input_origin = VectorXd::Constant(1, model.input_origin(spec.input));
   one.output_origin = VectorXd::Constant(1, model.output_origin(spec.cv));
@@ -96,39 +97,41 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
 
   const auto inputs = recording_->inputs.cols();
   const bool aux = spec.input >= inputs;
-  const Eigen::Ref<const VectorXd> given =
+  const Eigen::Ref<const VectorXd> all =
       aux ? recording_->aux.col(spec.input - inputs) : recording_->inputs.col(spec.input);
   const double origin = model.input_origin(spec.input);
-  const Index samples = given.size();
   // The blocks by hand, so that the linear part sees a plain input.
-  VectorXd moved(samples);
-  const double first = from_origin ? origin : first_finite(given, origin);
   InputElement own(model.input_blocks[static_cast<std::size_t>(spec.input)], origin);
   InputElement channels(spec.input_block, origin);
-  own.reset(first);
-  channels.reset(origin + own.apply(first));
-  double last = first_finite(given, origin);
-  for (Index k = 0; k < samples; ++k) {
-    if (std::isfinite(given(k))) last = given(k);
-    moved(k) = origin + channels.apply(origin + own.apply(last));
-  }
-
   LinearModel simulator(one);
-  VectorXd input(1), output(samples);
-  input(0) = from_origin ? origin : moved(0);
-  simulator.reset_steady(input);
-  for (Index k = 0; k < samples; ++k) {
-    output(k) = simulator.output()(0) - one.output_origin(0);
-    input(0) = moved(k);
-    simulator.advance(input);
+  VectorXd input(1), output(all.size());
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const Run& run = runs_[r];
+    const auto given = all.segment(run.first, run.count);
+    VectorXd moved(run.count);
+    const double first = at_origin[r] ? origin : first_finite(given, origin);
+    own.reset(first);
+    channels.reset(origin + own.apply(first));
+    double last = first_finite(given, origin);
+    for (Index k = 0; k < run.count; ++k) {
+      if (std::isfinite(given(k))) last = given(k);
+      moved(k) = origin + channels.apply(origin + own.apply(last));
+    }
+    input(0) = at_origin[r] ? origin : moved(0);
+    simulator.reset_steady(input);
+    for (Index k = 0; k < run.count; ++k) {
+      output(run.first + k) = simulator.output()(0) - one.output_origin(0);
+      input(0) = moved(k);
+      simulator.advance(input);
+    }
   }
   return output;
 }
 
 const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& spec,
-                                   bool from_origin) {
+                                   const Starts& at_origin) {
   Key key;
-  key.add(from_origin ? 1.0 : 0.0);
+  for (const bool start : at_origin) key.add(start ? 1.0 : 0.0);
   key.add(static_cast<double>(spec.input));
   key.add(model.input_origin(spec.input));
   key.add(model.output_origin(spec.cv));
@@ -143,37 +146,44 @@ const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& sp
   if (remembered_.size() >= capacity_) remembered_.clear();
   VectorXd output;
   try {
-    output = simulate(model, spec, from_origin);
+    output = simulate(model, spec, at_origin);
   } catch (const std::invalid_argument&) {  // a fit tried what is no model
     output = VectorXd::Constant(recording_->samples(), std::numeric_limits<double>::quiet_NaN());
   }
   return remembered_.emplace(key.text(), std::move(output)).first->second;
 }
 
-VectorXd Simulator::sum_of_channels(const ModelSpec& model, int cv, bool from_origin) {
+VectorXd Simulator::sum_of_channels(const ModelSpec& model, int cv, const Starts& at_origin) {
   VectorXd sum = VectorXd::Zero(recording_->samples());
   for (const ChannelSpec& spec : model.channels)
-    if (spec.cv == cv) sum += channel(model, spec, from_origin);
+    if (spec.cv == cv) sum += channel(model, spec, at_origin);
   return sum;
 }
 
-bool Simulator::starts_at_origin(const ModelSpec& model) {
-  if (from_origin_) return *from_origin_;
-  double votes = 0.0;
+const Simulator::Starts& Simulator::starts(const ModelSpec& model) {
+  if (!at_origin_.empty()) return at_origin_;
+  const Starts none(runs_.size(), false), all(runs_.size(), true);
+  std::vector<double> votes(runs_.size(), 0.0);
   for (int cv = 0; cv < model.cv_count; ++cv) {
-    const auto measured = recording_->cvs.col(cv);
-    const VectorXd shift = VectorXd::Constant(measured.size(), model.output_origin(cv));
-    const double at_origin = first_error(shift + sum_of_channels(model, cv, true), measured);
-    const double at_inputs = first_error(shift + sum_of_channels(model, cv, false), measured);
-    if (at_origin + at_inputs > 0.0) votes += (at_inputs - at_origin) / (at_inputs + at_origin);
+    const VectorXd shift = VectorXd::Constant(recording_->samples(), model.output_origin(cv));
+    const VectorXd from_origin = shift + sum_of_channels(model, cv, all);
+    const VectorXd from_inputs = shift + sum_of_channels(model, cv, none);
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      const auto [first, count] = runs_[r];
+      const auto measured = recording_->cvs.col(cv).segment(first, count);
+      const double at_origin = first_error(from_origin.segment(first, count), measured);
+      const double at_inputs = first_error(from_inputs.segment(first, count), measured);
+      if (at_origin + at_inputs > 0.0)
+        votes[r] += (at_inputs - at_origin) / (at_inputs + at_origin);
+    }
   }
-  from_origin_ = votes > 0.0;
-  return *from_origin_;
+  for (const double vote : votes) at_origin_.push_back(vote > 0.0);
+  return at_origin_;
 }
 
 VectorXd Simulator::cv(const ModelSpec& model, int cv) {
   const Index samples = recording_->samples();
-  VectorXd sum = sum_of_channels(model, cv, starts_at_origin(model));
+  VectorXd sum = sum_of_channels(model, cv, starts(model));
   for (const DisturbanceTerm& term : model.disturbances) {
     if (term.cv != cv) continue;
     for (Index k = 0; k < samples; ++k)

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
@@ -18,25 +18,31 @@ class Simulator {
   /// `recording` must outlive the simulator. `origin` of the aux inputs is their mean.
   explicit Simulator(const Recording& recording);
 
-  /// One CV of `model` (channels only, no state space) on all samples, in CV units, from rest: at
-  /// the operating point or as if the first inputs had been there for ever, whichever is nearer to
-  /// what was first measured. (The first row's inputs may be moves that nothing measured shows
-  /// yet.)
+  /// One CV of `model` (channels only, no state space) on all samples, in CV units, each run from
+  /// rest: at the operating point or as if its first inputs had been there for ever, whichever is
+  /// nearer to what was first measured in it. (The first row's inputs may be moves that nothing
+  /// measured shows yet.)
   [[nodiscard]] Eigen::VectorXd cv(const ModelSpec& model, int cv);
 
   [[nodiscard]] const Recording& recording() const { return *recording_; }
 
  private:
-  [[nodiscard]] Eigen::VectorXd sum_of_channels(const ModelSpec& model, int cv, bool from_origin);
-  const Eigen::VectorXd& channel(const ModelSpec& model, const ChannelSpec& spec, bool from_origin);
+  /// Whether each run begins at the operating point.
+  using Starts = std::vector<bool>;
+
+  [[nodiscard]] Eigen::VectorXd sum_of_channels(const ModelSpec& model, int cv,
+                                                const Starts& at_origin);
+  const Eigen::VectorXd& channel(const ModelSpec& model, const ChannelSpec& spec,
+                                 const Starts& at_origin);
   [[nodiscard]] Eigen::VectorXd simulate(const ModelSpec& model, const ChannelSpec& spec,
-                                         bool from_origin) const;
-  [[nodiscard]] bool starts_at_origin(const ModelSpec& model);
+                                         const Starts& at_origin) const;
+  [[nodiscard]] const Starts& starts(const ModelSpec& model);
 
   const Recording* recording_;
+  std::vector<Run> runs_;
   std::unordered_map<std::string, Eigen::VectorXd> remembered_;
   std::size_t capacity_;
-  std::optional<bool> from_origin_;  ///< decided by the first model, kept for all others
+  Starts at_origin_;  ///< decided by the first model, kept for all others; empty before
 };
 
 /// `model` with the recording's aux signals as further inputs that no channel uses yet.

@@ -15,6 +15,8 @@ VectorXd Whitening::apply(const Eigen::Ref<const VectorXd>& x) const {
   for (Index l = 1; l <= order && l < rows; ++l)
     result.tail(rows - l) -= coefficients(l - 1) * x.head(rows - l);
   result.head(std::min(order, rows)).setZero();
+  for (const Border& border : borders)
+    result.segment(border.row, std::min(order, rows - border.row)).setZero();
   return result;
 }
 

@@ -1,14 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
+
+#include "core/identify/fit/recording.hpp"
 
 namespace mpm {
 
 /// An autoregressive noise model: r(k) = sum a_l r(k-l) + white. A(q) = 1 - sum a_l q^-l.
 struct Whitening {
   Eigen::VectorXd coefficients;  ///< a_1 .. a_p
+  std::vector<Border> borders;   ///< of the rows that it is applied to
 
-  /// A(q) x; the first p rows, which lack a past, are zero.
+  /// A(q) x; the first p rows of each run, which lack a past, are zero.
   [[nodiscard]] Eigen::VectorXd apply(const Eigen::Ref<const Eigen::VectorXd>& x) const;
 };
 
@@ -22,7 +26,7 @@ struct NoiseModel {
 };
 
 /// Weighted least squares of r on its own past (orthogonal, scaled columns); rows of weight zero
-/// take no part.
+/// take no part: the first p of each run must be such.
 [[nodiscard]] Whitening fit_whitening(const Eigen::Ref<const Eigen::VectorXd>& residual,
                                       const Eigen::Ref<const Eigen::VectorXd>& weights,
                                       const NoiseModel& model);

@@ -63,6 +63,8 @@ void name_levels(const Problem& problem, const std::vector<int>& except, SearchR
         });
     if (new_input) continue;
     const CvData& data = problem.data(fit.cv);
+    // Runs have levels of their own, which are nobody's fault.
+    if (data.runs.size() > 1) continue;
     const double level = data.nuisances(0, 0) * fit.beta(0);
     const double noise = std::sqrt(fit.residual.squaredNorm() / std::max(1.0, data.known.sum()));
     const double memory = std::max(kLeastReturn, 1.0 - fit.noise.coefficients.sum());

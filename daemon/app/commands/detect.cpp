@@ -8,6 +8,7 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
+#include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/live/journal.hpp"
@@ -21,6 +22,7 @@ namespace {
 struct DetectOptions {
   std::string config;
   std::vector<std::string> data;
+  files::TimeChoiceText time;
   std::string scenario;
   std::string journal;
   std::string time_zone;
@@ -28,13 +30,18 @@ struct DetectOptions {
   bool fail_on_mismatch = false;
 };
 
+/// What is left out is a gap for the monitor.
 report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& source,
-                         live::Journal* journal) {
+                         const files::TimeChoice& choice, live::Journal* journal) {
   report::UnitMonitor monitor(unit);
   report::DetectReport report;
   report.unit = unit.unit;
+  files::UsedStretches used;
   Frame frame(unit.counts());
   while (source.next(frame)) {
+    const bool taken = choice.takes(frame.source_time_ns);
+    used.note(frame.source_time_ns, taken);
+    if (!taken) continue;
     monitor.push(frame);
     report.alarms.insert(report.alarms.end(), monitor.alarms().begin(), monitor.alarms().end());
     if (journal != nullptr && !journal->write(monitor.channels(), monitor.alarms()))
@@ -50,6 +57,7 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
   report.clipped = counters.implausible.clipped;
   report.spikes = counters.implausible.spikes;
   report.channels = monitor.channels();
+  if (!choice.all()) report.used = used.stretches();
   return report;
 }
 
@@ -70,15 +78,19 @@ int detect(const DetectOptions& options) {
       if (!report(scenario.findings)) return 3;
       loaded.config.monitor = scenario.scenario.monitor;
     }
+    const std::shared_ptr<const files::TimeZone> zone = zone_of(options.time_zone);
     const std::unique_ptr<files::FrameSource> frames =
-        bag::open_recording(options.data, loaded.config, zone_of(options.time_zone));
+        bag::open_recording(options.data, loaded.config, zone);
+    const files::TimeChoice choice(options.time, zone);
     std::optional<live::Journal> journal;
     if (!options.journal.empty()) journal.emplace(options.journal);
-    const report::DetectReport report = run(loaded.config, *frames, journal ? &*journal : nullptr);
+    const report::DetectReport report =
+        run(loaded.config, *frames, choice, journal ? &*journal : nullptr);
     for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
     if (report.samples == 0)
       throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",
-                                "holds no control interval of unit '" + loaded.config.unit + "'"});
+                                "holds no control interval of unit '" + loaded.config.unit + "'" +
+                                    (choice.all() ? "" : " in the time chosen")});
     std::cout << (options.json ? to_json(report).dump() + "\n" : to_text(report)) << std::flush;
     return options.fail_on_mismatch && report.mismatch() ? 1 : 0;
   } catch (const config::InputError& error) {
@@ -101,6 +113,7 @@ void add_detect(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--scenario", options->scenario,
                       "scenario (name or file) whose `monitor` settings replace the unit file's");
+  add_time_choice(*command, options->time);
   add_time_zone(*command, options->time_zone);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--journal", options->journal,

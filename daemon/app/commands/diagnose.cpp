@@ -7,11 +7,13 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "config/load_unit.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
+#include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/output_folder.hpp"
@@ -28,8 +30,9 @@ namespace {
 
 struct DiagnoseOptions {
   std::string config;
-  std::string data;
-  std::string validate;
+  std::vector<std::string> data;
+  std::vector<std::string> validate;
+  files::TimeChoiceText time;
   std::string out;
   std::string scenario;
   std::string time_zone;
@@ -79,35 +82,66 @@ std::optional<config::UnitConfig> load(const std::string& file) {
 }
 
 Recording read(const std::string& file, const config::UnitConfig& unit,
-               const std::shared_ptr<const files::TimeZone>& zone,
+               const std::shared_ptr<const files::TimeZone>& zone, const files::TimeChoice& choice,
                std::vector<std::string>& notices) {
   const std::unique_ptr<files::FrameSource> frames = bag::open_recording(file, unit, zone);
-  const files::RecordingFile data = files::read_recording(*frames, unit, file);
-  const std::string problem = files::recording_problem(data.recording, needed_samples(unit.model));
-  if (!problem.empty()) refuse(file, problem);
+  files::RecordingFile data = files::read_recording(*frames, unit, file, choice);
   const std::string prefix = file + ": ";
   for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
-  const auto count = [&](std::int64_t number, const char* what) {
+  const auto count = [&](std::int64_t number, const std::string& what) {
     if (number > 0) notices.push_back(prefix + std::to_string(number) + what);
   };
   count(data.missing, " intervals without a row");
+  count(data.long_gaps, " gaps of more than " + std::to_string(data.longest_gap) +
+                            " intervals; a new run begins after each");
+  count(data.scraps, " rows left out, of runs too short to tell anything");
   count(data.out_of_order, " rows left out, for their time does not grow");
   count(data.bad_values, " values of inputs and CVs missing or bad");
-  return data.recording;
+  return std::move(data.recording);
+}
+
+/// What the files given to one option hold together.
+struct Given {
+  Recording recording;             ///< each file a run of it, or several
+  std::vector<std::string> files;  ///< of each run
+  std::string name;                ///< of all the files
+};
+
+Given read_all(const std::vector<std::string>& files, const config::UnitConfig& unit,
+               const std::shared_ptr<const files::TimeZone>& zone, const files::TimeChoice& choice,
+               std::vector<std::string>& notices) {
+  std::vector<Recording> recordings;
+  Given all;
+  for (const std::string& file : files) {
+    recordings.push_back(read(file, unit, zone, choice, notices));
+    all.files.insert(all.files.end(), runs_of(recordings.back()).size(), file);
+    all.name += (all.name.empty() ? "" : ", ") + file;
+  }
+  all.recording = joined(recordings);
+  const std::string problem = files::recording_problem(all.recording, needed_samples(unit.model));
+  if (!problem.empty()) refuse(all.name, problem);
+  return all;
 }
 
 report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
   report::DiagnosisRun run;
   run.unit = std::move(unit);
   const std::shared_ptr<const files::TimeZone> zone = zone_of(options.time_zone);
-  run.recording = read(options.data, run.unit, zone, run.notices);
-  if (!options.validate.empty())
-    run.validation = read(options.validate, run.unit, zone, run.notices);
+  const files::TimeChoice choice(options.time, zone);
+  run.time_chosen = !choice.all();
+  Given data = read_all(options.data, run.unit, zone, choice, run.notices);
+  run.recording = std::move(data.recording);
+  run.run_files = std::move(data.files);
+  run.data_file = std::move(data.name);
+  if (!options.validate.empty()) {
+    Given unseen = read_all(options.validate, run.unit, zone, {}, run.notices);
+    run.validation = std::move(unseen.recording);
+    run.validation_run_files = std::move(unseen.files);
+    run.validation_file = std::move(unseen.name);
+  }
   run.program = host::version_text("mpm");
   run.command_line = command_line();
   run.config_file = options.config;
-  run.data_file = options.data;
-  run.validation_file = options.validate;
   run.fit_share = run.validation ? 1.0 : options.fit_share;
   run.seed = options.seed;
   return run;
@@ -227,9 +261,10 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   command->add_option("--config", options->config, "unit file (required)");
   command->add_option("--data", options->data,
                       "data file (required): CSV in any historian layout, MCAP recording, or a "
-                      "folder of one that was split");
+                      "folder of one that was split; of several each is a run of its own, at its "
+                      "own level and from its own first state");
   command->add_option("--validate", options->validate,
-                      "measure the gain on this data file and fit on all of --data");
+                      "measure the gain on this data file (or several) and fit on all of --data");
   command->add_option("--out", options->out,
                       "folder (required) for report.html, report.json and extended.yaml; made if "
                       "need be");
@@ -250,6 +285,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   command->add_option("--scenario", options->scenario,
                       "compare how well the simulator's controller does on this scenario with the "
                       "unit file's model and with the extended one");
+  add_time_choice(*command, options->time);
   add_time_zone(*command, options->time_zone);
   command->add_flag("--json", options->json, "print report.json too");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
@@ -265,10 +301,12 @@ void add_diagnose(CLI::App& app, int& exit_code) {
       exit_code = print_settings(*options);
       return;
     }
-    for (const auto& [name, value] : {std::pair{"--config", &options->config},
-                                      {"--data", &options->data},
-                                      {"--out", &options->out}})
-      if (value->empty()) throw CLI::RequiredError(name);
+    const auto required = [](const char* name, const auto& value) {
+      if (value.empty()) throw CLI::RequiredError(name);
+    };
+    required("--config", options->config);
+    required("--data", options->data);
+    required("--out", options->out);
     options->seed_given = seed->count() > 0;
     exit_code = diagnose_file(*options);
   });

@@ -4,6 +4,7 @@
 
 #include "core/identify/causes/cause.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/report/diagnosis/data_notes.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
 #include "daemon/report/diagnosis/names_of.hpp"
 
@@ -184,6 +185,18 @@ Json closed_loop_json(const DiagnosisRun& run) {
   return json;
 }
 
+/// Each run, from its first row to its last.
+Json used_json(const Recording& recording) {
+  Json json = Json::array();
+  const auto clock_at = [&](Eigen::Index row) {
+    return on_clock(recording,
+                    recording.start_s + static_cast<double>(row) * recording.sample_time_s);
+  };
+  for (const auto& [first, count] : runs_of(recording))
+    json.push_back({{"from", clock_at(first)}, {"until", clock_at(first + count - 1)}});
+  return json;
+}
+
 std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
   const SignalNames names = names_of(run);
   std::string text = names.subject(finding.subject);
@@ -266,6 +279,8 @@ nlohmann::ordered_json to_json(const DiagnosisRun& run) {
             {"inputs", inputs_json(run)},
             {"channels", channels_json(run)},
             {"closed_loop", closed_loop_json(run)}};
+  if (run.time_chosen || !run.recording.borders.empty()) json["used"] = used_json(run.recording);
+  if (const Json notes = data_notes(run); !notes.empty()) json["data"] = notes;
   json["made_by"] = {{"program", run.program},
                      {"command", run.command_line},
                      {"config", run.config_file},

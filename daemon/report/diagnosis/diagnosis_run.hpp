@@ -42,6 +42,9 @@ struct DiagnosisRun {
   std::string program;  ///< with its version
   std::string command_line;
   std::string config_file, data_file, validation_file;
+  /// Of each run of the recording and of the validation; may be empty where that is one run.
+  std::vector<std::string> run_files, validation_run_files;
+  bool time_chosen = false;  ///< not all of the data file was wanted
   double fit_share = 0.0;
   std::uint64_t seed = 0;
   std::vector<std::string> notices;  ///< on the data

@@ -1,8 +1,8 @@
 // What the report says, from the data in the page (daemon/report/page_data.cpp):
 //   report   report.json itself
 //   dates    the clock of the data tells dates, not seconds of a run
-//   sets     [{name, start, step, samples, every, settled, boundary}]: the recordings, values thinned
-//            `every`; the simulations have found their state after `settled` samples
+//   sets     [{name, start, step, samples, every, settled, boundary}]: the runs of the recordings, values
+//            thinned `every`; the simulations have found their state after `settled` samples
 //   inputs   [{tag, unit, new, sets: [values]}]
 //   cvs      [{tag, unit, description, found, sets: [{measured, before, after, residual_before,
 //            residual_after, block, rms_before, rms_after}], spectrum, levels, correlations, steps}]
@@ -47,10 +47,13 @@ function subjectText(item) {
 function verdict() {
   const glyph = {match: '✓', mismatch: '▲', undetermined: '?'}[report.verdict];
   const last = data.sets[0].start + data.sets[0].step * (data.sets[0].samples - 1);
+  const when = report.used ? report.used.map(({from, until}) => `${clock(from)} to ${clock(until)}`).join(', ')
+    : `${clock(data.sets[0].start)} to ${clock(last)}`;
   document.getElementById('verdict').append(element('p', {}, report.details), element('p', {},
       element('span', {class: 'badge ' + report.verdict}, glyph + ' ' + report.verdict),
-      element('span', {class: 'muted'}, `${report.samples} samples from ${clock(data.sets[0].start)} to ${clock(last)}; ` +
-        `${report.fit_samples} fitted, ${report.validation_samples} kept to measure the gain`)));
+      element('span', {class: 'muted'}, `${report.samples} samples from ${when}; ` +
+        `${report.fit_samples} fitted, ${report.validation_samples} kept to measure the gain`)),
+      ...(report.data || []).map(note => element('p', {}, element('span', {class: 'badge warn'}, note.compressed ? 'compressed' : 'coarse'), `${note.tag}: ${note.advice}`)));
 }
 
 function parameterTable(finding) {
@@ -160,8 +163,8 @@ function times(set, count) {
 
 function unseen(set) {
   const end = set.start + set.step * set.samples;
-  if (data.sets.length > 1) return set === data.sets[1] ? [set.start, end] : null;
-  return set.boundary === null ? null : [set.boundary, end];
+  if (set.boundary !== null) return [set.boundary, end];
+  return report.made_by.validation_data !== null && set === data.sets.at(-1) ? [set.start, end] : null;
 }
 
 function onsets(cv, set) {
@@ -236,7 +239,7 @@ const small = plots => element('div', {class: 'small'}, ...plots);
 function fillCv(cv, body) {
   body.append(...data.sets.flatMap((set, i) => timePlots(cv, set, i)));
   body.append(element('h3', {}, 'Where it goes wrong: frequency and operating range'),
-      element('p', {class: 'note'}, `Without the first ${data.sets.at(-1).settled} samples, in which the simulations find their state.`), small([spectrumPlot(cv), ...levelPlots(cv)]));
+      element('p', {class: 'note'}, `Without the first ${data.sets.at(-1).settled} samples${data.sets.length > 1 ? ' of each run' : ''}, in which the simulations find their state.`), small([spectrumPlot(cv), ...levelPlots(cv)]));
   const correlations = correlationPlots(cv);
   if (correlations.length) body.append(element('h3', {}, 'What the residual goes with'),
       element('p', {class: 'note'}, 'Correlation of the residual with each input some samples earlier, both filtered so that the input is white: its shape is that of the error’s impulse response. ' +

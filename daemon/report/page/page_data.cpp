@@ -33,9 +33,10 @@ constexpr int kLongestLag = 300;
 constexpr int kShortestLag = 30;
 constexpr int kLagGroups = 30;  // of positive lags
 
-Series column(const Eigen::MatrixXd& block, Eigen::Index index) {
+Series column(const Eigen::MatrixXd& block, Eigen::Index index, const Run& rows) {
   if (index >= block.cols()) return {};
-  return {block.col(index).data(), block.col(index).data() + block.rows()};
+  const double* first = block.col(index).data() + rows.first;
+  return {first, first + rows.count};
 }
 
 Series difference(const Series& a, const Series& b) {
@@ -82,11 +83,12 @@ Json significant(const Series& values) {
   return json;
 }
 
-/// One recording with both simulations of it.
+/// Rows of a recording with both simulations of them.
 struct DataSet {
   const Recording* recording;
   const Eigen::MatrixXd* before;
   const Eigen::MatrixXd* after;
+  Run rows;  ///< a run's, or all of them
   std::string name;
   double boundary_s;  ///< from here on no fit has seen the data; NaN = all or nothing of it
   /// Rows until the simulations have forgotten that how the plant was before is not known.
@@ -94,31 +96,77 @@ struct DataSet {
   std::size_t every;
 };
 
-std::size_t settling(const DiagnosisRun& run, const Recording& recording) {
+std::size_t settling(const DiagnosisRun& run, Eigen::Index rows) {
   const int models = std::max(LinearModel(run.unit.model).settling_samples(kSettled),
                               LinearModel(run.diagnosis.extended).settling_samples(kSettled));
-  return static_cast<std::size_t>(std::min<Eigen::Index>(models, recording.samples() / 4));
+  return static_cast<std::size_t>(std::min<Eigen::Index>(models, rows / 4));
+}
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+DataSet whole(const DiagnosisRun& run) {
+  return {&run.recording,
+          &run.diagnosis.before,
+          &run.diagnosis.after,
+          {0, run.recording.samples()},
+          run.data_file,
+          kNone,
+          settling(run, run.recording.samples()),
+          1};
+}
+
+DataSet whole_validation(const DiagnosisRun& run) {
+  return {&*run.validation,
+          &run.diagnosis.validation_before,
+          &run.diagnosis.validation_after,
+          {0, run.validation->samples()},
+          run.validation_file,
+          kNone,
+          settling(run, run.validation->samples()),
+          1};
+}
+
+double clock_at(const Recording& recording, Eigen::Index row) {
+  return on_clock(recording,
+                  recording.start_s + static_cast<double>(row) * recording.sample_time_s);
+}
+
+/// `all` run by run, for nothing may be joined across a border. No fit has seen the rows from
+/// `unseen` on.
+void add_runs(const DiagnosisRun& run, const DataSet& all, const std::vector<std::string>& files,
+              Eigen::Index unseen, std::vector<DataSet>& sets) {
+  const std::vector<Run> runs = runs_of(*all.recording);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    DataSet set = all;
+    set.rows = runs[r];
+    if (runs.size() > 1) {
+      set.name = "run " + std::to_string(r + 1);
+      if (r < files.size()) set.name += ", " + files[r];
+      set.settled = settling(run, set.rows.count);
+    }
+    const Eigen::Index from = std::max(unseen, set.rows.first);
+    if (from < set.rows.first + set.rows.count) set.boundary_s = clock_at(*set.recording, from);
+    sets.push_back(std::move(set));
+  }
 }
 
 std::vector<DataSet> data_sets(const DiagnosisRun& run) {
   const Diagnosis& diagnosis = run.diagnosis;
-  const double none = std::numeric_limits<double>::quiet_NaN();
   std::vector<DataSet> sets;
-  const auto split = static_cast<double>(diagnosis.fit_samples);
-  const bool cut = !run.validation && diagnosis.fit_samples > 0 &&
-                   diagnosis.fit_samples < run.recording.samples();
-  sets.push_back({&run.recording, &diagnosis.before, &diagnosis.after, run.data_file,
-                  cut ? run.recording.start_s + split * run.recording.sample_time_s : none,
-                  settling(run, run.recording), 1});
-  if (run.validation)
-    sets.push_back({&*run.validation, &diagnosis.validation_before, &diagnosis.validation_after,
-                    run.validation_file, none, settling(run, *run.validation), 1});
+  const bool cut = !run.validation && diagnosis.fit_samples > 0;
+  add_runs(run, whole(run), run.run_files, cut ? diagnosis.fit_samples : run.recording.samples(),
+           sets);
+  if (run.validation) {
+    // Of a single one the page knows by itself that no fit has seen it.
+    const bool several = !run.validation->borders.empty();
+    add_runs(run, whole_validation(run), run.validation_run_files,
+             several ? 0 : run.validation->samples(), sets);
+  }
   const std::size_t series =
       sets.size() *
       (5 * run.unit.cv.size() + static_cast<std::size_t>(diagnosis.extended.input_count));
   const std::size_t points = std::clamp<std::size_t>(kAllPoints / series, 100, kPoints);
-  for (DataSet& set : sets)
-    set.every = thinning(static_cast<std::size_t>(set.recording->samples()), points);
+  for (DataSet& set : sets) set.every = thinning(static_cast<std::size_t>(set.rows.count), points);
   return sets;
 }
 
@@ -129,9 +177,9 @@ struct CvSeries {
 
 CvSeries cv_series(const DataSet& set, Eigen::Index cv) {
   CvSeries series;
-  series.measured = column(set.recording->cvs, cv);
-  series.before = column(*set.before, cv);
-  series.after = column(*set.after, cv);
+  series.measured = column(set.recording->cvs, cv, set.rows);
+  series.before = column(*set.before, cv, set.rows);
+  series.after = column(*set.after, cv, set.rows);
   series.residual_before = difference(series.measured, series.before);
   series.residual_after = difference(series.measured, series.after);
   return series;
@@ -139,9 +187,9 @@ CvSeries cv_series(const DataSet& set, Eigen::Index cv) {
 
 Series input_series(const DiagnosisRun& run, const DataSet& set, int input) {
   const auto own = static_cast<int>(set.recording->inputs.cols());
-  if (input < own) return column(set.recording->inputs, input);
+  if (input < own) return column(set.recording->inputs, input, set.rows);
   return column(set.recording->aux,
-                run.diagnosis.new_inputs.at(static_cast<std::size_t>(input - own)));
+                run.diagnosis.new_inputs.at(static_cast<std::size_t>(input - own)), set.rows);
 }
 
 void drop(Series& values, std::size_t rows) {
@@ -149,19 +197,28 @@ void drop(Series& values, std::size_t rows) {
                values.begin() + static_cast<std::ptrdiff_t>(std::min(rows, values.size())));
 }
 
-/// Without the rows in which the simulations still settle.
+/// Without the rows in which the simulations still settle; those at a border count as unknown.
 CvSeries settled(const DataSet& set, CvSeries series) {
   for (Series* values : {&series.measured, &series.before, &series.after, &series.residual_before,
-                         &series.residual_after})
+                         &series.residual_after}) {
+    for (const Border& border : set.recording->borders) {
+      const auto first =
+          values->begin() + std::min<std::ptrdiff_t>(border.row, std::ssize(*values));
+      std::fill(first,
+                first + std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(set.settled),
+                                                 values->end() - first),
+                kNone);
+    }
     drop(*values, set.settled);
+  }
   return series;
 }
 
 Json set_json(const DataSet& set) {
   return {{"name", set.name},
-          {"start", set.recording->start_s},
+          {"start", clock_at(*set.recording, set.rows.first)},
           {"step", set.recording->sample_time_s},
-          {"samples", set.recording->samples()},
+          {"samples", set.rows.count},
           {"every", set.every},
           {"settled", set.settled},
           {"boundary", std::isfinite(set.boundary_s) ? Json(set.boundary_s) : Json(nullptr)}};
@@ -272,7 +329,7 @@ Json cv_json(const DiagnosisRun& run, const std::vector<DataSet>& sets, int cv) 
   for (const DataSet& set : sets) json["sets"].push_back(time_json(set, cv_series(set, cv)));
 
   // The rest is drawn from the data that no fit has seen where they are a recording of their own.
-  const DataSet& shown = sets.back();
+  const DataSet shown = run.validation ? whole_validation(run) : whole(run);
   const CvSeries series = settled(shown, cv_series(shown, cv));
   json["spectrum"] = spectrum_json(series, shown.recording->sample_time_s);
   json["levels"] = Json::array({level_json(signal.tag, signal.unit, series.measured, series)});

@@ -38,5 +38,24 @@ TEST_CASE("a free run begins where the measurements do and then goes by its inpu
   CHECK(all.col(1).isApprox(measured.col(1), 1e-9));
 }
 
+// The errors of a run whose first state is right are its level, whatever the noise.
+TEST_CASE("of several runs each is at its own level") {
+  const Index rows = 300;
+  const VectorXd u = test::telegraph(1, rows, 10), noise = 0.1 * test::white(5, rows);
+  const VectorXd rest = test::first_order(u, 2.0, 20.0);
+  const Recording low = test::recording_of(u, (rest + noise).array() - 3.0);
+  const Recording high = test::recording_of(u, (rest - noise).array() + 5.0);
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 20.0)}, 1, 1);
+  const Recording both = joined({low, high});
+  Simulator simulator(both);
+  const VectorXd errors = both.cvs.col(0) - free_run(simulator, model, 0);
+  CHECK(errors.head(rows).mean() == Approx(0.0).margin(1e-12));
+  CHECK(errors.tail(rows).mean() == Approx(0.0).margin(1e-12));
+  // The first rows are noise about the level, so the first state hardly moves.
+  CHECK(errors.norm() / std::sqrt(2.0 * rows) == Approx(0.1).epsilon(0.1));
+  Simulator alone(low);
+  CHECK(std::abs((low.cvs.col(0) - free_run(alone, model, 0)).tail(100).mean()) > 2.0);
+}
+
 }  // namespace
 }  // namespace mpm

@@ -152,5 +152,28 @@ TEST_CASE("what is no model simulates nothing that is a number") {
   CHECK(simulator.cv(model_of({lag(0, 0, 1.0, -5.0)}, 1, 1), 0).hasNaN());
 }
 
+TEST_CASE("each run is simulated as if there were no other") {
+  ModelSpec model = model_of({lag(0, 0, 2.0, 10.0, 2.0), lag(0, 1, -1.0, 4.0)}, 2, 1);
+  model.channels[0].input_block = Deadband{0.5};
+  model.state_terms = {{0, 1, SquareRootOutflow{-50.0}}};
+  std::vector<Recording> runs;
+  for (const std::uint64_t run : {1U, 2U, 3U}) {
+    MatrixXd inputs(kRows, 2);
+    inputs << test::telegraph(run, kRows, 7), test::telegraph(10 + run, kRows, 5);
+    inputs.array() += static_cast<double>(run);  // some begin at rest elsewhere, some do not
+    VectorXd measured = VectorXd::Constant(kRows, static_cast<double>(run) - 1.0);
+    runs.push_back(recording_of(inputs, measured));
+    runs.back().start_s = 1000.0 * static_cast<double>(run);
+  }
+  runs[1].inputs(0, 0) = runs[1].inputs(1, 0) = std::numeric_limits<double>::quiet_NaN();
+  const Recording all = joined(runs);
+  Simulator together(all);
+  const VectorXd y = together.cv(model, 0);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    Simulator alone(runs[r]);
+    CHECK(y.segment(static_cast<Index>(r) * kRows, kRows) == alone.cv(model, 0));
+  }
+}
+
 }  // namespace
 }  // namespace mpm

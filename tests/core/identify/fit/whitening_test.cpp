@@ -85,5 +85,18 @@ TEST_CASE("too few rows, or none that move, have no noise model") {
   CHECK(fit_whitening(VectorXd::Zero(500), VectorXd::Ones(500), order_8).coefficients.isZero(0.0));
 }
 
+TEST_CASE("nothing is whitened across a border") {
+  Whitening filter;
+  filter.coefficients.resize(2);
+  filter.coefficients << 0.7, -0.2;
+  const VectorXd first = test::white(7, 30), second = test::white(8, 20).array() + 100.0;
+  VectorXd both(50);
+  both << first, second;
+  Whitening bordered = filter;
+  bordered.borders = {{30, 0.0}};
+  CHECK(bordered.apply(both).head(30) == filter.apply(first));
+  CHECK(bordered.apply(both).tail(20) == filter.apply(second));
+}
+
 }  // namespace
 }  // namespace mpm

@@ -146,6 +146,27 @@ TEST_CASE("gaps and bad values are told, not fatal") {
   CHECK(bench.said().find("1 values of inputs and CVs missing or bad") != std::string::npos);
 }
 
+TEST_CASE("several files are runs, and so is what a choice of time leaves") {
+  const Bench bench;
+  write_file(bench.folder.file("other.csv"), rows(450, 3.0));
+  const std::string data = bench.data(rows(450, 3.0));
+  const auto used = [&](const std::vector<std::string>& more) {
+    INFO(bench.said());
+    REQUIRE(bench.diagnose(bench.small(), data, more) == 0);
+    return nlohmann::json::parse(read_file(bench.out + "/report.json"))["used"];
+  };
+  const auto stretch = [](double from, double until) {
+    return nlohmann::json{{"from", from}, {"until", until}};
+  };
+  CHECK(used({}).is_null());
+  CHECK(used({"--data", bench.folder.file("other.csv")}) ==
+        nlohmann::json{stretch(0, 449), stretch(0, 449)});
+  CHECK(used({"--from", "50", "--exclude", "200/210", "--exclude", "300/400"}) ==
+        nlohmann::json{stretch(50, 199), stretch(210, 299), stretch(400, 449)});
+  CHECK(bench.diagnose(bench.small(), data, {"--from", "soon"}) == 3);
+  CHECK(bench.diagnose(bench.small(), data, {"--from", "1000"}) == 3);
+}
+
 /// A run of shell3x3 in which a gain is wrong.
 void simulate(const Bench& bench) {
   REQUIRE(run({"mpmsim", "--config", kUnit, "--scenario", "hidden_gain", "--samples", "1500",

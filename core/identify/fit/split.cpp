@@ -1,0 +1,23 @@
+#include "core/identify/fit/split.hpp"
+
+#include <cmath>
+
+#include "core/identify/fit/calibration.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+
+Index fitted_rows(const Recording& recording, double share) {
+  const double wanted = share * static_cast<double>(recording.samples());
+  Index rows = static_cast<Index>(wanted);
+  if (recording.borders.size() < 2) return rows;
+  double nearest = kFarBorder * static_cast<double>(recording.samples());
+  for (const Border& border : recording.borders) {
+    const double away = std::abs(static_cast<double>(border.row) - wanted);
+    if (away <= nearest) nearest = away, rows = border.row;
+  }
+  return rows;
+}
+
+}  // namespace mpm

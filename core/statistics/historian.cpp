@@ -1,0 +1,112 @@
+#include "core/statistics/historian.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Chosen by hand from what they mean; the rates that they give are in historian_test.cpp.
+constexpr std::size_t kFewestRows = 100;
+constexpr std::size_t kFewestMoves = 30;  ///< that a smallest one can be told from
+constexpr double kHeld = 0.3;             ///< share of the rows
+/// The smallest move beside the median one: of 30 normal ones it is as large in 1 of 200 columns.
+constexpr double kSmallestMove = 0.3;
+/// Archived values hardly ever come again; levels of a test signal or of a converter do.
+constexpr double kNewValues = 0.5;
+constexpr std::size_t kFewestLevels = 5;  ///< of a converter; a test signal has fewer
+constexpr double kNeighbours = 0.8;       ///< share of the moves that are of one quantum
+constexpr double kOfLattice = 1e-3;       ///< a multiple is one to within this share of a quantum
+/// A line is straight to within this share of the range, and a corner beyond a hundred times it.
+constexpr double kStraight = 1e-7;
+constexpr double kCorner = 100.0;
+constexpr double kStraightShare = 0.5;
+constexpr double kBetween = 0.05;  ///< share of the rows that are neither; a smooth signal has many
+constexpr std::size_t kFewestCorners = 20;
+constexpr double kMuch = 0.5;  ///< of the signal's s.d., of the rows
+
+double lattice(const std::vector<double>& levels, double range) {
+  double quantum = range;
+  for (std::size_t i = 1; i < levels.size(); ++i)
+    quantum = std::min(quantum, levels[i] - levels[i - 1]);
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    const double steps = (levels[i] - levels[i - 1]) / quantum;
+    if (std::abs(steps - std::round(steps)) > kOfLattice * std::max(1.0, steps)) return 0.0;
+  }
+  return quantum;
+}
+
+/// Values that differ by rounding are one.
+std::vector<double> levels_of(std::vector<double> values, double tie) {
+  std::sort(values.begin(), values.end());
+  const auto same = [tie](double a, double b) { return b - a <= tie; };
+  values.erase(std::unique(values.begin(), values.end(), same), values.end());
+  return values;
+}
+
+}  // namespace
+
+HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {
+  HistorianTraits traits;
+  std::vector<double> known;
+  for (const double value : values)
+    if (std::isfinite(value)) known.push_back(value);
+  if (known.size() < kFewestRows) return traits;
+  const auto [low, high] = std::minmax_element(known.begin(), known.end());
+  const double range = *high - *low, rows = static_cast<double>(known.size());
+  if (!(range > 0.0)) return traits;
+  double mean = 0.0, square = 0.0;
+  for (const double value : known) mean += value / rows;
+  for (const double value : known) square += (value - mean) * (value - mean) / rows;
+  traits.sd = std::sqrt(square);
+
+  const double tie = 1e-9 * range, straight = kStraight * range;
+  std::vector<double> moves;
+  double held = 0.0, on_line = 0.0, between = 0.0;
+  std::size_t corners = 0;
+  for (Index k = 1; k < values.size(); ++k) {
+    const double move = values(k) - values(k - 1);
+    if (!std::isfinite(move)) continue;
+    if (std::abs(move) <= tie)
+      ++held;
+    else
+      moves.push_back(std::abs(move));
+    if (k + 1 == values.size() || !std::isfinite(values(k + 1))) continue;
+    const double bend = std::abs(values(k + 1) - values(k) - move);
+    if (bend > kCorner * straight)
+      ++corners;
+    else if (bend > straight)
+      ++between;
+    else if (std::abs(move) > straight)
+      ++on_line;
+  }
+  traits.held_share = held / rows;
+  traits.straight_share = on_line / rows;
+  traits.interpolated = traits.straight_share >= kStraightShare && corners >= kFewestCorners &&
+                        between <= kBetween * rows;
+  if (traits.held_share < kHeld || moves.size() < kFewestMoves) return traits;
+
+  std::sort(moves.begin(), moves.end());
+  const std::vector<double> levels = levels_of(known, tie);
+  if (static_cast<double>(levels.size()) >= kNewValues * static_cast<double>(moves.size())) {
+    if (moves.front() >= kSmallestMove * moves[moves.size() / 2]) traits.deadband = moves.front();
+  } else if (levels.size() >= kFewestLevels) {
+    const double quantum = lattice(levels, range);
+    const auto of_one = std::count_if(moves.begin(), moves.end(),
+                                      [quantum](double move) { return move < 1.5 * quantum; });
+    if (static_cast<double>(of_one) >= kNeighbours * static_cast<double>(moves.size()))
+      traits.quantum = quantum;
+  }
+  return traits;
+}
+
+bool beyond_use(const HistorianTraits& traits) {
+  return (traits.interpolated && traits.straight_share > kMuch) ||
+         traits.deadband > kMuch * traits.sd || traits.quantum > kMuch * traits.sd;
+}
+
+}  // namespace mpm

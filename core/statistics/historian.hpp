@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// What a historian or a converter has left of a signal. Units are the signal's own.
+struct HistorianTraits {
+  double held_share = 0.0;      ///< of the known rows, 0..1: exactly equal to the row before
+  double straight_share = 0.0;  ///< that lie on a straight line between neighbours and move
+  /// By exception: after a hold the signal moves by at least this; 0 = none seen.
+  double deadband = 0.0;
+  /// Of a lattice that all values lie on and whose neighbours most moves go between: a converter
+  /// coarser than what it measures moves by from row to row; 0 = none seen.
+  double quantum = 0.0;
+  bool interpolated = false;  ///< straight lines between archived points, with corners
+  double sd = 0.0;            ///< of the known values
+
+  [[nodiscard]] bool compressed() const { return deadband > 0.0 || interpolated; }
+};
+
+/// Looks at one column, NaN where unknown. A signal that rests by nature is none of these: one of
+/// few levels (a test signal), one that moves by any size after a rest (an operator, a controller
+/// of a slower cycle), and one that is smooth.
+[[nodiscard]] HistorianTraits historian_traits(const Eigen::Ref<const Eigen::VectorXd>& values);
+
+/// Whether what was lost is no longer small beside what the signal does, so that no cause can be
+/// told from it: half of the rows were drawn by the historian, or a deadband or a quantum is more
+/// than half an s.d. of the signal.
+[[nodiscard]] bool beyond_use(const HistorianTraits& traits);
+
+}  // namespace mpm

@@ -1,0 +1,58 @@
+#include "daemon/report/diagnosis/data_notes.hpp"
+
+#include "core/statistics/historian.hpp"
+#include "core/text/number_text.hpp"
+#include "daemon/report/diagnosis/names_of.hpp"
+
+namespace mpm::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string advice(const HistorianTraits& traits, const std::string& unit) {
+  const auto with_unit = [&unit](double value) {
+    return number_text(value, 3) + (unit.empty() ? "" : " " + unit);
+  };
+  std::string text;
+  if (traits.interpolated)
+    text =
+        "Straight lines between archived points. Export the values as they were archived, and "
+        "turn the tag's compression off.";
+  else if (traits.deadband > 0.0)
+    text = "Held until it had moved by " + with_unit(traits.deadband) +
+           ". Turn the tag's exception and compression deadbands off, or set them well below its "
+           "noise.";
+  else
+    text = "Moves in steps of " + with_unit(traits.quantum) +
+           ", which is coarse beside what it moves by from row to row. Record more digits, or use "
+           "the narrower range of the transmitter.";
+  if (beyond_use(traits)) text += " As it is, no cause can be told from it.";
+  return text;
+}
+
+void look(const Eigen::Ref<const Eigen::VectorXd>& values, const SignalName& signal, Json& notes) {
+  const HistorianTraits traits = historian_traits(values);
+  if (!traits.compressed() && !(traits.quantum > 0.0)) return;
+  notes.push_back({{"tag", signal.tag},
+                   {"compressed", traits.compressed()},
+                   {"interpolated", traits.interpolated},
+                   {"deadband", traits.deadband},
+                   {"quantum", traits.quantum},
+                   {"held_share", traits.held_share},
+                   {"beyond_use", beyond_use(traits)},
+                   {"advice", advice(traits, signal.unit)}});
+}
+
+}  // namespace
+
+Json data_notes(const DiagnosisRun& run) {
+  const SignalNames names = names_of(run);
+  Json notes = Json::array();
+  for (Eigen::Index cv = 0; cv < run.recording.cvs.cols(); ++cv)
+    look(run.recording.cvs.col(cv), names.cv(static_cast<int>(cv)), notes);
+  for (Eigen::Index input = 0; input < run.recording.inputs.cols(); ++input)
+    look(run.recording.inputs.col(input), names.input(static_cast<int>(input)), notes);
+  return notes;
+}
+
+}  // namespace mpm::report
