@@ -48,6 +48,8 @@ class Key {
   void add(const Saturation& v) { add(v.low), add(v.high); }
   void add(const Deadband& v) { add(v.width); }
   void add(const Stiction& v) { add(v.band), add(v.jump), add(v.slips_once); }
+  void add(const Stuck& v) { add(v.value), add(v.onset_s); }
+  void add(const InputOffset& v) { add(v.size), add(v.onset_s); }
   void add(const RestoringForce& v) { add(v.quadratic), add(v.cubic); }
   void add(const SquareRootOutflow& v) { add(v.empty_output); }
   void add(const CoulombFriction& v) { add(v.force), add(v.speed); }
@@ -105,17 +107,23 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
   const double first = from_origin ? origin : first_finite(given, origin);
   InputElement own(model.input_blocks[static_cast<std::size_t>(spec.input)], origin);
   InputElement channels(spec.input_block, origin);
+  const double sample_time_s = model.sample_time_s;
+  const double start_s = recording_->start_s + kSameMoment * sample_time_s;
+  const double before_s = start_s - sample_time_s;
   own.reset(first);
-  channels.reset(origin + own.apply(first));
+  const double first_moved = origin + own.apply(first, before_s);
+  channels.reset(first_moved);
+  const double rest = origin + channels.apply(first_moved, before_s);
   double last = first_finite(given, origin);
   for (Index k = 0; k < samples; ++k) {
     if (std::isfinite(given(k))) last = given(k);
-    moved(k) = origin + channels.apply(origin + own.apply(last));
+    const double time_s = start_s + static_cast<double>(k) * sample_time_s;
+    moved(k) = origin + channels.apply(origin + own.apply(last, time_s), time_s);
   }
 
   LinearModel simulator(one);
   VectorXd input(1), output(samples);
-  input(0) = from_origin ? origin : moved(0);
+  input(0) = rest;
   simulator.reset_steady(input);
   for (Index k = 0; k < samples; ++k) {
     output(k) = simulator.output()(0) - one.output_origin(0);
