@@ -68,8 +68,9 @@ record text alarm mismatch
 monitor text signal statistics model alarm mismatch
 identify/fit model
 identify/causes text model identify/fit
+identify/valves
 identify/search identify/fit identify/causes
-identify/diagnosis statistics model identify/fit identify/causes identify/search
+identify/diagnosis statistics model identify/fit identify/causes identify/valves identify/search
 TABLE
 
 floors daemon <<'TABLE'
