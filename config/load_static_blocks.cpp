@@ -123,7 +123,8 @@ void read_by_tag(const Value& section, const std::vector<std::string>& tags, Rea
 }  // namespace
 
 std::optional<InputBlock> read_input_block(const Value& value) {
-  const Map block = value.map({"polynomial", "saturation", "deadband", "stiction", "stuck", "offset"});
+  const Map block =
+      value.map({"polynomial", "saturation", "deadband", "stiction", "stuck", "offset"});
   const Map::Entry* only = only_entry(block);
   if (only == nullptr) return std::nullopt;
   return read_input(*only);

@@ -94,8 +94,7 @@ struct Offset {
 struct Scale {
   double factor = 1.0;  ///< of the deviation from the origin
 };
-using InputBlock =
-    std::variant<Polynomial, Saturation, Deadband, Stiction, Stuck, InputOffset>;
+using InputBlock = std::variant<Polynomial, Saturation, Deadband, Stiction, Stuck, InputOffset>;
 using OutputBlock = std::variant<Saturation, Offset, Scale>;
 
 struct ChannelSpec {
