@@ -43,6 +43,9 @@ void read_output_blocks(const Value& section, const std::vector<std::string>& ta
 [[nodiscard]] std::vector<DisturbanceTerm> read_disturbances(const Value& list,
                                                              const ModelSignals& signals);
 
+/// Seconds, or ISO 8601 with a zone, on the clock of the data; nothing (reported) where neither.
+[[nodiscard]] std::optional<double> read_clock(const Value& value);
+
 /// Indices of the CV and of the input (`mv` or `dv`) that an entry names, -1 where it names none
 /// (reported).
 struct ChannelPlace {

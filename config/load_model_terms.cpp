@@ -62,23 +62,6 @@ std::optional<std::string> why_not(const StateTerm& term, const ChannelSpec& cha
   return std::nullopt;
 }
 
-/// Seconds on the clock of the data, or ISO 8601.
-std::optional<double> read_clock(const Value& value) {
-  const std::string text = value.is_scalar() ? value.free_text().value_or("") : "";
-  // The dash behind a year; a number may have one there behind its e only.
-  const bool is_date = text.size() > 4 && text[4] == '-' && text.find('e') == std::string::npos;
-  if (!is_date) return value.number({.low = -9e9, .high = 9e9});
-  const std::optional<std::int64_t> time_ns = parse_time(text);
-  if (!time_ns) {
-    value.error("must be seconds or ISO 8601 with a zone, such as 2024-05-01T12:00:00Z, not '" +
-                text + "'");
-    return std::nullopt;
-  }
-  constexpr std::int64_t kSecond = 1000000000;
-  const std::int64_t whole = *time_ns / kSecond;  // apart, so that no digit of the rest is lost
-  return static_cast<double>(whole) + 1e-9 * static_cast<double>(*time_ns % kSecond);
-}
-
 std::vector<std::string> own_keys(DisturbanceShape shape) {
   switch (shape) {
     case DisturbanceShape::kStep:
@@ -139,6 +122,22 @@ std::optional<DisturbanceTerm> read_disturbance(const Value& item, const ModelSi
 }
 
 }  // namespace
+
+std::optional<double> read_clock(const Value& value) {
+  const std::string text = value.is_scalar() ? value.free_text().value_or("") : "";
+  // The dash behind a year; a number may have one there behind its e only.
+  const bool is_date = text.size() > 4 && text[4] == '-' && text.find('e') == std::string::npos;
+  if (!is_date) return value.number({.low = -9e9, .high = 9e9});
+  const std::optional<std::int64_t> time_ns = parse_time(text);
+  if (!time_ns) {
+    value.error("must be seconds or ISO 8601 with a zone, such as 2024-05-01T12:00:00Z, not '" +
+                text + "'");
+    return std::nullopt;
+  }
+  constexpr std::int64_t kSecond = 1000000000;
+  const std::int64_t whole = *time_ns / kSecond;  // apart, so that no digit of the rest is lost
+  return static_cast<double>(whole) + 1e-9 * static_cast<double>(*time_ns % kSecond);
+}
 
 std::vector<StateTerm> read_state_terms(const Value& list, const ModelSignals& signals,
                                         const std::vector<ChannelSpec>& channels) {

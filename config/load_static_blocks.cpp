@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "config/load_model_parts.hpp"
 #include "config/yaml_text.hpp"
@@ -32,6 +33,32 @@ std::optional<Stiction> read_stiction(const Value& value) {
   return Stiction{*width, *slip, *slips_once};
 }
 
+/// A number from a moment on: `NUMBER`, or `{KEY: NUMBER, onset: TIME}`.
+struct Since {
+  double value = 0.0;
+  double onset_s = -std::numeric_limits<double>::infinity();
+};
+std::optional<Since> read_since(const Value& value, const char* key) {
+  Since since;
+  if (value.is_scalar()) {
+    const auto number = value.number();
+    if (!number) return std::nullopt;
+    since.value = *number;
+    return since;
+  }
+  const Map map = value.map({key, "onset"});
+  const Value* given = map.require(key);
+  const auto number = given != nullptr ? given->number() : std::nullopt;
+  if (!number) return std::nullopt;
+  since.value = *number;
+  if (const Value* onset = map.find("onset")) {
+    const auto time = read_clock(*onset);
+    if (!time) return std::nullopt;
+    since.onset_s = *time;
+  }
+  return since;
+}
+
 std::optional<InputBlock> read_input(const Map::Entry& entry) {
   const Value& value = entry.value;
   if (entry.key == "polynomial") {
@@ -46,6 +73,15 @@ std::optional<InputBlock> read_input(const Map::Entry& entry) {
   }
   if (entry.key == "deadband") {
     if (const auto width = value.number(kNotNegative)) return Deadband{*width};
+    return std::nullopt;
+  }
+  if (entry.key == "stuck") {
+    if (const auto since = read_since(value, "value")) return Stuck{since->value, since->onset_s};
+    return std::nullopt;
+  }
+  if (entry.key == "offset") {
+    if (const auto since = read_since(value, "size"))
+      return InputOffset{since->value, since->onset_s};
     return std::nullopt;
   }
   if (const auto block = read_stiction(value)) return *block;
@@ -87,7 +123,8 @@ void read_by_tag(const Value& section, const std::vector<std::string>& tags, Rea
 }  // namespace
 
 std::optional<InputBlock> read_input_block(const Value& value) {
-  const Map block = value.map({"polynomial", "saturation", "deadband", "stiction"});
+  const Map block =
+      value.map({"polynomial", "saturation", "deadband", "stiction", "stuck", "offset"});
   const Map::Entry* only = only_entry(block);
   if (only == nullptr) return std::nullopt;
   return read_input(*only);

@@ -49,6 +49,17 @@ std::string block_text(const Stiction& block) {
   return "{stiction: {band: " + yaml_text(block.band) + ", jump: " + yaml_text(block.jump) +
          (block.slips_once ? ", slips_once: true}}" : "}}");
 }
+/// A number alone where it is always in force.
+std::string since(const char* key, double value, double onset_s) {
+  if (!std::isfinite(onset_s)) return yaml_text(value);
+  return std::string("{") + key + ": " + yaml_text(value) + ", onset: " + yaml_text(onset_s) + "}";
+}
+std::string block_text(const Stuck& block) {
+  return "{stuck: " + since("value", block.value, block.onset_s) + "}";
+}
+std::string block_text(const InputOffset& block) {
+  return "{offset: " + since("size", block.size, block.onset_s) + "}";
+}
 std::string block_text(const Offset& block) { return "{offset: " + yaml_text(block.bias) + "}"; }
 std::string block_text(const Scale& block) { return "{scale: " + yaml_text(block.factor) + "}"; }
 

@@ -89,6 +89,13 @@ struct LinearModel::State {
   [[nodiscard]] double time_s() const {
     return clock_start_s + static_cast<double>(elapsed) * definition->spec.sample_time_s;
   }
+  [[nodiscard]] double tolerance_s() const {
+    return calibration::model_rounding::kSameInstant * definition->spec.sample_time_s;
+  }
+  /// What is held before the first sample was given before it.
+  [[nodiscard]] double rest_time_s() const {
+    return clock_start_s - definition->spec.sample_time_s + tolerance_s();
+  }
 
   std::shared_ptr<const ModelDefinition> definition;  ///< shared by copies
   std::vector<InputElement> elements;
@@ -123,11 +130,9 @@ void LinearModel::State::compute_output() {
 }
 
 void LinearModel::State::add_disturbances() {
-  const double tolerance_s =
-      calibration::model_rounding::kSameInstant * definition->spec.sample_time_s;
   const double now_s = time_s();
   for (const DisturbanceTerm& disturbance : definition->spec.disturbances)
-    linear_output(disturbance.cv) += disturbance_at(disturbance, now_s, tolerance_s);
+    linear_output(disturbance.cv) += disturbance_at(disturbance, now_s, tolerance_s());
 }
 
 /// y(k), before the inputs move on.
@@ -146,7 +151,8 @@ void LinearModel::State::set_own_inputs() {
     const auto at = static_cast<Index>(i);
     double deviation = *history.newest(own.input);
     if (own.block)
-      deviation = own_elements[i].apply(deviation + definition->input_origin(own.input));
+      deviation = own_elements[i].apply(deviation + definition->input_origin(own.input),
+                                        time_s() + tolerance_s());
     if (own.feedback) deviation -= own.feedback->value(fed_back(at), fed_back_before(at));
     history.set_newest(own.source, deviation);
   }
@@ -160,7 +166,7 @@ void LinearModel::State::rest_own_inputs() {
     if (own.block) {
       const double input = deviation + definition->input_origin(own.input);
       own_elements[i].reset(input);
-      deviation = own_elements[i].apply(input);
+      deviation = own_elements[i].apply(input, rest_time_s());
     }
     if (own.feedback) {
       const double rest = own.feedback->rest(deviation);
@@ -204,7 +210,7 @@ void LinearModel::reset_steady(const Eigen::Ref<const VectorXd>& input) {
     if (std::isfinite(input(i))) state.last_input(i) = input(i);
     InputElement& element = state.elements[static_cast<std::size_t>(i)];
     element.reset(state.last_input(i));
-    const double deviation = element.apply(state.last_input(i));
+    const double deviation = element.apply(state.last_input(i), state.rest_time_s());
     state.history.fill(i, deviation);
     if (fixed.state_space) state.states += fixed.state_space->rest.col(i) * deviation;
   }
@@ -235,7 +241,8 @@ void LinearModel::advance(const Eigen::Ref<const VectorXd>& input) {
   state.history.next();
   for (int i = 0; i < fixed.spec.input_count; ++i) {
     if (std::isfinite(input(i))) state.last_input(i) = input(i);
-    const double deviation = state.elements[static_cast<std::size_t>(i)].apply(state.last_input(i));
+    const double deviation = state.elements[static_cast<std::size_t>(i)].apply(
+        state.last_input(i), state.time_s() + state.tolerance_s());
     state.history.set_newest(i, deviation);
   }
   if (!fixed.own_inputs.empty()) state.set_own_inputs();

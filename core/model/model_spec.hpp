@@ -77,13 +77,24 @@ struct Stiction {
   /// 2007); else it moves on while the command keeps its direction.
   bool slips_once = false;
 };
+/// An actuator that stays at a value, whatever is commanded.
+struct Stuck {
+  double value = 0.0;
+  /// In force from here on, on the clock of the data; minus infinity = always.
+  double onset_s = -std::numeric_limits<double>::infinity();
+};
+/// An actuator that leaks or whose zero has shifted: it is open by this much more.
+struct InputOffset {
+  double size = 0.0;
+  double onset_s = -std::numeric_limits<double>::infinity();  ///< as that of Stuck
+};
 struct Offset {
   double bias = 0.0;
 };
 struct Scale {
   double factor = 1.0;  ///< of the deviation from the origin
 };
-using InputBlock = std::variant<Polynomial, Saturation, Deadband, Stiction>;
+using InputBlock = std::variant<Polynomial, Saturation, Deadband, Stiction, Stuck, InputOffset>;
 using OutputBlock = std::variant<Saturation, Offset, Scale>;
 
 struct ChannelSpec {

@@ -33,6 +33,11 @@ InputElement::InputElement(std::optional<InputBlock> block, double origin)
   if (const auto* valve = std::get_if<Stiction>(&*block_);
       valve && !(valve->band >= 0.0 && valve->jump >= 0.0))
     throw std::invalid_argument("stiction band and jump must not be negative");
+  if (const auto* stuck = std::get_if<Stuck>(&*block_); stuck && !std::isfinite(stuck->value))
+    throw std::invalid_argument("stuck needs a finite value");
+  if (const auto* offset = std::get_if<InputOffset>(&*block_);
+      offset && !std::isfinite(offset->size))
+    throw std::invalid_argument("offset needs a finite size");
   reset(origin);
 }
 
@@ -42,7 +47,7 @@ void InputElement::reset(double input) {
   direction_ = 0;
 }
 
-double InputElement::apply(double input) {
+double InputElement::apply(double input, double time_s) {
   if (!block_) return input - origin_;
   if (const auto* polynomial = std::get_if<Polynomial>(&*block_))
     return polynomial_value(*polynomial, input - origin_);
@@ -52,6 +57,10 @@ double InputElement::apply(double input) {
     position_ = std::clamp(position_, input - 0.5 * play->width, input + 0.5 * play->width);
     return position_ - origin_;
   }
+  if (const auto* stuck = std::get_if<Stuck>(&*block_))
+    return (time_s >= stuck->onset_s ? stuck->value : input) - origin_;
+  if (const auto* offset = std::get_if<InputOffset>(&*block_))
+    return input + (time_s >= offset->onset_s ? offset->size : 0.0) - origin_;
   return apply_stiction(std::get<Stiction>(*block_), input) - origin_;
 }
 

@@ -18,6 +18,9 @@ namespace mpm {
 /// direction and sticks again when the input stops or turns. Seen from the command this is a wait
 /// of S after a reversal (J after a stop) and then a jump by J. From a reset the valve sits at the
 /// input.
+///
+/// A stuck input and an offset one are in force from their onset on: time goes by the clock of the
+/// data.
 class InputElement {
  public:
   /// Throws std::invalid_argument where a parameter makes no sense.
@@ -25,7 +28,8 @@ class InputElement {
 
   /// As if `input` had been held for ever.
   void reset(double input);
-  [[nodiscard]] double apply(double input);
+  /// `time_s`: when the input is given, with whatever rounding may take from it.
+  [[nodiscard]] double apply(double input, double time_s);
 
  private:
   [[nodiscard]] double apply_stiction(const Stiction& valve, double input);

@@ -16,6 +16,17 @@ Json block_json(const Deadband& block) { return {{"deadband", block.width}}; }
 Json block_json(const Stiction& block) {
   return {{"stiction", {{"band", block.band}, {"jump", block.jump}}}};
 }
+Json since(const char* key, double value, double onset_s) {
+  Json json = {{key, value}};
+  if (std::isfinite(onset_s)) json["onset"] = onset_s;
+  return json;
+}
+Json block_json(const Stuck& block) {
+  return {{"stuck", since("value", block.value, block.onset_s)}};
+}
+Json block_json(const InputOffset& block) {
+  return {{"offset", since("size", block.size, block.onset_s)}};
+}
 Json block_json(const Offset& block) { return {{"offset", block.bias}}; }
 Json block_json(const Scale& block) { return {{"scale", block.factor}}; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -94,6 +95,33 @@ TEST_CASE("every key of an extended model arrives and survives printing") {
   CHECK(printed(again) == once);
 }
 
+TEST_CASE("a stuck and an offset input survive printing, with an onset and without") {
+  const UnitConfig config = load_clean(
+      "unit: t\nsample_time: 1\nsignals: {mv: [u1, u2, u3, u4], cv: y1}\n"
+      "model:\n"
+      "  channels: [{cv: y1, mv: u1, gain: 1, input: {offset: -1.5}}, {cv: y1, mv: u2, gain: 1}]\n"
+      "  input:\n"
+      "    u1: {stuck: 40}\n"
+      "    u2: {stuck: {value: 50.5, onset: 2024-03-01T12:00:00Z}}\n"
+      "    u3: {offset: {size: 3, onset: 12.25}}\n"
+      "    u4: {offset: {size: -3}}\n");
+  const std::string once = printed(config);
+  const UnitConfig again = load_clean(once);
+  CHECK(printed(again) == once);
+  for (const ModelSpec& model : {config.model, again.model}) {
+    const auto always = -std::numeric_limits<double>::infinity();
+    CHECK(std::get<InputOffset>(model.channels[0].input_block.value()).size == -1.5);
+    CHECK(std::get<Stuck>(model.input_blocks[0].value()).value == 40);
+    CHECK(std::get<Stuck>(model.input_blocks[0].value()).onset_s == always);
+    CHECK(std::get<Stuck>(model.input_blocks[1].value()).value == 50.5);
+    CHECK(std::get<Stuck>(model.input_blocks[1].value()).onset_s == 1709294400.0);
+    CHECK(std::get<InputOffset>(model.input_blocks[2].value()).size == 3);
+    CHECK(std::get<InputOffset>(model.input_blocks[2].value()).onset_s == 12.25);
+    CHECK(std::get<InputOffset>(model.input_blocks[3].value()).size == -3);
+    CHECK(std::get<InputOffset>(model.input_blocks[3].value()).onset_s == always);
+  }
+}
+
 TEST_CASE("the operating point below the channels counts for tanks all the same") {
   const UnitConfig config = load_clean(
       "unit: t\nsample_time: 1\nsignals: {mv: u1, cv: y1}\n"
@@ -147,6 +175,9 @@ TEST_CASE("every mistake in an extended model is told at its place") {
        "model.channels[0].input.deadbnd: unknown key (did you mean 'deadband'?)"},
       {with_block("@{deadband: 1, polynomial: 1}"),
        "model.channels[0].input: takes one block only"},
+      {with_block("{stuck: @{onset: 3}}"), "model.channels[0].input.stuck: `value` is missing"},
+      {with_block("{offset: {size: 1, onset: @soon}}"),
+       "model.channels[0].input.offset.onset: must be a number, not 'soon'"},
       {with_block("{saturation: @[3, 1]}"),
        "model.channels[0].input.saturation: low must be below high, not [3, 1]"},
       {tanks("{time_constants: [5, @0], empty_input: 10, empty_output: 20}"),

@@ -30,6 +30,10 @@ void hide(Draft& draft, EffectClass effect_class) {
       return hide_input_nonlinearity(draft);
     case EffectClass::kStiction:
       return hide_stiction(draft);
+    case EffectClass::kInputStuck:
+      return hide_input_stuck(draft);
+    case EffectClass::kInputOffset:
+      return hide_input_offset(draft);
     case EffectClass::kOutputNonlinearity:
       return hide_output_nonlinearity(draft);
     case EffectClass::kUnmodelledInput:

@@ -86,6 +86,8 @@ struct Draft {
 void hide_in_channel(Draft& draft, EffectClass effect_class);  ///< gain .. output_scale, onset_*
 void hide_input_nonlinearity(Draft& draft);
 void hide_stiction(Draft& draft);
+void hide_input_stuck(Draft& draft);
+void hide_input_offset(Draft& draft);
 void hide_output_nonlinearity(Draft& draft);
 void hide_unmodelled_input(Draft& draft);  ///< behind one of the aux signals
 void hide_disturbance(Draft& draft, EffectClass shape);

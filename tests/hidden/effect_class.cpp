@@ -42,6 +42,10 @@ const char* name_of(EffectClass effect_class) {
       return "onset_dead_time";
     case EffectClass::kUnnamed:
       return "unnamed";
+    case EffectClass::kInputStuck:
+      return "input_stuck";
+    case EffectClass::kInputOffset:
+      return "input_offset";
   }
   return "";
 }

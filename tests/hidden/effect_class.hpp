@@ -26,7 +26,9 @@ enum class EffectClass {
   kTwoCauses,
   kOnsetGain,  ///< begins inside the part that is fitted
   kOnsetDeadTime,
-  kUnnamed,  ///< something that no cause of the contract means
+  kUnnamed,      ///< something that no cause of the contract means
+  kInputStuck,   ///< begins inside the part that is fitted
+  kInputOffset,  ///< the same
 };
 
 inline constexpr std::array kAllClasses = {EffectClass::kNone,
@@ -47,7 +49,9 @@ inline constexpr std::array kAllClasses = {EffectClass::kNone,
                                            EffectClass::kTwoCauses,
                                            EffectClass::kOnsetGain,
                                            EffectClass::kOnsetDeadTime,
-                                           EffectClass::kUnnamed};
+                                           EffectClass::kUnnamed,
+                                           EffectClass::kInputStuck,
+                                           EffectClass::kInputOffset};
 
 /// As the command line and the tables say it.
 [[nodiscard]] const char* name_of(EffectClass effect_class);

@@ -6,6 +6,7 @@
 namespace mpm::hidden {
 
 double RunningElement::next(double command) {
+  ++k_;
   if (const auto* bent = std::get_if<Bent>(&element_))
     return command + bent->quadratic * command * command +
            bent->cubic * command * command * command;
@@ -16,6 +17,10 @@ double RunningElement::next(double command) {
     if (position_ - command > play->width / 2) position_ = command + play->width / 2;
     return position_;
   }
+  if (const auto* standing = std::get_if<Standing>(&element_))
+    return k_ >= standing->from ? standing->value : command;
+  if (const auto* shifted = std::get_if<Shifted>(&element_))
+    return command + (k_ >= shifted->from ? shifted->size : 0.0);
   if (const auto* valve = std::get_if<Sticking>(&element_)) return next(*valve, command);
   return command;
 }

@@ -22,9 +22,19 @@ struct Sticking {
   double band = 0.0, jump = 0.0;
   bool slips_once = false;
 };
-using Element = std::variant<std::monostate, Bent, Limited, Play, Sticking>;
+/// Stands at a value from sample `from` on, whatever is commanded.
+struct Standing {
+  double value = 0.0;
+  int from = 0;
+};
+/// Is open by so much more than its command from sample `from` on.
+struct Shifted {
+  double size = 0.0;
+  int from = 0;
+};
+using Element = std::variant<std::monostate, Bent, Limited, Play, Sticking, Standing, Shifted>;
 
-/// An element with its memory, at rest at 0.
+/// An element with its memory, at rest at 0 before sample 0.
 class RunningElement {
  public:
   RunningElement(Element element = {})
@@ -37,6 +47,7 @@ class RunningElement {
   Element element_;
   double position_ = 0.0, last_command_ = 0.0;
   int moving_ = 0;  ///< direction; 0 = stuck
+  int k_ = -1;      ///< sample of the last command
 };
 
 }  // namespace mpm::hidden

@@ -12,8 +12,8 @@ namespace {
 /// anybody tunes with.
 constexpr std::uint64_t kFirstSeed = 90001;
 constexpr int kSeeds = 3;
-/// Of all classes but the last, for which nothing is named yet.
-constexpr int kLeastRight = 44;
+/// Of all classes.
+constexpr int kLeastRight = 49;
 
 struct FixedBound {
   EffectClass effect_class;
@@ -40,6 +40,8 @@ constexpr std::array kBounds = {
     FixedBound{EffectClass::kOnsetGain, Setting::kHard, 2},
     FixedBound{EffectClass::kOnsetDeadTime, Setting::kHard, 2},
     FixedBound{EffectClass::kUnnamed, Setting::kHard, 2},
+    FixedBound{EffectClass::kInputStuck, Setting::kHard, 2},
+    FixedBound{EffectClass::kInputOffset, Setting::kHard, 2},
 };
 static_assert(kBounds.size() == kAllClasses.size());
 

@@ -18,8 +18,9 @@ using Eigen::VectorXd;
 
 constexpr std::uint64_t kSeed = 200001;
 
-MatrixXd simulate_model(const ModelSpec& spec, const MatrixXd& inputs) {
+MatrixXd simulate_model(const ModelSpec& spec, const MatrixXd& inputs, double start_s = 0.0) {
   LinearModel model(spec);
+  model.set_time_s(start_s);
   MatrixXd result(inputs.rows(), spec.cv_count);
   for (Index k = 0; k < inputs.rows(); ++k) {
     result.row(k) = model.output();
@@ -49,6 +50,9 @@ ModelSpec repaired(const HiddenCase& hidden) {
       block = Polynomial{{1.0, value("quadratic", 0.0), value("cubic", 0.0)}};
     if (effect.cause == &causes::input_saturation())
       block = Saturation{value("low", -kFar), value("high", kFar)};
+    const double since_s = effect.onset_s.value_or(hidden.data.start_s);
+    if (effect.cause == &causes::input_stuck()) block = Stuck{value("value", 0.0), since_s};
+    if (effect.cause == &causes::input_offset()) block = InputOffset{value("size", 0.0), since_s};
     model.input_blocks.resize(static_cast<std::size_t>(model.input_count));
     model.input_blocks[static_cast<std::size_t>(effect.place.input)] = block;
   } else if (effect.cause == &causes::output_saturation()) {
@@ -144,15 +148,16 @@ TEST_CASE("a model with what the truth says is the true plant") {
   for (const EffectClass effect_class :
        {EffectClass::kGain, EffectClass::kDeadTime, EffectClass::kTimeConstant,
         EffectClass::kDynamics, EffectClass::kInputScale, EffectClass::kOutputScale,
-        EffectClass::kInputNonlinearity, EffectClass::kStiction,
-        EffectClass::kOutputNonlinearity}) {
+        EffectClass::kInputNonlinearity, EffectClass::kStiction, EffectClass::kInputStuck,
+        EffectClass::kInputOffset, EffectClass::kOutputNonlinearity}) {
     for (std::uint64_t seed = kSeed; seed < kSeed + 6; ++seed) {
       const HiddenCase hidden = draw_case(request(effect_class, "shell3x3", Setting::kPlain, seed));
       const TrueEffect& effect = hidden.truth.at(0);
       CAPTURE(name_of(effect_class), seed, effect.manner);
       if (effect_class == EffectClass::kInputNonlinearity && effect.place.cv >= 0)
         continue;  // one channel's own: not in the model yet
-      const MatrixXd with = simulate_model(repaired(hidden), hidden.data.inputs);
+      const MatrixXd with =
+          simulate_model(repaired(hidden), hidden.data.inputs, hidden.data.start_s);
       CHECK((with - hidden.noise_free).cwiseAbs().maxCoeff() < 1e-9);
       const MatrixXd without = simulate_model(hidden.model, hidden.data.inputs);
       CHECK(root_mean_square(without - hidden.noise_free) > 1e-4);

@@ -6,7 +6,8 @@
 // Sizes at full, as shares of the MV's 2 .. 98 % range in the healthy loop: stiction's band and
 // deadband 4 .. 15 %, jump 0.3 .. 1 band; a saturation cuts off 10 .. 30 % at one end, or half of
 // that at both; the quadratic changes the local gain by 20 .. 50 % from one end to the other, the
-// cubic from the middle to the farther end. Clipping meets 3 .. 20 % of a healthy CV's samples.
+// cubic from the middle to the farther end. An actuator sticks 10 .. 90 % up its range, or is off
+// by 10 .. 30 % of it. Clipping meets 3 .. 20 % of a healthy CV's samples.
 namespace mpm::hidden {
 namespace {
 
@@ -94,6 +95,37 @@ void hide_stiction(Draft& draft) {
   valve.slips_once = draft.hard;
   effect.parameters = {{"band", valve.band}, {"jump", valve.jump}};
   draft.plant.input_elements[static_cast<std::size_t>(effect.place.input)] = valve;
+  draft.truth.push_back(effect);
+}
+
+/// Begins inside the fitted part, or was stuck from the start in a quarter of the cases.
+void hide_input_stuck(Draft& draft) {
+  TrueEffect effect;
+  effect.cause = &causes::input_stuck();
+  const int mv = effect.place.input = draft.below(draft.mv_count());
+  Standing standing;
+  standing.value = draft.healthy.mv_low[static_cast<std::size_t>(mv)] +
+                   draft.between(0.1, 0.9) * draft.range_of(mv);
+  if (!draft.chance(0.25)) {
+    standing.from = draft.onset_between(0.2, 0.6);
+    effect.onset_s = draft.clock(standing.from);
+  }
+  effect.parameters["value"] = draft.plant.input_origin(mv) + standing.value;
+  draft.plant.input_elements[static_cast<std::size_t>(mv)] = standing;
+  draft.truth.push_back(effect);
+}
+
+void hide_input_offset(Draft& draft) {
+  TrueEffect effect;
+  effect.cause = &causes::input_offset();
+  effect.place.input = draft.below(draft.mv_count());
+  Shifted shifted;
+  shifted.size =
+      draft.size * draft.sign() * draft.between(0.1, 0.3) * draft.range_of(effect.place.input);
+  shifted.from = draft.onset_between(0.2, 0.6);
+  effect.onset_s = draft.clock(shifted.from);
+  effect.parameters["size"] = shifted.size;
+  draft.plant.input_elements[static_cast<std::size_t>(effect.place.input)] = shifted;
   draft.truth.push_back(effect);
 }
 

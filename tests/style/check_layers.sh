@@ -69,8 +69,9 @@ monitor text signal statistics model alarm mismatch
 identify/fit model
 identify/evidence model mismatch monitor identify/fit
 identify/causes text model identify/fit
+identify/valves
 identify/search identify/fit identify/causes
-identify/diagnosis text statistics model identify/fit identify/evidence identify/causes identify/search
+identify/diagnosis text statistics model identify/fit identify/evidence identify/causes identify/valves identify/search
 TABLE
 
 floors daemon <<'TABLE'

@@ -19,6 +19,8 @@
   row(input_saturation)      \
   row(deadband)              \
   row(stiction)              \
+  row(input_stuck)           \
+  row(input_offset)          \
   row(output_saturation)     \
   row(unmodelled_input)      \
   row(step_disturbance)      \

@@ -59,7 +59,7 @@ class PlayOfInput : public InputBlockCause {
   }
 
  protected:
-  [[nodiscard]] InputBlock block(const Effect& effect) const override {
+  [[nodiscard]] InputBlock block(const Effect& effect, const Surroundings&) const override {
     return Deadband{effect.value(kWidth, 0.0)};
   }
 };

@@ -1,13 +1,15 @@
 #include "core/identify/causes/input_block.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/identify/causes/channel_error.hpp"
 
 namespace mpm {
 
-void InputBlockCause::apply(const Effect& effect, const Surroundings&, ModelSpec& model) const {
-  const InputBlock block = this->block(effect);
+void InputBlockCause::apply(const Effect& effect, const Surroundings& surroundings,
+                            ModelSpec& model) const {
+  const InputBlock block = this->block(effect, surroundings);
   if (effect.place.cv < 0) {
     model.input_blocks[static_cast<std::size_t>(effect.place.input)] = block;
     return;
@@ -44,6 +46,21 @@ std::vector<BlockPlace> InputBlockCause::block_places(const Outlook& outlook) {
       for (const int cv : cvs) add(cv, false);
   }
   return places;
+}
+
+double InputBlockCause::since_s(const Effect& effect, const Surroundings& surroundings) {
+  if (effect.onset == 0) return -std::numeric_limits<double>::infinity();
+  return surroundings.start_s + static_cast<double>(effect.onset) * surroundings.sample_time_s;
+}
+
+int InputBlockCause::only_cv(const ModelSpec& model, int input) {
+  int only = -1;
+  for (const ChannelSpec& channel : model.channels) {
+    if (channel.input != input) continue;
+    if (only >= 0) return -1;
+    only = channel.cv;
+  }
+  return only;
 }
 
 std::string InputBlockCause::target(const Finding& finding, const SignalNames& names) {

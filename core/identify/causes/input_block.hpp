@@ -28,9 +28,14 @@ class InputBlockCause : public Cause {
   [[nodiscard]] bool goes_with(const Effect& accepted, const Effect& mine) const override;
 
  protected:
-  [[nodiscard]] virtual InputBlock block(const Effect& effect) const = 0;
+  [[nodiscard]] virtual InputBlock block(const Effect& effect,
+                                         const Surroundings& surroundings) const = 0;
+  /// Clock of the data at the effect's onset, s; minus infinity where it is in force throughout.
+  [[nodiscard]] static double since_s(const Effect& effect, const Surroundings& surroundings);
   /// Where nothing is in the way of a block.
   [[nodiscard]] static std::vector<BlockPlace> block_places(const Outlook& outlook);
+  /// The one CV that the model has this input act on; -1 where there are several.
+  [[nodiscard]] static int only_cv(const ModelSpec& model, int input);
   /// The tag of what the block stands before: a CV's, or "the plant".
   [[nodiscard]] static std::string target(const Finding& finding, const SignalNames& names);
 };

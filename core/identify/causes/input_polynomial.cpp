@@ -75,7 +75,7 @@ class InputPolynomial : public InputBlockCause {
   }
 
  protected:
-  [[nodiscard]] InputBlock block(const Effect& effect) const override {
+  [[nodiscard]] InputBlock block(const Effect& effect, const Surroundings&) const override {
     Polynomial polynomial;
     polynomial.coefficients = {effect.value(kLinear, 1.0), effect.value(kQuadratic, 0.0),
                                effect.value(kCubic, 0.0)};

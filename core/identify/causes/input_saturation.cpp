@@ -63,7 +63,7 @@ class InputSaturation : public InputBlockCause {
   }
 
  protected:
-  [[nodiscard]] InputBlock block(const Effect& effect) const override {
+  [[nodiscard]] InputBlock block(const Effect& effect, const Surroundings&) const override {
     return Saturation{effect.value(kLow, -kNoLimit), effect.value(kHigh, kNoLimit)};
   }
 };

@@ -97,7 +97,7 @@ class StickingValve : public InputBlockCause {
   }
 
  protected:
-  [[nodiscard]] InputBlock block(const Effect& effect) const override {
+  [[nodiscard]] InputBlock block(const Effect& effect, const Surroundings&) const override {
     return Stiction{effect.value(kBand, 0.0), effect.value(kJump, 0.0),
                     effect.variant == kSlipsOnce};
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/identify/causes/cause.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 
 namespace mpm {

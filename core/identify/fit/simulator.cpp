@@ -48,6 +48,8 @@ class Key {
   void add(const Saturation& v) { add(v.low), add(v.high); }
   void add(const Deadband& v) { add(v.width); }
   void add(const Stiction& v) { add(v.band), add(v.jump), add(v.slips_once); }
+  void add(const Stuck& v) { add(v.value), add(v.onset_s); }
+  void add(const InputOffset& v) { add(v.size), add(v.onset_s); }
   void add(const RestoringForce& v) { add(v.quadratic), add(v.cubic); }
   void add(const SquareRootOutflow& v) { add(v.empty_output); }
   void add(const CoulombFriction& v) { add(v.force), add(v.speed); }
@@ -103,21 +105,28 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
   // The blocks by hand, so that the linear part sees a plain input.
   InputElement own(model.input_blocks[static_cast<std::size_t>(spec.input)], origin);
   InputElement channels(spec.input_block, origin);
+  const double sample_time_s = model.sample_time_s;
+  const double start_s = recording_->start_s + kSameMoment * sample_time_s;
   LinearModel simulator(one);
   VectorXd input(1), output(all.size());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const Run& run = runs_[r];
     const auto given = all.segment(run.first, run.count);
+    const auto time_s = [&](Index k) {
+      return start_s + static_cast<double>(run.first + k) * sample_time_s;
+    };
     VectorXd moved(run.count);
     const double first = at_origin[r] ? origin : first_finite(given, origin);
     own.reset(first);
-    channels.reset(origin + own.apply(first));
+    const double first_moved = origin + own.apply(first, time_s(-1));
+    channels.reset(first_moved);
+    const double rest = origin + channels.apply(first_moved, time_s(-1));
     double last = first_finite(given, origin);
     for (Index k = 0; k < run.count; ++k) {
       if (std::isfinite(given(k))) last = given(k);
-      moved(k) = origin + channels.apply(origin + own.apply(last));
+      moved(k) = origin + channels.apply(origin + own.apply(last, time_s(k)), time_s(k));
     }
-    input(0) = at_origin[r] ? origin : moved(0);
+    input(0) = rest;
     simulator.reset_steady(input);
     for (Index k = 0; k < run.count; ++k) {
       output(run.first + k) = simulator.output()(0) - one.output_origin(0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/model/linear_model.hpp"
 #include "core/model/static_blocks.hpp"
@@ -147,6 +148,9 @@ bool remembers(const std::optional<InputBlock>& block) {
          (std::holds_alternative<Deadband>(*block) || std::holds_alternative<Stiction>(*block));
 }
 
+/// After whatever begins at some time.
+constexpr double kAfterAll = std::numeric_limits<double>::infinity();
+
 /// What the linear part sees, in input units, while the input goes along `x`.
 std::vector<double> sweep(const std::optional<InputBlock>& block, double origin,
                           const std::vector<double>& x) {
@@ -155,7 +159,7 @@ std::vector<double> sweep(const std::optional<InputBlock>& block, double origin,
   std::vector<double> y;
   for (int round = 0; round < 2; ++round) {  // the first one only settles the block
     y.clear();
-    for (const double value : x) y.push_back(origin + element.apply(value));
+    for (const double value : x) y.push_back(origin + element.apply(value, kAfterAll));
   }
   return y;
 }

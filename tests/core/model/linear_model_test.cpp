@@ -370,8 +370,8 @@ TEST_CASE("a valve that slips once sticks anew after every slip") {
   const std::vector<double> slips = {0.0, 1.1, 1.1, 1.1, 2.2, 2.2};
   const std::vector<double> follows = {0.0, 1.1, 1.5, 2.0, 2.2, 2.2};
   for (std::size_t k = 0; k < command.size(); ++k) {
-    CHECK(once.apply(command[k]) == Approx(slips[k]));
-    CHECK(moves_on.apply(command[k]) == Approx(follows[k]));
+    CHECK(once.apply(command[k], 0.0) == Approx(slips[k]));
+    CHECK(moves_on.apply(command[k], 0.0) == Approx(follows[k]));
   }
 }
 

@@ -97,6 +97,40 @@ TEST_CASE("a channel block with dynamics is the same block in front of that chan
   }
 }
 
+TEST_CASE("an actuator sticks or leaks from its onset on, by the clock of the data") {
+  // Operating point 10, gain 1, sampled once a second: y(k) is u(k-1) - 10.
+  const auto values = [](const mpm::InputBlock& block, double start_s, const Values& inputs) {
+    ModelSpec spec = two_gains();
+    spec.input_blocks = {block};
+    LinearModel model(spec);
+    model.set_time_s(start_s);
+    model.reset_steady(VectorXd::Constant(1, inputs.front()));
+    Values result = {model.output()(1)};
+    for (const double input : inputs) {
+      model.advance(VectorXd::Constant(1, input));
+      result.push_back(model.output()(1));
+    }
+    return result;
+  };
+  const Values inputs = {11, 12, 13, 14};
+  SECTION("within the data: u(102) is the first that it holds back") {
+    CHECK(values(mpm::Stuck{10.5, 102.0}, 100.0, inputs) == Values{1, 1, 2, 0.5, 0.5});
+    CHECK(values(mpm::InputOffset{5.0, 102.0}, 100.0, inputs) == Values{1, 1, 2, 8, 9});
+  }
+  SECTION("with the first sample: what came before was sound") {
+    CHECK(values(mpm::Stuck{10.5, 100.0}, 100.0, inputs) == Values{1, 0.5, 0.5, 0.5, 0.5});
+    CHECK(values(mpm::InputOffset{5.0, 100.0}, 100.0, inputs) == Values{1, 6, 7, 8, 9});
+  }
+  SECTION("before the data, or always: they begin at rest with it") {
+    CHECK(values(mpm::Stuck{10.5, 50.0}, 100.0, inputs) == Values{0.5, 0.5, 0.5, 0.5, 0.5});
+    CHECK(values(mpm::Stuck{10.5}, 100.0, inputs) == Values{0.5, 0.5, 0.5, 0.5, 0.5});
+    CHECK(values(mpm::InputOffset{5.0}, 100.0, inputs) == Values{6, 6, 7, 8, 9});
+  }
+  SECTION("after the data: never") {
+    CHECK(values(mpm::Stuck{10.5, 200.0}, 100.0, inputs) == Values{1, 1, 2, 3, 4});
+  }
+}
+
 TEST_CASE("disturbances follow the clock of the data") {
   // Sampled at 0, 2, 4, ... s; expectations by hand from model_spec.hpp.
   const auto values = [](const DisturbanceTerm& disturbance, double start_s, int samples) {

@@ -83,7 +83,7 @@ TEST_CASE("scenario sticking_valve: u2 goes through a sticking valve") {
   mpm::InputElement valve(mpm::InputBlock(mpm::Stiction{0.12, 0.06}), 0.0);
   double stuck = 0.0, last = 1e9;
   CHECK(distance(setup, Behind(setup, [&](VectorXd& u) {
-                   u(1) = valve.apply(u(1));
+                   u(1) = valve.apply(u(1), 0.0);
                    stuck += u(1) == last ? 1.0 : 0.0;
                    last = u(1);
                  })) < 1e-12);

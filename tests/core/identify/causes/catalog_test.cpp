@@ -35,6 +35,8 @@ TEST_CASE("causes are called what the reports call them") {
       {&causes::input_saturation(), {"input_nonlinearity", "saturation"}},
       {&causes::deadband(), {"input_nonlinearity", "deadband"}},
       {&causes::stiction(), {"stiction", ""}},
+      {&causes::input_stuck(), {"input_stuck", ""}},
+      {&causes::input_offset(), {"input_offset", ""}},
       {&causes::output_saturation(), {"output_nonlinearity", "saturation"}},
       {&causes::unmodelled_input(), {"unmodelled_input", ""}},
       {&causes::step_disturbance(), {"output_disturbance", "step"}},
