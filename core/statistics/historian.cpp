@@ -4,30 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "core/statistics/calibration.hpp"
+
 namespace mpm {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-// Chosen by hand from what they mean; the rates that they give are in historian_test.cpp.
-constexpr std::size_t kFewestRows = 100;
-constexpr std::size_t kFewestMoves = 30;  ///< that a smallest one can be told from
-constexpr double kHeld = 0.3;             ///< share of the rows
-/// The smallest move beside the median one: of 30 normal ones it is as large in 1 of 200 columns.
-constexpr double kSmallestMove = 0.3;
-/// Archived values hardly ever come again; levels of a test signal or of a converter do.
-constexpr double kNewValues = 0.5;
-constexpr std::size_t kFewestLevels = 5;  ///< of a converter; a test signal has fewer
-constexpr double kNeighbours = 0.8;       ///< share of the moves that are of one quantum
-constexpr double kOfLattice = 1e-3;       ///< a multiple is one to within this share of a quantum
-/// A line is straight to within this share of the range, and a corner beyond a hundred times it.
-constexpr double kStraight = 1e-7;
-constexpr double kCorner = 100.0;
-constexpr double kStraightShare = 0.5;
-constexpr double kBetween = 0.05;  ///< share of the rows that are neither; a smooth signal has many
-constexpr std::size_t kFewestCorners = 20;
-constexpr double kMuch = 0.5;  ///< of the signal's s.d., of the rows
 
 double lattice(const std::vector<double>& levels, double range) {
   double quantum = range;
@@ -64,7 +47,7 @@ HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {
   for (const double value : known) square += (value - mean) * (value - mean) / rows;
   traits.sd = std::sqrt(square);
 
-  const double tie = 1e-9 * range, straight = kStraight * range;
+  const double tie = kTie * range, straight = kStraight * range;
   std::vector<double> moves;
   double held = 0.0, on_line = 0.0, between = 0.0;
   std::size_t corners = 0;
@@ -96,8 +79,9 @@ HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {
     if (moves.front() >= kSmallestMove * moves[moves.size() / 2]) traits.deadband = moves.front();
   } else if (levels.size() >= kFewestLevels) {
     const double quantum = lattice(levels, range);
-    const auto of_one = std::count_if(moves.begin(), moves.end(),
-                                      [quantum](double move) { return move < 1.5 * quantum; });
+    const auto of_one = std::count_if(moves.begin(), moves.end(), [quantum](double move) {
+      return move < kOneQuantum * quantum;
+    });
     if (static_cast<double>(of_one) >= kNeighbours * static_cast<double>(moves.size()))
       traits.quantum = quantum;
   }

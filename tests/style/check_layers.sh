@@ -77,7 +77,7 @@ TABLE
 floors daemon <<'TABLE'
 host
 files/times
-files
+files files/times
 files/csv files/times files
 mcap/format
 mcap/read mcap/format
