@@ -17,8 +17,10 @@ constexpr std::size_t kRowsPerMoment = 4;
 /// s.d. of the size, and a step of its finite difference, as shares of the input's range.
 constexpr double kUsualSize = 0.3, kSizeStep = 0.01;
 /// Load disturbances come in through like dynamics as often as actuators shift: where only one CV
-/// answers, the shape of the onset must speak for the actuator by itself, 2 ln of odds.
+/// answers, the shape of the onset must speak for the actuator by itself, 2 ln of odds. And what
+/// wanders looks like steps of this and that.
 constexpr double kOneCvOnly = 10.0;
+constexpr double kWandering = 20.0;
 
 /// An actuator is open by more than its command from a moment on: it leaks, or its zero has
 /// shifted. An offset that is always there is a level of the CVs, which a model leaves free; it
@@ -45,7 +47,7 @@ class InputOffsetCause : public InputBlockCause {
                                  .value = moment.value,
                                  .prior_sd = kUsualSize * range,
                                  .step = kSizeStep * range}},
-                               cost + shared, moment.onset));
+                               cost + shared + kWandering, moment.onset));
     }
   }
 

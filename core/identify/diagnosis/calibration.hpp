@@ -52,6 +52,9 @@ inline constexpr double kGrown = 1.5;
 inline constexpr double kLateMargin = 0.05;
 inline constexpr int kMostLate = 2;
 
+/// What moves with a set-point is named where it explains so much of the unseen error.
+inline constexpr double kSetpointExplains = 0.3;
+
 /// One of so many samples of a CV must be known.
 inline constexpr Eigen::Index kFewestKnownParts = 10;
 /// Values beyond this are no measurements and no simulation.

@@ -20,6 +20,7 @@
 #include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/plateau.hpp"
 #include "core/identify/fit/split.hpp"
+#include "core/identify/valves/valve_shape.hpp"
 #include "core/text/number_text.hpp"
 
 namespace mpm {
@@ -80,6 +81,13 @@ const char* why_not_in_model(Fate fate) {
   return "";
 }
 
+/// What accuses a part of the plant of more than a wrong number is named only if it makes the model
+/// better beyond doubt.
+bool must_be_proved(const Effect& effect, int aux) {
+  return cause_of(effect).is_input_block() || cause_of(effect).settles_channel(effect) ||
+         effect.place.aux >= aux;
+}
+
 /// What stays of what was found, once nothing stands on what unseen data refuse.
 struct Kept {
   SearchResult found;
@@ -134,6 +142,7 @@ Kept keep(Problem& problem, const SearchResult& found, const Judges& judges,
 void state(const Kept& kept, Problem& problem, const Judges& judges, Diagnosis& diagnosis) {
   const SearchResult& found = kept.found;
   const Selection& selection = kept.selection;
+  std::vector<Finding> unproved;
   std::vector<bool> unclear(static_cast<std::size_t>(problem.model().cv_count), false);
   const auto mark_unclear = [&](const Effect& effect) {
     for (const int cv : touched(effect, problem)) unclear[static_cast<std::size_t>(cv)] = true;
@@ -149,11 +158,17 @@ void state(const Kept& kept, Problem& problem, const Judges& judges, Diagnosis& 
     if (causes::is_unnamed(cause)) {
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
       mark_unclear(effect);
+    } else if (must_be_proved(effect, judges.aux) && !effect.certain &&
+               selection.fates[i] != Fate::kRepaired &&
+               !(effect.place.aux >= judges.aux && finding.explains >= kSetpointExplains)) {
+      unproved.push_back(std::move(finding));
+      mark_unclear(effect);
     } else if (effect.certain || !cause.may_be_nothing(finding)) {
       diagnosis.findings.push_back(std::move(finding));
     }
   }
   diagnosis.refused = kept.refused;
+  diagnosis.refused.insert(diagnosis.refused.end(), unproved.begin(), unproved.end());
   for (const Effect& effect : kept.refused_effects) mark_unclear(effect);
   std::stable_sort(diagnosis.findings.begin(), diagnosis.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.evidence > b.evidence; });
@@ -165,12 +180,16 @@ void state(const Kept& kept, Problem& problem, const Judges& judges, Diagnosis& 
   }
   // Where structure is missing what is left is no noise.
   for (const Cause* cause : causes::all())
-    for (Finding& finding : cause->left_in(problem, found.fit))
-      if (!unclear[static_cast<std::size_t>(finding.subject.place.cv)]) {
-        finding.repaired = false;
+    for (Finding& finding : cause->left_in(problem, found.fit)) {
+      finding.repaired = false;
+      if (unclear[static_cast<std::size_t>(finding.subject.place.cv)]) {
+        finding.refused = "what is left of the CV is no noise: structure is missing";
+        diagnosis.refused.push_back(std::move(finding));
+      } else {
         finding.refused = "no repair of a model removes it";
         diagnosis.findings.push_back(std::move(finding));
       }
+    }
 }
 
 /// The model with all that was repaired. The small corrections that came with the findings have to
@@ -228,7 +247,7 @@ double least_explained(const MatrixXd& residuals, const MatrixXd& cvs) {
   return least;
 }
 
-void decide(double explained, Diagnosis& diagnosis) {
+void decide(double explained, bool sticks, Diagnosis& diagnosis) {
   const std::ptrdiff_t blind = unknown_gains(diagnosis.channels);
   const bool strong =
       std::any_of(diagnosis.refused.begin(), diagnosis.refused.end(),
@@ -236,6 +255,9 @@ void decide(double explained, Diagnosis& diagnosis) {
   diagnosis.verdict = DiagnosisVerdict::kUndetermined;
   if (!diagnosis.findings.empty() || !diagnosis.unexplained.empty())
     diagnosis.verdict = DiagnosisVerdict::kMismatch;
+  else if (sticks)
+    diagnosis.reason =
+        "a loop swings in the shape of a sticking valve, which its model does not explain";
   else if (strong)
     diagnosis.reason = "what explains the samples that were fitted does not hold on the others";
   else if (diagnosis.suspect && diagnosis.suspect->evidence > kStrongEvidence)
@@ -251,6 +273,24 @@ void decide(double explained, Diagnosis& diagnosis) {
                        " of what a CV does, beyond a constant";
   else
     diagnosis.verdict = DiagnosisVerdict::kMatch;
+}
+
+/// CVs whose loop swings as one with a sticking valve does, by shape tests that need no model: of
+/// those on which one MV alone acts.
+std::vector<int> sticking_loops(const ModelSpec& model, int mvs, const Recording& recording) {
+  std::vector<int> loops;
+  if (recording.setpoints.cols() == 0) return loops;
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    std::vector<int> acting;
+    for (const ChannelSpec& channel : model.channels)
+      if (channel.cv == cv && channel.input < mvs) acting.push_back(channel.input);
+    if (acting.size() != 1 || !recording.setpoints.col(cv).array().isFinite().any()) continue;
+    const ValveShape shape =
+        judge_valve(recording.inputs.col(acting.front()), recording.cvs.col(cv),
+                    recording.setpoints.col(cv), recording.sample_time_s);
+    if (shape.verdict == ValveShape::Verdict::kSticks) loops.push_back(cv);
+  }
+  return loops;
 }
 
 /// How the inputs moved, and whether the channels of each are known.
@@ -367,7 +407,8 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
     for (Finding& late :
          find_late(extended, base.input_count, recording, diagnosis.fit_samples, search_settings))
       diagnosis.findings.push_back(std::move(late));
-  decide(least_explained(residuals, recording.cvs), diagnosis);
+  decide(least_explained(residuals, recording.cvs),
+         !sticking_loops(base, settings.mv_count, measured).empty(), diagnosis);
   tell_on_clock(recording, given, diagnosis);
   return diagnosis;
 }

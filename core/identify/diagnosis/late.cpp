@@ -52,9 +52,11 @@ std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const R
   std::vector<Finding> late;
   for (std::size_t i = 0; i < found.named.size(); ++i) {
     const Effect& effect = found.named[i].effect;
-    if (causes::is_unnamed(cause_of(effect)) || effect.onset < from) continue;
+    const Cause& cause = cause_of(effect);
+    // No rows are left that could prove more than a wrong number.
+    if (causes::is_unnamed(cause) || cause.is_input_block() || effect.onset < from) continue;
     Finding finding = to_finding(found, i, problem);
-    if (cause_of(effect).may_be_nothing(finding)) continue;
+    if (cause.may_be_nothing(finding)) continue;
     late.push_back(std::move(finding));
   }
   const double begin = problem.surroundings().start_s +
