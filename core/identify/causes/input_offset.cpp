@@ -19,7 +19,7 @@ constexpr double kUsualSize = 0.3, kSizeStep = 0.01;
 /// Load disturbances come in through like dynamics as often as actuators shift: where only one CV
 /// answers, the shape of the onset must speak for the actuator by itself, 2 ln of odds. And what
 /// wanders looks like steps of this and that.
-constexpr double kOneCvOnly = 10.0;
+constexpr double kOneCvOnly = 30.0;
 constexpr double kWandering = 20.0;
 
 /// An actuator is open by more than its command from a moment on: it leaks, or its zero has

@@ -361,6 +361,9 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
   search_settings.max_findings = settings.max_findings;
   search_settings.progress = settings.progress;
   search_settings.may_name = [&](const Effect& effect) {
+    const bool actuator =
+        effect.edit == &causes::input_stuck() || effect.edit == &causes::input_offset();
+    if (actuator && effect.place.input >= settings.mv_count) return false;  // a DV has none
     return !cause_of(effect).acts_through_channels() || effect.place.aux >= aux ||
            tests.reject(channels_of(effect, model, base.input_count));
   };
