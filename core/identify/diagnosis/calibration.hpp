@@ -60,6 +60,9 @@ inline constexpr Eigen::Index kFewestKnownParts = 10;
 /// Values beyond this are no measurements and no simulation.
 inline constexpr double kDiverged = 1e100;
 
+/// What takes at least this share off the errors of predictions, beyond doubt, needs no other test.
+inline constexpr double kOverwhelmingGain = 0.3;
+
 /// A model has settled after so many slowest time constants: 5 % are left to come. Horizons of
 /// predictions take at most one of so many parts of the rows.
 inline constexpr double kSettlingTimeConstants = 3.0;

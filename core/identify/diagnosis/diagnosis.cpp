@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "core/identify/causes/catalog.hpp"
@@ -135,6 +136,46 @@ Kept keep(Problem& problem, const SearchResult& found, const Judges& judges,
     kept.selection = judge(rest);
     kept.found = std::move(rest);
   }
+}
+
+/// What the search finds, and what unseen data leave of it.
+struct Account {
+  std::unique_ptr<Problem> problem;
+  Kept kept;
+};
+
+/// Whether it would take so much off the errors of predictions on unseen samples that it is
+/// believed without the test of the channels: where the inputs move mostly from outside the loop,
+/// no feedback can make that up.
+bool overwhelms(const Kept& kept, const Subject& subject, const Judges& judges) {
+  for (std::size_t i = 0; i < kept.found.named.size(); ++i) {
+    const Effect& effect = kept.found.named[i].effect;
+    if (subject_of(effect) == subject && kept.selection.fates[i] == Fate::kRepaired &&
+        kept.selection.sure_gains[i] >= kOverwhelmingGain)
+      return moved_from_outside(effect, judges.outside_shares);
+  }
+  return false;
+}
+
+Account account_for(const ModelSpec& model, int model_inputs, const Recording& fitted,
+                    const Judges& judges, const SearchSettings& settings) {
+  const auto take = [&](const SearchSettings& with) {
+    Explained explained = explain(model, model_inputs, fitted, with);
+    Kept kept = keep(*explained.problem, explained.found, judges, with);
+    return Account{std::move(explained.problem), std::move(kept)};
+  };
+  Account account = take(settings);
+  const std::optional<Named>& suspect = account.kept.found.suspect;
+  if (!suspect || suspect->evidence < kStrongEvidence ||
+      !moved_from_outside(suspect->effect, judges.outside_shares))
+    return account;
+  const Subject subject = subject_of(suspect->effect);
+  SearchSettings open = settings;
+  open.may_name = [&](const Effect& effect) {
+    return subject_of(effect) == subject || settings.may_name(effect);
+  };
+  Account other = take(open);
+  return overwhelms(other.kept, subject, judges) ? std::move(other) : std::move(account);
 }
 
 /// What was named, as findings, and what has no name; most important first, what no repair removes
@@ -367,8 +408,6 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
     return !cause_of(effect).acts_through_channels() || effect.place.aux >= aux ||
            tests.reject(channels_of(effect, model, base.input_count));
   };
-  const Explained explained = explain(model, base.input_count, fitted, search_settings);
-  Problem& problem = *explained.problem;
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
   const Judges judges{
@@ -380,7 +419,9 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
                (wrong && i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside);
       },
       outside};
-  const Kept kept = keep(problem, explained.found, judges, search_settings);
+  const Account account = account_for(model, base.input_count, fitted, judges, search_settings);
+  Problem& problem = *account.problem;
+  const Kept& kept = account.kept;
   diagnosis.channels = estimate_channels(problem, kept.found, search_settings);
   diagnosis.inputs = movements(outside, diagnosis.channels);
   const ModelSpec extended = extended_model(problem, kept.found, kept.selection, model, judges);

@@ -79,15 +79,10 @@ class Errors {
   std::vector<VectorXd> with_, without_;
 };
 
-/// Whether an effect acts through inputs that move mostly from outside the loop, or nobody knows.
-bool moved_from_outside(const Effect& effect, const std::vector<std::optional<double>>& shares) {
-  const int input = effect.place.input;
-  if (input < 0 || static_cast<std::size_t>(input) >= shares.size()) return true;
-  return shares[static_cast<std::size_t>(input)].value_or(1.0) >= kMostlyOutside;
-}
-
-Fate judged(const Effect& effect, const Errors& errors, const Judges& judges, std::uint64_t seed) {
+Fate judged(const Effect& effect, const Errors& errors, const Judges& judges, std::uint64_t seed,
+            double& sure_gain) {
   const CvScore free_run = errors.free_run(seed);
+  sure_gain = free_run.gain_low;
   if (!cause_of(effect).acts_through_channels()) {
     // What loads several CVs through one actuator shows in more than one of them.
     const bool by_one =
@@ -96,6 +91,7 @@ Fate judged(const Effect& effect, const Errors& errors, const Judges& judges, st
     return free_run.rmse_after < free_run.rmse_before ? Fate::kNoBetter : Fate::kRefused;
   }
   const CvScore predictions = errors.predictions(seed);
+  sure_gain = predictions.gain_low;
   if (!(predictions.rmse_after < predictions.rmse_before)) return Fate::kRefused;
   if (moved_from_outside(effect, judges.outside_shares) &&
       !(free_run.rmse_after < free_run.rmse_before))
@@ -105,11 +101,18 @@ Fate judged(const Effect& effect, const Errors& errors, const Judges& judges, st
 
 }  // namespace
 
+bool moved_from_outside(const Effect& effect, const std::vector<std::optional<double>>& shares) {
+  const int input = effect.place.input;
+  if (input < 0 || static_cast<std::size_t>(input) >= shares.size()) return true;
+  return shares[static_cast<std::size_t>(input)].value_or(1.0) >= kMostlyOutside;
+}
+
 Selection select(const Problem& problem, const SearchResult& found, const Judges& judges,
                  const std::function<void()>& tell) {
   const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
   Selection selection;
   selection.explains.assign(found.named.size(), 0.0);
+  selection.sure_gains = selection.explains;
   selection.order.resize(found.named.size());
   std::iota(selection.order.begin(), selection.order.end(), std::size_t{0});
   std::sort(selection.order.begin(), selection.order.end(), [&](std::size_t a, std::size_t b) {
@@ -131,7 +134,8 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     if (effect.certain || selection.fates[i] != Fate::kRepaired) continue;
     const std::vector<bool> in = repaired(selection);
     const Errors errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen);
-    selection.fates[i] = judged(effect, errors, judges, judges.unseen.seed() + i);
+    selection.fates[i] =
+        judged(effect, errors, judges, judges.unseen.seed() + i, selection.sure_gains[i]);
     // A slow disturbance was fitted together with small errors of the channels, which the extended
     // model does without: it may be true and still be no repair by itself.
     if (selection.fates[i] != Fate::kRefused || cause_of(effect).acts_through_channels()) continue;

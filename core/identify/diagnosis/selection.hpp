@@ -25,6 +25,7 @@ enum class Fate {
 struct Selection {
   std::vector<Fate> fates;         ///< of each that was named
   std::vector<double> explains;    ///< likewise: Finding::explains
+  std::vector<double> sure_gains;  ///< likewise: lower end of the interval of what it was judged by
   std::vector<std::size_t> order;  ///< in which they were judged: the weakest evidence first
 };
 
@@ -41,6 +42,10 @@ struct Judges {
 /// the data show themselves is not judged.
 [[nodiscard]] Selection select(const Problem& problem, const SearchResult& found,
                                const Judges& judges, const std::function<void()>& tell);
+
+/// Whether an effect acts through inputs that move mostly from outside the loop, or nobody knows.
+[[nodiscard]] bool moved_from_outside(const Effect& effect,
+                                      const std::vector<std::optional<double>>& shares);
 
 /// Those with the fate kRepaired.
 [[nodiscard]] std::vector<bool> repaired(const Selection& selection);

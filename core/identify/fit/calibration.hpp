@@ -39,7 +39,7 @@ inline constexpr std::size_t kPlateauOthers = 10;      ///< values next to it
 inline constexpr std::size_t kPlateauExcess = 5;       ///< times as many as share any of those
 /// A CV that rests, or one peak, is no clipping: the level is come to so often, from away by this
 /// share of what the CV moves.
-inline constexpr int kPlateauVisits = 3;
+inline constexpr int kPlateauVisits = 2;
 inline constexpr double kPlateauLeft = 0.05;
 /// Two values of a plateau differ by no more than this share of what the CV moves.
 inline constexpr double kPlateauTie = 1e-9;

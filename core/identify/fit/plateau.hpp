@@ -14,7 +14,7 @@ struct Plateaus {
 
 /// An end of the range that at least 0.5 % of the samples (and eight) share exactly, and five times
 /// more of them than share any of the ten values next to it (a coarse converter repeats all
-/// values), and that the CV comes to at three times or more: one that rests there does not clip.
+/// values), and that the CV comes to at twice or more: one that rests there does not clip.
 [[nodiscard]] Plateaus find_plateaus(const Eigen::Ref<const Eigen::VectorXd>& values);
 
 }  // namespace mpm
