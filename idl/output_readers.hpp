@@ -60,7 +60,9 @@ class ReadersOf<std::tuple<Record...>> {
     taken_.clear();
     // From the last, so that of what one frame caused the channels are never behind the alarms.
     [this]<std::size_t... I>(std::index_sequence<I...>) {
-      (take_records<std::tuple_element_t<sizeof...(Record) - 1 - I, std::tuple<Record...>>>(), ...);
+      (this->template take_records<
+           std::tuple_element_t<sizeof...(Record) - 1 - I, std::tuple<Record...>>>(),
+       ...);
     }
     (std::index_sequence_for<Record...>());
     take_layouts();

@@ -62,6 +62,7 @@ class Child {
         std::freopen("/dev/null", "w", stdout) == nullptr)
       _exit(2);
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (const std::string& argument : arguments)
       argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);

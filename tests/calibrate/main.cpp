@@ -85,18 +85,18 @@ int run(const Options& options) {
 }  // namespace mpm::calibrate
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Fits the constants of the mismatch test again and prints old beside new; fails where one in "
-      "use allows more false alarms than it should.");
-  mpm::calibrate::Options options;
-  app.add_option("--plants", options.plants, "files in config/plants");
-  app.add_option("--seeds", options.seeds, "of each plant, from 100001 on")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--threads", options.threads, "instead of one per core")
-      ->check(CLI::PositiveNumber);
-  app.add_flag("--short", options.short_version, "few seeds; ctest runs it");
-  CLI11_PARSE(app, argc, argv);
   try {
+    CLI::App app(
+        "Fits the constants of the mismatch test again and prints old beside new; fails where one "
+        "in use allows more false alarms than it should.");
+    mpm::calibrate::Options options;
+    app.add_option("--plants", options.plants, "files in config/plants");
+    app.add_option("--seeds", options.seeds, "of each plant, from 100001 on")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--threads", options.threads, "instead of one per core")
+        ->check(CLI::PositiveNumber);
+    app.add_flag("--short", options.short_version, "few seeds; ctest runs it");
+    CLI11_PARSE(app, argc, argv);
     return mpm::calibrate::run(options);
   } catch (const std::exception& error) {
     std::cerr << "mpm_calibrate: " << error.what() << '\n';

@@ -242,8 +242,8 @@ TEST_CASE("Tags share one name space") {
       "model: {channels: [{cv: y1, mv: u1, gain: 1}]}\n");
   const std::vector<std::string> expected = {
       "u.yaml:4:12: error: signals.mv[1]: tag 'u1' is already used in line 4",
-      "u.yaml:4:16: error: signals.mv[2]: 'time' is the name of the time column and cannot be a "
-      "tag",
+      ("u.yaml:4:16: error: signals.mv[2]: 'time' is the name of the time column and cannot be a "
+       "tag"),
       "u.yaml:4:22: error: signals.mv[3]: must not be empty",
       "u.yaml:4:26: error: signals.mv[4]: a tag must not begin or end with a space",
       "u.yaml:4:32: error: signals.mv[5]: must not hold control characters",
@@ -272,8 +272,8 @@ TEST_CASE("All findings come at once, in the order of the file") {
       "u.yaml:2:14: error: sample_time: must be a number, not 'fast'",
       "u.yaml:3:27: error: signals.xv: unknown key (did you mean 'mv'?)",
       "u.yaml:6:7: error: model.channels[0]: needs `gain`, `numerator`, `step_response` or `tanks`",
-      "u.yaml:6:20: error: model.channels[0].mv: 'u2' is no mv or dv of this unit (did you mean "
-      "'u1'?)",
+      ("u.yaml:6:20: error: model.channels[0].mv: 'u2' is no mv or dv of this unit (did you mean "
+       "'u1'?)"),
       "u.yaml:6:24: error: model.channels[0].gian: unknown key (did you mean 'gain'?)",
       "u.yaml:7:20: error: alarms.on_delay: must be >= 0, not -1",
       "u.yaml:8:15: error: dds.domain: must be a number, not 'x'",

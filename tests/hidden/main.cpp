@@ -154,11 +154,11 @@ int run(const Options& options) {
 }  // namespace mpm::hidden
 
 int main(int argc, char** argv) {
-  CLI::App app("Hides effects in simulated plants and scores how well `diagnose` finds them.");
-  mpm::hidden::Options options;
-  mpm::hidden::declare(app, options);
-  CLI11_PARSE(app, argc, argv);
   try {
+    CLI::App app("Hides effects in simulated plants and scores how well `diagnose` finds them.");
+    mpm::hidden::Options options;
+    mpm::hidden::declare(app, options);
+    CLI11_PARSE(app, argc, argv);
     return mpm::hidden::run(options);
   } catch (const std::invalid_argument& error) {
     std::cerr << "mpm_hidden: " << error.what() << '\n';

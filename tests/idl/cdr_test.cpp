@@ -73,6 +73,7 @@ TEST_CASE("What is encoded is decoded to the same bits") {
     CHECK(view.unit == unit);
     CHECK(view.interval == -7);
     CHECK(view.source_time_ns == frame.source_time_ns);
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): -0.0 and NaN, bit by bit
     CHECK(std::memcmp(view.values.data(), frame[SignalKind::kMv].values.data(), 32) == 0);
     CHECK(std::memcmp(view.quality.data(), frame[SignalKind::kMv].quality.data(), 4) == 0);
   }

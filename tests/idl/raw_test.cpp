@@ -124,7 +124,7 @@ TEST_CASE("every known topic can be read and written raw, and has its IDL") {
     const RawWriter writer(participant, topic, WriterPace::kLossless);
     const RawReader reader(participant, topic);
     CHECK(writer.matched_readers() == 1);
-    const std::string name = reader.type_name();
+    const std::string& name = reader.type_name();
     const std::string record = "struct " + name.substr(name.rfind(':') + 1) + " {";
     CHECK(idl_text().find(record) != std::string_view::npos);
   }

@@ -79,6 +79,7 @@ TEST_CASE("what mpmsim publishes at full speed is the run of its seed, nothing m
   mpm::sim::LoopSetup setup = mpm::test::healthy_loop(mpm::test::load_plant("shell3x3"), 3);
   setup.start_time_ns = 1'709'294'400'000'000'000;
   mpm::sim::ClosedLoop loop(setup);
+  expected.reserve(kSamples);
   for (int k = 0; k < kSamples; ++k) expected.push_back(loop.step());
 
   int count = 0, wrong = 0;

@@ -175,11 +175,11 @@ int run(const Options& options) {
 }  // namespace mpm::study
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures the detection rates of the monitor on simulated closed loops.");
-  mpm::study::Options options;
-  mpm::study::declare(app, options);
-  CLI11_PARSE(app, argc, argv);
   try {
+    CLI::App app("Measures the detection rates of the monitor on simulated closed loops.");
+    mpm::study::Options options;
+    mpm::study::declare(app, options);
+    CLI11_PARSE(app, argc, argv);
     return mpm::study::run(options);
   } catch (const std::exception& error) {
     std::cerr << "mpm_study: " << error.what() << '\n';

@@ -126,6 +126,7 @@ class OnTerminal {
   explicit OnTerminal(const std::vector<std::string>& arguments) {
     const std::string program = std::string(MPM_BIN_DIR) + "/" + arguments.at(0);
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (const std::string& argument : arguments)
       argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);

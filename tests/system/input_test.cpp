@@ -161,6 +161,7 @@ TEST_CASE("partitions do not see each other") {
 TEST_CASE("thirty viewers on one host all hear the daemon, without multicast") {
   Bench bench("thirty");
   std::vector<Process> viewers;
+  viewers.reserve(30);
   const auto output = [&](int i) { return bench.folder.file("watch" + std::to_string(i)); };
   for (int i = 0; i < 30; ++i)
     viewers.emplace_back(bench.watch({"--json"}), output(i), output(i) + ".err");

@@ -13,8 +13,6 @@
 #include <optional>
 #include <thread>
 
-extern char** environ;
-
 namespace mpm::report {
 namespace {
 
@@ -47,6 +45,7 @@ pid_t spawn(const std::string& program, const std::vector<std::string>& argument
   std::vector<std::string> words = {"mpmsim"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 
@@ -92,7 +91,7 @@ std::optional<int> wait_for(pid_t child, std::chrono::seconds limit,
 std::string find_mpmsim() {
   std::error_code failure;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", failure);
-  const std::string program = (self.parent_path() / "mpmsim").string();
+  std::string program = (self.parent_path() / "mpmsim").string();
   if (failure || access(program.c_str(), X_OK) != 0)
     throw SimulatorError("--scenario needs the simulator, and " + program + " is not there");
   return program;

@@ -133,6 +133,7 @@ void keep_every(std::vector<double>& values, int every) {
 
 std::vector<double> spaced(Range range) {
   std::vector<double> x;
+  x.reserve(kCurvePoints);
   for (int i = 0; i < kCurvePoints; ++i)
     x.push_back(range.low + (range.high - range.low) * i / (kCurvePoints - 1));
   return x;

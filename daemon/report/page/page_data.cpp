@@ -40,9 +40,9 @@ Series column(const Eigen::MatrixXd& block, Eigen::Index index, const Run& rows)
 }
 
 Series difference(const Series& a, const Series& b) {
-  if (a.size() != b.size()) return Series(a.size(), std::numeric_limits<double>::quiet_NaN());
-  Series result;
-  for (std::size_t i = 0; i < a.size(); ++i) result.push_back(a[i] - b[i]);
+  Series result(a.size(), std::numeric_limits<double>::quiet_NaN());
+  if (a.size() != b.size()) return result;
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] - b[i];
   return result;
 }
 

@@ -19,6 +19,7 @@ TEST_CASE("leaving one block out of a shared tree equals a factor of its own per
     const int columns = 1 + blocks * kBlockColumns;
     LeaveOneOutQr tree(1, blocks, kBlockColumns, kResponses, kLambda);
     std::vector<GivensQr> separate;
+    separate.reserve(static_cast<std::size_t>(blocks));
     for (int i = 0; i < blocks; ++i)
       separate.emplace_back(1 + (blocks - 1) * kBlockColumns, 1 + kResponses);
     std::vector<double> row(static_cast<std::size_t>(columns + kResponses));

@@ -121,6 +121,7 @@ TEST_CASE("aligner: frames do not depend on the order of arrival within the late
 
     // Sorting by interval + uniform delay moves no block past one that is a lateness newer.
     std::vector<std::pair<double, Block>> delayed;
+    delayed.reserve(blocks.size());
     std::uniform_real_distribution<double> delay(0.0, settings.max_lateness);
     for (const Block& block : blocks)
       delayed.emplace_back(static_cast<double>(block.interval) + delay(random), block);

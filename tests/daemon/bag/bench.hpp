@@ -33,7 +33,7 @@ struct Bench {
     unit = config::load_unit(folder.file("small.yaml")).config;
   }
   bag::ConvertReport convert(const std::string& from, const std::string& to,
-                             bag::ConvertOptions options = {}) {
+                             const bag::ConvertOptions& options = {}) {
     return bag::convert(folder.file(from), folder.file(to), options);
   }
   bag::ConvertOptions with_unit() const {
@@ -42,9 +42,10 @@ struct Bench {
     return options;
   }
   std::string text(const std::string& name) const { return read_file(folder.file(name)); }
-  std::string error(const std::string& from, const std::string& to, bag::ConvertOptions options) {
+  std::string error(const std::string& from, const std::string& to,
+                    const bag::ConvertOptions& options) {
     try {
-      static_cast<void>(convert(from, to, std::move(options)));
+      static_cast<void>(convert(from, to, options));
     } catch (const config::InputError& error) {
       CHECK_FALSE(std::filesystem::exists(folder.file(to)));
       return error.what();

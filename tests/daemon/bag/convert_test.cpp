@@ -1,6 +1,7 @@
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -58,7 +59,9 @@ TEST_CASE("MCAP, CSV, MCAP, CSV: not a bit is lost, in either layout and any zon
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv}) {
       for (int i = 0; i < frame[kind].size(); ++i) {
         const double a = frame[kind].values(i), b = read[kind].values(i);
-        const bool same = std::isnan(a) ? std::isnan(b) : std::memcmp(&a, &b, sizeof a) == 0;
+        const bool same = std::isnan(a)
+                              ? std::isnan(b)
+                              : std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
         REQUIRE(same);
         REQUIRE(frame[kind].quality[static_cast<std::size_t>(i)] ==
                 read[kind].quality[static_cast<std::size_t>(i)]);

@@ -60,7 +60,7 @@ class Behind {
         change_(std::move(change)) {}
 
   VectorXd operator()(const Frame& frame) {
-    const VectorXd output = model_.output();
+    VectorXd output = model_.output();
     VectorXd input = frame[SignalKind::kMv].values;
     change_(input);
     model_.advance(input);
@@ -120,7 +120,7 @@ TEST_CASE("scenario unmodelled_input: an aux signal acts on y1, and is reported"
   std::vector<double> ambient;
   double effect = 0.0, largest = 0.0, other = 0.0;
   CHECK(distance(setup, [&](const Frame& frame) -> VectorXd {
-          const VectorXd output = behind(frame) + Eigen::Vector3d(effect, 0.0, 0.0);
+          VectorXd output = behind(frame) + Eigen::Vector3d(effect, 0.0, 0.0);
           ambient.push_back(frame[SignalKind::kAux].values(0));
           const double late = ambient.size() > 5 ? ambient[ambient.size() - 6] : 0.0;
           effect = a * effect + 0.8 * (1.0 - a) * late;

@@ -45,7 +45,7 @@ double cost_with(const LoopSetup& setup, const ChannelChange& change) {
 TEST_CASE("the cost is the weighted sum of errors and moves") {
   const LoopSetup setup = small_loop();
   double expected = 0.0;
-  for (const std::uint64_t seed : {7, 8}) {
+  for (const std::uint64_t seed : {7U, 8U}) {
     LoopSetup each = setup;
     each.seed = seed;
     mpm::sim::ClosedLoop loop(each);

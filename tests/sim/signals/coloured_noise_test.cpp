@@ -33,9 +33,9 @@ TEST_CASE("normal numbers have the moments of a normal distribution") {
 
 TEST_CASE("streams of other seeds, purposes and indices are other numbers") {
   std::set<double> first;
-  for (const std::uint64_t seed : {0, 1, 2})
+  for (const std::uint64_t seed : {0U, 1U, 2U})
     for (const StreamPurpose purpose : {StreamPurpose::kNoise, StreamPurpose::kSetpoint})
-      for (const std::uint64_t index : {0, 1, 2})
+      for (const std::uint64_t index : {0U, 1U, 2U})
         first.insert(RandomStream(seed, purpose, index).uniform());
   CHECK(first.size() == 18);
   CHECK(RandomStream(7, StreamPurpose::kNoise, 3).uniform() ==

@@ -14,7 +14,10 @@ using Eigen::VectorXd;
 /// `rows` values that rise, the largest `top` of them cut to one, the smallest `bottom` likewise;
 /// each of the others `repeats` times.
 VectorXd clipped(Index rows, Index top, Index bottom = 0, Index repeats = 1) {
-  VectorXd values = VectorXd::NullaryExpr(rows, [&](Index k) { return double(k / repeats); });
+  VectorXd values = VectorXd::NullaryExpr(rows, [&](Index k) {
+    const Index level = k / repeats;
+    return static_cast<double>(level);
+  });
   values.tail(top).setConstant(static_cast<double>(rows));
   values.head(bottom).setConstant(-1.0);
   return values;

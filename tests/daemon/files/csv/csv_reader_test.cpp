@@ -157,6 +157,7 @@ TEST_CASE("Intervals are counted from the first row and survive gaps, repeats an
       "time,u1,u2,y1\n100,1,2,3\n101.02,1,2,3\n101.99,1,2,3\n107,1,2,3\n107,1,2,3\n"
       "106,1,2,3\n108,1,2,3\n109,1,2,3\n110,1,2,3\n");
   std::vector<std::int64_t> intervals;
+  intervals.reserve(frames.size());
   for (const Frame& frame : frames) intervals.push_back(frame.interval);
   CHECK(intervals == std::vector<std::int64_t>{0, 1, 2, 7, 7, 6, 8, 9, 10});
   CHECK(frames[1].source_time_ns == 101'020'000'000);
