@@ -56,7 +56,7 @@ VectorXd offset(VectorXd u, Index from) {
 
 Diagnosis diagnosed(const MatrixXd& inputs, const VectorXd& first_acts, std::uint64_t seed) {
   const MatrixXd cvs = respond(first_acts, inputs.col(1)) + noise(seed, 2);
-  return diagnose(both(), recording_of(inputs, cvs), nullptr, {});
+  return diagnose(both(), recording_of(inputs, cvs), nullptr, {.mv_count = 2});
 }
 
 Parameter first_number(const Diagnosis& diagnosis, const Cause& cause) {
@@ -129,25 +129,23 @@ TEST_CASE("a step in one of several CVs is no leak") {
     const MatrixXd inputs = commands(seed);
     MatrixXd cvs = respond(inputs.col(0), inputs.col(1)) + noise(100 + seed, 2);
     cvs.col(0).tail(kRows - kOnset) += VectorXd::Constant(kRows - kOnset, 1.0);
-    const Diagnosis diagnosis = diagnose(both(), recording_of(inputs, cvs), nullptr, {});
+    const Diagnosis diagnosis =
+        diagnose(both(), recording_of(inputs, cvs), nullptr, {.mv_count = 2});
     REQUIRE_FALSE(diagnosis.findings.empty());
     CHECK(diagnosis.findings.front().subject.cause == &causes::step_disturbance());
   }
 }
 
-// With one CV the two say the same, so that the one that is named has the other against it.
-TEST_CASE("with one CV a leak and a disturbance that comes in alike are rivals") {
+// With one CV the two say the same, and disturbances are the more usual: no actuator is accused.
+TEST_CASE("with one CV a leak is told as a disturbance that comes in alike") {
   const VectorXd u = telegraph(71, kRows, 25);
   const MatrixXd cv = first_order(offset(u, kOnset), 2.0, 10.0, 2) + noise(171, 1).col(0);
-  const Diagnosis diagnosis =
-      diagnose(model_of({lag(0, 0, 2.0, 10.0, 2.0)}, 1, 1), recording_of(u, cv), nullptr, {});
+  const Diagnosis diagnosis = diagnose(model_of({lag(0, 0, 2.0, 10.0, 2.0)}, 1, 1),
+                                       recording_of(u, cv), nullptr, {.mv_count = 1});
   REQUIRE_FALSE(diagnosis.findings.empty());
-  const Finding& first = diagnosis.findings.front();
-  const bool leaks = first.subject.cause == &causes::input_offset();
-  const Cause* other = leaks ? &causes::step_disturbance() : &causes::input_offset();
-  if (!leaks) CHECK(first.subject.cause == &causes::step_disturbance());
-  CHECK(std::any_of(first.rivals.begin(), first.rivals.end(),
-                    [&](const Rival& rival) { return rival.subject.cause == other; }));
+  CHECK(diagnosis.findings.front().subject.cause == &causes::step_disturbance());
+  for (const Finding& finding : diagnosis.findings)
+    CHECK(finding.subject.cause != &causes::input_offset());
 }
 
 }  // namespace mpm::test
