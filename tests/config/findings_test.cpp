@@ -251,8 +251,8 @@ TEST_CASE("Tags share one name space") {
       "u.yaml:7:29: error: signals.cv[0].prediction: tag 'u1' is already used in line 4",
       "u.yaml:7:43: error: signals.cv[0].setpoint: tag 'y1' is already used in line 7",
       "u.yaml:7:47: error: signals.cv[0].tga: unknown key (did you mean 'tag'?)",
-      "u.yaml:8:7: error: signals.cv[1]: a tag must not end in '.quality', the name of a quality "
-      "column",
+      ("u.yaml:8:7: error: signals.cv[1]: a tag must not end in '.quality', the name of a quality "
+       "column"),
       "u.yaml:9:8: error: signals.aux: tag 'y1' is already used in line 7",
   };
   CHECK(found == expected);
