@@ -1,0 +1,56 @@
+#include "core/identify/diagnosis/late.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/identify/causes/catalog.hpp"
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using test::lag;
+
+constexpr Index kRows = 900, kFitted = 600, kOnset = 700;
+
+std::vector<Finding> late_in(const VectorXd& added, std::uint64_t seed) {
+  const VectorXd u = test::telegraph(seed, kRows, 12);
+  const VectorXd noise = 0.1 * test::autoregressive(test::normal(seed + 100, kRows), 0.5);
+  const Recording recording =
+      test::recording_of(u, test::first_order(u, 2.0, 10.0) + noise + added);
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  return find_late(model, 1, recording, kFitted, {});
+}
+
+VectorXd step_at(Index row) {
+  VectorXd step = VectorXd::Zero(kRows);
+  step.tail(kRows - row).setConstant(0.8);
+  return step;
+}
+
+TEST_CASE("a step in the rows kept for validation is named, and no repair is claimed") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    const std::vector<Finding> late = late_in(step_at(kOnset), seed);
+    REQUIRE_FALSE(late.empty());
+    CHECK(late[0].subject == Subject{&causes::step_disturbance(), {0}});
+    CHECK(late[0].parameters[0].value == Approx(0.8).margin(0.1));
+    REQUIRE(late[0].onset_s);
+    CHECK(*late[0].onset_s == Approx(double{kOnset}).margin(3.0));
+    CHECK_FALSE(late[0].repaired);
+    CHECK_FALSE(late[0].refused.empty());
+  }
+}
+
+TEST_CASE("what began before is not named again, and nothing where nothing begins") {
+  for (std::uint64_t seed = 11; seed <= 15; ++seed) {
+    CAPTURE(seed);
+    CHECK(late_in(VectorXd::Zero(kRows), seed).empty());
+    for (const Finding& finding : late_in(step_at(200), seed))
+      CHECK(finding.onset_s.value_or(0.0) >= 0.95 * kFitted);
+  }
+}
+
+}  // namespace
+}  // namespace mpm
