@@ -144,17 +144,20 @@ struct Account {
   Kept kept;
 };
 
-/// Whether it would take so much off the errors of predictions on unseen samples that it is
-/// believed without the test of the channels: where the inputs move mostly from outside the loop,
-/// no feedback can make that up.
-bool overwhelms(const Kept& kept, const Subject& subject, const Judges& judges) {
+/// Whether all that was named without the test of the channels takes so much off the errors of
+/// predictions on unseen samples that it is believed: where inputs move mostly from outside the
+/// loop no feedback can make that up.
+bool overwhelms(const Kept& kept, const SearchSettings& tested) {
+  bool any = false;
   for (std::size_t i = 0; i < kept.found.named.size(); ++i) {
     const Effect& effect = kept.found.named[i].effect;
-    if (subject_of(effect) == subject && kept.selection.fates[i] == Fate::kRepaired &&
-        kept.selection.sure_gains[i] >= kOverwhelmingGain)
-      return moved_from_outside(effect, judges.outside_shares);
+    if (effect.certain || tested.may_name(effect)) continue;
+    any = true;
+    if (kept.selection.fates[i] != Fate::kRepaired ||
+        kept.selection.sure_gains[i] < kOverwhelmingGain)
+      return false;
   }
-  return false;
+  return any;
 }
 
 Account account_for(const ModelSpec& model, int model_inputs, const Recording& fitted,
@@ -169,13 +172,13 @@ Account account_for(const ModelSpec& model, int model_inputs, const Recording& f
   if (!suspect || suspect->evidence < kStrongEvidence ||
       !moved_from_outside(suspect->effect, judges.outside_shares))
     return account;
-  const Subject subject = subject_of(suspect->effect);
   SearchSettings open = settings;
   open.may_name = [&](const Effect& effect) {
-    return subject_of(effect) == subject || settings.may_name(effect);
+    return settings.may_name(effect) || (cause_of(effect).acts_through_channels() &&
+                                         moved_from_outside(effect, judges.outside_shares));
   };
   Account other = take(open);
-  return overwhelms(other.kept, subject, judges) ? std::move(other) : std::move(account);
+  return overwhelms(other.kept, settings) ? std::move(other) : std::move(account);
 }
 
 /// What was named, as findings, and what has no name; most important first, what no repair removes
