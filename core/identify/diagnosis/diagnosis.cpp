@@ -170,12 +170,12 @@ Account account_for(const ModelSpec& model, int model_inputs, const Recording& f
   Account account = take(settings);
   const std::optional<Named>& suspect = account.kept.found.suspect;
   if (!suspect || suspect->evidence < kStrongEvidence ||
-      !moved_from_outside(suspect->effect, judges.outside_shares))
+      !moved_from_outside(suspect->effect, model, judges.outside_shares))
     return account;
   SearchSettings open = settings;
   open.may_name = [&](const Effect& effect) {
     return settings.may_name(effect) || (cause_of(effect).acts_through_channels() &&
-                                         moved_from_outside(effect, judges.outside_shares));
+                                         moved_from_outside(effect, model, judges.outside_shares));
   };
   Account other = take(open);
   return overwhelms(other.kept, settings) ? std::move(other) : std::move(account);

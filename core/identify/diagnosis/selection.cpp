@@ -79,8 +79,8 @@ class Errors {
   std::vector<VectorXd> with_, without_;
 };
 
-Fate judged(const Effect& effect, const Errors& errors, const Judges& judges, std::uint64_t seed,
-            double& sure_gain) {
+Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
+            const Judges& judges, std::uint64_t seed, double& sure_gain) {
   const CvScore free_run = errors.free_run(seed);
   sure_gain = free_run.gain_low;
   if (!cause_of(effect).acts_through_channels()) {
@@ -93,7 +93,7 @@ Fate judged(const Effect& effect, const Errors& errors, const Judges& judges, st
   const CvScore predictions = errors.predictions(seed);
   sure_gain = predictions.gain_low;
   if (!(predictions.rmse_after < predictions.rmse_before)) return Fate::kRefused;
-  if (moved_from_outside(effect, judges.outside_shares) &&
+  if (moved_from_outside(effect, model, judges.outside_shares) &&
       !(free_run.rmse_after < free_run.rmse_before))
     return Fate::kRefused;
   return predictions.gain_low > 0.0 ? Fate::kRepaired : Fate::kNoBetter;
@@ -101,10 +101,16 @@ Fate judged(const Effect& effect, const Errors& errors, const Judges& judges, st
 
 }  // namespace
 
-bool moved_from_outside(const Effect& effect, const std::vector<std::optional<double>>& shares) {
-  const int input = effect.place.input;
-  if (input < 0 || static_cast<std::size_t>(input) >= shares.size()) return true;
-  return shares[static_cast<std::size_t>(input)].value_or(1.0) >= kMostlyOutside;
+bool moved_from_outside(const Effect& effect, const ModelSpec& model,
+                        const std::vector<std::optional<double>>& shares) {
+  const auto from_outside = [&](int input) {
+    const auto i = static_cast<std::size_t>(input);
+    return i >= shares.size() || shares[i].value_or(1.0) >= kMostlyOutside;
+  };
+  if (effect.place.input >= 0) return from_outside(effect.place.input);
+  return std::all_of(model.channels.begin(), model.channels.end(), [&](const ChannelSpec& channel) {
+    return channel.cv != effect.place.cv || from_outside(channel.input);
+  });
 }
 
 Selection select(const Problem& problem, const SearchResult& found, const Judges& judges,
@@ -134,8 +140,8 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     if (effect.certain || selection.fates[i] != Fate::kRepaired) continue;
     const std::vector<bool> in = repaired(selection);
     const Errors errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen);
-    selection.fates[i] =
-        judged(effect, errors, judges, judges.unseen.seed() + i, selection.sure_gains[i]);
+    selection.fates[i] = judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
+                                selection.sure_gains[i]);
     // A slow disturbance was fitted together with small errors of the channels, which the extended
     // model does without: it may be true and still be no repair by itself.
     if (selection.fates[i] != Fate::kRefused || cause_of(effect).acts_through_channels()) continue;

@@ -43,8 +43,9 @@ struct Judges {
 [[nodiscard]] Selection select(const Problem& problem, const SearchResult& found,
                                const Judges& judges, const std::function<void()>& tell);
 
-/// Whether an effect acts through inputs that move mostly from outside the loop, or nobody knows.
-[[nodiscard]] bool moved_from_outside(const Effect& effect,
+/// Whether all inputs that an effect acts through move mostly from outside the loop, or nobody
+/// knows; of what acts on a CV's output, all inputs of that CV.
+[[nodiscard]] bool moved_from_outside(const Effect& effect, const ModelSpec& model,
                                       const std::vector<std::optional<double>>& shares);
 
 /// Those with the fate kRepaired.
