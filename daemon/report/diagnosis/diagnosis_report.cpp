@@ -153,6 +153,9 @@ Json channels_json(const DiagnosisRun& run) {
 Json unexplained_json(const DiagnosisRun& run) {
   const SignalNames names = names_of(run);
   Json json = Json::array();
+  if (diagnosis.suspect && diagnosis.verdict == DiagnosisVerdict::kUndetermined)
+    text += "\n  suspect: " + names_of(run).subject(diagnosis.suspect->subject) +
+            ", which the calibrated test of the channels does not confirm\n";
   for (const Unexplained& left : run.diagnosis.unexplained) {
     const Place& place = left.subject.place;
     json.push_back({{"cv", names.cv(place.cv).tag},
@@ -210,6 +213,8 @@ std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
             interval_text(parameter.low, parameter.high) + "]" + (unit.empty() ? "" : " " + unit) +
             '\n';
   }
+  if (!finding.repaired && !finding.refused.empty())
+    text += "     not in the extended model: " + finding.refused + '\n';
   for (const Rival& rival : finding.rivals)
     if (rival.inseparable) text += "     or: " + rival_text(run, rival) + '\n';
   return text;
@@ -299,8 +304,8 @@ std::string to_text(const DiagnosisRun& run) {
   for (const Finding& finding : diagnosis.findings)
     text += "\n  " + std::to_string(++number) + ". " + finding_text(run, finding);
   for (const Finding& finding : diagnosis.refused)
-    text += "\n  refused, for its repair did not carry over: " +
-            names_of(run).subject(finding.subject) + '\n';
+    text += "\n  refused: " + names_of(run).subject(finding.subject) + ": " +
+            (finding.refused.empty() ? "its repair did not carry over" : finding.refused) + '\n';
   for (const Unexplained& left : diagnosis.unexplained)
     text += "\n  " + unexplained_text(run, left) + '\n';
   if (!diagnosis.scores.empty()) text += score_table(run);
