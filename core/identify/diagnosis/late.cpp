@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
@@ -34,8 +35,8 @@ bool grew(const Problem& problem, const Fit& fit, Index first) {
 std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const Recording& recording,
                                Index first, const SearchSettings& asked) {
   Problem problem(model, model_inputs, recording, Tolerances{}, kFreeNoise);
-  std::vector<int> cvs;
-  for (int cv = 0; cv < model.cv_count; ++cv) cvs.push_back(cv);
+  std::vector<int> cvs(static_cast<std::size_t>(model.cv_count));
+  std::iota(cvs.begin(), cvs.end(), 0);
   SearchResult found;
   found.fit = problem.fit({}, 0, cvs);
   if (!std::isfinite(found.fit.cost)) return {};

@@ -65,7 +65,7 @@ class Autoregression {
                                                       std::sqrt(static_cast<double>(rows)));
       VectorXd right = VectorXd::Zero(rows + width);
       right.head(rows) = columns.col(width);
-      coefficients_.push_back(Eigen::HouseholderQR<MatrixXd>(system).solve(right));
+      coefficients_.emplace_back(Eigen::HouseholderQR<MatrixXd>(system).solve(right));
       innovations_.col(s).tail(rows) =
           right.head(rows) - system.topRows(rows) * coefficients_.back();
     }

@@ -153,9 +153,6 @@ Json channels_json(const DiagnosisRun& run) {
 Json unexplained_json(const DiagnosisRun& run) {
   const SignalNames names = names_of(run);
   Json json = Json::array();
-  if (diagnosis.suspect && diagnosis.verdict == DiagnosisVerdict::kUndetermined)
-    text += "\n  suspect: " + names_of(run).subject(diagnosis.suspect->subject) +
-            ", which the calibrated test of the channels does not confirm\n";
   for (const Unexplained& left : run.diagnosis.unexplained) {
     const Place& place = left.subject.place;
     json.push_back({{"cv", names.cv(place.cv).tag},
@@ -306,6 +303,9 @@ std::string to_text(const DiagnosisRun& run) {
   for (const Finding& finding : diagnosis.refused)
     text += "\n  refused: " + names_of(run).subject(finding.subject) + ": " +
             (finding.refused.empty() ? "its repair did not carry over" : finding.refused) + '\n';
+  if (diagnosis.suspect && diagnosis.verdict == DiagnosisVerdict::kUndetermined)
+    text += "\n  suspect: " + names_of(run).subject(diagnosis.suspect->subject) +
+            ", which the calibrated test of the channels does not confirm\n";
   for (const Unexplained& left : diagnosis.unexplained)
     text += "\n  " + unexplained_text(run, left) + '\n';
   if (!diagnosis.scores.empty()) text += score_table(run);
