@@ -409,9 +409,7 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
         effect.edit == &causes::input_stuck() || effect.edit == &causes::input_offset();
     if (actuator && effect.place.input >= settings.mv_count) return false;  // a DV has none
     return !cause_of(effect).acts_through_channels() || effect.place.aux >= aux ||
-           tests.reject(
-               channels_of(effect, model, base.input_count),
-               moved_from_outside(effect, model, outside) ? kRejected : kRejectedUnderFeedback);
+           tests.reject(channels_of(effect, model, base.input_count));
   };
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);

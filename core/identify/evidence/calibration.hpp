@@ -8,9 +8,6 @@ namespace mpm {
 /// part of several channels where the smallest of them, times their number, has. Counted on loops
 /// of another implementation: of 27 right findings 23 are kept, of 18 wrong ones none.
 inline constexpr double kRejected = 0.05;
-/// Where feedback moves the inputs the numbers of a free run are wild once a chance rejection lets
-/// them in: there it takes this.
-inline constexpr double kRejectedUnderFeedback = 1e-3;
 
 /// The test's regression is made smaller until so many rows stand behind each of its columns, and
 /// no smaller than this.

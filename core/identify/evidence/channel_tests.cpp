@@ -85,7 +85,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
   }
 }
 
-bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels, double level) const {
+bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels) const {
   double smallest = 1.0;
   double tested = 0.0;
   for (const auto& [cv, input] : channels) {
@@ -94,7 +94,7 @@ bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels, doub
     smallest = std::min(smallest, *p);
     tested += 1.0;
   }
-  return tested > 0.0 && smallest * tested <= level;
+  return tested > 0.0 && smallest * tested <= kRejected;
 }
 
 }  // namespace mpm

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/identify/evidence/calibration.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
 
@@ -26,10 +25,8 @@ class ChannelTests {
   [[nodiscard]] std::optional<double> p_value(int cv, int input) const {
     return p_values_[static_cast<std::size_t>(input * cvs_ + cv)];
   }
-  /// Whether some of these channels do not match: the smallest p-value times their number is at
-  /// most `level`.
-  [[nodiscard]] bool reject(const std::vector<std::pair<int, int>>& channels,
-                            double level = kRejected) const;
+  /// Whether some of these channels do not match: the smallest p-value times their number.
+  [[nodiscard]] bool reject(const std::vector<std::pair<int, int>>& channels) const;
 
  private:
   int cvs_;
