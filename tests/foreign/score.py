@@ -220,13 +220,13 @@ def main():
     parser.add_argument("--json")
     parser.add_argument("--add", nargs="+", default=[])
     args = parser.parse_args()
-    todo = cases(args.regime, args.seeds, args.plant, args.effect, args.per_seed)
+    wanted = cases(args.regime, args.seeds, args.plant, args.effect, args.per_seed)
     started, results = time.monotonic(), []
     for file in args.add:
         results += json.loads(pathlib.Path(file).read_text())["cases"]
     with concurrent.futures.ProcessPoolExecutor(args.jobs) as pool:
-        waiting = [pool.submit(score_case, case, args.mpm, args.keep, args.detect) for case in todo]
-        for case, future in zip(todo, waiting):
+        waiting = [pool.submit(score_case, case, args.mpm, args.keep, args.detect) for case in wanted]
+        for case, future in zip(wanted, waiting):
             results.append(future.result())
             print(f"{' '.join(map(str, case))} ({results[-1].get('noncentrality', 0):.0f}) "
                   f"{describe(results[-1])}", file=sys.stderr, flush=True)
@@ -236,7 +236,7 @@ def main():
         save(args.json, results)
     text = tables(results, args.detect)
     print(text)
-    print(f"{len(todo)} cases, {time.monotonic() - started:.0f} s")
+    print(f"{len(wanted)} cases, {time.monotonic() - started:.0f} s")
     if args.markdown:
         pathlib.Path(args.markdown).write_text(text)
 

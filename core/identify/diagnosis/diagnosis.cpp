@@ -2,27 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <utility>
 
 #include "core/identify/causes/catalog.hpp"
-#include "core/identify/causes/output_disturbance.hpp"
+#include "core/identify/diagnosis/account.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/clock.hpp"
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/late.hpp"
-#include "core/identify/diagnosis/noise_choice.hpp"
+#include "core/identify/diagnosis/nameable.hpp"
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
+#include "core/identify/diagnosis/verdict.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
+#include "core/identify/evidence/free_run_residuals.hpp"
 #include "core/identify/evidence/outside_movement.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
-#include "core/identify/fit/plateau.hpp"
 #include "core/identify/fit/split.hpp"
-#include "core/identify/valves/valve_shape.hpp"
-#include "core/text/number_text.hpp"
 
 namespace mpm {
 namespace {
@@ -41,47 +38,6 @@ std::function<bool(double)> or_give_up(const std::function<bool(double)>& progre
   };
 }
 
-/// The channels that an effect changes, as (CV, input).
-std::vector<std::pair<int, int>> channels_of(const Effect& effect, const ModelSpec& model,
-                                             int model_inputs) {
-  const Place& place = effect.place;
-  const int input = place.aux >= 0 ? model_inputs + place.aux : place.input;
-  if (place.cv >= 0 && input >= 0) return {{place.cv, input}};
-  std::vector<std::pair<int, int>> channels;
-  for (const ChannelSpec& channel : model.channels)
-    if ((place.cv < 0 || channel.cv == place.cv) && (input < 0 || channel.input == input))
-      channels.emplace_back(channel.cv, channel.input);
-  return channels;
-}
-
-/// Measured minus free run, on all rows; NaN where a CV is unknown or clips.
-MatrixXd residuals_of(const ModelSpec& model, const Recording& recording) {
-  Simulator simulator(recording);
-  MatrixXd residuals = recording.cvs - free_runs(simulator, model);
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    const auto measured = recording.cvs.col(cv);
-    const Plateaus plateaus = find_plateaus(measured);
-    for (Index k = 0; k < measured.size(); ++k)
-      if ((plateaus.low && measured(k) <= *plateaus.low) ||
-          (plateaus.high && measured(k) >= *plateaus.high))
-        residuals(k, cv) = std::numeric_limits<double>::quiet_NaN();
-  }
-  return residuals;
-}
-
-/// Why the extended model does without a finding.
-const char* why_not_in_model(Fate fate) {
-  switch (fate) {
-    case Fate::kNoBetter:
-      return "with it predictions on unseen samples are not better beyond doubt";
-    case Fate::kRefused:
-      return "with it predictions on unseen samples are worse";
-    case Fate::kRepaired:
-      break;
-  }
-  return "";
-}
-
 /// What accuses a part of the plant of more than a wrong number is named only if it makes the model
 /// better beyond doubt.
 bool must_be_proved(const Effect& effect, int aux) {
@@ -89,101 +45,10 @@ bool must_be_proved(const Effect& effect, int aux) {
          effect.place.aux >= aux;
 }
 
-/// What stays of what was found, once nothing stands on what unseen data refuse.
-struct Kept {
-  SearchResult found;
-  Selection selection;  ///< refuses nothing of it
-  std::vector<Effect> refused_effects;
-  std::vector<Finding> refused;  ///< the same, most important last
-};
-
-bool is_refused(const SearchResult& found, const Selection& selection, std::size_t i) {
-  return selection.fates[i] == Fate::kRefused && !found.named[i].effect.certain;
-}
-
-/// Takes out what is refused and fits the rest anew, until nothing is refused any more: what only
-/// made sense beside it goes too.
-Kept keep(Problem& problem, const SearchResult& found, const Judges& judges,
-          const SearchSettings& settings) {
-  const auto judge = [&](const SearchResult& of) {
-    return select(problem, of, judges, [&] { settings.progress(kSearched); });
-  };
-  Kept kept{found, judge(found), {}, {}};
-  for (;;) {
-    const SearchResult& before = kept.found;
-    std::vector<bool> out;
-    for (std::size_t i = 0; i < before.named.size(); ++i)
-      out.push_back(is_refused(before, kept.selection, i));
-    if (std::find(out.begin(), out.end(), true) == out.end()) return kept;
-    SearchResult rest = without(problem, before, out, settings);
-    const auto stays = [&](const Effect& effect) {
-      return std::any_of(rest.named.begin(), rest.named.end(), [&](const Named& named) {
-        return subject_of(named.effect) == subject_of(effect) && named.effect.onset == effect.onset;
-      });
-    };
-    for (const std::size_t i : kept.selection.order) {
-      const Effect& effect = before.named[i].effect;
-      if (causes::is_unnamed(cause_of(effect)) || (!out[i] && stays(effect))) continue;
-      if (!out[i] && causes::is_constant_offset(effect)) continue;
-      Finding finding = to_finding(before, i, problem);
-      finding.repaired = false;
-      finding.refused = out[i] ? why_not_in_model(Fate::kRefused)
-                               : "without what was refused it explains nothing";
-      finding.explains = kept.selection.explains[i];
-      kept.refused.push_back(std::move(finding));
-      kept.refused_effects.push_back(effect);
-    }
-    kept.selection = judge(rest);
-    kept.found = std::move(rest);
-  }
-}
-
-/// What the search finds, and what unseen data leave of it.
-struct Account {
-  std::unique_ptr<Problem> problem;
-  Kept kept;
-};
-
-/// Whether all that was named without the test of the channels takes so much off the errors of
-/// predictions on unseen samples that it is believed: where inputs move mostly from outside the
-/// loop no feedback can make that up.
-bool overwhelms(const Kept& kept, const SearchSettings& tested) {
-  bool any = false;
-  for (std::size_t i = 0; i < kept.found.named.size(); ++i) {
-    const Effect& effect = kept.found.named[i].effect;
-    if (effect.certain || tested.may_name(effect)) continue;
-    any = true;
-    if (kept.selection.fates[i] != Fate::kRepaired ||
-        kept.selection.sure_gains[i] < kOverwhelmingGain)
-      return false;
-  }
-  return any;
-}
-
-Account account_for(const ModelSpec& model, int model_inputs, const Recording& fitted,
-                    const Judges& judges, const SearchSettings& settings) {
-  const auto take = [&](const SearchSettings& with) {
-    Explained explained = explain(model, model_inputs, fitted, with);
-    Kept kept = keep(*explained.problem, explained.found, judges, with);
-    return Account{std::move(explained.problem), std::move(kept)};
-  };
-  Account account = take(settings);
-  const std::optional<Named>& suspect = account.kept.found.suspect;
-  if (!suspect || suspect->evidence < kStrongEvidence ||
-      !moved_from_outside(suspect->effect, model, judges.outside_shares))
-    return account;
-  SearchSettings open = settings;
-  open.may_name = [&](const Effect& effect) {
-    return settings.may_name(effect) || (cause_of(effect).acts_through_channels() &&
-                                         moved_from_outside(effect, model, judges.outside_shares));
-  };
-  Account other = take(open);
-  return overwhelms(other.kept, settings) ? std::move(other) : std::move(account);
-}
-
 /// What was named, as findings, and what has no name; most important first, what no repair removes
 /// last.
-void state(const Kept& kept, Problem& problem, const Judges& judges, Diagnosis& diagnosis) {
+void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
+  Problem& problem = *kept.problem;
   const SearchResult& found = kept.found;
   const Selection& selection = kept.selection;
   std::vector<Finding> unproved;
@@ -207,7 +72,7 @@ void state(const Kept& kept, Problem& problem, const Judges& judges, Diagnosis& 
                !(effect.place.aux >= judges.aux && finding.explains >= kSetpointExplains)) {
       unproved.push_back(std::move(finding));
       mark_unclear(effect);
-    } else if (effect.certain || !cause.may_be_nothing(finding)) {
+    } else {
       diagnosis.findings.push_back(std::move(finding));
     }
   }
@@ -254,7 +119,7 @@ ModelSpec extended_model(const Problem& problem, const SearchResult& found,
 }
 
 /// Whether something was named in a CV, and nothing of that is in the extended model.
-bool all_refused(const Kept& kept, const ModelSpec& model, int cv) {
+bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
   const SearchResult& found = kept.found;
   const Selection& selection = kept.selection;
   bool tried = std::any_of(kept.refused_effects.begin(), kept.refused_effects.end(),
@@ -266,75 +131,6 @@ bool all_refused(const Kept& kept, const ModelSpec& model, int cv) {
     tried = true;
   }
   return tried;
-}
-
-/// The smallest share of what a CV does that the model explains beyond a constant, over the CVs
-/// that were measured.
-double least_explained(const MatrixXd& residuals, const MatrixXd& cvs) {
-  const auto variance = [](const VectorXd& values) {
-    const double mean = values.mean();
-    return (values.array() - mean).square().mean();
-  };
-  double least = 1.0;
-  for (Index cv = 0; cv < cvs.cols(); ++cv) {
-    std::vector<double> left, measured;
-    for (Index k = 0; k < cvs.rows(); ++k)
-      if (std::isfinite(residuals(k, cv))) {
-        left.push_back(residuals(k, cv));
-        measured.push_back(cvs(k, cv));
-      }
-    if (left.empty()) continue;
-    const auto count = static_cast<Index>(left.size());
-    const double all = variance(VectorXd::Map(measured.data(), count));
-    if (all > 0.0) least = std::min(least, 1.0 - variance(VectorXd::Map(left.data(), count)) / all);
-  }
-  return least;
-}
-
-void decide(double explained, bool sticks, Diagnosis& diagnosis) {
-  const std::ptrdiff_t blind = unknown_gains(diagnosis.channels);
-  const bool strong =
-      std::any_of(diagnosis.refused.begin(), diagnosis.refused.end(),
-                  [](const Finding& finding) { return finding.evidence > kStrongEvidence; });
-  diagnosis.verdict = DiagnosisVerdict::kUndetermined;
-  if (!diagnosis.findings.empty() || !diagnosis.unexplained.empty())
-    diagnosis.verdict = DiagnosisVerdict::kMismatch;
-  else if (sticks)
-    diagnosis.reason =
-        "a loop swings in the shape of a sticking valve, which its model does not explain";
-  else if (strong)
-    diagnosis.reason = "what explains the samples that were fitted does not hold on the others";
-  else if (diagnosis.suspect && diagnosis.suspect->evidence > kStrongEvidence)
-    diagnosis.reason =
-        "a free run suggests a cause that the calibrated test of the channels does not confirm: "
-        "feedback, or a disturbance that wanders, can look the same";
-  else if (blind > 0)
-    diagnosis.reason = "the inputs move too little beside the noise: the gains of " +
-                       std::to_string(blind) + " of " + std::to_string(diagnosis.channels.size()) +
-                       " channels are not known to within 25 %";
-  else if (explained < kLeastExplained)
-    diagnosis.reason = "the model explains less than " + percent_text(kLeastExplained) +
-                       " of what a CV does, beyond a constant";
-  else
-    diagnosis.verdict = DiagnosisVerdict::kMatch;
-}
-
-/// CVs whose loop swings as one with a sticking valve does, by shape tests that need no model: of
-/// those on which one MV alone acts.
-std::vector<int> sticking_loops(const ModelSpec& model, int mvs, const Recording& recording) {
-  std::vector<int> loops;
-  if (recording.setpoints.cols() == 0) return loops;
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    std::vector<int> acting;
-    for (const ChannelSpec& channel : model.channels)
-      if (channel.cv == cv && channel.input < mvs) acting.push_back(channel.input);
-    if (acting.size() != 1 || !recording.setpoints.col(cv).array().isFinite().any()) continue;
-    const ValveShape shape =
-        judge_valve(recording.inputs.col(acting.front()), recording.cvs.col(cv),
-                    recording.setpoints.col(cv), recording.sample_time_s);
-    if (shape.verdict == ValveShape::Verdict::kSticks) loops.push_back(cv);
-  }
-  return loops;
 }
 
 /// How the inputs moved, and whether the channels of each are known.
@@ -356,26 +152,8 @@ std::vector<InputMovement> movements(const std::vector<std::optional<double>>& o
 void add_horizons(const Unseen& unseen, const VectorXd& before, const VectorXd& after,
                   CvScore& score) {
   for (const Index horizon : unseen.horizons())
-    score.horizons.push_back({horizon,
-                              std::sqrt(mean_of_finite(unseen.prediction_errors(before, horizon))),
-                              std::sqrt(mean_of_finite(unseen.prediction_errors(after, horizon)))});
-}
-
-/// Whether the model can be run on the data at all, and every CV was measured now and then.
-bool can_be_judged(const MatrixXd& residuals, Diagnosis& diagnosis) {
-  for (Index cv = 0; cv < residuals.cols(); ++cv) {
-    const auto column = residuals.col(cv);
-    double largest = 0.0;
-    Index known = 0;
-    for (const double value : column)
-      if (std::isfinite(value)) largest = std::max(largest, std::abs(value)), ++known;
-    if (kFewestKnownParts * known >= column.size() && largest < kDiverged) continue;
-    diagnosis.reason = largest < kDiverged
-                           ? "a CV is unknown, clipped or not to be simulated in most samples"
-                           : "the simulation or the measurements diverge";
-    return false;
-  }
-  return true;
+    score.horizons.push_back({horizon, rms_of_squares(unseen.prediction_errors(before, horizon)),
+                              rms_of_squares(unseen.prediction_errors(after, horizon))});
 }
 
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
@@ -396,21 +174,16 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
   const ModelSpec base = in_channels(given);
   const ModelSpec model = with_aux_inputs(base, recording);
   const Recording fitted = part(recording, 0, diagnosis.fit_samples);
-  const MatrixXd residuals = residuals_of(model, recording);
-  if (!can_be_judged(residuals, diagnosis)) return diagnosis;
+  const MatrixXd residuals = free_run_residuals(model, recording);
+  diagnosis.reason = why_not_judged(residuals);
+  if (!diagnosis.reason.empty()) return diagnosis;
   const ChannelTests tests(with_aux_inputs(base, measured), measured, residuals);
   const std::vector<std::optional<double>> outside = outside_shares(recording, residuals);
 
   SearchSettings search_settings;
   search_settings.max_findings = settings.max_findings;
   search_settings.progress = settings.progress;
-  search_settings.may_name = [&](const Effect& effect) {
-    const bool actuator =
-        effect.edit == &causes::input_stuck() || effect.edit == &causes::input_offset();
-    if (actuator && effect.place.input >= settings.mv_count) return false;  // a DV has none
-    return !cause_of(effect).acts_through_channels() || effect.place.aux >= aux ||
-           tests.reject(channels_of(effect, model, base.input_count));
-  };
+  search_settings.may_name = nameable(model, {settings.mv_count, base.input_count, aux}, tests);
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
   const Judges judges{
@@ -422,9 +195,8 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
                (wrong && i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside);
       },
       outside};
-  const Account account = account_for(model, base.input_count, fitted, judges, search_settings);
-  Problem& problem = *account.problem;
-  const Kept& kept = account.kept;
+  const Account kept = account_for(model, base.input_count, fitted, judges, search_settings);
+  Problem& problem = *kept.problem;
   diagnosis.channels = estimate_channels(problem, kept.found, search_settings);
   diagnosis.inputs = movements(outside, diagnosis.channels);
   const ModelSpec extended = extended_model(problem, kept.found, kept.selection, model, judges);
@@ -449,7 +221,7 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
     diagnosis.before = free_runs(first, model);
     diagnosis.after = free_runs(first, extended);
   }
-  state(kept, problem, judges, diagnosis);
+  state(kept, judges, diagnosis);
   if (!validation)
     for (Finding& late :
          find_late(extended, base.input_count, recording, diagnosis.fit_samples, search_settings))

@@ -19,6 +19,13 @@ double mean_of_finite(const Eigen::Ref<const VectorXd>& values) {
   return sum > 0.0 ? sum / count : 1.0;
 }
 
+double rms_of_squares(const Eigen::Ref<const VectorXd>& squares) {
+  double sum = 0.0, count = 0.0;
+  for (const double square : squares)
+    if (std::isfinite(square)) sum += square, ++count;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
 CvScore score_errors(const Eigen::Ref<const VectorXd>& before,
                      const Eigen::Ref<const VectorXd>& after, Index block, std::uint64_t seed) {
   // Running sums make any block's sum two look-ups.

@@ -21,6 +21,9 @@ struct CvScore {
 /// Of the values that are; 1 where there are none or all are 0.
 [[nodiscard]] double mean_of_finite(const Eigen::Ref<const Eigen::VectorXd>& values);
 
+/// Root of the mean of those that are finite; 0 where there are none.
+[[nodiscard]] double rms_of_squares(const Eigen::Ref<const Eigen::VectorXd>& squares);
+
 /// One CV's scores on the rows given: `before` and `after` are free-running simulations; rows with
 /// an unknown measurement take no part. The interval of the gain is a moving-block bootstrap of the
 /// squared errors (Kuensch 1989), blocks of `block` rows, drawn from `seed`.

@@ -65,6 +65,7 @@ Plateaus find_plateaus(const Eigen::Ref<const Eigen::VectorXd>& values) {
   std::reverse(sorted.begin(), sorted.end());
   const End high = look(sorted);
   const double range = sorted.front() - sorted.back();
+  plateaus.tie = kPlateauTie * range;
   const auto clips = [&](const End& end) {
     return end.plateau && visits(values, end.level, range) >= kPlateauVisits;
   };

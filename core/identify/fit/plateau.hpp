@@ -10,6 +10,12 @@ namespace mpm {
 struct Plateaus {
   std::optional<double> low, high;
   double low_share = 0.0, high_share = 0.0;  ///< of the samples
+  double tie = 0.0;                          ///< values that differ by no more are one
+
+  /// Whether a value lies on or beyond one of them.
+  [[nodiscard]] bool hold(double value) const {
+    return (low && value <= *low + tie) || (high && value >= *high - tie);
+  }
 };
 
 /// An end of the range that at least 0.5 % of the samples (and eight) share exactly, and five times

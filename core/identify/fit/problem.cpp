@@ -73,11 +73,8 @@ Plateaus Problem::take_out_plateaus(int cv, CvData& data) const {
   if (model_.output_blocks[static_cast<std::size_t>(cv)]) return {};
   const auto measured = recording().cvs.col(cv);
   const Plateaus plateaus = find_plateaus(measured);
-  const double tie = kPlateauTie * data.measured_sd;
   for (Index k = 0; k < measured.size(); ++k)
-    if ((plateaus.low && measured(k) <= *plateaus.low + tie) ||
-        (plateaus.high && measured(k) >= *plateaus.high - tie))
-      data.known(k) = data.measured(k) = 0.0;
+    if (plateaus.hold(measured(k))) data.known(k) = data.measured(k) = 0.0;
   return plateaus;
 }
 

@@ -1,0 +1,109 @@
+#include "core/identify/diagnosis/account.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
+#include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/noise_choice.hpp"
+#include "core/identify/diagnosis/statement.hpp"
+
+namespace mpm {
+namespace {
+
+/// Why a finding goes, for a person; null where it stays.
+const char* why_it_goes(const Effect& effect, const Finding& finding, Fate fate) {
+  if (effect.certain || causes::is_unnamed(cause_of(effect))) return nullptr;
+  if (fate == Fate::kRefused) return why_not_in_model(fate);
+  return cause_of(effect).may_be_nothing(finding) ? "its interval includes that it does nothing"
+                                                  : nullptr;
+}
+
+Account keep(Explained explained, const Judges& judges, const SearchSettings& settings) {
+  const auto judge = [&](const Problem& problem, const SearchResult& of) {
+    return select(problem, of, judges, [&] { settings.progress(kSearched); });
+  };
+  Account kept{std::move(explained.problem), std::move(explained.found), {}, {}, {}};
+  Problem& problem = *kept.problem;
+  kept.selection = judge(problem, kept.found);
+  for (;;) {
+    const SearchResult before = kept.found;
+    std::vector<Finding> findings;
+    std::vector<bool> out;
+    for (std::size_t i = 0; i < before.named.size(); ++i) {
+      const Effect& effect = before.named[i].effect;
+      Finding& finding = findings.emplace_back(to_finding(before, i, problem));
+      const char* reason = why_it_goes(effect, finding, kept.selection.fates[i]);
+      out.push_back(reason != nullptr);
+      finding.repaired = false;
+      finding.refused = reason != nullptr ? reason : "without what was refused it explains nothing";
+      finding.explains = kept.selection.explains[i];
+    }
+    if (std::find(out.begin(), out.end(), true) == out.end()) return kept;
+    kept.found = without(problem, before, out, settings);
+    const auto stays = [&](const Effect& effect) {
+      return causes::is_unnamed(cause_of(effect)) || causes::is_constant_offset(effect) ||
+             std::any_of(kept.found.named.begin(), kept.found.named.end(), [&](const Named& named) {
+               return subject_of(named.effect) == subject_of(effect) &&
+                      named.effect.onset == effect.onset;
+             });
+    };
+    for (const std::size_t i : kept.selection.order) {
+      const Effect& effect = before.named[i].effect;
+      if (!out[i] && stays(effect)) continue;
+      kept.refused.push_back(std::move(findings[i]));
+      kept.refused_effects.push_back(effect);
+    }
+    kept.selection = judge(problem, kept.found);
+  }
+}
+
+bool overwhelms(const Account& account, const SearchSettings& tested) {
+  bool any = false;
+  for (std::size_t i = 0; i < account.found.named.size(); ++i) {
+    const Effect& effect = account.found.named[i].effect;
+    if (effect.certain || tested.may_name(effect)) continue;
+    any = true;
+    if (account.selection.fates[i] != Fate::kRepaired ||
+        account.selection.sure_gains[i] < kOverwhelmingGain)
+      return false;
+  }
+  return any;
+}
+
+}  // namespace
+
+const char* why_not_in_model(Fate fate) {
+  switch (fate) {
+    case Fate::kNoBetter:
+      return "with it predictions on unseen samples are not better beyond doubt";
+    case Fate::kRefused:
+      return "with it predictions on unseen samples are worse";
+    case Fate::kRepaired:
+      break;
+  }
+  return "";
+}
+
+Account account_for(const ModelSpec& model, int model_inputs, const Recording& fitted,
+                    const Judges& judges, const SearchSettings& settings) {
+  const auto take = [&](const SearchSettings& with) {
+    return keep(explain(model, model_inputs, fitted, with), judges, with);
+  };
+  Account account = take(settings);
+  const std::optional<Named>& suspect = account.found.suspect;
+  if (!suspect || suspect->evidence < kStrongEvidence ||
+      !moved_from_outside(suspect->effect, model, judges.outside_shares))
+    return account;
+  SearchSettings open = settings;
+  open.may_name = [&](const Effect& effect) {
+    return settings.may_name(effect) || (cause_of(effect).acts_through_channels() &&
+                                         moved_from_outside(effect, model, judges.outside_shares));
+  };
+  Account other = take(open);
+  return overwhelms(other, settings) ? std::move(other) : std::move(account);
+}
+
+}  // namespace mpm

@@ -1,0 +1,39 @@
+#include "core/identify/diagnosis/nameable.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "core/identify/causes/catalog.hpp"
+
+namespace mpm {
+namespace {
+
+/// The channels that an effect changes, as (CV, input).
+std::vector<std::pair<int, int>> channels_of(const Effect& effect, const ModelSpec& model,
+                                             int model_inputs) {
+  const Place& place = effect.place;
+  const int input = place.aux >= 0 ? model_inputs + place.aux : place.input;
+  if (place.cv >= 0 && input >= 0) return {{place.cv, input}};
+  std::vector<std::pair<int, int>> channels;
+  for (const ChannelSpec& channel : model.channels)
+    if ((place.cv < 0 || channel.cv == place.cv) && (input < 0 || channel.input == input))
+      channels.emplace_back(channel.cv, channel.input);
+  return channels;
+}
+
+bool is_of_an_actuator(const Effect& effect) {
+  return effect.edit == &causes::input_stuck() || effect.edit == &causes::input_offset();
+}
+
+}  // namespace
+
+std::function<bool(const Effect&)> nameable(const ModelSpec& model, const SignalRanges& ranges,
+                                            const ChannelTests& tests) {
+  return [&model, ranges, &tests](const Effect& effect) {
+    if (is_of_an_actuator(effect) && effect.place.input >= ranges.mvs) return false;
+    return !cause_of(effect).acts_through_channels() || effect.place.aux >= ranges.aux ||
+           tests.reject(channels_of(effect, model, ranges.inputs));
+  };
+}
+
+}  // namespace mpm

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+
+#include "core/identify/evidence/channel_tests.hpp"
+#include "core/identify/fit/effect.hpp"
+
+namespace mpm {
+
+/// How the signals of a recording are numbered.
+struct SignalRanges {
+  int mvs = 0;     ///< of the model's inputs; the rest are DVs, which have no actuator
+  int inputs = 0;  ///< of the model; aux signals are numbered after them
+  int aux = 0;     ///< those after them are set-points, which are no inputs of a model
+};
+
+/// Which effects may be named: what acts through channels where the calibrated test rejects those
+/// (`model`'s), a disturbance and what a set-point does always. Both must outlive what is returned.
+[[nodiscard]] std::function<bool(const Effect&)> nameable(const ModelSpec& model,
+                                                          const SignalRanges& ranges,
+                                                          const ChannelTests& tests);
+
+}  // namespace mpm

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "core/identify/diagnosis/diagnosis.hpp"
+
+namespace mpm {
+
+/// Why no model can be judged by these free-run residuals (samples x CVs, NaN where unknown), for a
+/// person: they diverge, or a CV is hardly known. Empty where one can.
+[[nodiscard]] std::string why_not_judged(const Eigen::MatrixXd& residuals);
+
+/// The smallest share of what a CV does that a model with these free-run residuals explains beyond
+/// a constant, over the CVs that were measured; <= 1, and negative where a constant does better.
+[[nodiscard]] double least_explained(const Eigen::MatrixXd& residuals, const Eigen::MatrixXd& cvs);
+
+/// CVs whose loop swings as one with a sticking valve does, by shape tests that need no model: of
+/// those on which one of the first `mvs` inputs alone acts. `model` in channels.
+[[nodiscard]] std::vector<int> sticking_loops(const ModelSpec& model, int mvs,
+                                              const Recording& recording);
+
+/// Verdict and reason from all else that the diagnosis holds. `explained`: as above; `sticks`:
+/// whether there is a loop that does.
+void decide(double explained, bool sticks, Diagnosis& diagnosis);
+
+}  // namespace mpm

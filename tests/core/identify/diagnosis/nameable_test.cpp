@@ -1,0 +1,66 @@
+#include "core/identify/diagnosis/nameable.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/identify/causes/catalog.hpp"
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::lag;
+
+constexpr Index kRows = 1500;
+
+/// An MV and a DV act on one CV, the MV with 1.5 times its gain; the second CV is as the model
+/// says.
+struct Bench {
+  ModelSpec model =
+      test::model_of({lag(0, 0, 2.0, 10.0), lag(0, 1, 1.0, 5.0), lag(1, 1, 1.0, 8.0)}, 2, 2);
+  ChannelTests tests = make();
+  std::function<bool(const Effect&)> may = nameable(model, {1, 2, 0}, tests);
+
+  ChannelTests make() const {
+    MatrixXd u(kRows, 2), residuals(kRows, 2);
+    u << test::telegraph(1, kRows, 12), test::telegraph(2, kRows, 9);
+    residuals << 0.5 * test::first_order(u.col(0), 2.0, 10.0) + 0.1 * test::white(3, kRows),
+        0.1 * test::white(4, kRows);
+    return {model, test::recording_of(u, residuals), residuals};
+  }
+  [[nodiscard]] bool operator()(const Cause& cause, const Place& place) const {
+    Effect effect;
+    effect.edit = &cause;
+    effect.place = place;
+    return may(effect);
+  }
+};
+
+TEST_CASE("a channel may be named where the test rejects it") {
+  const Bench bench;
+  CHECK(bench(causes::gain(), {0, 0}));
+  CHECK_FALSE(bench(causes::gain(), {0, 1}));
+  CHECK_FALSE(bench(causes::gain(), {1, 1}));
+}
+
+TEST_CASE("a scale may be named where the test rejects one of its channels") {
+  const Bench bench;
+  CHECK(bench(causes::input_scale(), {-1, 0}));
+  CHECK_FALSE(bench(causes::input_scale(), {-1, 1}));
+  CHECK(bench(causes::output_scale(), {0}));
+  CHECK_FALSE(bench(causes::output_scale(), {1}));
+}
+
+TEST_CASE("a disturbance and a set-point need no test, and a DV has no actuator") {
+  const Bench bench;
+  CHECK(bench(causes::step_disturbance(), {1}));
+  CHECK(bench(causes::unmodelled_input(), {1, -1, 0}));  // behind the aux signals, of which none is
+  CHECK(bench(causes::input_offset(), {-1, 0}));
+  CHECK_FALSE(bench(causes::input_offset(), {-1, 1}));
+  CHECK_FALSE(bench(causes::input_stuck(), {-1, 1}));
+}
+
+}  // namespace
+}  // namespace mpm
