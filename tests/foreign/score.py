@@ -167,7 +167,8 @@ def score_case(case, mpm, keep, detect):
         result["verdict"] = report["verdict"]
         result["reason"] = report.get("reason", "")
         result["findings"] = [
-            {**{k: f.get(k) for k in ("cause", "cv", "mv", "tag", "parameters", "confidence")},
+            {**{k: f.get(k) for k in ("cause", "cv", "mv", "tag", "parameters", "confidence",
+                                   "in_model", "explains")},
              "is": judge(f, truth)} for f in report["findings"]]
         if gains_make_scale(report["findings"], truth):
             result["findings"][0]["is"] = "right"

@@ -29,6 +29,8 @@ bool Cause::settles_channel(const Effect&) const { return false; }
 
 double Cause::rarity() const { return kUsualRarity; }
 
+bool Cause::contradicted(const Effect&, const Problem&) const { return false; }
+
 std::optional<bool> Cause::matters(const Effect&, const Tolerances&) const { return std::nullopt; }
 
 std::vector<Effect> Cause::closer_look(const Effect&, const std::vector<Effect>&) const {

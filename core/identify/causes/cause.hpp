@@ -81,6 +81,9 @@ class Cause : public Edit {
   /// What names this and other errors of the same channel together; null: nothing does.
   [[nodiscard]] virtual const Cause* together_with_others() const { return nullptr; }
 
+  /// Whether the measurements speak against it, however well it fits.
+  [[nodiscard]] virtual bool contradicted(const Effect& mine, const Problem& problem) const;
+
   // Refining what a Gauss-Newton step cannot, since the misfit has kinks there.
 
   /// Once it is the best explanation: all that is worth a look near it, given what was tried.

@@ -14,6 +14,9 @@ constexpr Quantity kHigh{"high", Form::kPlain, Unit::kCv};
 
 /// Shares of the data beyond a level to begin a fit from.
 constexpr double kBeyond[] = {0.002, 0.05, 0.12};
+/// Successive values beyond a level that say how the CV moves there, and ratio of von Neumann below
+/// which it moves slowly.
+constexpr double kFewestBeyond = 20.0, kSlow = 0.5;
 /// Ways in which a CV may overflow, beside which a level is picked.
 constexpr int kLikes = 40;
 
@@ -75,6 +78,28 @@ class OutputSaturation : public Cause {
       found.push_back(std::move(clipping));
     }
     return found;
+  }
+
+  /// Beyond a level that it stops at a CV shows noise around it, and does not go on its way there:
+  /// the ratio of von Neumann (1941), of the mean square difference of successive values to their
+  /// variance, is 2 for white noise and near 0 for what moves slowly.
+  [[nodiscard]] bool contradicted(const Effect& mine, const Problem& problem) const override {
+    const auto values = problem.recording().cvs.col(mine.place.cv);
+    const double low = mine.value(kLow, -kNoLimit), high = mine.value(kHigh, kNoLimit);
+    const auto beyond = [&](double value) { return value < low || value > high; };
+    double count = 0.0, sum = 0.0, squares = 0.0, steps = 0.0, differences = 0.0;
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      if (!beyond(values(k))) continue;
+      count += 1.0;
+      sum += values(k);
+      squares += values(k) * values(k);
+      if (k == 0 || !beyond(values(k - 1))) continue;
+      steps += 1.0;
+      differences += (values(k) - values(k - 1)) * (values(k) - values(k - 1));
+    }
+    if (steps < kFewestBeyond) return false;
+    const double mean = sum / count;
+    return differences / steps < kSlow * (squares / count - mean * mean);
   }
 
   /// A level that nothing reaches is not proposed.

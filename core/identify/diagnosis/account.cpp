@@ -13,15 +13,68 @@
 namespace mpm {
 namespace {
 
-/// Why a finding goes, for a person; null where it stays.
-const char* why_it_goes(const Effect& effect, const Finding& finding, Fate fate) {
-  if (effect.certain || causes::is_unnamed(cause_of(effect))) return nullptr;
-  if (fate == Fate::kRefused) return why_not_in_model(fate);
-  return cause_of(effect).may_be_nothing(finding) ? "its interval includes that it does nothing"
-                                                  : nullptr;
+/// Whether it says that a part of the plant is not as the model has it; what a measured signal or a
+/// set-point does accuses none.
+bool accuses(const Effect& effect) {
+  const Cause& cause = cause_of(effect);
+  return effect.place.aux < 0 && (cause.acts_through_channels() || cause.is_input_block());
 }
 
-Account keep(Explained explained, const Judges& judges, const SearchSettings& settings) {
+/// Why a finding goes, for a person; null where it stays.
+const char* why_it_goes(const Effect& effect, const Problem& problem, const Finding& finding,
+                        Fate fate) {
+  const Cause& cause = cause_of(effect);
+  if (effect.certain || causes::is_unnamed(cause)) return nullptr;
+  if (fate == Fate::kRefused) return why_not_in_model(fate);
+  if (fate == Fate::kNoBetter && accuses(effect) && !cause.acts_through_channels())
+    return why_not_in_model(fate);
+  if (cause.contradicted(effect, problem)) return "the measurements themselves speak against it";
+  return cause.may_be_nothing(finding) ? "its interval includes that it does nothing" : nullptr;
+}
+
+/// What the calibrated test does not bear out goes, unless it overwhelms; where feedback moves the
+/// input, what leaves the test anything to see; and an accusation that
+/// makes predictions no better beyond doubt unless the test sees all of it gone: why, for a person;
+/// null where it stays.
+std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult& found,
+                                     const Selection& selection, const Judges& judges,
+                                     const Witness& witness) {
+  std::vector<const char*> reasons(found.named.size(), nullptr);
+  std::vector<bool> tested(found.named.size(), false);
+  for (std::size_t i = 0; i < tested.size(); ++i) {
+    const Effect& effect = found.named[i].effect;
+    tested[i] = selection.fates[i] == Fate::kRepaired ||
+                (accuses(effect) && !causes::is_unnamed(cause_of(effect)));
+  }
+  const auto concerned = [&](std::size_t i) {
+    const Effect& effect = found.named[i].effect;
+    return tested[i] && !effect.certain && cause_of(effect).acts_through_channels();
+  };
+  bool any = false;
+  for (std::size_t i = 0; i < tested.size(); ++i) any = any || concerned(i);
+  if (!any) return reasons;
+  const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
+  const ChannelTests after = witness.of(extend(problem, found, tested, keep, judges.open));
+  for (std::size_t i = 0; i < tested.size(); ++i) {
+    if (!concerned(i)) continue;
+    const Effect& effect = found.named[i].effect;
+    const Confirmation says = confirmation(
+        effect, problem.model(), problem.surroundings().model_inputs, witness.given, after);
+    const bool overwhelms =
+        selection.sure_gains[i] >= kOverwhelmingGain && effect.edit != &causes::input_stuck();
+    const bool outside = moved_from_outside(effect, problem.model(), judges.outside_shares);
+    if (says == Confirmation::kNone && !(overwhelms && outside))
+      reasons[i] = "with it the test of the channels sees no less wrong";
+    else if (says == Confirmation::kLess && !outside)
+      reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
+    else if (says != Confirmation::kNothingOfAll && selection.fates[i] == Fate::kNoBetter)
+      reasons[i] = why_not_in_model(Fate::kNoBetter);
+  }
+  return reasons;
+}
+
+Account keep(Explained explained, const Judges& judges, const Witness& witness,
+             const SearchSettings& settings) {
   const auto judge = [&](const Problem& problem, const SearchResult& of) {
     return select(problem, of, judges, [&] { settings.progress(kSearched); });
   };
@@ -35,11 +88,20 @@ Account keep(Explained explained, const Judges& judges, const SearchSettings& se
     for (std::size_t i = 0; i < before.named.size(); ++i) {
       const Effect& effect = before.named[i].effect;
       Finding& finding = findings.emplace_back(to_finding(before, i, problem));
-      const char* reason = why_it_goes(effect, finding, kept.selection.fates[i]);
+      const char* reason = why_it_goes(effect, problem, finding, kept.selection.fates[i]);
       out.push_back(reason != nullptr);
       finding.repaired = false;
       finding.refused = reason != nullptr ? reason : "without what was refused it explains nothing";
       finding.explains = kept.selection.explains[i];
+    }
+    if (std::find(out.begin(), out.end(), true) == out.end()) {
+      const std::vector<const char*> reasons =
+          unconfirmed(problem, before, kept.selection, judges, witness);
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        if (reasons[i] == nullptr) continue;
+        out[i] = true;
+        findings[i].refused = reasons[i];
+      }
     }
     if (std::find(out.begin(), out.end(), true) == out.end()) return kept;
     kept.found = without(problem, before, out, settings);
@@ -88,9 +150,9 @@ const char* why_not_in_model(Fate fate) {
 }
 
 Account account_for(const ModelSpec& model, int model_inputs, const Recording& fitted,
-                    const Judges& judges, const SearchSettings& settings) {
+                    const Judges& judges, const Witness& witness, const SearchSettings& settings) {
   const auto take = [&](const SearchSettings& with) {
-    return keep(explain(model, model_inputs, fitted, with), judges, with);
+    return keep(explain(model, model_inputs, fitted, with), judges, witness, with);
   };
   Account account = take(settings);
   const std::optional<Named>& suspect = account.found.suspect;

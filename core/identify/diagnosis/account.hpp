@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/identify/causes/finding.hpp"
+#include "core/identify/diagnosis/confirmation.hpp"
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/search/search.hpp"
 
@@ -23,11 +24,12 @@ struct Account {
   std::vector<Finding> refused;  ///< the same, most important last
 };
 
-/// Searches `fitted` for what `settings` let be named. Where what they do not is suspected and the
-/// inputs move mostly from outside the loop, everything is looked for, and believed if all of it
-/// takes much off the errors of predictions on unseen samples: no feedback can make that up.
-/// `fitted` must outlive the result.
+/// Searches `fitted` for what `settings` let be named; what the witness does not bear out goes too.
+/// Where what they do not is suspected and the inputs move mostly from outside the loop, everything
+/// is looked for, and believed if all of it takes much off the errors of predictions on unseen
+/// samples: no feedback can make that up. `fitted` must outlive the result.
 [[nodiscard]] Account account_for(const ModelSpec& model, int model_inputs, const Recording& fitted,
-                                  const Judges& judges, const SearchSettings& settings);
+                                  const Judges& judges, const Witness& witness,
+                                  const SearchSettings& settings);
 
 }  // namespace mpm

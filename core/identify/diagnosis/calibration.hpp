@@ -44,6 +44,8 @@ inline constexpr int kOtherNumbers = 4;
 inline constexpr double kLeastExplained = 0.1;
 /// Movement of an input counts as coming from outside the loop from this share on.
 inline constexpr double kMostlyOutside = 0.5;
+/// A curve is not named where less of its input's movement does.
+inline constexpr double kCurveOutside = 0.25;
 
 /// Something new is looked for in the rows kept for validation where a CV's mean square residual
 /// there is so many times that of the rows before; what begins so much (share of the rows before)
@@ -60,8 +62,19 @@ inline constexpr Eigen::Index kFewestKnownParts = 10;
 /// Values beyond this are no measurements and no simulation.
 inline constexpr double kDiverged = 1e100;
 
+/// What takes less than this share off the errors of predictions is not worth an accusation.
+inline constexpr double kLeastRepair = 0.03;
 /// What takes at least this share off the errors of predictions, beyond doubt, needs no other test.
 inline constexpr double kOverwhelmingGain = 0.3;
+
+/// The calibrated test bears a repair out where it rejects the repaired model no more than this, or
+/// where it sees less than this share of what is wrong with the given one; and a stuck actuator
+/// where it rejects "no effect at all" no more than this. What it had rejected beyond doubt was
+/// rejected so.
+inline constexpr double kSeesNothing = 0.05;
+inline constexpr double kClearlyLessSeen = 0.7;
+inline constexpr double kStillMoves = 1e-5;
+inline constexpr double kBeyondDoubt = 1e-6;
 
 /// A model has settled after so many slowest time constants: 5 % are left to come. Horizons of
 /// predictions take at most one of so many parts of the rows.

@@ -38,13 +38,6 @@ std::function<bool(double)> or_give_up(const std::function<bool(double)>& progre
   };
 }
 
-/// What accuses a part of the plant of more than a wrong number is named only if it makes the model
-/// better beyond doubt.
-bool must_be_proved(const Effect& effect, int aux) {
-  return cause_of(effect).is_input_block() || cause_of(effect).settles_channel(effect) ||
-         effect.place.aux >= aux;
-}
-
 /// What was named, as findings, and what has no name; most important first, what no repair removes
 /// last.
 void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
@@ -61,15 +54,14 @@ void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
     const Cause& cause = cause_of(effect);
     Finding finding = to_finding(found, i, problem);
     finding.repaired = selection.fates[i] == Fate::kRepaired;
-    finding.refused = effect.place.aux >= judges.aux ? "a set-point is no input of a model"
-                                                     : why_not_in_model(selection.fates[i]);
+    const bool of_setpoint = effect.place.aux >= judges.aux;
+    finding.refused =
+        of_setpoint ? "a set-point is no input of a model" : why_not_in_model(selection.fates[i]);
     finding.explains = selection.explains[i];
     if (causes::is_unnamed(cause)) {
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
       mark_unclear(effect);
-    } else if (must_be_proved(effect, judges.aux) && !effect.certain &&
-               selection.fates[i] != Fate::kRepaired &&
-               !(effect.place.aux >= judges.aux && finding.explains >= kSetpointExplains)) {
+    } else if (of_setpoint && finding.explains < kSetpointExplains) {
       unproved.push_back(std::move(finding));
       mark_unclear(effect);
     } else {
@@ -156,6 +148,27 @@ void add_horizons(const Unseen& unseen, const VectorXd& before, const VectorXd& 
                               rms_of_squares(unseen.prediction_errors(after, horizon))});
 }
 
+/// What begins in the rows kept for validation. A channel is named only where the calibrated test
+/// rejects it on those rows, and not beyond doubt on the rows before. `extended` has set-points
+/// among its inputs, `tested` has not.
+std::vector<Finding> begun_late(const ModelSpec& extended, const ModelSpec& tested,
+                                const Recording& recording, const Recording& measured,
+                                Index fit_samples, const SignalRanges& ranges,
+                                const std::vector<std::optional<double>>& outside,
+                                SearchSettings settings) {
+  const Index from = late_from(fit_samples), rest = recording.samples() - from;
+  const MatrixXd residuals = free_run_residuals(extended, recording);
+  const ChannelTests before(tested, part(measured, 0, from), residuals.topRows(from));
+  const ChannelTests since(tested, part(measured, from, rest), residuals.bottomRows(rest));
+  const auto may_name = nameable(extended, ranges, since, outside);
+  settings.may_name = [&](const Effect& effect) {
+    return effect.place.aux < ranges.aux && may_name(effect) &&
+           !(cause_of(effect).acts_through_channels() &&
+             before.reject(channels_of(effect, extended, ranges.inputs), kBeyondDoubt));
+  };
+  return find_late(extended, ranges.inputs, recording, fit_samples, settings);
+}
+
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
 Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {
@@ -177,13 +190,15 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
   const MatrixXd residuals = free_run_residuals(model, recording);
   diagnosis.reason = why_not_judged(residuals);
   if (!diagnosis.reason.empty()) return diagnosis;
-  const ChannelTests tests(with_aux_inputs(base, measured), measured, residuals);
+  const ModelSpec tested = with_aux_inputs(base, measured);
+  const ChannelTests tests(tested, measured, residuals);
   const std::vector<std::optional<double>> outside = outside_shares(recording, residuals);
 
   SearchSettings search_settings;
   search_settings.max_findings = settings.max_findings;
   search_settings.progress = settings.progress;
-  search_settings.may_name = nameable(model, {settings.mv_count, base.input_count, aux}, tests);
+  search_settings.may_name =
+      nameable(model, {settings.mv_count, base.input_count, aux}, tests, outside);
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
   const Judges judges{
@@ -195,7 +210,12 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
                (wrong && i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside);
       },
       outside};
-  const Account kept = account_for(model, base.input_count, fitted, judges, search_settings);
+  const Witness witness{tests, [&](const ModelSpec& repaired) {
+                          return ChannelTests(tested, measured,
+                                              free_run_residuals(repaired, recording));
+                        }};
+  const Account kept =
+      account_for(model, base.input_count, fitted, judges, witness, search_settings);
   Problem& problem = *kept.problem;
   diagnosis.channels = estimate_channels(problem, kept.found, search_settings);
   diagnosis.inputs = movements(outside, diagnosis.channels);
@@ -224,7 +244,8 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
   state(kept, judges, diagnosis);
   if (!validation)
     for (Finding& late :
-         find_late(extended, base.input_count, recording, diagnosis.fit_samples, search_settings))
+         begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
+                    {settings.mv_count, base.input_count, aux}, outside, search_settings))
       diagnosis.findings.push_back(std::move(late));
   decide(least_explained(residuals, recording.cvs),
          !sticking_loops(base, settings.mv_count, measured).empty(), diagnosis);

@@ -32,6 +32,10 @@ bool grew(const Problem& problem, const Fit& fit, Index first) {
 
 }  // namespace
 
+Index late_from(Index first) {
+  return first - static_cast<Index>(kLateMargin * static_cast<double>(first));
+}
+
 std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const Recording& recording,
                                Index first, const SearchSettings& asked) {
   Problem problem(model, model_inputs, recording, Tolerances{}, kFreeNoise);
@@ -40,7 +44,7 @@ std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const R
   SearchResult found;
   found.fit = problem.fit({}, 0, cvs);
   if (!std::isfinite(found.fit.cost)) return {};
-  const Index from = first - static_cast<Index>(kLateMargin * static_cast<double>(first));
+  const Index from = late_from(first);
   if (grew(problem, found.fit, first)) {
     SearchSettings settings = asked;
     settings.max_findings = kMostLate;

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/fit/effect.hpp"
@@ -14,10 +17,17 @@ struct SignalRanges {
   int aux = 0;     ///< those after them are set-points, which are no inputs of a model
 };
 
+/// The channels that an effect changes, as (CV, input); aux signals are numbered after the inputs.
+[[nodiscard]] std::vector<std::pair<int, int>> channels_of(const Effect& effect,
+                                                           const ModelSpec& model,
+                                                           int model_inputs);
+
 /// Which effects may be named: what acts through channels where the calibrated test rejects those
-/// (`model`'s), a disturbance and what a set-point does always. Both must outlive what is returned.
-[[nodiscard]] std::function<bool(const Effect&)> nameable(const ModelSpec& model,
-                                                          const SignalRanges& ranges,
-                                                          const ChannelTests& tests);
+/// (`model`'s), a disturbance and what a set-point does always; a curve only where its input moves
+/// from outside the loop too (shares per input): feedback bends what is straight. All must outlive
+/// what is returned.
+[[nodiscard]] std::function<bool(const Effect&)> nameable(
+    const ModelSpec& model, const SignalRanges& ranges, const ChannelTests& tests,
+    const std::vector<std::optional<double>>& outside_shares);
 
 }  // namespace mpm

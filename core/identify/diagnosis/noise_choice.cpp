@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/channel_estimates.hpp"
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/validation.hpp"
+#include "core/identify/evidence/mean_reversion.hpp"
 #include "core/identify/fit/free_run.hpp"
 
 namespace mpm {
@@ -50,6 +52,20 @@ bool is_too_smooth(const Explained& explained) {
       });
 }
 
+/// Whether a channel is named of a CV that wanders: there smoothness is no sign of structure, and
+/// drifts and steps that follow the CV would hide the channel.
+bool names_channels_of_wandering(const Explained& explained) {
+  const SearchResult& found = explained.found;
+  return std::any_of(found.named.begin(), found.named.end(), [&](const Named& named) {
+    const Cause& cause = cause_of(named.effect);
+    if (named.effect.certain || !cause.acts_through_channels() || causes::is_unnamed(cause))
+      return false;
+    return std::any_of(found.fit.cvs.begin(), found.fit.cvs.end(), [&](const CvFit& fit) {
+      return touches(named.effect, explained.problem->model(), fit.cv) && !comes_back(fit.residual);
+    });
+  });
+}
+
 }  // namespace
 
 Explained explain(const ModelSpec& model, int model_inputs, const Recording& recording,
@@ -61,7 +77,8 @@ Explained explain(const ModelSpec& model, int model_inputs, const Recording& rec
   const bool blind =
       explained.found.named.empty() &&
       unknown_gains(estimate_channels(*explained.problem, explained.found, settings)) > 0;
-  if (!blind && !is_too_smooth(explained)) return explained;
+  if (!blind && (!is_too_smooth(explained) || names_channels_of_wandering(explained)))
+    return explained;
   const Index first = (kComparedQuarter - 1) * recording.samples() / kComparedQuarter;
   const Recording train = part(recording, 0, first);
   const double with_free = log_error(explain_on(kFreeNoise, train), recording, first);

@@ -13,9 +13,10 @@ struct Explained {
 };
 
 /// Searches with a free noise model. Such a model can swallow structure: where what is left is far
-/// smoother than noise, or where nothing is found and the gains are not known either, a bounded one
-/// is tried too, and the one whose repair carries over from the first three quarters of the data to
-/// the last decides. `recording` must outlive the result.
+/// smoother than noise (and not a channel beside a disturbance that wanders), or where nothing is
+/// found and the gains are not known either, a bounded one is tried too, and the one whose repair
+/// carries over from the first three quarters of the data to the last decides. `recording` must
+/// outlive the result.
 [[nodiscard]] Explained explain(const ModelSpec& model, int model_inputs,
                                 const Recording& recording, const SearchSettings& settings);
 

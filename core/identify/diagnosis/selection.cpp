@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/validation.hpp"
+#include "core/identify/evidence/mean_reversion.hpp"
 
 namespace mpm {
 
@@ -23,11 +25,13 @@ class Errors {
  public:
   Errors(const Effect& effect, const ModelSpec& with, const ModelSpec& without, Unseen& unseen)
       : unseen_(unseen) {
-    for (int cv = 0; cv < with.cv_count; ++cv) {
-      if (!touches(effect, with, cv) && !touches(effect, without, cv)) continue;
-      with_.push_back(unseen.residual(with, cv));
-      without_.push_back(unseen.residual(without, cv));
-    }
+    for (int cv = 0; cv < with.cv_count; ++cv)
+      if (touches(effect, with, cv) || touches(effect, without, cv)) add(with, without, cv);
+  }
+  /// Of one CV.
+  Errors(int cv, const ModelSpec& with, const ModelSpec& without, Unseen& unseen)
+      : unseen_(unseen) {
+    add(with, without, cv);
   }
 
   [[nodiscard]] CvScore free_run(std::uint64_t seed) const {
@@ -46,17 +50,22 @@ class Errors {
     return sum.score(unseen_, seed);
   }
 
-  /// CVs of which the free run is better beyond doubt.
+  /// CVs of which the free run is better beyond doubt, and which come back to a level.
   [[nodiscard]] std::size_t better_cvs(std::uint64_t seed) const {
     std::size_t count = 0;
     for (std::size_t j = 0; j < with_.size(); ++j) {
       Sum sum(unseen_.rows());
       sum.add(without_[j].cwiseAbs2(), with_[j].cwiseAbs2());
-      count += sum.score(unseen_, seed).gain_low > 0.0 ? 1 : 0;
+      if (sum.score(unseen_, seed).gain_low > 0.0 && comes_back(throughout_[j])) ++count;
     }
     return count;
   }
   [[nodiscard]] std::size_t cvs() const { return with_.size(); }
+  /// Whether what is left comes back to a level in every CV.
+  [[nodiscard]] bool come_back() const {
+    return std::all_of(throughout_.begin(), throughout_.end(),
+                       [](const VectorXd& residual) { return comes_back(residual); });
+  }
 
  private:
   struct Sum {
@@ -75,9 +84,23 @@ class Errors {
     VectorXd before, after;
   };
 
+  void add(const ModelSpec& with, const ModelSpec& without, int cv) {
+    throughout_.push_back(unseen_.residual_throughout(with, cv));
+    with_.push_back(throughout_.back().tail(unseen_.rows()));
+    without_.push_back(unseen_.residual(without, cv));
+  }
+
   Unseen& unseen_;
   std::vector<VectorXd> with_, without_;
+  std::vector<VectorXd> throughout_;  // with, on all rows
 };
+
+/// Whether a model is better at predictions, by so much that it is worth an accusation.
+Fate judged_by_predictions(const CvScore& predictions) {
+  if (!(predictions.gain_high > 0.0)) return Fate::kRefused;
+  const bool worth = predictions.rmse_after < (1.0 - kLeastRepair) * predictions.rmse_before;
+  return worth && predictions.gain_low > 0.0 ? Fate::kRepaired : Fate::kNoBetter;
+}
 
 Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
             const Judges& judges, std::uint64_t seed, double& sure_gain) {
@@ -92,11 +115,43 @@ Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
   }
   const CvScore predictions = errors.predictions(seed);
   sure_gain = predictions.gain_low;
-  if (!(predictions.rmse_after < predictions.rmse_before)) return Fate::kRefused;
-  if (moved_from_outside(effect, model, judges.outside_shares) &&
-      !(free_run.rmse_after < free_run.rmse_before))
-    return Fate::kRefused;
-  return predictions.gain_low > 0.0 ? Fate::kRepaired : Fate::kNoBetter;
+  // A stuck actuator opens the loop. What wanders makes a free run better or worse by chance.
+  const bool open_loop = effect.edit == &causes::input_stuck() ||
+                         moved_from_outside(effect, model, judges.outside_shares);
+  if (open_loop && errors.come_back() && !(free_run.gain_high > 0.0)) return Fate::kRefused;
+  const Fate fate = judged_by_predictions(predictions);
+  const bool worse = open_loop && !(free_run.rmse_after < free_run.rmse_before);
+  return worse && fate == Fate::kRepaired ? Fate::kNoBetter : fate;
+}
+
+/// Each may be better beside the others and all of them worse than none: in every CV the channels'
+/// repairs are judged once more together, and the weakest goes until they are better than none.
+void judge_together(const Problem& problem, const SearchResult& found, const Judges& judges,
+                    Selection& selection) {
+  const ModelSpec& model = problem.model();
+  const std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    for (;;) {
+      const std::vector<bool> in = repaired(selection);
+      std::vector<bool> without = in;
+      std::optional<std::size_t> weakest;
+      for (const std::size_t i : selection.order) {
+        const Effect& effect = found.named[i].effect;
+        if (!in[i] || effect.certain || !cause_of(effect).acts_through_channels() ||
+            !touches(effect, model, cv))
+          continue;
+        without[i] = false;
+        if (!weakest) weakest = i;
+      }
+      if (!weakest) break;
+      const Errors errors(cv, extend(problem, found, in, keep, judges.open),
+                          extend(problem, found, without, keep, judges.open), judges.unseen);
+      const CvScore predictions = errors.predictions(judges.unseen.seed());
+      // An effect on several CVs was judged in all of them.
+      if (predictions.rmse_after <= predictions.rmse_before) break;
+      selection.fates[*weakest] = Fate::kRefused;
+    }
+  }
 }
 
 }  // namespace
@@ -124,11 +179,9 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
   std::sort(selection.order.begin(), selection.order.end(), [&](std::size_t a, std::size_t b) {
     return found.named[a].evidence < found.named[b].evidence;
   });
-  for (const Named& named : found.named) {
-    const bool repairable =
-        !causes::is_unnamed(cause_of(named.effect)) && named.effect.place.aux < judges.aux;
-    selection.fates.push_back(repairable ? Fate::kRepaired : Fate::kNoBetter);
-  }
+  for (const Named& named : found.named)
+    selection.fates.push_back(causes::is_unnamed(cause_of(named.effect)) ? Fate::kNoBetter
+                                                                         : Fate::kRepaired);
   const auto model_of = [&](std::vector<bool> in, std::size_t i, bool taken,
                             bool all_open = false) {
     in[i] = taken;
@@ -150,6 +203,11 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     if (with_small_errors.free_run(judges.unseen.seed() + i).gain_low > 0.0)
       selection.fates[i] = Fate::kNoBetter;
   }
+  // Set-points are no inputs of a model, whatever goes with them.
+  for (std::size_t i = 0; i < found.named.size(); ++i)
+    if (found.named[i].effect.place.aux >= judges.aux)
+      selection.fates[i] = selection.fates[i] == Fate::kRepaired ? Fate::kNoBetter : Fate::kRefused;
+  judge_together(problem, found, judges, selection);
   // Beside all that stayed.
   const std::vector<bool> in = repaired(selection);
   for (const std::size_t i : selection.order) {

@@ -38,6 +38,10 @@ Eigen::VectorXd Unseen::simulated(const ModelSpec& model, int cv) {
   return free_run(simulator_, model, cv).tail(rows_);
 }
 
+Eigen::VectorXd Unseen::residual_throughout(const ModelSpec& model, int cv) {
+  return simulator_.recording().cvs.col(cv) - free_run(simulator_, model, cv);
+}
+
 Eigen::VectorXd Unseen::prediction_errors(const Eigen::Ref<const Eigen::VectorXd>& residual,
                                           Index horizon) const {
   Eigen::VectorXd errors = squared_prediction_errors(residual, horizon);

@@ -22,6 +22,8 @@ class Unseen {
   [[nodiscard]] Eigen::VectorXd residual(const ModelSpec& model, int cv) {
     return measured(cv) - simulated(model, cv);
   }
+  /// The same on all rows of the recording.
+  [[nodiscard]] Eigen::VectorXd residual_throughout(const ModelSpec& model, int cv);
   /// Squared prediction errors at a horizon (horizons.hpp), none across a border of runs.
   [[nodiscard]] Eigen::VectorXd prediction_errors(const Eigen::Ref<const Eigen::VectorXd>& residual,
                                                   Eigen::Index horizon) const;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/identify/evidence/calibration.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/derived_settings.hpp"
@@ -49,12 +48,24 @@ double fewest_known(const MatrixXd& residuals) {
   return std::isfinite(fewest) ? fewest : 0.0;
 }
 
+double mean_square_step(const Eigen::Ref<const VectorXd>& values) {
+  double sum = 0.0, count = 0.0;
+  for (Index k = 1; k < values.size(); ++k) {
+    const double step = values(k) - values(k - 1);
+    if (!std::isfinite(step)) continue;
+    sum += step * step;
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
 }  // namespace
 
 ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
                            const MatrixXd& residuals)
     : cvs_(model.cv_count),
-      p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)) {
+      p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)),
+      wrong_(p_values_.size(), 0.0) {
   const LinearModel linear(model);
   const std::optional<DerivedSettings> settings =
       settings_for(model, linear, fewest_known(residuals));
@@ -77,15 +88,18 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
     detector.fold(cv);
     if (!(detector.memory(cv).freedom() >= shape.columns())) continue;
     detector.evaluate(cv);
+    const double steps = mean_square_step(residuals.col(cv));
     for (int input = 0; input < model.input_count; ++input) {
       const ChannelEvidence& evidence = detector.evidence(cv, input);
-      if (evidence.numerator_freedom > 0.0)
-        p_values_[static_cast<std::size_t>(input * cvs_ + cv)] = evidence.p_value;
+      if (!(evidence.numerator_freedom > 0.0)) continue;
+      const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
+      p_values_[channel] = evidence.p_value;
+      wrong_[channel] = evidence.statistic * steps;
     }
   }
 }
 
-bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels) const {
+bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels, double level) const {
   double smallest = 1.0;
   double tested = 0.0;
   for (const auto& [cv, input] : channels) {
@@ -94,7 +108,7 @@ bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels) cons
     smallest = std::min(smallest, *p);
     tested += 1.0;
   }
-  return tested > 0.0 && smallest * tested <= kRejected;
+  return tested > 0.0 && smallest * tested <= level;
 }
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/identify/evidence/calibration.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
 
@@ -25,12 +26,21 @@ class ChannelTests {
   [[nodiscard]] std::optional<double> p_value(int cv, int input) const {
     return p_values_[static_cast<std::size_t>(input * cvs_ + cv)];
   }
-  /// Whether some of these channels do not match: the smallest p-value times their number.
-  [[nodiscard]] bool reject(const std::vector<std::pair<int, int>>& channels) const;
+  /// How much wrong that test sees, CV units squared: its F, which is relative to the noise that
+  /// the model leaves, times the mean square of the residual's steps from row to row; 0 where there
+  /// is no test.
+  [[nodiscard]] double wrong(int cv, int input) const {
+    return wrong_[static_cast<std::size_t>(input * cvs_ + cv)];
+  }
+  /// Whether some of these channels do not match: the smallest p-value times their number is at
+  /// most `level` (0..1).
+  [[nodiscard]] bool reject(const std::vector<std::pair<int, int>>& channels,
+                            double level = kRejected) const;
 
  private:
   int cvs_;
   std::vector<std::optional<double>> p_values_;  // per channel, input-major
+  std::vector<double> wrong_;                    // likewise
 };
 
 }  // namespace mpm

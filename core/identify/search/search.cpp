@@ -49,12 +49,17 @@ class Search {
         accepted_.push_back(effect);
         named_.push_back({effect, kSeenInData, 1.0, {}});
       }
-    for (int round = 0; round < settings_.max_findings; ++round) {
-      share_ = 0.1 + 0.8 * round / settings_.max_findings;
-      report();
-      if (!find_one()) break;
+    int rounds = settings_.max_findings;
+    for (;;) {
+      for (; rounds > 0; --rounds) {
+        share_ = std::max(share_, 0.9 - 0.8 * rounds / settings_.max_findings);
+        report();
+        if (!find_one()) break;
+      }
+      const int dropped = drop_superfluous();
+      if (dropped == 0) break;
+      rounds += dropped;
     }
-    drop_superfluous();
     rewrite();
     SearchResult result = conclude();
     result.suspect = suspect();
@@ -95,6 +100,12 @@ class Search {
     if (settings_.progress) settings_.progress(share_);
   }
 
+  /// Where something was found and then was not needed beside the rest, nothing is looked for
+  /// again: the rounds that it took are given back to the other CVs.
+  [[nodiscard]] bool is_settled(const Effect& effect) const {
+    return std::find(settled_.begin(), settled_.end(), effect.place.cv) != settled_.end();
+  }
+
   [[nodiscard]] bool may_name(const Effect& effect) const {
     return !settings_.may_name || settings_.may_name(effect);
   }
@@ -106,7 +117,7 @@ class Search {
       std::vector<Effect> mine;
       cause->propose({problem_, accepted_, nulls_}, mine);
       for (Effect& effect : mine) {
-        if (may_name(effect) != nameable) continue;
+        if (may_name(effect) != nameable || (nameable && is_settled(effect))) continue;
         const bool open =
             std::all_of(accepted_.begin(), accepted_.end(),
                         [&](const Effect& accepted) { return cause->goes_with(accepted, effect); });
@@ -300,7 +311,9 @@ class Search {
 
   Fit everything() { return problem_.fit(accepted_, 0, all_cvs(), kJointSteps); }
 
-  void drop_superfluous(std::size_t fewest = 1) {
+  /// How many.
+  int drop_superfluous(std::size_t fewest = 1) {
+    const std::size_t before = accepted_.size();
     bool dropped = accepted_.size() > fewest;
     while (dropped && accepted_.size() > fewest) {
       dropped = false;
@@ -313,14 +326,20 @@ class Search {
         const double odds =
             odds_for(all.effects[i], all, problem_.fit(fewer, 0, all_cvs(), kWithoutOneSteps));
         named_[i].evidence = odds;
-        const bool slow = cause_of(all.effects[i]).may_pass_for_noise();
+        // Of two that say the same one is enough.
+        const auto same =
+            std::count_if(all.effects.begin(), all.effects.end(),
+                          [&](const Effect& other) { return same_form(other, all.effects[i]); });
+        const bool slow = same == 1 && cause_of(all.effects[i]).may_pass_for_noise();
         if (odds >= (slow ? kWanderingNoise : settings_.decisive)) continue;
+        settled_.push_back(all.effects[i].place.cv);
         accepted_ = std::move(fewer);
         named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(i));
         dropped = true;
       }
       if (!dropped) accepted_ = all.effects;
     }
+    return static_cast<int>(before - accepted_.size());
   }
 
   Problem& problem_;
@@ -328,6 +347,7 @@ class Search {
   double share_ = 0.0;  // of the work done, as last told
   std::vector<Effect> accepted_;
   std::vector<Named> named_;
+  std::vector<int> settled_;   // CVs; -1: of effects on several
   std::vector<int> no_level_;  // CVs of which no constant offset is to be named
   Trials trials_;
   std::vector<CvFit> nulls_;  // of this round, one per CV; what the screening looks at

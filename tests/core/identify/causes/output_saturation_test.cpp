@@ -43,5 +43,22 @@ TEST_CASE("the levels at which a sensor clips are certain, and told to the last 
 
 TEST_CASE("a sensor that does not clip shows nothing") { CHECK(shown(-100.0, 100.0).empty()); }
 
+/// Whether a stop at 1 is ruled out for a CV that does this.
+bool ruled_out(const VectorXd& cv) {
+  const Recording recording = test::recording_of(test::telegraph(1, kRows, 12), cv);
+  const Problem problem(test::model_of({test::lag(0, 0, 2.0, 10.0)}, 1, 1), 1, recording,
+                        Tolerances{}, NoiseModel{});
+  const Effect stop{&causes::output_saturation(), {0}, {{&level("high"), 1.0}}};
+  return causes::output_saturation().contradicted(stop, problem);
+}
+
+TEST_CASE(
+    "a CV that goes its way beyond a level does not stop there, one that shakes about it may") {
+  const VectorXd free = test::first_order(test::telegraph(1, kRows, 12), 2.0, 10.0);
+  CHECK(ruled_out(free + 0.02 * test::white(2, kRows)));
+  CHECK_FALSE(ruled_out(free.cwiseMin(1.0) + 0.1 * test::white(2, kRows)));
+  CHECK_FALSE(ruled_out(free.cwiseMin(0.9)));  // nothing beyond
+}
+
 }  // namespace
 }  // namespace mpm

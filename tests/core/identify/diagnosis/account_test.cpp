@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/evidence/free_run_residuals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -40,7 +41,14 @@ struct Bench {
     return test::recording_of(u, y);
   }
 
-  Account take() { return account_for(model, 1, first, {unseen, 0, {}, shares}, settings); }
+  [[nodiscard]] ChannelTests test(const ModelSpec& of) const {
+    return {model, all, free_run_residuals(of, all)};
+  }
+  Account take() {
+    const ChannelTests given = test(model);
+    return account_for(model, 1, first, {unseen, 0, {}, shares},
+                       {given, [this](const ModelSpec& of) { return test(of); }}, settings);
+  }
 };
 
 bool names_gain(const Account& account) {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -50,6 +51,34 @@ TEST_CASE("what began before is not named again, and nothing where nothing begin
     for (const Finding& finding : late_in(step_at(200), seed))
       CHECK(finding.onset_s.value_or(0.0) >= 0.95 * kFitted);
   }
+}
+
+/// Diagnosed where the gain is `before` times the model's until `kChange`, then `since` times.
+Diagnosis diagnosed(double before, double since) {
+  constexpr Index kMany = 1800, kChange = 1260;
+  const VectorXd u = test::telegraph(3, kMany, 12);
+  const VectorXd response = test::first_order(u, 2.0, 10.0);
+  VectorXd cv = before * response + 0.1 * test::autoregressive(test::normal(4, kMany), 0.5);
+  cv.tail(kMany - kChange) += (since - before) * response.tail(kMany - kChange);
+  DiagnosisSettings settings;
+  settings.mv_count = 1;
+  return diagnose(test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), test::recording_of(u, cv), nullptr,
+                  settings);
+}
+
+TEST_CASE("a channel that changes late is named, and no repair of it is claimed") {
+  const Diagnosis diagnosis = diagnosed(1.0, 1.6);
+  REQUIRE_FALSE(diagnosis.findings.empty());
+  const Finding& finding = diagnosis.findings.front();
+  CHECK(finding.subject == Subject{&causes::gain(), {0, 0}});
+  CHECK(finding.parameters[0].value == Approx(1.6).margin(0.1));
+  REQUIRE(finding.onset_s);
+  CHECK(*finding.onset_s == Approx(1260.0).margin(15.0));
+  CHECK_FALSE(finding.repaired);
+}
+
+TEST_CASE("a channel that was wrong before has nothing late of its own") {
+  for (const Finding& finding : diagnosed(1.6, 1.6).findings) CHECK_FALSE(finding.onset_s);
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ struct Bench {
   ModelSpec model =
       test::model_of({lag(0, 0, 2.0, 10.0), lag(0, 1, 1.0, 5.0), lag(1, 1, 1.0, 8.0)}, 2, 2);
   ChannelTests tests = make();
-  std::function<bool(const Effect&)> may = nameable(model, {1, 2, 0}, tests);
+  std::vector<std::optional<double>> shares{1.0, 1.0};
+  std::function<bool(const Effect&)> may = nameable(model, {1, 2, 0}, tests, shares);
 
   ChannelTests make() const {
     MatrixXd u(kRows, 2), residuals(kRows, 2);
@@ -60,6 +61,20 @@ TEST_CASE("a disturbance and a set-point need no test, and a DV has no actuator"
   CHECK(bench(causes::input_offset(), {-1, 0}));
   CHECK_FALSE(bench(causes::input_offset(), {-1, 1}));
   CHECK_FALSE(bench(causes::input_stuck(), {-1, 1}));
+}
+
+TEST_CASE("a curve may be named where the test rejects and not all movement is feedback") {
+  Bench bench;
+  CHECK(bench(causes::input_polynomial(), {0, 0}));
+  CHECK_FALSE(bench(causes::input_polynomial(), {0, 1}));
+  bench.shares[0] = 0.1;
+  for (const Cause* curve : {&causes::input_polynomial(), &causes::input_saturation(),
+                             &causes::cubic_stiffness(), &causes::square_root_outflow()})
+    CHECK_FALSE(bench(*curve, {0, 0}));
+  CHECK(bench(causes::gain(), {0, 0}));
+  CHECK(bench(causes::stiction(), {-1, 0}));
+  bench.shares[0] = std::nullopt;  // nobody knows
+  CHECK(bench(causes::input_polynomial(), {0, 0}));
 }
 
 }  // namespace

@@ -99,6 +99,26 @@ TEST_CASE("what is certain stays and what has no name is no repair") {
   CHECK(extended.output_blocks[0].has_value());
 }
 
+// Two inputs that move alike: 1.5 times the gain of one and 0.4 times that of the other leave an
+// error of a tenth where none was; without either of them it is half as large as the response.
+TEST_CASE("repairs that are better beside each other and worse than none are refused") {
+  Bench bench(1.0, 1.0);
+  bench.all.inputs.col(1) = bench.all.inputs.col(0);
+  bench.model.channels[1] = lag(0, 1, 2.0, 10.0);
+  bench.all.cvs.col(0) += test::first_order(bench.all.inputs.col(0), 2.0, 10.0);
+  bench.first = part(bench.all, 0, kFitted);
+  Problem problem(bench.model, 2, bench.first, Tolerances{}, NoiseModel{});
+  SearchResult found;
+  found.fit = problem.fit({}, 0, {0, 1});
+  for (const auto& [input, ratio] : {std::pair{0, 1.5}, std::pair{1, 0.4}})
+    found.named.push_back(
+        {{&causes::gain(), {0, input}, {{&kGainRatio, ratio}}}, 80.0 - input, 1.0, {}});
+  Unseen unseen(bench.all, kRows - kFitted, bench.model, 1);
+  const OpenChannels closed = [](int, int, bool) { return false; };
+  const Selection selection = select(problem, found, {unseen, 0, closed, {0.1, 0.1}}, [] {});
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRefused, Fate::kRefused});
+}
+
 TEST_CASE("the weakest evidence is judged first") {
   Bench bench(1.5, 1.5);
   bench.find_gain();

@@ -1,0 +1,46 @@
+#include "core/identify/diagnosis/confirmation.hpp"
+
+#include <algorithm>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/nameable.hpp"
+
+namespace mpm {
+namespace {
+
+struct Seen {
+  double wrong = 0.0;    ///< the most
+  double p_value = 1.0;  ///< the smallest, times their number
+};
+
+Seen seen(const ChannelTests& tests, const std::vector<std::pair<int, int>>& channels) {
+  Seen most;
+  double smallest = 1.0, tested = 0.0;
+  for (const auto& [cv, input] : channels) {
+    const std::optional<double> p = tests.p_value(cv, input);
+    if (!p) continue;
+    most.wrong = std::max(most.wrong, tests.wrong(cv, input));
+    smallest = std::min(smallest, *p);
+    tested += 1.0;
+  }
+  most.p_value = std::min(1.0, smallest * tested);
+  return most;
+}
+
+}  // namespace
+
+Confirmation confirmation(const Effect& effect, const ModelSpec& model, int model_inputs,
+                          const ChannelTests& before, const ChannelTests& after) {
+  if (effect.edit == &causes::stiction()) return Confirmation::kNothing;
+  const std::vector<std::pair<int, int>> channels = channels_of(effect, model, model_inputs);
+  const Seen was = seen(before, channels), is = seen(after, channels);
+  if (effect.edit == &causes::input_stuck())
+    return is.p_value > kStillMoves ? Confirmation::kNothing : Confirmation::kNone;
+  if (was.p_value > kSeesNothing) return Confirmation::kLess;  // believed without its word
+  if (is.p_value > kSeesNothing)
+    return was.p_value < kBeyondDoubt ? Confirmation::kNothingOfAll : Confirmation::kNothing;
+  return is.wrong < kClearlyLessSeen * was.wrong ? Confirmation::kLess : Confirmation::kNone;
+}
+
+}  // namespace mpm

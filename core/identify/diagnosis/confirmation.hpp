@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+
+#include "core/identify/evidence/channel_tests.hpp"
+#include "core/identify/fit/effect.hpp"
+
+namespace mpm {
+
+/// The calibrated test of the channels: of the given model, and of another with the same inputs and
+/// set-points behind them.
+struct Witness {
+  const ChannelTests& given;
+  std::function<ChannelTests(const ModelSpec&)> of;
+};
+
+/// What it says of a repair, ever more in its favour.
+enum class Confirmation {
+  kNone,          ///< it sees no less wrong
+  kLess,          ///< clearly less
+  kNothing,       ///< nothing any more
+  kNothingOfAll,  ///< nothing any more of what it had seen beyond doubt
+};
+
+/// Asked of the channels that an effect changes, where the test saw most, on the given and on the
+/// repaired model. A channel that is said to do nothing, for its actuator is stuck, must indeed do
+/// nothing. A sticking valve swings by itself, which no repair follows for long: its shape says
+/// enough.
+[[nodiscard]] Confirmation confirmation(const Effect& effect, const ModelSpec& model,
+                                        int model_inputs, const ChannelTests& before,
+                                        const ChannelTests& after);
+
+}  // namespace mpm

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mpm {
+
+/// Whether a signal (any unit, NaN where unknown) comes back to one level: the augmented
+/// Dickey-Fuller test (Said and Dickey 1984) with a constant rejects, at 5 %, that it wanders like
+/// a random walk. Asked of the means of some hundred blocks, so that noise on top, which would hide
+/// the walk, averages out. Of what wanders no level can be told; false too where there are too few
+/// rows to say.
+[[nodiscard]] bool comes_back(const Eigen::Ref<const Eigen::VectorXd>& signal);
+
+}  // namespace mpm

@@ -1,0 +1,97 @@
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <string>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using test::lag;
+
+// Loops in closed form: y(k+1) = p y(k) + ratio * 2 (1 - p) u(k), a disturbance on the output, and
+// a PI controller at a constant set-point. The model says gain 2, time constant 10.
+constexpr Index kRows = 1800;
+
+struct Loop {
+  VectorXd u = VectorXd::Zero(kRows), y = VectorXd::Zero(kRows);
+
+  Loop(double ratio, const VectorXd& disturbance, const VectorXd& shaken) {
+    const double pole = std::exp(-0.1);
+    double state = 0.0, sum = 0.0;
+    for (Index k = 0; k < kRows; ++k) {
+      y(k) = state + disturbance(k);
+      sum -= y(k);
+      u(k) = -0.6 * y(k) + 0.06 * sum + shaken(k);
+      state = pole * state + ratio * 2.0 * (1.0 - pole) * u(k);
+    }
+  }
+
+  [[nodiscard]] Diagnosis diagnosed() const {
+    DiagnosisSettings settings;
+    settings.mv_count = 1;
+    Recording recording = test::recording_of(u, y);
+    recording.setpoints = Eigen::MatrixXd::Zero(kRows, 1);
+    return diagnose(test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), recording, nullptr, settings);
+  }
+};
+
+VectorXd walk(std::uint64_t seed) {
+  return test::autoregressive(0.1 * test::normal(seed, kRows), 1.0);
+}
+
+VectorXd cycle(std::uint64_t seed) {
+  return VectorXd::NullaryExpr(
+             kRows, [](Index k) { return std::sin(2.0 * M_PI * static_cast<double>(k) / 250.0); }) +
+         0.05 * test::normal(seed, kRows);
+}
+
+VectorXd steps(std::uint64_t seed) {
+  return test::telegraph(seed, kRows, 300) + 0.05 * test::normal(seed + 1, kRows);
+}
+
+/// Everything that accuses the channel, its valve or its sensor.
+std::string accusations(const Diagnosis& diagnosis) {
+  std::string all;
+  for (const Finding& finding : diagnosis.findings)
+    if (finding.subject.cause->acts_through_channels() || finding.subject.cause->is_input_block())
+      all += std::string(finding.subject.cause->name().text) + " ";
+  return all;
+}
+
+// A free run is best without any gain here: the controller undoes what disturbs the CV.
+TEST_CASE("a sound loop at rest accuses nothing, whatever disturbs it") {
+  const VectorXd still = VectorXd::Zero(kRows);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    CAPTURE(seed);
+    CHECK(accusations(Loop(1.0, walk(seed), still).diagnosed()).empty());
+    CHECK(accusations(Loop(1.0, cycle(seed), still).diagnosed()).empty());
+    CHECK(accusations(Loop(1.0, steps(10 * seed), still).diagnosed()).empty());
+  }
+}
+
+TEST_CASE("test signals make a wrong gain known in the same loops") {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    const Diagnosis diagnosis =
+        Loop(1.6, walk(seed), 2.0 * test::telegraph(seed + 20, kRows, 15)).diagnosed();
+    REQUIRE_FALSE(diagnosis.findings.empty());
+    bool found = false;
+    for (const Finding& finding : diagnosis.findings) {
+      if (!finding.subject.cause->acts_through_channels()) continue;
+      CHECK((finding.subject.cause == &causes::gain() ||
+             finding.subject.cause == &causes::input_scale() ||
+             finding.subject.cause == &causes::output_scale()));
+      CHECK(finding.parameters[0].value == Approx(1.6).margin(0.15));
+      found = true;
+    }
+    CHECK(found);
+  }
+}
+
+}  // namespace
+}  // namespace mpm

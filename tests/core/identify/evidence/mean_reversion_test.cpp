@@ -1,0 +1,52 @@
+#include "core/identify/evidence/mean_reversion.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr Index kRows = 3000;
+constexpr int kSeeds = 200;
+
+/// Of so many walks or autoregressions, how many come back; `noise` on top.
+int come_back(double pole, double noise) {
+  int count = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const VectorXd signal = test::autoregressive(test::normal(500 + seed, kRows), pole) +
+                            noise * test::normal(900 + seed, kRows);
+    count += comes_back(signal) ? 1 : 0;
+  }
+  return count;
+}
+
+// The test's size is 5 %: of 200 walks 10 are expected to be called tame, more than 22 with a
+// probability of 1e-4 (binomial).
+TEST_CASE("a random walk does not come back, with noise on top or without") {
+  CHECK(come_back(1.0, 0.0) <= 22);
+  CHECK(come_back(1.0, 3.0) <= 22);
+}
+
+// A lag of 20 rows leaves neighbouring blocks of 30 with a correlation of 0.38, so that the
+// coefficient lies some 6 s.d. below 0: of 200 all should be found.
+TEST_CASE("noise that forgets comes back") {
+  CHECK(come_back(0.0, 0.0) == kSeeds);
+  CHECK(come_back(0.95, 0.0) >= kSeeds - 4);
+}
+
+TEST_CASE("what stands still comes back, what is unknown is not taken for anything") {
+  CHECK(comes_back(VectorXd::Constant(kRows, 3.0)));
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(comes_back(VectorXd::Constant(kRows, unknown)));
+  VectorXd gaps = test::normal(1, kRows);
+  gaps.head(kRows / 4).setConstant(unknown);
+  CHECK(comes_back(gaps));
+}
+
+}  // namespace
+}  // namespace mpm
