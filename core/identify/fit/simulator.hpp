@@ -10,9 +10,9 @@
 
 namespace mpm {
 
-/// Free-running simulation of many similar models on one recording. A CV is the sum of its
-/// channels, and what a channel gave is remembered: the next model that holds the same channel gets
-/// it for nothing. Inputs are the model's, then the recording's aux signals.
+/// Free-running simulation of many similar models on one recording. A CV is the sum of its channels
+/// and disturbances, and what each gave is remembered: the next model that holds the same gets it
+/// for nothing. Inputs are the model's, then the recording's aux signals.
 class Simulator {
  public:
   /// `recording` must outlive the simulator. `origin` of the aux inputs is their mean.
@@ -34,6 +34,9 @@ class Simulator {
                                                 const Starts& at_origin);
   const Eigen::VectorXd& channel(const ModelSpec& model, const ChannelSpec& spec,
                                  const Starts& at_origin);
+  const Eigen::VectorXd& disturbance(const DisturbanceTerm& term, double sample_time_s);
+  template <class Make>
+  const Eigen::VectorXd& remembered(const std::string& key, const Make& make);
   [[nodiscard]] Eigen::VectorXd simulate(const ModelSpec& model, const ChannelSpec& spec,
                                          const Starts& at_origin) const;
   [[nodiscard]] const Starts& starts(const ModelSpec& model);
@@ -41,8 +44,8 @@ class Simulator {
   const Recording* recording_;
   std::vector<Run> runs_;
   std::unordered_map<std::string, Eigen::VectorXd> remembered_;
-  std::size_t capacity_;
-  Starts at_origin_;  ///< decided by the first model, kept for all others; empty before
+  std::size_t bytes_ = 0;  ///< that it takes
+  Starts at_origin_;       ///< decided by the first model, kept for all others; empty before
 };
 
 /// `model` with the recording's aux signals as further inputs that no channel uses yet.
