@@ -14,8 +14,9 @@ using Eigen::VectorXd;
 
 constexpr double kFewestCycles = 3.0;
 constexpr double kShortestPeriod = 16.0;  ///< rows
-constexpr double kFineRows = 6000.0;      ///< more rows than these are looked at in longer strides
-constexpr std::size_t kWaves = 4;         ///< of each onset
+/// More rows than these are looked at in longer strides: at so many a search takes some 0.15 s.
+constexpr double kFineRows = 6000.0;
+constexpr std::size_t kWaves = 4;  ///< of each onset
 constexpr std::array<double, 3> kOnsets = {0.0, 0.25, 0.5};
 
 /// How much of the innovations +1, -1, +1, ... explains, for any period and phase. What whitening
@@ -50,16 +51,20 @@ class MatchedFilter {
 
   [[nodiscard]] Index end() const { return end_; }
 
+  struct Gains {
+    VectorXd of_phase, edges;
+  };
   /// Of the waves of this period that begin with a rising edge at onset, onset + 1, ... within half
   /// a period.
-  void gains(double period, Index onset, VectorXd& gains) {
+  void gains(double period, Index onset, Gains& result) const {
+    auto& [gains, edges] = result;
     const double half = 0.5 * period;
     const auto phases = static_cast<Index>(std::ceil(half));
     // The sum over what lies between two edges is a difference of running sums, so the running sum
     // at an edge counts twice. Those of all phases lie side by side.
     gains.setConstant(phases, -sums_(onset));
-    edges_.setZero(phases);
-    edges_(0) = -1.0;  // the one at the onset is none
+    edges.setZero(phases);
+    edges(0) = -1.0;  // the one at the onset is none
     double sign = 1.0;
     Index open = phases;  // those that have not come to the end, the first ones
     for (double edge = static_cast<double>(onset); open > 0; edge += half, sign = -sign) {
@@ -67,12 +72,11 @@ class MatchedFilter {
       const Index on = std::clamp<Index>(end_ - first, 0, open);
       gains.segment(on, open - on).array() += sign * sums_(end_);
       gains.head(on) += 2.0 * sign * sums_.segment(std::min(first, end_), on);
-      edges_.head(on).array() += 1.0;
+      edges.head(on).array() += 1.0;
       open = on;
     }
     for (Index phase = 0; phase < phases; ++phase) {
-      const double norm =
-          level_ * static_cast<double>(end_ - onset) + edge_ * (edges_(phase) + 1.0);
+      const double norm = level_ * static_cast<double>(end_ - onset) + edge_ * (edges(phase) + 1.0);
       const double gain = gains(phase) * gains(phase) / norm;
       gains(phase) = gain > 0.0 && norm > 0.0 ? gain : 0.0;
     }
@@ -81,24 +85,26 @@ class MatchedFilter {
  private:
   Index end_ = 0;
   VectorXd sums_;
-  VectorXd edges_;  // of each phase
   double level_ = 0.0, edge_ = 0.0;
 };
-/// The best few, no two of nearly one period, and how many were looked at.
-std::vector<SquareWave> best_waves(MatchedFilter& filter, double stride, Index onset,
-                                   std::size_t& looked_at) {
+
+/// Of waves that begin at `onset` (in strides): the best few, no two of nearly one period, and how
+/// many were looked at.
+SquareWaves best_waves(const MatchedFilter& filter, double stride, Index onset) {
   const auto length = static_cast<double>(filter.end() - onset);
-  std::vector<SquareWave> best;
-  VectorXd gains;  // by phase
+  SquareWaves found;
+  std::vector<SquareWave>& best = found.waves;
+  MatchedFilter::Gains gains;
   for (double period = kShortestPeriod; period <= length / kFewestCycles;
        period += period / length) {  // the last edge by a stride
     filter.gains(period, onset, gains);
     Index phase = 0;
     SquareWave wave;
-    wave.gain = gains.maxCoeff(&phase);
+    wave.gain = gains.of_phase.maxCoeff(&phase);
     wave.begin = stride * static_cast<double>(onset + phase);
     wave.period = stride * period;
-    looked_at += static_cast<std::size_t>(gains.size());
+    wave.onset = static_cast<Index>(stride * static_cast<double>(onset));
+    found.looked_at += static_cast<std::size_t>(gains.of_phase.size());
     const auto near = std::find_if(best.begin(), best.end(), [&](const SquareWave& other) {
       return std::abs(other.period / wave.period - 1.0) < 0.02;
     });
@@ -111,22 +117,24 @@ std::vector<SquareWave> best_waves(MatchedFilter& filter, double stride, Index o
               [](const SquareWave& a, const SquareWave& b) { return a.gain > b.gain; });
     if (best.size() > kWaves) best.pop_back();
   }
-  return best;
+  return found;
 }
 
 }  // namespace
 
-SquareWaves find_square_waves(const CvData& data, const CvFit& without) {
+SquareWaves find_square_waves(const CvData& data, const CvFit& without, const Parallel& parallel) {
   const auto samples = static_cast<double>(without.innovations.size());
   const double stride = std::max(1.0, samples / kFineRows);
-  MatchedFilter filter(data, without, stride);
+  const MatchedFilter filter(data, without, stride);
+  std::array<SquareWaves, kOnsets.size()> of_each;
+  parallel.for_each(kOnsets.size(), [&](std::size_t i) {
+    const auto onset = static_cast<Index>(kOnsets[i] * samples / stride);
+    of_each[i] = best_waves(filter, stride, onset);
+  });
   SquareWaves found;
-  for (const double share : kOnsets) {
-    const auto onset = static_cast<Index>(share * samples / stride);
-    for (SquareWave wave : best_waves(filter, stride, onset, found.looked_at)) {
-      wave.onset = static_cast<Index>(stride * static_cast<double>(onset));
-      found.waves.push_back(wave);
-    }
+  for (const SquareWaves& some : of_each) {
+    found.waves.insert(found.waves.end(), some.waves.begin(), some.waves.end());
+    found.looked_at += some.looked_at;
   }
   return found;
 }

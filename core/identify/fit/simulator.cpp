@@ -153,18 +153,24 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
 }
 
 template <class Make>
-const VectorXd& Simulator::remembered(const std::string& key, const Make& make) {
-  const auto found = remembered_.find(key);
-  if (found != remembered_.end()) return found->second;
-  const std::size_t size =
-      key.size() + sizeof(double) * static_cast<std::size_t>(recording_->samples());
+Simulator::Given Simulator::remembered(const std::string& key, const Make& make) {
+  {
+    const MutexLock lock(mutex_);
+    const auto found = remembered_.find(key);
+    if (found != remembered_.end()) return found->second;
+  }
+  // Two threads may do the same, which gives the same.
+  const auto made = std::make_shared<const VectorXd>(make());
+  const std::size_t size = key.size() + sizeof(double) * static_cast<std::size_t>(made->size());
+  const MutexLock lock(mutex_);
   if (bytes_ + size > kRemembered) remembered_.clear(), bytes_ = 0;
-  bytes_ += size;
-  return remembered_.emplace(key, make()).first->second;
+  const auto [place, fresh] = remembered_.emplace(key, made);
+  if (fresh) bytes_ += size;
+  return place->second;
 }
 
-const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& spec,
-                                   const Starts& at_origin) {
+Simulator::Given Simulator::channel(const ModelSpec& model, const ChannelSpec& spec,
+                                    const Starts& at_origin) {
   Key key;
   for (const bool start : at_origin) key.add(start ? 1.0 : 0.0);
   key.add(static_cast<double>(spec.input));
@@ -185,7 +191,7 @@ const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& sp
   });
 }
 
-const VectorXd& Simulator::disturbance(const DisturbanceTerm& term, double sample_time_s) {
+Simulator::Given Simulator::disturbance(const DisturbanceTerm& term, double sample_time_s) {
   Key key;
   key.add(kDisturbance);
   key.add(term);
@@ -201,12 +207,16 @@ const VectorXd& Simulator::disturbance(const DisturbanceTerm& term, double sampl
 VectorXd Simulator::sum_of_channels(const ModelSpec& model, int cv, const Starts& at_origin) {
   VectorXd sum = VectorXd::Zero(recording_->samples());
   for (const ChannelSpec& spec : model.channels)
-    if (spec.cv == cv) sum += channel(model, spec, at_origin);
+    if (spec.cv == cv) sum += *channel(model, spec, at_origin);
   return sum;
 }
 
 const Simulator::Starts& Simulator::starts(const ModelSpec& model) {
-  if (!at_origin_.empty()) return at_origin_;
+  std::call_once(begun_, [&] { at_origin_ = first_starts(model); });
+  return at_origin_;
+}
+
+Simulator::Starts Simulator::first_starts(const ModelSpec& model) {
   const Starts none(runs_.size(), false), all(runs_.size(), true);
   std::vector<double> votes(runs_.size(), 0.0);
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -222,15 +232,16 @@ const Simulator::Starts& Simulator::starts(const ModelSpec& model) {
         votes[r] += (at_inputs - at_origin) / (at_inputs + at_origin);
     }
   }
-  for (const double vote : votes) at_origin_.push_back(vote > 0.0);
-  return at_origin_;
+  Starts at_origin;
+  for (const double vote : votes) at_origin.push_back(vote > 0.0);
+  return at_origin;
 }
 
 VectorXd Simulator::cv(const ModelSpec& model, int cv) {
   const Index samples = recording_->samples();
   VectorXd sum = sum_of_channels(model, cv, starts(model));
   for (const DisturbanceTerm& term : model.disturbances)
-    if (term.cv == cv) sum += disturbance(term, model.sample_time_s);
+    if (term.cv == cv) sum += *disturbance(term, model.sample_time_s);
   const double origin = model.output_origin(cv);
   const std::optional<OutputBlock>& block = model.output_blocks[static_cast<std::size_t>(cv)];
   for (Index k = 0; k < samples; ++k) sum(k) = apply_output_block(block, origin, sum(k));
