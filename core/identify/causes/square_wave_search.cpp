@@ -67,7 +67,7 @@ class MatchedFilter {
     edges(0) = -1.0;  // the one at the onset is none
     double sign = 1.0;
     Index open = phases;  // those that have not come to the end, the first ones
-    for (double edge = static_cast<double>(onset); open > 0; edge += half, sign = -sign) {
+    for (auto edge = static_cast<double>(onset); open > 0; edge += half, sign = -sign) {
       const auto first = static_cast<Index>(std::ceil(edge));
       const Index on = std::clamp<Index>(end_ - first, 0, open);
       gains.segment(on, open - on).array() += sign * sums_(end_);
@@ -95,8 +95,8 @@ SquareWaves best_waves(const MatchedFilter& filter, double stride, Index onset) 
   SquareWaves found;
   std::vector<SquareWave>& best = found.waves;
   MatchedFilter::Gains gains;
-  for (double period = kShortestPeriod; period <= length / kFewestCycles;
-       period += period / length) {  // the last edge by a stride
+  double period = kShortestPeriod;
+  while (period <= length / kFewestCycles) {
     filter.gains(period, onset, gains);
     Index phase = 0;
     SquareWave wave;
@@ -116,6 +116,7 @@ SquareWaves best_waves(const MatchedFilter& filter, double stride, Index onset) 
     std::sort(best.begin(), best.end(),
               [](const SquareWave& a, const SquareWave& b) { return a.gain > b.gain; });
     if (best.size() > kWaves) best.pop_back();
+    period += period / length;  // the last edge by a stride
   }
   return found;
 }
