@@ -4,11 +4,13 @@
 #include <functional>
 #include <memory>
 
+#include "core/parallel/arena.hpp"
+
 namespace mpm {
 
 /// Work in pieces that do not need each other, on several threads. Each piece has a place of its
 /// own to write to, and whoever needs all of them looks at them in their order: so what comes of it
-/// does not depend on the number of threads. The only file that knows how is parallel.cpp.
+/// does not depend on the number of threads.
 class Parallel {
  public:
   /// `threads` >= 1, that of the caller among them; with one nothing is started.
@@ -25,15 +27,11 @@ class Parallel {
   [[nodiscard]] bool at_home() const;
 
  private:
-  struct Arena;
   std::unique_ptr<Arena> arena_;  ///< none: one thread
   const void* home_;
 };
 
 /// Work where nobody asks for more.
 [[nodiscard]] const Parallel& one_thread();
-
-/// Threads that the machine grants this process.
-[[nodiscard]] int available_threads();
 
 }  // namespace mpm

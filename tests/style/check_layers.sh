@@ -26,8 +26,8 @@ if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \
 fi
 
 if grep -rnE "^ *# *include *[<\"](oneapi/)?tbb" core config idl sim daemon \
-  --include='*.hpp' --include='*.cpp' | grep -v '^core/parallel/parallel.cpp:'; then
-  echo "oneTBB's names stay in core/parallel/parallel.cpp" >&2
+  --include='*.hpp' --include='*.cpp' | grep -v '^core/parallel/arena.cpp:'; then
+  echo "oneTBB's names stay in core/parallel/arena.cpp" >&2
   status=1
 fi
 
