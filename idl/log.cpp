@@ -5,7 +5,7 @@
 #include <chrono>
 #include <string_view>
 
-#include "idl/mutex.hpp"
+#include "core/parallel/mutex.hpp"
 
 namespace mpm::idl {
 namespace {

@@ -72,6 +72,7 @@ struct LinearModel::State {
         last_input(definition->input_origin),
         fed_back(VectorXd::Zero(static_cast<Index>(definition->own_inputs.size()))),
         fed_back_before(fed_back),
+        fir_outputs(VectorXd::Zero(static_cast<Index>(definition->firs.size()))),
         linear_output(VectorXd::Zero(definition->spec.cv_count)),
         output(VectorXd::Zero(definition->spec.cv_count)) {
     for (Index i = 0; i < definition->input_origin.size(); ++i)
@@ -104,6 +105,7 @@ struct LinearModel::State {
   VectorXd states, next_states;
   VectorXd last_input;
   VectorXd fed_back, fed_back_before;  ///< y(k), y(k-1) of the channels with an own input
+  VectorXd fir_outputs;                ///< y(k) of each step response, which is long to compute
   double clock_start_s = 0.0;
   std::int64_t elapsed = 0;  ///< samples since then
   VectorXd linear_output, output;
@@ -116,7 +118,11 @@ void LinearModel::State::compute_output() {
   for (const LagChannel& lag : fixed.lags) linear_output(lag.cv) += lag.output(history, states);
   for (const FilterChannel& filter : fixed.filters)
     linear_output(filter.cv) += filter.output(states);
-  for (const FirChannel& fir : fixed.firs) linear_output(fir.cv) += fir.output(history);
+  for (std::size_t i = 0; i < fixed.firs.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    fir_outputs(at) = fixed.firs[i].output(history);
+    linear_output(fixed.firs[i].cv) += fir_outputs(at);
+  }
   for (const TankChannel& tanks : fixed.tanks) linear_output(tanks.cv) += tanks.output(states);
   if (fixed.spec.state_space) {
     linear_output.noalias() += fixed.spec.state_space->c * states;
@@ -140,7 +146,7 @@ void LinearModel::State::read_feedback() {
   for (std::size_t i = 0; i < definition->own_inputs.size(); ++i) {
     const auto at = static_cast<Index>(i);
     fed_back_before(at) = fed_back(at);
-    fed_back(at) = definition->output_of(definition->own_inputs[i], history, states);
+    fed_back(at) = definition->output_of(definition->own_inputs[i], history, states, fir_outputs);
   }
 }
 

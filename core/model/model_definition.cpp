@@ -99,7 +99,7 @@ void ModelDefinition::add_channel(const ChannelSpec& channel) {
 }
 
 double ModelDefinition::output_of(const OwnInput& own, const InputHistory& inputs,
-                                  const VectorXd& states) const {
+                                  const VectorXd& states, const VectorXd& fir_outputs) const {
   static_assert(std::is_same_v<decltype(ChannelSpec::dynamics),
                                std::variant<TransferFunction, DiscreteFilter, StepResponse,
                                             TankChain>>);  // `form` counts as this does
@@ -109,7 +109,7 @@ double ModelDefinition::output_of(const OwnInput& own, const InputHistory& input
     case 1:
       return filters[own.place].output(states);
     case 2:
-      return firs[own.place].output(inputs);
+      return fir_outputs(static_cast<Eigen::Index>(own.place));
     default:
       return tanks[own.place].output(states);
   }

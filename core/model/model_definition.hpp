@@ -46,9 +46,11 @@ struct ModelDefinition {
   [[nodiscard]] const ChannelFacts& fact(int cv, int input) const {
     return facts[static_cast<std::size_t>(cv * spec.input_count + input)];
   }
-  /// Deviation of the CV that the one channel behind `own` makes up.
+  /// Deviation of the CV that the one channel behind `own` makes up; `fir_outputs`: those of
+  /// `firs`.
   [[nodiscard]] double output_of(const OwnInput& own, const InputHistory& inputs,
-                                 const Eigen::VectorXd& states) const;
+                                 const Eigen::VectorXd& states,
+                                 const Eigen::VectorXd& fir_outputs) const;
 
  private:
   void add_channel(const ChannelSpec& channel);

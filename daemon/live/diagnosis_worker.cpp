@@ -6,8 +6,9 @@
 #include <exception>
 #include <vector>
 
+#include "core/parallel/mutex.hpp"
 #include "daemon/host/low_priority.hpp"
-#include "idl/mutex.hpp"
+#include "idl/condition_variable.hpp"
 
 namespace mpm::live {
 

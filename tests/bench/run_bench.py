@@ -223,6 +223,46 @@ def file_figures(build):
     return figures
 
 
+DIAGNOSED_ROWS = 5000
+DIAGNOSIS_TARGET_S = 10.0  # on one core
+
+
+def diagnosis_figures(build):
+    """One core and all of them in turns; what is written is compared too."""
+    here = Path(__file__).resolve().parent
+    unit = here / "two_by_two.yaml"
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        data, out = folder / "data.csv", folder / "report"
+        run_measured(build / "bin/mpmsim", "--config", unit, "--scenario",
+                     here / "much_wrong.yaml", "--seed", "1", "--samples", str(DIAGNOSED_ROWS),
+                     "--csv", data)
+
+        def seconds(*options):
+            took, _ = run_measured(build / "bin/mpm", "diagnose", "--config", unit, "--data", data,
+                                   "--out", out, "--quiet", *options)
+            report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+            del report["made_by"]["command"]
+            return took, report
+
+        alone, together = [], []
+        for _ in range(ROUNDS):
+            took, report = seconds("--threads", "1")
+            alone.append(took)
+            took, other = seconds()
+            together.append(took)
+            if other != report:
+                sys.exit("mpm diagnose says something else on all cores than on one")
+    one = statistics.median(alone)
+    gain = statistics.median(a / b for a, b in zip(alone, together))
+    what = f"mpm diagnose, 2x2 and two aux signals, {DIAGNOSED_ROWS} samples"
+    return [
+        {"name": f"{what}: s on one core", "unit": "s", "value": one,
+         "target": f"<= {DIAGNOSIS_TARGET_S:g}", "met": one <= DIAGNOSIS_TARGET_S},
+        {"name": f"  times faster on all {os.cpu_count()} cores", "unit": "ratio", "value": gain},
+    ]
+
+
 def number(value):
     return f"{value:.3g}" if value < 1000 else f"{value:.0f}"
 
@@ -264,8 +304,8 @@ def print_table(result):
 
     print()
     line = "{:<60}{:>10}  {}".format
-    print(line("recordings", "", "target"))
-    for item in result["recording"]:
+    print(line("recordings and their diagnosis", "", "target"))
+    for item in result["recording"] + result["diagnosis"]:
         print(line(item["name"], number(item["value"]), verdict(item)))
 
 
@@ -300,6 +340,7 @@ def main():
         "throughput": throughput,
         "latency": latency_figures(options.build, push_us),
         "recording": recording_figures(options.build) + file_figures(options.build),
+        "diagnosis": diagnosis_figures(options.build),
     }
     print_table(result)
     if options.json:

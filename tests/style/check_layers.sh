@@ -25,6 +25,12 @@ if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \
   status=1
 fi
 
+if grep -rnE "^ *# *include *[<\"](oneapi/)?tbb" core config idl sim daemon \
+  --include='*.hpp' --include='*.cpp' | grep -v '^core/parallel/arena.cpp:'; then
+  echo "oneTBB's names stay in core/parallel/arena.cpp" >&2
+  status=1
+fi
+
 # floors ROOM: reads from the ground up a folder of the room, and those whose headers it may include
 # besides its own. Whatever stands here may be included only further down.
 floors() {
@@ -57,6 +63,7 @@ floors() {
 }
 
 floors core <<'TABLE'
+parallel
 text
 signal
 regression
@@ -66,11 +73,11 @@ alarm text
 mismatch text signal regression statistics model
 record text alarm mismatch
 monitor text signal statistics model alarm mismatch
-identify/fit model
+identify/fit parallel model
 identify/evidence model mismatch monitor identify/fit
-identify/causes text model identify/fit
+identify/causes parallel text model identify/fit
 identify/valves
-identify/search identify/fit identify/causes
+identify/search parallel identify/fit identify/causes
 identify/diagnosis text statistics model identify/fit identify/evidence identify/causes identify/valves identify/search
 TABLE
 

@@ -8,6 +8,7 @@
 #include "core/identify/causes/signal_names.hpp"
 #include "core/identify/fit/effect.hpp"
 #include "core/identify/fit/problem.hpp"
+#include "core/parallel/parallel.hpp"
 
 namespace mpm {
 
@@ -16,6 +17,7 @@ struct Outlook {
   Problem& problem;
   const std::vector<Effect>& accepted;
   const std::vector<CvFit>& without;  ///< of each CV, with `accepted` alone
+  const Parallel& parallel = one_thread();
 
   [[nodiscard]] const ModelSpec& model() const { return problem.model(); }
   [[nodiscard]] const Recording& recording() const { return problem.recording(); }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -69,10 +70,14 @@ class PeriodicDisturbance : public OutputDisturbance {
   [[nodiscard]] bool may_pass_for_noise() const override { return true; }
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
-    for (const CvFit& without : outlook.without) {
-      sines(outlook, without, found);
-      square_waves(outlook, without, found);
-    }
+    std::vector<std::vector<Effect>> of_each(outlook.without.size());
+    outlook.parallel.for_each(of_each.size(), [&](std::size_t cv) {
+      sines(outlook, outlook.without[cv], of_each[cv]);
+      square_waves(outlook, outlook.without[cv], of_each[cv]);
+    });
+    for (std::vector<Effect>& some : of_each)
+      found.insert(found.end(), std::make_move_iterator(some.begin()),
+                   std::make_move_iterator(some.end()));
   }
 
   [[nodiscard]] Stepping stepping(const Effect& mine) const override {
@@ -168,7 +173,8 @@ class PeriodicDisturbance : public OutputDisturbance {
                     std::vector<Effect>& found) const {
     const double sample_time_s = outlook.sample_time_s();
     const auto samples = static_cast<double>(outlook.problem.samples());
-    const SquareWaves best = find_square_waves(outlook.problem.data(without.cv), without);
+    const SquareWaves best =
+        find_square_waves(outlook.problem.data(without.cv), without, outlook.parallel);
     const double cost =
         cost_of(static_cast<std::size_t>(outlook.model().cv_count)) + cost_of(best.looked_at);
     for (const SquareWave& wave : best.waves) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/identify/fit/problem.hpp"
+#include "core/parallel/parallel.hpp"
 
 namespace mpm {
 
@@ -21,6 +22,7 @@ struct SquareWaves {
 
 /// Disturbances that switch to and fro, as a limit cycle elsewhere does: the best of all periods
 /// and phases. In the innovations they are pulses, which no periodogram shows.
-[[nodiscard]] SquareWaves find_square_waves(const CvData& data, const CvFit& without);
+[[nodiscard]] SquareWaves find_square_waves(const CvData& data, const CvFit& without,
+                                            const Parallel& parallel = one_thread());
 
 }  // namespace mpm

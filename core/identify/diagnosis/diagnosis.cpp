@@ -196,6 +196,7 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
 
   SearchSettings search_settings;
   search_settings.max_findings = settings.max_findings;
+  search_settings.threads = settings.threads;
   search_settings.progress = settings.progress;
   search_settings.may_name =
       nameable(model, {settings.mv_count, base.input_count, aux}, tests, outside);

@@ -21,8 +21,9 @@ struct DiagnosisSettings {
   double fit_share = 2.0 / 3;  ///< first part of the recording that is fitted
   int max_findings = 6;
   std::uint64_t seed = 1;  ///< of the block bootstrap
-  /// Called after each fit, with the share done, 0..1; returns false to give up, which then takes
-  /// no more than a fit does.
+  int threads = 1;         ///< >= 1; nothing of the diagnosis depends on it
+  /// Called about once per fit, with the share done, 0..1, by the thread that called diagnose();
+  /// returns false to give up, which then takes no more than a fit does.
   std::function<bool(double)> progress = {};
 };
 

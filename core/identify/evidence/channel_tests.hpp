@@ -22,9 +22,11 @@ class ChannelTests {
                const Eigen::MatrixXd& residuals);
 
   /// 0..1 of the channel's match; nothing where the data do not suffice for a test or the input
-  /// does not move. Aux signals are numbered after the inputs.
+  /// does not move, and of set-points, which are no inputs of it. Aux signals are numbered after
+  /// the inputs.
   [[nodiscard]] std::optional<double> p_value(int cv, int input) const {
-    return p_values_[static_cast<std::size_t>(input * cvs_ + cv)];
+    const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
+    return channel < p_values_.size() ? p_values_[channel] : std::nullopt;
   }
   /// How much wrong that test sees, CV units squared: its F, which is relative to the noise that
   /// the model leaves, times the mean square of the residual's steps from row to row; 0 where there

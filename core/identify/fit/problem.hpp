@@ -75,7 +75,8 @@ struct Fit {
   Eigen::MatrixXd covariance;
 };
 
-/// The data, the model and its tolerances, ready for any number of fits.
+/// The data, the model and its tolerances, ready for any number of fits, by any number of threads
+/// at once: only settle() changes it.
 ///
 /// A fit is generalised least squares (Gauss-Newton, finite differences, orthogonal) of the
 /// effects' coordinates, each CV with its own autoregressive noise, re-estimated in every step.

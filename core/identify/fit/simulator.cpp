@@ -9,8 +9,10 @@
 
 #include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/channel_edit.hpp"
+#include "core/identify/fit/convolution.hpp"
 #include "core/identify/fit/initial_state.hpp"
 #include "core/model/disturbance.hpp"
+#include "core/model/fir_channel.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/model/static_blocks.hpp"
 
@@ -20,10 +22,13 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Memory that remembered channels may take, in numbers.
-constexpr std::size_t kRemembered = std::size_t{1} << 24;
+/// Memory that what is remembered may take, in bytes.
+constexpr std::size_t kRemembered = std::size_t{1} << 27;
 
-/// What a channel's output depends on, as bytes.
+/// In the key of a disturbance, where that of a channel says how its first run begins (0 or 1).
+constexpr double kDisturbance = -1.0;
+
+/// What the output of a channel or a disturbance depends on, as bytes.
 class Key {
  public:
   void add(double value) {
@@ -53,6 +58,10 @@ class Key {
   void add(const RestoringForce& v) { add(v.quadratic), add(v.cubic); }
   void add(const SquareRootOutflow& v) { add(v.empty_output); }
   void add(const CoulombFriction& v) { add(v.force), add(v.speed); }
+  void add(const DisturbanceTerm& v) {
+    add(static_cast<double>(v.shape)), add(v.onset_s), add(v.size), add(v.until_s);
+    add(v.time_constant_s), add(v.period_s), add(v.square);
+  }
   template <class... Types>
   void add(const std::variant<Types...>& value) {
     add(static_cast<double>(value.index()));
@@ -84,11 +93,7 @@ const StateTerm* state_term(const ModelSpec& model, const ChannelSpec& channel) 
 }  // namespace
 
 Simulator::Simulator(const Recording& recording)
-    : recording_(&recording),
-      runs_(runs_of(recording)),
-      capacity_(std::max<std::size_t>(
-          16,
-          kRemembered / std::max<std::size_t>(1, static_cast<std::size_t>(recording.samples())))) {}
+    : recording_(&recording), runs_(runs_of(recording)) {}
 
 VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
                              const Starts& at_origin) const {
@@ -108,6 +113,11 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
   const double sample_time_s = model.sample_time_s;
   const double start_s = recording_->start_s + kSameMoment * sample_time_s;
   LinearModel simulator(one);
+  const auto* response = std::get_if<StepResponse>(&spec.dynamics);
+  const bool plain_response = response != nullptr && one.state_terms.empty();
+  const VectorXd impulse =
+      plain_response ? VectorXd(make_fir_channel(0, 0, *response).channel.weights.reverse())
+                     : VectorXd();
   VectorXd input(1), output(all.size());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const Run& run = runs_[r];
@@ -126,6 +136,11 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
       if (std::isfinite(given(k))) last = given(k);
       moved(k) = origin + channels.apply(origin + own.apply(last, time_s(k)), time_s(k));
     }
+    if (plain_response) {  // as long as the data, often
+      output.segment(run.first, run.count) =
+          convolved(impulse, moved.array() - origin, rest - origin);
+      continue;
+    }
     input(0) = rest;
     simulator.reset_steady(input);
     for (Index k = 0; k < run.count; ++k) {
@@ -137,8 +152,25 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
   return output;
 }
 
-const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& spec,
-                                   const Starts& at_origin) {
+template <class Make>
+Simulator::Given Simulator::remembered(const std::string& key, const Make& make) {
+  {
+    const MutexLock lock(mutex_);
+    const auto found = remembered_.find(key);
+    if (found != remembered_.end()) return found->second;
+  }
+  // Two threads may do the same, which gives the same.
+  const auto made = std::make_shared<const VectorXd>(make());
+  const std::size_t size = key.size() + sizeof(double) * static_cast<std::size_t>(made->size());
+  const MutexLock lock(mutex_);
+  if (bytes_ + size > kRemembered) remembered_.clear(), bytes_ = 0;
+  const auto [place, fresh] = remembered_.emplace(key, made);
+  if (fresh) bytes_ += size;
+  return place->second;
+}
+
+Simulator::Given Simulator::channel(const ModelSpec& model, const ChannelSpec& spec,
+                                    const Starts& at_origin) {
   Key key;
   for (const bool start : at_origin) key.add(start ? 1.0 : 0.0);
   key.add(static_cast<double>(spec.input));
@@ -150,27 +182,41 @@ const VectorXd& Simulator::channel(const ModelSpec& model, const ChannelSpec& sp
   const StateTerm* term = state_term(model, spec);
   key.add(term ? 1.0 : 0.0);
   if (term) key.add(term->block);
-  const auto found = remembered_.find(key.text());
-  if (found != remembered_.end()) return found->second;
-  if (remembered_.size() >= capacity_) remembered_.clear();
-  VectorXd output;
-  try {
-    output = simulate(model, spec, at_origin);
-  } catch (const std::invalid_argument&) {  // a fit tried what is no model
-    output = VectorXd::Constant(recording_->samples(), std::numeric_limits<double>::quiet_NaN());
-  }
-  return remembered_.emplace(key.text(), std::move(output)).first->second;
+  return remembered(key.text(), [&]() -> VectorXd {
+    try {
+      return simulate(model, spec, at_origin);
+    } catch (const std::invalid_argument&) {  // a fit tried what is no model
+      return VectorXd::Constant(recording_->samples(), std::numeric_limits<double>::quiet_NaN());
+    }
+  });
+}
+
+Simulator::Given Simulator::disturbance(const DisturbanceTerm& term, double sample_time_s) {
+  Key key;
+  key.add(kDisturbance);
+  key.add(term);
+  return remembered(key.text(), [&] {
+    VectorXd output(recording_->samples());
+    for (Index k = 0; k < output.size(); ++k)
+      output(k) = disturbance_at(term, recording_->start_s + static_cast<double>(k) * sample_time_s,
+                                 kSameMoment * sample_time_s);
+    return output;
+  });
 }
 
 VectorXd Simulator::sum_of_channels(const ModelSpec& model, int cv, const Starts& at_origin) {
   VectorXd sum = VectorXd::Zero(recording_->samples());
   for (const ChannelSpec& spec : model.channels)
-    if (spec.cv == cv) sum += channel(model, spec, at_origin);
+    if (spec.cv == cv) sum += *channel(model, spec, at_origin);
   return sum;
 }
 
 const Simulator::Starts& Simulator::starts(const ModelSpec& model) {
-  if (!at_origin_.empty()) return at_origin_;
+  std::call_once(begun_, [&] { at_origin_ = first_starts(model); });
+  return at_origin_;
+}
+
+Simulator::Starts Simulator::first_starts(const ModelSpec& model) {
   const Starts none(runs_.size(), false), all(runs_.size(), true);
   std::vector<double> votes(runs_.size(), 0.0);
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -186,20 +232,16 @@ const Simulator::Starts& Simulator::starts(const ModelSpec& model) {
         votes[r] += (at_inputs - at_origin) / (at_inputs + at_origin);
     }
   }
-  for (const double vote : votes) at_origin_.push_back(vote > 0.0);
-  return at_origin_;
+  Starts at_origin;
+  for (const double vote : votes) at_origin.push_back(vote > 0.0);
+  return at_origin;
 }
 
 VectorXd Simulator::cv(const ModelSpec& model, int cv) {
   const Index samples = recording_->samples();
   VectorXd sum = sum_of_channels(model, cv, starts(model));
-  for (const DisturbanceTerm& term : model.disturbances) {
-    if (term.cv != cv) continue;
-    for (Index k = 0; k < samples; ++k)
-      sum(k) +=
-          disturbance_at(term, recording_->start_s + static_cast<double>(k) * model.sample_time_s,
-                         kSameMoment * model.sample_time_s);
-  }
+  for (const DisturbanceTerm& term : model.disturbances)
+    if (term.cv == cv) sum += *disturbance(term, model.sample_time_s);
   const double origin = model.output_origin(cv);
   const std::optional<OutputBlock>& block = model.output_blocks[static_cast<std::size_t>(cv)];
   for (Index k = 0; k < samples; ++k) sum(k) = apply_output_block(block, origin, sum(k));

@@ -41,8 +41,9 @@ void place_onset(Trials& trials, Trial& trial) {
   Index reach = std::max<Index>(2, problem.samples() / kFirstReach);
   while (reach >= 2) {
     bool moved = false;
-    for (const Effect& other : other_onsets(trial.candidate, reach, problem.samples()))
-      moved = improve(trial, trials.attempt(other, kOnsetSteps), kBetterOnset) || moved;
+    const std::vector<Effect> others = other_onsets(trial.candidate, reach, problem.samples());
+    for (Trial& other : trials.attempt_all(others, kOnsetSteps))
+      moved = improve(trial, std::move(other), kBetterOnset) || moved;
     // The best row near, all else held.
     if (!trial.candidate.edit->knows_onset() && reach > kWidestBlindReach) {
       const Index first = std::max(margin, trial.candidate.onset - reach);
@@ -56,20 +57,22 @@ void place_onset(Trials& trials, Trial& trial) {
   }
 }
 
-void look_closer(Trials& tries, Screening& screening, std::vector<Trial>& trials) {
+void look_closer(Trials& tries, const Screening& screening, std::vector<Trial>& trials) {
   std::vector<Effect> tried;
   tried.reserve(trials.size());
   for (const Trial& trial : trials) tried.push_back(trial.candidate);
-  std::vector<std::pair<double, Effect>> scored;
-  for (Effect& effect : cause_of(tried[0]).closer_look(tried[0], tried)) {
+  const std::vector<Effect> near = cause_of(tried[0]).closer_look(tried[0], tried);
+  std::vector<std::pair<double, Effect>> scored(near.size());
+  tries.parallel().for_each(near.size(), [&](std::size_t i) {
     tries.tell();
-    const double score = screening.score(effect);
-    scored.emplace_back(score, std::move(effect));
-  }
+    scored[i] = {screening.score(near[i]), near[i]};
+  });
   std::sort(scored.begin(), scored.end(),
             [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Effect> likeliest;
   for (std::size_t i = 0; i < std::min(kCloserLooks, scored.size()); ++i)
-    trials.push_back(tries.attempt(scored[i].second, kTrialSteps));
+    likeliest.push_back(std::move(scored[i].second));
+  for (Trial& trial : tries.attempt_all(likeliest, kTrialSteps)) trials.push_back(std::move(trial));
 }
 
 void step_about(Trials& trials, Trial& trial) {

@@ -13,7 +13,7 @@ void place_onset(Trials& trials, Trial& trial);
 
 /// Where the best explanation asks for a closer look near it, fits the likeliest of what there is
 /// to see and adds them to `trials`, which are sorted by odds and not empty.
-void look_closer(Trials& tries, Screening& screening, std::vector<Trial>& trials);
+void look_closer(Trials& tries, const Screening& screening, std::vector<Trial>& trials);
 
 /// Steps the numbers of a trial about, ever closer, where its cause says how.
 void step_about(Trials& trials, Trial& trial);

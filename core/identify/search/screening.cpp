@@ -40,7 +40,7 @@ Screening::Screening(Problem& problem, const std::vector<Effect>& accepted,
   }
 }
 
-double Screening::score(const Effect& candidate) {
+double Screening::score(const Effect& candidate) const {
   const auto count = static_cast<Index>(candidate.coordinates.size());
   // Small and only for ranking, so the normal equations of the projected columns will do here; the
   // columns are in prior units.

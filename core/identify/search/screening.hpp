@@ -15,8 +15,9 @@ class Screening {
   Screening(Problem& problem, const std::vector<Effect>& accepted,
             const std::vector<CvFit>& without);
 
-  /// About 2 ln of the odds for the candidate, search cost taken off.
-  [[nodiscard]] double score(const Effect& candidate);
+  /// About 2 ln of the odds for the candidate, search cost taken off. Any number of threads may ask
+  /// at once.
+  [[nodiscard]] double score(const Effect& candidate) const;
 
  private:
   struct Cv {

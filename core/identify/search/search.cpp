@@ -113,10 +113,14 @@ class Search {
   /// All that may still be wrong, each cause's starts: what may be named, or what may not.
   [[nodiscard]] std::vector<Effect> proposals(bool nameable) {
     std::vector<Effect> all;
-    for (const Cause* cause : causes::all()) {
-      std::vector<Effect> mine;
-      cause->propose({problem_, accepted_, nulls_}, mine);
-      for (Effect& effect : mine) {
+    const auto& causes = causes::all();
+    std::vector<std::vector<Effect>> of_each(causes.size());
+    trials_.parallel().for_each(causes.size(), [&](std::size_t i) {
+      causes[i]->propose({problem_, accepted_, nulls_, trials_.parallel()}, of_each[i]);
+    });
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      const Cause* cause = causes[i];
+      for (Effect& effect : of_each[i]) {
         if (may_name(effect) != nameable || (nameable && is_settled(effect))) continue;
         const bool open =
             std::all_of(accepted_.begin(), accepted_.end(),
@@ -128,16 +132,17 @@ class Search {
   }
 
   std::vector<Effect> shortlist(bool nameable) {
-    nulls_.clear();
-    for (int cv = 0; cv < problem_.model().cv_count; ++cv)
-      nulls_.push_back(trials_.without({cv}).cvs.front());
+    nulls_.resize(static_cast<std::size_t>(problem_.model().cv_count));
+    trials_.parallel().for_each(nulls_.size(), [&](std::size_t cv) {
+      nulls_[cv] = trials_.without({static_cast<int>(cv)}).cvs.front();
+    });
     const std::vector<Effect> all = proposals(nameable);
-    Screening& screening = screening_.emplace(problem_, accepted_, nulls_);
-    std::vector<double> scores;
-    for (const Effect& effect : all) {
-      report();
-      scores.push_back(screening.score(effect) - cause_of(effect).rarity());
-    }
+    const Screening& screening = screening_.emplace(problem_, accepted_, nulls_);
+    std::vector<double> scores(all.size());
+    trials_.parallel().for_each(all.size(), [&](std::size_t i) {
+      trials_.tell();
+      scores[i] = screening.score(all[i]) - cause_of(all[i]).rarity();
+    });
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),
@@ -160,19 +165,16 @@ class Search {
 
   bool find_one() {
     trials_.settle(last_.cvs.empty() ? nullptr : &last_);
-    std::vector<Trial> trials;
-    for (const Effect& effect : shortlist(true))
-      trials.push_back(trials_.attempt(effect, kTrialSteps));
+    std::vector<Trial> trials = trials_.attempt_all(shortlist(true), kTrialSteps);
     if (trials.empty()) return false;
     std::sort(trials.begin(), trials.end(), more_probable);
     look_closer(trials_, *screening_, trials);
     std::erase_if(trials, [this](const Trial& trial) { return !may_name(trial.candidate); });
     std::sort(trials.begin(), trials.end(), more_probable);
-    for (std::size_t i = 0; i < std::min(kRefined, trials.size()); ++i) {
-      if (trials[i].candidate.onset > 0 && trials[i].odds > trials[0].odds - kOnsetWorthMoving)
-        place_onset(trials_, trials[i]);
-      if (trials[i].odds > kWorthStepping * trials[0].odds) step_about(trials_, trials[i]);
-    }
+    // The best one first: how far behind the others are decides whether they are worth it.
+    refine(trials[0], trials[0]);
+    trials_.parallel().for_each(std::min(kRefined, trials.size()) - 1,
+                                [&](std::size_t i) { refine(trials[i + 1], trials[0]); });
     std::sort(trials.begin(), trials.end(), more_probable);
     if (trials[0].odds < settings_.decisive) return false;
 
@@ -182,13 +184,20 @@ class Search {
     const Fit weighing =
         jump ? trials_.without(touched(trials[0].candidate, problem_)) : trials[0].fit;
     trials_.settle(&weighing);
-    std::vector<Trial> again;
+    std::vector<Effect> best;
     for (std::size_t i = 0; i < std::min(kTriedAgain, trials.size()); ++i)
-      again.push_back(trials_.attempt(trials[i].candidate, kSecondTrialSteps));
+      best.push_back(trials[i].candidate);
+    std::vector<Trial> again = trials_.attempt_all(best, kSecondTrialSteps);
     std::sort(again.begin(), again.end(), more_probable);
     if (again[0].odds < settings_.decisive) return false;
     accept(again);
     return true;
+  }
+
+  void refine(Trial& trial, const Trial& best) {
+    if (trial.candidate.onset > 0 && trial.odds > best.odds - kOnsetWorthMoving)
+      place_onset(trials_, trial);
+    if (trial.odds > kWorthStepping * best.odds) step_about(trials_, trial);
   }
 
   /// The best of what may not be named, beside all that was.
@@ -196,8 +205,7 @@ class Search {
     if (!settings_.may_name || !settings_.suspects) return std::nullopt;
     trials_.settle(last_.cvs.empty() ? nullptr : &last_);
     std::optional<Named> best;
-    for (const Effect& effect : shortlist(false)) {
-      const Trial trial = trials_.attempt(effect, kTrialSteps);
+    for (const Trial& trial : trials_.attempt_all(shortlist(false), kTrialSteps)) {
       if (trial.odds < settings_.decisive || (best && best->evidence >= trial.odds)) continue;
       best = Named{trial.candidate, trial.odds, 0.0, {}};
     }

@@ -22,11 +22,13 @@ struct SearchSettings {
   double visible = 0.015;
   /// Whether what the data show themselves is taken in (Cause::shown_by).
   bool shown = true;
+  int threads = 1;  ///< >= 1; nothing of the result depends on it
   /// Whether what may not be named is told of as a suspect.
   bool suspects = true;
   /// Which effects may be named at all; empty = all. Others are only told of as suspects.
   std::function<bool(const Effect&)> may_name = {};
-  /// Called at least once per fit with the share done; may throw to end the search at once.
+  /// Called about once per fit with the share done, by the thread that searches; may throw to end
+  /// the search as soon as the fits at hand are done.
   std::function<bool(double)> progress = {};
 };
 

@@ -8,7 +8,10 @@
 
 namespace mpm {
 void Trials::settle(const Fit* fit) {
-  without_.clear();
+  {
+    const MutexLock lock(mutex_);
+    without_.clear();
+  }
   problem_.settle(accepted_, fit);
 }
 
@@ -26,15 +29,21 @@ std::size_t Trials::arrange(const std::vector<int>& cvs, std::vector<Effect>& ef
 }
 
 const Fit& Trials::without(const std::vector<int>& cvs) {
-  const auto found = without_.find(cvs);
-  if (found != without_.end()) return found->second;
+  {
+    const MutexLock lock(mutex_);
+    const auto found = without_.find(cvs);
+    if (found != without_.end()) return found->second;
+  }
+  // Two threads may do the same, which gives the same.
   std::vector<Effect> effects;
   const std::size_t first_free = arrange(cvs, effects);
-  return without_.emplace(cvs, problem_.fit(std::move(effects), first_free, cvs)).first->second;
+  Fit fit = problem_.fit(std::move(effects), first_free, cvs);
+  const MutexLock lock(mutex_);
+  return without_.emplace(cvs, std::move(fit)).first->second;
 }
 
 Trial Trials::attempt(const Effect& candidate, int iterations) {
-  tell_();  // a round takes seconds
+  tell();  // a round takes seconds
   Trial trial;
   const std::vector<int> cvs = touched(candidate, problem_);
   std::vector<Effect> effects;
@@ -50,6 +59,13 @@ Trial Trials::attempt(const Effect& candidate, int iterations) {
     trial.odds = std::max(trial.odds, settled_odds(trial, cvs) - kSettledNoise);
   if (!material(trial)) trial.odds = std::min(trial.odds, 0.0);
   return trial;
+}
+
+std::vector<Trial> Trials::attempt_all(const std::vector<Effect>& candidates, int iterations) {
+  std::vector<Trial> trials(candidates.size());
+  parallel_.for_each(candidates.size(),
+                     [&](std::size_t i) { trials[i] = attempt(candidates[i], iterations); });
+  return trials;
 }
 
 double Trials::settled_odds(const Trial& trial, const std::vector<int>& cvs) {

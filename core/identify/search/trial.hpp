@@ -7,6 +7,8 @@
 
 #include "core/identify/fit/problem.hpp"
 #include "core/identify/search/search.hpp"
+#include "core/parallel/mutex.hpp"
+#include "core/parallel/parallel.hpp"
 
 namespace mpm {
 
@@ -20,16 +22,25 @@ struct Trial {
 /// The most probable first.
 [[nodiscard]] inline bool more_probable(const Trial& a, const Trial& b) { return a.odds > b.odds; }
 
-/// Tries candidates beside what is accepted.
+/// Tries candidates beside what is accepted, on settings.threads threads. Between two calls of
+/// settle() anything may be asked by several of them at once.
 class Trials {
  public:
-  /// All must outlive it. `tell` is called before each fit and may throw to end it all.
+  /// All must outlive it. `tell` is called before each fit that this thread makes, and may throw to
+  /// end it all.
   Trials(Problem& problem, const SearchSettings& settings, const std::vector<Effect>& accepted,
          std::function<void()> tell)
-      : problem_(problem), settings_(settings), accepted_(accepted), tell_(std::move(tell)) {}
+      : problem_(problem),
+        settings_(settings),
+        accepted_(accepted),
+        tell_(std::move(tell)),
+        parallel_(settings.threads) {}
 
   /// What a long loop of its users calls too.
-  void tell() const { tell_(); }
+  void tell() const {
+    if (parallel_.at_home()) tell_();
+  }
+  [[nodiscard]] const Parallel& parallel() const { return parallel_; }
   [[nodiscard]] Problem& problem() { return problem_; }
 
   /// To be called after whatever moves the accepted effects: weighs the problem's rows anew, as
@@ -39,6 +50,9 @@ class Trials {
   /// Fits the candidate in at most so many steps. The odds of what nobody would care about are at
   /// most even.
   [[nodiscard]] Trial attempt(const Effect& candidate, int iterations);
+  /// Each of them, in their order.
+  [[nodiscard]] std::vector<Trial> attempt_all(const std::vector<Effect>& candidates,
+                                               int iterations);
 
   /// The accepted effects alone.
   [[nodiscard]] const Fit& without(const std::vector<int>& cvs);
@@ -55,7 +69,9 @@ class Trials {
   const SearchSettings& settings_;
   const std::vector<Effect>& accepted_;
   std::function<void()> tell_;
-  std::map<std::vector<int>, Fit> without_;
+  Parallel parallel_;
+  Mutex mutex_;
+  std::map<std::vector<int>, Fit> without_ MPM_GUARDED_BY(mutex_);
 };
 
 }  // namespace mpm

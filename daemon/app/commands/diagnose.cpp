@@ -11,6 +11,7 @@
 
 #include "config/load_unit.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/parallel/parallel.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
@@ -39,6 +40,7 @@ struct DiagnoseOptions {
   double fit_share = DiagnosisSettings().fit_share;
   int max_findings = DiagnosisSettings().max_findings;
   std::uint64_t seed = DiagnosisSettings().seed;
+  int threads = available_threads();
   bool seed_given = false;
   bool json = false;
   bool quiet = false;
@@ -156,6 +158,7 @@ bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
   settings.fit_share = options.fit_share;
   settings.max_findings = options.max_findings;
   settings.seed = options.seed;
+  settings.threads = options.threads;
   bool stopped = false;
   settings.progress = [&](double share) {
     bar.show(share);
@@ -282,6 +285,11 @@ void add_diagnose(CLI::App& app, int& exit_code) {
                        "of the resampling behind the intervals; with a --scenario that draws what "
                        "it hides, of the run that made the data")
           ->capture_default_str();
+  command
+      ->add_option("--threads", options->threads,
+                   "that work at once; nothing in the report depends on how many")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
   command->add_option("--scenario", options->scenario,
                       "compare how well the simulator's controller does on this scenario with the "
                       "unit file's model and with the extended one");

@@ -6,9 +6,9 @@
 #include <thread>
 #include <vector>
 
+#include "core/parallel/mutex.hpp"
 #include "daemon/bag/record/recording_writer.hpp"
 #include "idl/discovery.hpp"
-#include "idl/mutex.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/wait_set.hpp"
 

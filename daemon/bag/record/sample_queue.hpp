@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "idl/mutex.hpp"
+#include "core/parallel/mutex.hpp"
+#include "idl/condition_variable.hpp"
 #include "idl/raw_sample.hpp"
 
 namespace mpm::bag {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/parallel/parallel.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -202,6 +203,71 @@ TEST_CASE("the same data are diagnosed to the same bits") {
   CHECK(first.after == second.after);
   CHECK(first.findings[0].evidence == second.findings[0].evidence);
   CHECK(first.scores[0].gain_low == second.scores[0].gain_low);
+}
+
+/// Two CVs, a gain that is off, a swing that the model knows nothing of, a step late in the data.
+Recording two_cvs_with_much_wrong() {
+  Recording recording = two_cvs(1.3, 1.3);
+  for (Index k = 0; k < kRows; ++k) {
+    recording.cvs(k, 1) += 0.4 * std::sin(0.21 * static_cast<double>(k));
+    if (k >= 250) recording.cvs(k, 0) -= 0.6;
+  }
+  return recording;
+}
+
+TEST_CASE("how many threads work on it is nowhere to be seen") {
+  const Recording recording = two_cvs_with_much_wrong();
+  DiagnosisSettings settings;
+  settings.mv_count = 2;
+  const Diagnosis one = diagnose(model_of_two(), recording, nullptr, settings);
+  REQUIRE(one.findings.size() >= 2);
+  for (const int threads : {2, 3, 8}) {
+    CAPTURE(threads);
+    settings.threads = threads;
+    const Diagnosis other = diagnose(model_of_two(), recording, nullptr, settings);
+    REQUIRE(other.findings.size() == one.findings.size());
+    for (std::size_t i = 0; i < one.findings.size(); ++i) {
+      const Finding &a = one.findings[i], &b = other.findings[i];
+      CHECK(a.subject == b.subject);
+      CHECK(a.evidence == b.evidence);
+      CHECK(a.confidence == b.confidence);
+      CHECK(a.onset_s == b.onset_s);
+      REQUIRE(a.parameters.size() == b.parameters.size());
+      for (std::size_t p = 0; p < a.parameters.size(); ++p) {
+        CHECK(a.parameters[p].value == b.parameters[p].value);
+        CHECK(a.parameters[p].low == b.parameters[p].low);
+      }
+      REQUIRE(a.rivals.size() == b.rivals.size());
+      for (std::size_t r = 0; r < a.rivals.size(); ++r) {
+        CHECK(a.rivals[r].subject == b.rivals[r].subject);
+        CHECK(a.rivals[r].worse == b.rivals[r].worse);
+      }
+    }
+    CHECK(one.after == other.after);
+    CHECK(one.before == other.before);
+  }
+}
+
+TEST_CASE("several threads are given up by the one that asked, which alone is told") {
+  const Parallel home(1);
+  DiagnosisSettings settings;
+  settings.mv_count = 2;
+  settings.threads = 4;
+  for (const int told_at_most : {1, 40, 400}) {
+    CAPTURE(told_at_most);
+    int told = 0;
+    bool always_home = true;
+    settings.progress = [&](double) {
+      always_home = always_home && home.at_home();
+      return ++told < told_at_most;
+    };
+    const Diagnosis diagnosis =
+        diagnose(model_of_two(), two_cvs_with_much_wrong(), nullptr, settings);
+    CHECK(diagnosis.reason == "stopped");
+    CHECK(diagnosis.findings.empty());
+    CHECK(told == told_at_most);
+    CHECK(always_home);
+  }
 }
 
 // By hand: five rows for each of 3 numbers a channel, 8 of the noise and 4 others, in two thirds.

@@ -46,6 +46,12 @@ TEST_CASE("the wrong channel is rejected under it, and the other is not blamed")
   CHECK_FALSE(tests.reject({{0, 1}}));
 }
 
+TEST_CASE("an input that was not in the test has no test") {
+  const ChannelTests tests = tests_of(1.3, 3, 1500);
+  CHECK_FALSE(tests.p_value(0, 2).has_value());
+  CHECK_FALSE(tests.reject({{0, 2}}));
+}
+
 TEST_CASE("few rows get a smaller regression, and too few none") {
   CHECK(tests_of(1.5, 5, 200).p_value(0, 0).has_value());
   const ChannelTests none = tests_of(1.5, 5, 40);

@@ -89,6 +89,26 @@ TEST_CASE("bad input is refused in one line and leaves nothing behind") {
   refused(bench.folder.file("bare.yaml"), bench.data(rows(400, 2.0)), "holds no model");
 }
 
+// But for the command line, which says how many threads were asked for.
+TEST_CASE("the report's bytes are the same on any number of threads") {
+  Bench bench;
+  std::vector<std::string> reports, models;
+  for (const std::string threads : {"1", "2", "7"}) {
+    bench.out = bench.folder.file("report" + threads);
+    REQUIRE(bench.diagnose(bench.small(), bench.data(rows(600, 2.6)),
+                           {"--quiet", "--threads", threads}) == 0);
+    nlohmann::json report = nlohmann::json::parse(read_file(bench.out + "/report.json"));
+    REQUIRE(report["findings"].size() == 1);
+    report["made_by"].erase("command");
+    reports.push_back(report.dump());
+    models.push_back(read_file(bench.out + "/extended.yaml"));
+  }
+  CHECK(reports[1] == reports[0]);
+  CHECK(reports[2] == reports[0]);
+  CHECK(models[1] == models[0]);
+  CHECK(models[2] == models[0]);
+}
+
 TEST_CASE("what may be set is printed as it would be used, and nothing is done") {
   const TemporaryFolder folder;
   CHECK(run({"mpm", "diagnose", "--print-settings", "--fit-share", "0.5", "--max-findings", "2"},

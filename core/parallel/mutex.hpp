@@ -1,12 +1,9 @@
 #pragma once
 
-#include <chrono>
-#include <condition_variable>
 #include <mutex>
 
 // Who holds which lock, said where clang can check it (-Wthread-safety;
-// tests/style/check_locks.sh): std::mutex says nothing of the kind. Nothing here depends on DDS;
-// this is merely the lowest room that has threads.
+// tests/style/check_locks.sh): std::mutex says nothing of the kind.
 #ifdef __clang__
 #define MPM_THREADS(attribute) __attribute__((attribute))
 #else
@@ -50,21 +47,6 @@ class MPM_THREADS(scoped_lockable) MutexLock {
  private:
   friend class ConditionVariable;
   std::unique_lock<Mutex> lock_;
-};
-
-/// What threads that hold a lock wait for. Wakes up for no reason too: wait in a loop.
-class ConditionVariable {
- public:
-  void wait(MutexLock& lock) { changed_.wait(lock.lock_); }
-  /// False at `deadline`.
-  [[nodiscard]] bool wait_until(MutexLock& lock, std::chrono::steady_clock::time_point deadline) {
-    return changed_.wait_until(lock.lock_, deadline) == std::cv_status::no_timeout;
-  }
-  void notify_one() { changed_.notify_one(); }
-  void notify_all() { changed_.notify_all(); }
-
- private:
-  std::condition_variable_any changed_;
 };
 
 }  // namespace mpm
