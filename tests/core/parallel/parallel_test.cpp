@@ -72,7 +72,5 @@ TEST_CASE("the thread that asks knows itself, and works too") {
   alone.for_each(3, [&](std::size_t) { CHECK(alone.at_home()); });
 }
 
-TEST_CASE("there is a thread at least") { CHECK(available_threads() >= 1); }
-
 }  // namespace
 }  // namespace mpm
