@@ -144,7 +144,7 @@ def run(case, options, cut):
     folder = options.out / case["name"]
     command = [options.mpm, "diagnose", "--config",
                str(ROOT / f"config/cases/{case['unit']}.yaml"),
-               "--data", str(cut / f"{case['data']}.csv"), "--out", str(folder)]
+               "--data", str(cut / f"{case['data']}.csv"), "--out", str(folder), "--threads", "1"]
     if "unseen" in case:
         command += ["--validate", str(cut / f"{case['unseen']}.csv")]
     before = processor_time()

@@ -155,7 +155,7 @@ def score_case(case, mpm, keep, detect):
         unit, data = str(folder / "unit.yaml"), str(folder / "data.csv")
         out = folder / "out"
         code, output, seconds = run(mpm, ["diagnose", "--config", unit, "--data", data, "--out",
-                                          str(out)])
+                                          str(out), "--threads", "1"])
         result.update(noncentrality=truth["noncentrality"], seconds=seconds, made=True,
                       truth={k: truth[k] for k in ("cause", "cv", "mv", "tag", "parameters",
                                                    "onset")})

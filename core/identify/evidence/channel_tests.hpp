@@ -32,7 +32,8 @@ class ChannelTests {
   /// the model leaves, times the mean square of the residual's steps from row to row; 0 where there
   /// is no test.
   [[nodiscard]] double wrong(int cv, int input) const {
-    return wrong_[static_cast<std::size_t>(input * cvs_ + cv)];
+    const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
+    return channel < wrong_.size() ? wrong_[channel] : 0.0;
   }
   /// Whether some of these channels do not match: the smallest p-value times their number is at
   /// most `level` (0..1).
