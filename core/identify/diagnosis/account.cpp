@@ -33,9 +33,9 @@ const char* why_it_goes(const Effect& effect, const Problem& problem, const Find
 }
 
 /// What the calibrated test does not bear out goes, unless it overwhelms; where feedback moves the
-/// input, what leaves the test anything to see; and an accusation that
-/// makes predictions no better beyond doubt unless the test sees all of it gone: why, for a person;
-/// null where it stays.
+/// input, what leaves the test anything to see goes. So does an accusation that makes predictions
+/// no better beyond doubt, unless a disturbance that wanders may hide that and the test sees all of
+/// it gone. Why, for a person; null where it stays.
 std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult& found,
                                      const Selection& selection, const Judges& judges,
                                      const Witness& witness) {
@@ -67,7 +67,8 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
       reasons[i] = "with it the test of the channels sees no less wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
-    else if (says != Confirmation::kNothingOfAll && selection.fates[i] == Fate::kNoBetter)
+    else if (selection.fates[i] == Fate::kNoBetter &&
+             !(says == Confirmation::kNothingOfAll && selection.wanders[i]))
       reasons[i] = why_not_in_model(Fate::kNoBetter);
   }
   return reasons;

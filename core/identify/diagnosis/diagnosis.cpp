@@ -149,7 +149,7 @@ void add_horizons(const Unseen& unseen, const VectorXd& before, const VectorXd& 
 }
 
 /// What begins in the rows kept for validation. A channel is named only where the calibrated test
-/// rejects it on those rows, and not beyond doubt on the rows before. `extended` has set-points
+/// rejects it beyond doubt on those rows, and not so on the rows before. `extended` has set-points
 /// among its inputs, `tested` has not.
 std::vector<Finding> begun_late(const ModelSpec& extended, const ModelSpec& tested,
                                 const Recording& recording, const Recording& measured,
@@ -162,9 +162,10 @@ std::vector<Finding> begun_late(const ModelSpec& extended, const ModelSpec& test
   const ChannelTests since(tested, part(measured, from, rest), residuals.bottomRows(rest));
   const auto may_name = nameable(extended, ranges, since, outside);
   settings.may_name = [&](const Effect& effect) {
-    return effect.place.aux < ranges.aux && may_name(effect) &&
-           !(cause_of(effect).acts_through_channels() &&
-             before.reject(channels_of(effect, extended, ranges.inputs), kBeyondDoubt));
+    if (effect.place.aux >= ranges.aux || !may_name(effect)) return false;
+    if (!cause_of(effect).acts_through_channels()) return true;
+    const auto channels = channels_of(effect, extended, ranges.inputs);
+    return since.reject(channels, kBeyondDoubt) && !before.reject(channels, kBeyondDoubt);
   };
   return find_late(extended, ranges.inputs, recording, fit_samples, settings);
 }
@@ -202,15 +203,15 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
       nameable(model, {settings.mv_count, base.input_count, aux}, tests, outside);
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
-  const Judges judges{
-      unseen, aux,
-      [&](int cv, int input, bool wrong) {
-        // Where only a disturbance was found they soak up what it leaves.
-        const auto i = static_cast<std::size_t>(input);
-        return tests.reject({{cv, input}}) ||
-               (wrong && i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside);
-      },
-      outside};
+  const Judges judges{unseen, aux,
+                      [&](int cv, int input, bool wrong) {
+                        // Where only a disturbance was found they soak up what it leaves.
+                        const auto i = static_cast<std::size_t>(input);
+                        return wrong &&
+                               (tests.reject({{cv, input}}) ||
+                                (i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside));
+                      },
+                      outside};
   const Witness witness{tests, [&](const ModelSpec& repaired) {
                           return ChannelTests(tested, measured,
                                               free_run_residuals(repaired, recording));

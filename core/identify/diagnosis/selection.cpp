@@ -174,6 +174,7 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
   Selection selection;
   selection.explains.assign(found.named.size(), 0.0);
   selection.sure_gains = selection.explains;
+  selection.wanders.assign(found.named.size(), false);
   selection.order.resize(found.named.size());
   std::iota(selection.order.begin(), selection.order.end(), std::size_t{0});
   std::sort(selection.order.begin(), selection.order.end(), [&](std::size_t a, std::size_t b) {
@@ -193,6 +194,7 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     if (effect.certain || selection.fates[i] != Fate::kRepaired) continue;
     const std::vector<bool> in = repaired(selection);
     const Errors errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen);
+    selection.wanders[i] = !errors.come_back();
     selection.fates[i] = judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
                                 selection.sure_gains[i]);
     // A slow disturbance was fitted together with small errors of the channels, which the extended
