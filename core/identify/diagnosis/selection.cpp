@@ -86,7 +86,7 @@ class Errors {
 
   void add(const ModelSpec& with, const ModelSpec& without, int cv) {
     throughout_.push_back(unseen_.residual_throughout(with, cv));
-    with_.push_back(throughout_.back().tail(unseen_.rows()));
+    with_.emplace_back(throughout_.back().tail(unseen_.rows()));
     without_.push_back(unseen_.residual(without, cv));
   }
 
