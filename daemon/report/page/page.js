@@ -82,7 +82,9 @@ function findingCard(finding, label, refused) {
   fact('Rivals', rivalList(finding));
   return element('div', {class: 'finding' + (refused ? ' refused' : '')},
       element('h3', {}, `${label}${finding.title}: ${subjectText(finding)}`),
-      refused ? element('p', {}, element('span', {class: 'badge warn'}, 'refused'), 'Its repair did not carry over to unseen samples, so the extended model does without.') : null,
+      refused || finding.refused ? element('p', {},
+          refused ? element('span', {class: 'badge warn'}, 'refused') : null,
+          `Not in the extended model: ${finding.refused || 'its repair did not carry over'}.`) : null,
       element('p', {}, finding.explanation), parameterTable(finding), facts);
 }
 
