@@ -71,6 +71,9 @@ class Cause : public Edit {
   /// everything but what disturbs a CV by itself.
   [[nodiscard]] virtual bool acts_through_channels() const { return true; }
 
+  /// Whether it bends what is straight, as feedback makes a straight line look.
+  [[nodiscard]] virtual bool is_curve() const { return false; }
+
   // Weighing.
 
   /// 2 ln of the prior odds against it: errors of channels are what one expects.

@@ -22,6 +22,8 @@ class InputPolynomial : public InputBlockCause {
  public:
   InputPolynomial() : InputBlockCause(kInputNonlinearity, "polynomial") {}
 
+  [[nodiscard]] bool is_curve() const override { return true; }
+
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     for (const BlockPlace& at : block_places(outlook)) {
       const double origin = outlook.model().input_origin(at.place.input);

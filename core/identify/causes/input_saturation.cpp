@@ -18,6 +18,8 @@ class InputSaturation : public InputBlockCause {
  public:
   InputSaturation() : InputBlockCause(kInputNonlinearity, "saturation") {}
 
+  [[nodiscard]] bool is_curve() const override { return true; }
+
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     for (const BlockPlace& at : block_places(outlook)) {
       const double range = at.input.range();

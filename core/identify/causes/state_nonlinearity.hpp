@@ -20,6 +20,7 @@ class StateNonlinearity : public Cause {
  public:
   explicit StateNonlinearity(const char* term) : Cause(kStateNonlinearity, term) {}
   [[nodiscard]] double rarity() const override;
+  [[nodiscard]] bool is_curve() const override { return true; }
   [[nodiscard]] bool settles_channel(const Effect& mine) const override;
 
  protected:

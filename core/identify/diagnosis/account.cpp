@@ -60,10 +60,10 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
     const Effect& effect = found.named[i].effect;
     const Confirmation says = confirmation(
         effect, problem.model(), problem.surroundings().model_inputs, witness.given, after);
-    const bool overwhelms =
+    const bool overwhelming =
         selection.sure_gains[i] >= kOverwhelmingGain && effect.edit != &causes::input_stuck();
     const bool outside = moved_from_outside(effect, problem.model(), judges.outside_shares);
-    if (says == Confirmation::kNone && !(overwhelms && outside))
+    if (says == Confirmation::kNone && !(overwhelming && outside))
       reasons[i] = "with it the test of the channels sees no less wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
@@ -141,9 +141,9 @@ bool overwhelms(const Account& account, const SearchSettings& tested) {
 const char* why_not_in_model(Fate fate) {
   switch (fate) {
     case Fate::kNoBetter:
-      return "with it predictions on unseen samples are not better beyond doubt";
+      return "with it unseen samples are explained no better, beyond doubt and by enough to matter";
     case Fate::kRefused:
-      return "with it predictions on unseen samples are worse";
+      return "with it unseen samples are explained worse";
     case Fate::kRepaired:
       break;
   }

@@ -21,9 +21,6 @@ inline constexpr int kComparedQuarter = 4;
 inline constexpr double kClearlyLess = 0.3;
 inline constexpr double kSomewhatLess = 0.1;
 
-/// Data that hold so many slowest time constants can tell what wanders from what settles.
-inline constexpr double kLongTimeConstants = 20.0;
-
 /// s.d. of a relative gain error beyond which the data cannot tell a good model from a bad one.
 inline constexpr double kBlindGainSd = 0.25;
 /// 2 ln odds of a finding that leaves the verdict open even if it does not carry over.

@@ -148,28 +148,6 @@ void add_horizons(const Unseen& unseen, const VectorXd& before, const VectorXd& 
                               rms_of_squares(unseen.prediction_errors(after, horizon))});
 }
 
-/// What begins in the rows kept for validation. A channel is named only where the calibrated test
-/// rejects it beyond doubt on those rows, and not so on the rows before. `extended` has set-points
-/// among its inputs, `tested` has not.
-std::vector<Finding> begun_late(const ModelSpec& extended, const ModelSpec& tested,
-                                const Recording& recording, const Recording& measured,
-                                Index fit_samples, const SignalRanges& ranges,
-                                const std::vector<std::optional<double>>& outside,
-                                SearchSettings settings) {
-  const Index from = late_from(fit_samples), rest = recording.samples() - from;
-  const MatrixXd residuals = free_run_residuals(extended, recording);
-  const ChannelTests before(tested, part(measured, 0, from), residuals.topRows(from));
-  const ChannelTests since(tested, part(measured, from, rest), residuals.bottomRows(rest));
-  const auto may_name = nameable(extended, ranges, since, outside);
-  settings.may_name = [&](const Effect& effect) {
-    if (effect.place.aux >= ranges.aux || !may_name(effect)) return false;
-    if (!cause_of(effect).acts_through_channels()) return true;
-    const auto channels = channels_of(effect, extended, ranges.inputs);
-    return since.reject(channels, kBeyondDoubt) && !before.reject(channels, kBeyondDoubt);
-  };
-  return find_late(extended, ranges.inputs, recording, fit_samples, settings);
-}
-
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
 Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {

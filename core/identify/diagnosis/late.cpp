@@ -7,6 +7,8 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/statement.hpp"
+#include "core/identify/evidence/channel_tests.hpp"
+#include "core/identify/evidence/free_run_residuals.hpp"
 
 namespace mpm {
 
@@ -30,11 +32,12 @@ bool grew(const Problem& problem, const Fit& fit, Index first) {
   });
 }
 
-}  // namespace
-
+/// The row from which on an effect counts as late.
 Index late_from(Index first) {
   return first - static_cast<Index>(kLateMargin * static_cast<double>(first));
 }
+
+}  // namespace
 
 std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const Recording& recording,
                                Index first, const SearchSettings& asked) {
@@ -74,6 +77,25 @@ std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const R
     finding.refused = kNotJudged;
   }
   return late;
+}
+
+std::vector<Finding> begun_late(const ModelSpec& model, const ModelSpec& tested,
+                                const Recording& recording, const Recording& measured, Index first,
+                                const SignalRanges& ranges,
+                                const std::vector<std::optional<double>>& outside_shares,
+                                SearchSettings settings) {
+  const Index from = late_from(first), rest = recording.samples() - from;
+  const Eigen::MatrixXd residuals = free_run_residuals(model, recording);
+  const ChannelTests before(tested, part(measured, 0, from), residuals.topRows(from));
+  const ChannelTests since(tested, part(measured, from, rest), residuals.bottomRows(rest));
+  const auto may_name = nameable(model, ranges, since, outside_shares);
+  settings.may_name = [&](const Effect& effect) {
+    if (effect.place.aux >= ranges.aux || !may_name(effect)) return false;
+    if (!cause_of(effect).acts_through_channels()) return true;
+    const auto channels = channels_of(effect, model, ranges.inputs);
+    return since.reject(channels, kBeyondDoubt) && !before.reject(channels, kBeyondDoubt);
+  };
+  return find_late(model, ranges.inputs, recording, first, settings);
 }
 
 }  // namespace mpm

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/identify/causes/finding.hpp"
+#include "core/identify/diagnosis/nameable.hpp"
 #include "core/identify/search/search.hpp"
 
 namespace mpm {
@@ -16,7 +18,12 @@ namespace mpm {
                                              const Recording& recording, Eigen::Index first,
                                              const SearchSettings& settings);
 
-/// The row from which on an effect counts as late, a little before `first`.
-[[nodiscard]] Eigen::Index late_from(Eigen::Index first);
+/// The same where a channel may be named only if the calibrated test rejects it beyond doubt on
+/// those rows, and not so on the rows before. `model` and `recording` have set-points behind the
+/// aux signals; `tested` and `measured`, of the test, have not. `outside_shares` per input.
+[[nodiscard]] std::vector<Finding> begun_late(
+    const ModelSpec& model, const ModelSpec& tested, const Recording& recording,
+    const Recording& measured, Eigen::Index first, const SignalRanges& ranges,
+    const std::vector<std::optional<double>>& outside_shares, SearchSettings settings);
 
 }  // namespace mpm

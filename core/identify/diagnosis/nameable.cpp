@@ -1,7 +1,5 @@
 #include "core/identify/diagnosis/nameable.hpp"
 
-#include <algorithm>
-
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 
@@ -10,14 +8,6 @@ namespace {
 
 bool is_of_an_actuator(const Effect& effect) {
   return effect.edit == &causes::input_stuck() || effect.edit == &causes::input_offset();
-}
-
-bool is_curve(const Effect& effect) {
-  const auto curves = {&causes::input_polynomial(), &causes::input_saturation(),
-                       &causes::cubic_stiffness(), &causes::square_root_outflow(),
-                       &causes::coulomb_friction()};
-  return std::any_of(curves.begin(), curves.end(),
-                     [&](const Cause* curve) { return effect.edit == curve; });
 }
 
 }  // namespace
@@ -40,7 +30,8 @@ std::function<bool(const Effect&)> nameable(const ModelSpec& model, const Signal
   return [&model, ranges, &tests, &shares](const Effect& effect) {
     const auto input = static_cast<std::size_t>(effect.place.input);
     if (is_of_an_actuator(effect) && effect.place.input >= ranges.mvs) return false;
-    if (is_curve(effect) && input < shares.size() && shares[input].value_or(1.0) < kCurveOutside)
+    if (cause_of(effect).is_curve() && input < shares.size() &&
+        shares[input].value_or(1.0) < kCurveOutside)
       return false;
     return !cause_of(effect).acts_through_channels() || effect.place.aux >= ranges.aux ||
            tests.reject(channels_of(effect, model, ranges.inputs));

@@ -53,27 +53,20 @@ bool is_too_smooth(const Explained& explained) {
       });
 }
 
-/// Whether the data are long enough, for how slow the CV is, to tell wandering from settling.
-bool is_long(const ModelSpec& model, int cv, Index rows) {
-  double slowest = 0.0;
-  for (const ChannelSpec& channel : model.channels)
-    if (channel.cv == cv)
-      slowest = std::max(slowest, slowest_time_constant_s(channel, model.sample_time_s));
-  return static_cast<double>(rows) * model.sample_time_s > kLongTimeConstants * slowest;
-}
-
 /// Whether a channel is named of a CV that wanders: there smoothness is no sign of structure, and
 /// drifts and steps that follow the CV would hide the channel.
 bool names_channels_of_wandering(const Explained& explained) {
   const SearchResult& found = explained.found;
+  const ModelSpec& model = explained.problem->model();
+  const auto wandering = [&](const CvFit& fit) {
+    return wanders(fit.residual, slowest_of_cv_s(model, fit.cv, 1.0) / model.sample_time_s);
+  };
   return std::any_of(found.named.begin(), found.named.end(), [&](const Named& named) {
     const Cause& cause = cause_of(named.effect);
     if (named.effect.certain || !cause.acts_through_channels() || causes::is_unnamed(cause))
       return false;
     return std::any_of(found.fit.cvs.begin(), found.fit.cvs.end(), [&](const CvFit& fit) {
-      return touches(named.effect, explained.problem->model(), fit.cv) &&
-             is_long(explained.problem->model(), fit.cv, fit.residual.size()) &&
-             !comes_back(fit.residual);
+      return touches(named.effect, model, fit.cv) && wandering(fit);
     });
   });
 }

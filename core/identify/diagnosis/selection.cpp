@@ -9,6 +9,7 @@
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/validation.hpp"
 #include "core/identify/evidence/mean_reversion.hpp"
+#include "core/identify/fit/channel_edit.hpp"
 
 namespace mpm {
 
@@ -61,10 +62,11 @@ class Errors {
     return count;
   }
   [[nodiscard]] std::size_t cvs() const { return with_.size(); }
-  /// Whether what is left comes back to a level in every CV.
-  [[nodiscard]] bool come_back() const {
-    return std::all_of(throughout_.begin(), throughout_.end(),
-                       [](const VectorXd& residual) { return comes_back(residual); });
+  /// Whether what is left of some CV wanders.
+  [[nodiscard]] bool wander() const {
+    for (std::size_t j = 0; j < throughout_.size(); ++j)
+      if (wanders(throughout_[j], slowest_rows_[j])) return true;
+    return false;
   }
 
  private:
@@ -88,11 +90,13 @@ class Errors {
     throughout_.push_back(unseen_.residual_throughout(with, cv));
     with_.emplace_back(throughout_.back().tail(unseen_.rows()));
     without_.push_back(unseen_.residual(without, cv));
+    slowest_rows_.push_back(slowest_of_cv_s(without, cv, 1.0) / without.sample_time_s);
   }
 
   Unseen& unseen_;
   std::vector<VectorXd> with_, without_;
   std::vector<VectorXd> throughout_;  // with, on all rows
+  std::vector<double> slowest_rows_;
 };
 
 /// Whether a model is better at predictions, by so much that it is worth an accusation.
@@ -103,7 +107,7 @@ Fate judged_by_predictions(const CvScore& predictions) {
 }
 
 Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
-            const Judges& judges, std::uint64_t seed, double& sure_gain) {
+            const Judges& judges, std::uint64_t seed, bool wanders, double& sure_gain) {
   const CvScore free_run = errors.free_run(seed);
   sure_gain = free_run.gain_low;
   if (!cause_of(effect).acts_through_channels()) {
@@ -118,7 +122,7 @@ Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
   // A stuck actuator opens the loop. What wanders makes a free run better or worse by chance.
   const bool open_loop = effect.edit == &causes::input_stuck() ||
                          moved_from_outside(effect, model, judges.outside_shares);
-  if (open_loop && errors.come_back() && !(free_run.gain_high > 0.0)) return Fate::kRefused;
+  if (open_loop && !wanders && !(free_run.gain_high > 0.0)) return Fate::kRefused;
   const Fate fate = judged_by_predictions(predictions);
   const bool worse = open_loop && !(free_run.rmse_after < free_run.rmse_before);
   return worse && fate == Fate::kRepaired ? Fate::kNoBetter : fate;
@@ -194,9 +198,9 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     if (effect.certain || selection.fates[i] != Fate::kRepaired) continue;
     const std::vector<bool> in = repaired(selection);
     const Errors errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen);
-    selection.wanders[i] = !errors.come_back();
+    selection.wanders[i] = errors.wander();
     selection.fates[i] = judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
-                                selection.sure_gains[i]);
+                                selection.wanders[i], selection.sure_gains[i]);
     // A slow disturbance was fitted together with small errors of the channels, which the extended
     // model does without: it may be true and still be no repair by itself.
     if (selection.fates[i] != Fate::kRefused || cause_of(effect).acts_through_channels()) continue;

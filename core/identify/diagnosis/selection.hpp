@@ -26,7 +26,7 @@ struct Selection {
   std::vector<Fate> fates;         ///< of each that was named
   std::vector<double> explains;    ///< likewise: Finding::explains
   std::vector<double> sure_gains;  ///< likewise: lower end of the interval of what it was judged by
-  std::vector<bool> wanders;       ///< likewise: whether what is left comes back to no level
+  std::vector<bool> wanders;       ///< likewise: whether what is left of some CV wanders
   std::vector<std::size_t> order;  ///< in which they were judged: the weakest evidence first
 };
 

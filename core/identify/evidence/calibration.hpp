@@ -19,4 +19,7 @@ inline constexpr int kFewestLags = 2, kFewestResidualLags = 2;
 inline constexpr int kMovementOrder = 6;
 inline constexpr double kMovementRowsPerColumn = 4.0;
 
+/// Data that hold so many slowest time constants can tell what wanders from what settles.
+inline constexpr double kLongTimeConstants = 20.0;
+
 }  // namespace mpm

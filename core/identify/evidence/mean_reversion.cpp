@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/identify/evidence/calibration.hpp"
+
 namespace mpm {
 
 using Eigen::Index;
@@ -32,6 +34,11 @@ std::vector<double> block_means(const Eigen::Ref<const VectorXd>& signal) {
 }
 
 }  // namespace
+
+bool wanders(const Eigen::Ref<const VectorXd>& signal, double slowest_rows) {
+  return static_cast<double>(signal.size()) > kLongTimeConstants * slowest_rows &&
+         !comes_back(signal);
+}
 
 bool comes_back(const Eigen::Ref<const VectorXd>& signal) {
   const std::vector<double> levels = block_means(signal);

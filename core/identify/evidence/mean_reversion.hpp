@@ -11,4 +11,8 @@ namespace mpm {
 /// rows to say.
 [[nodiscard]] bool comes_back(const Eigen::Ref<const Eigen::VectorXd>& signal);
 
+/// Whether it wanders: it does not come back, and is long enough to tell that from settling, for a
+/// CV of which the slowest time constant takes so many rows.
+[[nodiscard]] bool wanders(const Eigen::Ref<const Eigen::VectorXd>& signal, double slowest_rows);
+
 }  // namespace mpm
