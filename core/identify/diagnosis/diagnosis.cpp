@@ -31,9 +31,14 @@ using Eigen::VectorXd;
 /// Thrown where the caller's `progress` says so; ends all loops at once.
 struct GivenUp {};
 
-std::function<bool(double)> or_give_up(const std::function<bool(double)>& progress) {
-  return [&progress](double share) {
-    if (progress && !progress(share)) throw GivenUp();
+/// Where pieces of the search are nested, the first throw ends the outer ones only once what this
+/// thread has begun within them has come here as well: after `given_up` nobody is asked again. Both
+/// must outlive what is returned.
+std::function<bool(double)> or_give_up(const std::function<bool(double)>& progress,
+                                       bool& given_up) {
+  return [&progress, &given_up](double share) {
+    given_up = given_up || (progress && !progress(share));
+    if (given_up) throw GivenUp();
     return true;
   };
 }
@@ -249,7 +254,8 @@ Index needed_samples(const ModelSpec& model) {
 Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Recording* validation,
                    const DiagnosisSettings& asked) {
   DiagnosisSettings settings = asked;
-  settings.progress = or_give_up(asked.progress);
+  bool given_up = false;
+  settings.progress = or_give_up(asked.progress, given_up);
   try {
     return run(given, recording, validation, settings);
   } catch (const GivenUp&) {

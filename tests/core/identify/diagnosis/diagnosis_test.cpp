@@ -248,12 +248,14 @@ TEST_CASE("how many threads work on it is nowhere to be seen") {
   }
 }
 
+// On one thread 1409 times are told. On four, the share of the one that asked depends on the
+// machine, from 375 on, so that it must be given up well before.
 TEST_CASE("several threads are given up by the one that asked, which alone is told") {
   const Parallel home(1);
   DiagnosisSettings settings;
   settings.mv_count = 2;
   settings.threads = 4;
-  for (const int told_at_most : {1, 40, 400}) {
+  for (const int told_at_most : {1, 40, 200}) {
     CAPTURE(told_at_most);
     int told = 0;
     bool always_home = true;

@@ -48,8 +48,8 @@ TEST_CASE("what stands still comes back, what is unknown is not taken for anythi
   CHECK(comes_back(gaps));
 }
 
-// A walk of so many rows is told from a CV that settles within a hundredth of them, and not from one
-// that takes a tenth.
+// A walk of so many rows is told from a CV that settles within a hundredth of them, and not from
+// one that takes a tenth.
 TEST_CASE("what is too short to tell wandering from settling does not wander") {
   const VectorXd walk = test::autoregressive(test::normal(500, kRows), 1.0);
   REQUIRE_FALSE(comes_back(walk));
