@@ -176,6 +176,7 @@ def draw(regime, plant, samples, rng):
         other = int(rng.integers(plant.cv_count))
         values = lagged(setpoints[:, other], 10.0) * rng.uniform(0.15, 0.4) * rng.choice([-1, 1])
         disturb(values * plant.cv_scale[cv] / plant.cv_scale[other])
+        causes.append({"cause": "unmodelled_input", "cv": cv, "tag": f"sp{other + 1}"})
     elif regime == "late":
         kind = rng.choice(["drift", "step", "noise"])
         size = rng.choice([-1, 1]) * rng.uniform(4, 10) * sd[cv]

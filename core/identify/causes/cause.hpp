@@ -108,7 +108,8 @@ class Cause : public Edit {
 
   // Saying.
 
-  /// What the innovations of the last fit show that no edit of a model repairs.
+  /// What the innovations of the last fit show that no edit of a model repairs; `refused` says why
+  /// one is in doubt.
   [[nodiscard]] virtual std::vector<Finding> left_in(const Problem& problem, const Fit& fit) const;
 
   /// Turns the plainly stated numbers of a finding into what the contract asks for.

@@ -57,6 +57,8 @@ struct Finding {
   std::vector<Rival> rivals;      ///< closest first
   bool repaired = true;           ///< the extended model holds it, and is the better for it
   std::string refused;            ///< why the extended model does not, for a person; else empty
+  /// Another finding without which the extended model would not hold it.
+  std::optional<Subject> with;
   /// Share of the mean square error on unseen samples of the CVs it acts on that goes with it; may
   /// be negative.
   double explains = 0.0;

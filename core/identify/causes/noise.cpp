@@ -31,6 +31,10 @@ class Noise : public Cause {
       finding.subject = {this, {of_cv.cv}};
       finding.parameters = {{&kVarianceRatio, change->ratio, change->low, change->high}};
       finding.evidence = change->z * change->z;
+      if (!change->beyond_doubt()) {
+        finding.evidence *= change->burstiness * change->burstiness;
+        finding.refused = "it comes in bursts: structure is missing, or a historian has thinned it";
+      }
       finding.confidence = kConfidence;
       finding.onset_s =
           surroundings.start_s + static_cast<double>(change->onset) * surroundings.sample_time_s;

@@ -63,6 +63,7 @@ void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
     finding.refused =
         of_setpoint ? "a set-point is no input of a model" : why_not_in_model(selection.fates[i]);
     finding.explains = selection.explains[i];
+    if (const auto other = selection.with[i]) finding.with = subject_of(found.named[*other].effect);
     if (causes::is_unnamed(cause)) {
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
       mark_unclear(effect);
@@ -88,7 +89,9 @@ void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
   for (const Cause* cause : causes::all())
     for (Finding& finding : cause->left_in(problem, found.fit)) {
       finding.repaired = false;
-      if (unclear[static_cast<std::size_t>(finding.subject.place.cv)]) {
+      if (!finding.refused.empty()) {
+        diagnosis.refused.push_back(std::move(finding));
+      } else if (unclear[static_cast<std::size_t>(finding.subject.place.cv)]) {
         finding.refused = "what is left of the CV is no noise: structure is missing";
         diagnosis.refused.push_back(std::move(finding));
       } else {

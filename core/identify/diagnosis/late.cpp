@@ -71,7 +71,7 @@ std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const R
                        static_cast<double>(from) * problem.surroundings().sample_time_s;
   for (const Cause* cause : causes::all())
     for (Finding& finding : cause->left_in(problem, found.fit))
-      if (finding.onset_s && *finding.onset_s >= begin) late.push_back(std::move(finding));
+      if (finding.refused.empty() && *finding.onset_s >= begin) late.push_back(std::move(finding));
   for (Finding& finding : late) {
     finding.repaired = false;
     finding.refused = kNotJudged;

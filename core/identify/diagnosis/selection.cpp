@@ -158,6 +158,33 @@ void judge_together(const Problem& problem, const SearchResult& found, const Jud
   }
 }
 
+/// Of what is repaired, the other repair without which `i` would be none; null where there is none.
+std::optional<std::size_t> needed_by(std::size_t i, const Problem& problem,
+                                     const SearchResult& found, const Judges& judges,
+                                     const Selection& selection) {
+  const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
+  const Effect& effect = found.named[i].effect;
+  std::optional<std::size_t> needed;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < found.named.size(); ++j) {
+    if (j == i || selection.fates[j] != Fate::kRepaired || found.named[j].effect.certain) continue;
+    std::vector<bool> in = repaired(selection);
+    in[j] = false;
+    const ModelSpec with = extend(problem, found, in, keep, judges.open);
+    in[i] = false;
+    const Errors errors(effect, with, extend(problem, found, in, keep, judges.open),
+                        judges.unseen);
+    double sure_gain = 0.0;
+    if (judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
+               selection.wanders[i], sure_gain) == Fate::kRepaired ||
+        sure_gain >= least)
+      continue;
+    needed = j;
+    least = sure_gain;
+  }
+  return needed;
+}
+
 }  // namespace
 
 bool moved_from_outside(const Effect& effect, const ModelSpec& model,
@@ -179,6 +206,7 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
   selection.explains.assign(found.named.size(), 0.0);
   selection.sure_gains = selection.explains;
   selection.wanders.assign(found.named.size(), false);
+  selection.with.assign(found.named.size(), std::nullopt);
   selection.order.resize(found.named.size());
   std::iota(selection.order.begin(), selection.order.end(), std::size_t{0});
   std::sort(selection.order.begin(), selection.order.end(), [&](std::size_t a, std::size_t b) {
@@ -226,6 +254,8 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
       const double left = score.rmse_after / score.rmse_before;
       selection.explains[i] = 1.0 - left * left;
     }
+    if (selection.fates[i] == Fate::kRepaired && !effect.certain)
+      selection.with[i] = needed_by(i, problem, found, judges, selection);
   }
   return selection;
 }

@@ -27,6 +27,8 @@ struct Selection {
   std::vector<double> explains;    ///< likewise: Finding::explains
   std::vector<double> sure_gains;  ///< likewise: lower end of the interval of what it was judged by
   std::vector<bool> wanders;       ///< likewise: whether what is left of some CV wanders
+  /// Likewise: of those repaired, which other one must be in the model for it to be a repair.
+  std::vector<std::optional<std::size_t>> with;
   std::vector<std::size_t> order;  ///< in which they were judged: the weakest evidence first
 };
 

@@ -78,6 +78,10 @@ Json finding_json(const DiagnosisRun& run, const Finding& finding) {
   json["evidence"] = finding.evidence;
   json["in_model"] = finding.repaired;
   if (!finding.refused.empty()) json["refused"] = finding.refused;
+  if (finding.with) {
+    json["with"] = subject_json(*finding.with, names);
+    json["with"]["text"] = names.subject(*finding.with);
+  }
   json["explains"] = finding.explains;
   return json;
 }
@@ -212,6 +216,8 @@ std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
   }
   if (!finding.repaired && !finding.refused.empty())
     text += "     not in the extended model: " + finding.refused + '\n';
+  if (finding.with)
+    text += "     in the extended model only together with: " + names.subject(*finding.with) + '\n';
   for (const Rival& rival : finding.rivals)
     if (rival.inseparable) text += "     or: " + rival_text(run, rival) + '\n';
   return text;

@@ -85,6 +85,8 @@ function findingCard(finding, label, refused) {
       refused || finding.refused ? element('p', {},
           refused ? element('span', {class: 'badge warn'}, 'refused') : null,
           `Not in the extended model: ${finding.refused || 'its repair did not carry over'}.`) : null,
+      finding.with ? element('p', {},
+          `In the extended model only together with: ${words(finding.with.text)}.`) : null,
       element('p', {}, finding.explanation), parameterTable(finding), facts);
 }
 

@@ -119,6 +119,43 @@ TEST_CASE("repairs that are better beside each other and worse than none are ref
   CHECK(selection.fates == std::vector<Fate>{Fate::kRefused, Fate::kRefused});
 }
 
+// Two inputs that move nearly alike; 1.5 times the gain of one and half that of the other are true.
+// Either of them alone leaves an error of half the response where the given model's is the half of
+// the little by which the inputs differ.
+TEST_CASE("of repairs that only make sense together each names the other") {
+  Bench bench(1.0, 1.0);
+  const VectorXd apart = 0.5 * bench.all.inputs.col(1);
+  bench.all.inputs.col(1) = bench.all.inputs.col(0) + apart;
+  bench.model.channels[1] = lag(0, 1, 2.0, 10.0);
+  bench.all.cvs.col(0) = test::first_order(bench.all.inputs.col(0), 3.0, 10.0) +
+                         test::first_order(bench.all.inputs.col(1), 1.0, 10.0) +
+                         kNoise * test::white(3, kRows);
+  bench.first = part(bench.all, 0, kFitted);
+  Problem problem(bench.model, 2, bench.first, Tolerances{}, NoiseModel{});
+  SearchResult found;
+  found.fit = problem.fit({}, 0, {0, 1});
+  for (const auto& [input, ratio] : {std::pair{0, 1.5}, std::pair{1, 0.5}})
+    found.named.push_back(
+        {{&causes::gain(), {0, input}, {{&kGainRatio, ratio}}}, 80.0 - input, 1.0, {}});
+  Unseen unseen(bench.all, kRows - kFitted, bench.model, 1);
+  const OpenChannels closed = [](int, int, bool) { return false; };
+  const Selection selection = select(problem, found, {unseen, 0, closed, {1.0, 1.0}}, [] {});
+  REQUIRE(selection.fates == std::vector<Fate>{Fate::kRepaired, Fate::kRepaired});
+  CHECK(selection.with == std::vector<std::optional<std::size_t>>{1, 0});
+}
+
+TEST_CASE("a repair that stands by itself needs no other") {
+  Bench bench(1.5, 1.5);
+  bench.find_gain();
+  Named other = bench.found.named[0];
+  other.effect.place = {1, 1};
+  bench.all.cvs.col(1) += test::first_order(bench.all.inputs.col(1), 0.5, 5.0);
+  bench.found.named.push_back(other);
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  REQUIRE(selection.fates == std::vector<Fate>{Fate::kRepaired, Fate::kRepaired});
+  CHECK(selection.with == std::vector<std::optional<std::size_t>>{std::nullopt, std::nullopt});
+}
+
 TEST_CASE("the weakest evidence is judged first") {
   Bench bench(1.5, 1.5);
   bench.find_gain();
