@@ -3,13 +3,14 @@
 
 Usage: score.py --mpm build/release/bin/mpm --seeds 100001-100006 [--regime R ...] [--plant P ...]
                 [--effect E ...] [--per-seed 3] [--detect] [--jobs 1] [--keep DIR]
-                [--markdown FILE] [--json FILE] [--add FILE ...]
+                [--markdown FILE] [--json FILE] [--add FILE ...] [--bounds]
+                [--diagram FILE.svg]
 
 loop.py makes the recordings. For each regime and seed `--per-seed` plants come by turns; each runs
 healthy and with one effect, by turns too (--effect: with each of these instead). Seeds below 1000
 are for scores, from 100001 on for tuning. --keep leaves each case in DIR/REGIME-PLANT-EFFECT-SEED:
 what loop.py wrote, and the report in out/. --add takes in the cases of earlier --json files. A
-run may take 60 s of CPU time.
+run may take 60 s of CPU time. --bounds: exit 1 where the scores lie beyond what is claimed (tables.py).
 
 A finding is
 * right: right family of cause and right signals. `dynamics` with the wrong parameter among its own
@@ -54,12 +55,13 @@ except ImportError:
     raise SystemExit("score.py: needs numpy (python3-numpy)") from None
 
 import loop
+from diagram import diagram
 from effects import EFFECTS
 from judge import gains_make_scale, judge
 from model_reader import model_steps
 from plants import PLANTS
 from regimes import REGIMES
-from tables import FARTHER, reliability, summary, tables
+from tables import FARTHER, beyond, reliability, summary, tables
 
 TIME_LIMIT = 60  # s of CPU time, and ten times that on the clock
 # Turns of 13, so that every plant meets every effect; gain and dead time twice.
@@ -220,6 +222,8 @@ def main():
     parser.add_argument("--markdown")
     parser.add_argument("--json")
     parser.add_argument("--add", nargs="+", default=[])
+    parser.add_argument("--bounds", action="store_true")
+    parser.add_argument("--diagram")
     args = parser.parse_args()
     wanted = cases(args.regime, args.seeds, args.plant, args.effect, args.per_seed)
     started, results = time.monotonic(), []
@@ -240,6 +244,12 @@ def main():
     print(f"{len(wanted)} cases, {time.monotonic() - started:.0f} s")
     if args.markdown:
         pathlib.Path(args.markdown).write_text(text)
+    if args.diagram:
+        pathlib.Path(args.diagram).write_text(diagram(results))
+    if args.bounds:
+        failed = beyond(results)
+        print("\n".join(failed) or "within the bounds")
+        sys.exit(bool(failed))
 
 
 if __name__ == "__main__":

@@ -8,6 +8,9 @@ from regimes import REGIMES
 
 SEEN = 100.0  # noncentrality
 FARTHER, FAR = 0.05, 0.25
+# What is claimed: shares of runs at most. A true share at its bound breaks it in one of 1000 scores.
+BOUNDS = {"healthy accused": 0.02, "strong: wrong": 0.01, "repaired model farther": 0.01,
+          "strong: neither named nor said to be unclear": 0.10, "failed": 0.0}
 CONFIDENCE = [(0.9, 0.99), (0.99, 0.999), (0.999, 1.01)]
 
 
@@ -84,6 +87,29 @@ def reliability(results):
             row[name] = {"right": of.count("right"), "place": of.count("place"), "of": len(of)}
         rows.append(row)
     return rows
+
+
+def most(runs, share_of_runs):
+    """The most that a binomial with that share gives in all but one of 1000 times."""
+    left, count = 1.0, 0
+    while True:
+        left -= math.comb(runs, count) * share_of_runs**count * (1 - share_of_runs)**(runs - count)
+        if left < 1e-3 or count == runs:
+            return count
+        count += 1
+
+
+def beyond(results):
+    """Lines that say which bounds do not hold."""
+    s = summary(results)
+    missed = s["strong"] - s["right"] - s["undetermined"]
+    counts = {"healthy accused": (s["accused"], s["healthy"]),
+              "strong: wrong": (s["wrong"], s["strong"]),
+              "repaired model farther": (s["farther"], s["runs"]),
+              "strong: neither named nor said to be unclear": (missed, s["strong"]),
+              "failed": (s["failed"], len(results))}
+    return [f"{name}: {count} of {runs}, more than {most(runs, BOUNDS[name])}"
+            for name, (count, runs) in counts.items() if count > most(runs, BOUNDS[name])]
 
 
 def detect_row(results):

@@ -12,6 +12,8 @@
 namespace mpm {
 namespace {
 
+constexpr double kWholeSample = 1e-9;
+
 std::vector<std::complex<double>> poles_of(const std::vector<double>& denominator) {
   const auto order = static_cast<Eigen::Index>(denominator.size()) - 1;
   if (order < 1) return {};
@@ -57,9 +59,22 @@ void edit(TankChain& tanks, const ChannelError& error, double) {
   tanks.dead_time_s = std::max(0.0, tanks.dead_time_s + error.dead_time_error_s);
 }
 
+/// By parts of a sample too, between whose responses the response lies on a straight line: a fit
+/// that could only go by whole samples would see no slope.
+void delay(DiscreteFilter& filter, double samples) {
+  const double whole = std::floor(std::max(0.0, filter.delay_samples + samples) + kWholeSample);
+  const double part = std::max(0.0, filter.delay_samples + samples) - whole;
+  filter.delay_samples = static_cast<int>(whole);
+  if (part < kWholeSample) return;
+  std::vector<double>& numerator = filter.numerator;
+  numerator.push_back(0.0);
+  for (std::size_t i = numerator.size() - 1; i > 0; --i)
+    numerator[i] = (1.0 - part) * numerator[i] + part * numerator[i - 1];
+  numerator[0] *= 1.0 - part;
+}
+
 void edit(DiscreteFilter& filter, const ChannelError& error, double sample_time_s) {
-  const auto shift = static_cast<int>(std::lround(error.dead_time_error_s / sample_time_s));
-  filter.delay_samples = std::max(0, filter.delay_samples + shift);
+  if (error.dead_time_error_s != 0.0) delay(filter, error.dead_time_error_s / sample_time_s);
   double factor = error.gain_ratio;
   if (error.time_constant_ratio != 1.0 || error.damping_ratio != 1.0) {
     std::vector<std::complex<double>> poles = poles_of(filter.denominator);

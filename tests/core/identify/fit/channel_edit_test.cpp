@@ -94,15 +94,25 @@ TEST_CASE("a filter's complex pair keeps its frequency where only the damping mo
   CHECK_FALSE(rings(lag(0, 0, 1.0, 10.0)));
 }
 
-TEST_CASE("a filter's dead time moves by the nearest whole samples") {
-  const ChannelSpec channel = filter({1.0}, {1.0, -0.5}, 3);
-  const auto delay = [&](double error_s) {
-    return edited_as<DiscreteFilter>(channel, {1.0, 1.0, error_s}, 2.0).delay_samples;
+// 2 s a sample. Part p of a sample later: (1 - p) of the response where it is, p a sample later.
+TEST_CASE("a filter's dead time moves by parts of a sample too") {
+  const ChannelSpec channel = filter({1.0, 0.4}, {1.0, -0.5}, 3);
+  const auto delayed = [&](double error_s) {
+    return edited_as<DiscreteFilter>(channel, {1.0, 1.0, error_s}, 2.0);
   };
-  CHECK(delay(0.9) == 3);
-  CHECK(delay(1.1) == 4);
-  CHECK(delay(-2.9) == 2);
-  CHECK(delay(-100.0) == 0);
+  const auto check = [&](double error_s, int delay, const std::vector<double>& numerator) {
+    CAPTURE(error_s);
+    const DiscreteFilter filter = delayed(error_s);
+    CHECK(filter.delay_samples == delay);
+    REQUIRE(filter.numerator.size() == numerator.size());
+    for (std::size_t i = 0; i < numerator.size(); ++i)
+      CHECK(filter.numerator[i] == Approx(numerator[i]).epsilon(1e-12));
+    CHECK(steady_gain(filter) == Approx(2.8).epsilon(1e-12));
+  };
+  check(0.5, 3, {0.75, 0.25 + 0.3, 0.1});
+  check(2.0, 4, {1.0, 0.4});
+  check(-3.0, 1, {0.5, 0.5 + 0.2, 0.2});
+  check(-100.0, 0, {1.0, 0.4});
 }
 
 // s(k) of the slower one at k is s of the other at half the way: equal at every other row, the mean
