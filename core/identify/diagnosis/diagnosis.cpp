@@ -28,6 +28,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// The controller makes a CV follow its set-point, so that any share of the CV does.
+constexpr const char* kOwnSetpoint =
+    "a CV follows its own set-point: a wrong gain, its sensor's span and a disturbance that moves "
+    "with the set-point look the same";
+
 /// Thrown where the caller's `progress` says so; ends all loops at once.
 struct GivenUp {};
 
@@ -60,14 +65,16 @@ void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
     Finding finding = to_finding(found, i, problem);
     finding.repaired = selection.fates[i] == Fate::kRepaired;
     const bool of_setpoint = effect.place.aux >= judges.aux;
-    finding.refused =
-        of_setpoint ? "a set-point is no input of a model" : why_not_in_model(selection.fates[i]);
+    const bool of_its_own = of_setpoint && effect.place.aux == judges.aux + effect.place.cv;
+    finding.refused = of_its_own    ? kOwnSetpoint
+                      : of_setpoint ? "a set-point is no input of a model"
+                                    : why_not_in_model(selection.fates[i]);
     finding.explains = selection.explains[i];
     if (const auto other = selection.with[i]) finding.with = subject_of(found.named[*other].effect);
     if (causes::is_unnamed(cause)) {
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
       mark_unclear(effect);
-    } else if (of_setpoint && finding.explains < kSetpointExplains) {
+    } else if (of_its_own || (of_setpoint && finding.explains < kSetpointExplains)) {
       unproved.push_back(std::move(finding));
       mark_unclear(effect);
     } else {

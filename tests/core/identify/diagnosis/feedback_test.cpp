@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
@@ -14,19 +15,22 @@ using Eigen::VectorXd;
 using test::lag;
 
 // Loops in closed form: y(k+1) = p y(k) + ratio * 2 (1 - p) u(k), a disturbance on the output, and
-// a PI controller at a constant set-point. The model says gain 2, time constant 10.
+// a PI controller at a set-point that stands still where none is given. The model says gain 2, time constant 10.
 constexpr Index kRows = 1800;
 
 struct Loop {
-  VectorXd u = VectorXd::Zero(kRows), y = VectorXd::Zero(kRows);
+  VectorXd u = VectorXd::Zero(kRows), y = VectorXd::Zero(kRows), setpoint;
 
-  Loop(double ratio, const VectorXd& disturbance, const VectorXd& shaken) {
+  Loop(double ratio, const VectorXd& disturbance, const VectorXd& shaken,
+       VectorXd followed = VectorXd::Zero(kRows))
+      : setpoint(std::move(followed)) {
     const double pole = std::exp(-0.1);
     double state = 0.0, sum = 0.0;
     for (Index k = 0; k < kRows; ++k) {
       y(k) = state + disturbance(k);
-      sum -= y(k);
-      u(k) = -0.6 * y(k) + 0.06 * sum + shaken(k);
+      const double error = setpoint(k) - y(k);
+      sum += error;
+      u(k) = 0.6 * error + 0.06 * sum + shaken(k);
       state = pole * state + ratio * 2.0 * (1.0 - pole) * u(k);
     }
   }
@@ -35,7 +39,7 @@ struct Loop {
     DiagnosisSettings settings;
     settings.mv_count = 1;
     Recording recording = test::recording_of(u, y);
-    recording.setpoints = Eigen::MatrixXd::Zero(kRows, 1);
+    recording.setpoints = setpoint;
     return diagnose(test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), recording, nullptr, settings);
   }
 };
@@ -71,6 +75,24 @@ TEST_CASE("a sound loop at rest accuses nothing, whatever disturbs it") {
     CHECK(accusations(Loop(1.0, walk(seed), still).diagnosed()).empty());
     CHECK(accusations(Loop(1.0, cycle(seed), still).diagnosed()).empty());
     CHECK(accusations(Loop(1.0, steps(10 * seed), still).diagnosed()).empty());
+  }
+}
+
+// Its sensor's span would leave the same.
+TEST_CASE("what follows the CV's own set-point is told, and not named") {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    const VectorXd setpoint = test::telegraph(seed, kRows, 60);
+    const VectorXd moved = test::first_order(setpoint, 0.3, 12.0);
+    const Diagnosis diagnosis = Loop(1.0, moved + 0.05 * test::normal(seed + 5, kRows),
+                                     VectorXd::Zero(kRows), setpoint)
+                                    .diagnosed();
+    CHECK(accusations(diagnosis).empty());
+    for (const Finding& finding : diagnosis.findings)
+      CHECK(finding.subject.cause != &causes::unmodelled_input());
+    CHECK(diagnosis.verdict != DiagnosisVerdict::kMatch);
+    CHECK((diagnosis.reason.find("own set-point") != std::string::npos ||
+           !diagnosis.findings.empty()));
   }
 }
 
