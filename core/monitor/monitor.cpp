@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/mismatch/change_scan.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
@@ -19,8 +20,12 @@
 namespace mpm {
 
 struct Monitor::State {
-  State(const LinearModel& model, const SignalCounts& signal_counts,
+  State(const LinearModel& unit_model, const SignalCounts& signal_counts,
         const std::vector<bool>& may_predict, const DerivedSettings& derived);
+
+  /// As after construction, but for the alarms, which stay until new samples say something of
+  /// them, and for what the data themselves look like.
+  void begin_anew();
 
   /// One CV: whether its data serve, and its alarms.
   struct Cv {
@@ -44,7 +49,9 @@ struct Monitor::State {
   void judge_channels();
   [[nodiscard]] bool bad_data(int cv, int input);
 
+  LinearModel model;
   SignalCounts counts;
+  std::vector<bool> expected;  // per CV: a prediction may come
   DerivedSettings settings;
   std::vector<bool> acts;  // per channel, input-major: the model has it
   Screen screen;
@@ -65,9 +72,11 @@ struct Monitor::State {
   std::int64_t samples = 0;
 };
 
-Monitor::State::State(const LinearModel& model, const SignalCounts& signal_counts,
+Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_counts,
                       const std::vector<bool>& may_predict, const DerivedSettings& derived)
-    : counts(signal_counts),
+    : model(unit_model),
+      counts(signal_counts),
+      expected(may_predict),
       settings(derived),
       acts(channels_of(model, derived.settling_samples + derived.fir_lags)),
       screen(counts, may_predict, acts,
@@ -86,6 +95,20 @@ Monitor::State::State(const LinearModel& model, const SignalCounts& signal_count
   status.resize(channels);
   transitions.reserve(channels);
   for (int j = 0; j < counts.cv; ++j) cvs.emplace_back(counts.inputs());
+}
+
+void Monitor::State::begin_anew() {
+  State fresh(model, counts, expected, settings);
+  fresh.screen = std::move(screen);
+  fresh.cvs = std::move(cvs);
+  for (Cv& cv : fresh.cvs) cv.judged = false;
+  fresh.status = std::move(status);
+  fresh.transitions = std::move(transitions);
+  fresh.counters = counters;
+  fresh.first = first;
+  fresh.last_interval = last_interval;
+  fresh.taken_interval = taken_interval;
+  *this = std::move(fresh);
 }
 
 void Monitor::State::take_frame(const Frame& frame) {
@@ -217,6 +240,7 @@ void Monitor::push(const Frame& frame) {
   s.last_interval = frame.interval;
   const Frame* screened = s.screen.push(frame);
   s.counters.implausible = s.screen.counters();
+  if (s.screen.anew()) s.begin_anew();  // the screen keeps its frames
   if (screened != nullptr) s.take_frame(*screened);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 /// The numbers of this room that decide which values count and which samples go together. Where
 /// each comes from: see core/mismatch/calibration.hpp.
 namespace mpm::calibration {
@@ -35,6 +37,26 @@ inline constexpr double kScaleSamples = 300.0;
 inline constexpr double kFirstSamples = 30.0;
 inline constexpr double kBound = 3.0;
 }  // namespace spikes
+
+/// Values far outside what a signal has ever been (`Extent`, `Screen`). Chosen: an operator's step
+/// is often ten times what a controller did before, hardly ever ten thousand times.
+namespace extent {
+/// Values by which a signal's range is first known, and how many of them at either end do not count
+/// where they lie absurdly far from the others.
+inline constexpr std::size_t kFirstValues = 30;
+inline constexpr std::size_t kOutermost = 3;
+/// A range below this share of the level is the signal's last digits.
+inline constexpr double kDigits = 1e-6;
+/// So many widths outside, an input's value that is soon back is implausible: the next time it
+/// takes twice as many. Of an input that had stood still it is so often.
+inline constexpr double kIsolated = 10.0;
+inline constexpr int kOftenFromRest = 3;
+/// So many widths outside, any value is, until so many have come in a row.
+inline constexpr double kTooFar = 1e4;
+inline constexpr int kPatience = 60;
+/// No instrument gives more, in whatever unit.
+inline constexpr double kLargest = 1e100;
+}  // namespace extent
 
 /// Blocks that come apart (`Aligner`), in control intervals. Chosen: what middleware reorders is
 /// far less, and a gateway that is a thousand ahead on one topic has lost the others.

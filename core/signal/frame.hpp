@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/signal/calibration.hpp"
+
 namespace mpm {
 
 /// OPC UA severity of one value. Bad values are never used, nor those that claim to be good and
@@ -50,10 +52,10 @@ struct SignalBlock {
     quality.assign(static_cast<std::size_t>(count), Quality::kBad);
   }
   [[nodiscard]] int size() const { return static_cast<int>(values.size()); }
-  /// True where the value may enter a statistic: finite and not bad.
+  /// True where the value may enter a statistic: not bad, and of a size that an instrument gives.
   [[nodiscard]] bool usable(int index) const {
     return quality[static_cast<std::size_t>(index)] <= Quality::kUncertain &&
-           std::isfinite(values(index));
+           std::abs(values(index)) <= calibration::extent::kLargest;  // false for NaN
   }
 };
 

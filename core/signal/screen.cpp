@@ -11,6 +11,15 @@ using calibration::repeats::kReturns;
 using calibration::spikes::kFirstSamples;
 using calibration::spikes::kJump;
 
+namespace {
+
+constexpr std::array kScreened = {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
+                                  SignalKind::kPrediction};
+
+bool is_input(SignalKind kind) { return kind == SignalKind::kMv || kind == SignalKind::kDv; }
+
+}  // namespace
+
 void Screen::Repeats::take(double value) {
   if (taken == 0) {
     low = high = last = before_last = value;
@@ -64,8 +73,11 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
       ring_(kDelay + 1, Frame(counts)),
       marked_(kDelay + 1),
       jumps_(static_cast<std::size_t>(counts.cv)) {
-  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
-    repeats_.emplace_back(static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind))));
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
+    const auto count = static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind)));
+    repeats_.emplace_back(count);
+    ranges_.emplace_back(count);
+  }
 }
 
 const Frame* Screen::push(const Frame& frame) {
@@ -73,10 +85,11 @@ const Frame* Screen::push(const Frame& frame) {
   ring_[static_cast<std::size_t>(position_)] = frame;
   marked_[static_cast<std::size_t>(position_)] = {};
   held_ = std::min(held_ + 1, kDelay + 1);
+  anew_ = false;
 
-  for (const SignalKind kind :
-       {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction}) {
-    const SignalBlock& block = frame[kind];
+  for (const SignalKind kind : kScreened) {
+    screen_far(kind);
+    const SignalBlock& block = ago(0)[kind];
     for (int i = 0; i < block.size(); ++i)
       if (block.usable(i))
         repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)].take(block.values(i));
@@ -91,6 +104,8 @@ const Frame* Screen::push(const Frame& frame) {
   screen_repeats(SignalKind::kCv);
   if (held_ > kDelay)
     for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
+  if (held_ >= kDelay)
+    for (const SignalKind kind : kScreened) learn_range(kind);
   if (held_ <= kDelay) return nullptr;
   const ScreenCounters& marked = marked_[place(kDelay)];
   counters_.frozen += marked.frozen;
@@ -133,7 +148,7 @@ bool Screen::may_rest(SignalKind kind, int index) const {
 }
 
 void Screen::screen_repeats(SignalKind kind) {
-  const bool input = kind == SignalKind::kMv || kind == SignalKind::kDv;
+  const bool input = is_input(kind);
   for (int i = 0; i < ago(0)[kind].size(); ++i) {
     const Repeats& repeats = repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
     if (!ago(0)[kind].usable(i)) continue;
@@ -197,6 +212,53 @@ void Screen::screen_spikes(int cv) {
                              : difference;
   jumps.scale +=
       (bounded - jumps.scale) / std::min(jumps.samples, calibration::spikes::kScaleSamples);
+}
+
+// Before anything is learnt from it.
+void Screen::screen_far(SignalKind kind) {
+  for (int i = 0; i < ago(0)[kind].size(); ++i) {
+    if (!ago(0)[kind].usable(i)) continue;
+    Range& range = ranges_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    const bool far = range.extent.known() && range.extent.width() > 0.0 &&
+                     range.extent.beyond(ago(0)[kind].values(i)) > calibration::extent::kTooFar;
+    range.far = far ? range.far + 1 : 0;
+    if (!far) continue;
+    if (range.far <= calibration::extent::kPatience) {
+      mark(kind, i, 0, &ScreenCounters::spikes);
+      continue;
+    }
+    range = Range{};
+    anew_ = true;
+  }
+}
+
+// Of the oldest frame that is followed by two others.
+void Screen::learn_range(SignalKind kind) {
+  for (int i = 0; i < ago(kDelay - 1)[kind].size(); ++i) {
+    if (!ago(kDelay - 1)[kind].usable(i)) continue;
+    Range& range = ranges_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    if (is_input(kind) && soon_back(kind, i, range)) {
+      mark(kind, i, kDelay - 1, &ScreenCounters::spikes);
+      ++range.rejected;
+    } else if (!range.extent.learn(ago(kDelay - 1)[kind].values(i))) {
+      anew_ = true;
+    }
+  }
+}
+
+bool Screen::soon_back(SignalKind kind, int index, Range& range) {
+  if (!range.extent.known()) return false;
+  const double width = range.extent.width();
+  const double away = range.extent.beyond(ago(kDelay - 1)[kind].values(index));
+  const bool wild = width > 0.0
+                        ? away > std::ldexp(calibration::extent::kIsolated, range.rejected)
+                        : away > 0.0 && range.rejected < calibration::extent::kOftenFromRest;
+  if (!wild) return false;
+  for (int frames = 0; frames < kDelay - 1; ++frames)
+    if (ago(frames)[kind].usable(index) &&
+        range.extent.beyond(ago(frames)[kind].values(index)) <= 1.0)
+      return true;
+  return false;
 }
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/signal/calibration.hpp"
+#include "core/signal/extent.hpp"
 #include "core/signal/frame.hpp"
 
 namespace mpm {
@@ -17,7 +18,8 @@ struct ScreenCounters {
 
 /// Looks at the values that claim to be good and marks those that no process gives: a signal
 /// that repeats one value longer than its resolution explains (frozen), rests at the end of its
-/// range (clipped), or jumps away and right back (spike). To judge a value by what follows it,
+/// range (clipped), jumps away and right back (spike), or lies absurdly far outside all that it has
+/// ever been (wild, counted with the spikes). To judge a value by what follows it,
 /// frames pass with a delay of `kDelay`.
 ///
 /// Inputs may rest: a controller in manual or at a limit holds them. They count as frozen only
@@ -41,6 +43,9 @@ class Screen {
   [[nodiscard]] const Frame* push(const Frame& frame);
 
   [[nodiscard]] const ScreenCounters& counters() const { return counters_; }
+  /// Whether with the last frame it turned out that what was learnt of some signal was of wild
+  /// values, or that it lives elsewhere from now on: statistics over both are worth nothing.
+  [[nodiscard]] bool anew() const { return anew_; }
   /// Whether a prediction of the CV has come at all.
   [[nodiscard]] bool predicted(int cv) const { return predicted_[static_cast<std::size_t>(cv)]; }
   /// Spikes of one CV so far.
@@ -72,6 +77,12 @@ class Screen {
     int since_home = 0;  // frames
     std::uint64_t spikes = 0;
   };
+  /// One signal's range.
+  struct Range {
+    Extent extent;
+    int far = 0;       // values in a row that are absurdly far outside
+    int rejected = 0;  // that came back
+  };
   [[nodiscard]] std::size_t place(int frames) const {
     return static_cast<std::size_t>((position_ + kDelay + 1 - frames) % (kDelay + 1));
   }
@@ -82,6 +93,9 @@ class Screen {
   void screen_repeats(SignalKind kind);
   void mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter);
   void screen_spikes(int cv);
+  void screen_far(SignalKind kind);
+  void learn_range(SignalKind kind);
+  [[nodiscard]] bool soon_back(SignalKind kind, int index, Range& range);
   [[nodiscard]] bool level(int cv, int frames, double& value);
 
   SignalCounts counts_;
@@ -96,7 +110,9 @@ class Screen {
   std::vector<ScreenCounters> marked_;  // of the same frames
   int position_ = 0;
   int held_ = 0;
+  bool anew_ = false;
   std::vector<std::vector<Repeats>> repeats_;  // per kind
+  std::vector<std::vector<Range>> ranges_;     // per kind
   std::vector<Jumps> jumps_;                   // per CV
   ScreenCounters counters_;
 };
