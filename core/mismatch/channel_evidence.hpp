@@ -41,6 +41,7 @@ struct ChannelEvidence {
   Estimate gain_error;    ///< relative to the reference gain, whatever else is wrong
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
   Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
+  double dead_time = 0.0;    ///< of the model, samples
 };
 
 }  // namespace mpm

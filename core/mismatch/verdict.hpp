@@ -62,6 +62,7 @@ struct ChannelStatus : ChannelVerdict {
   int confounder = -1;       ///< input index, for kCollinear; -1 otherwise
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
   Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
+  double dead_time = 0.0;    ///< of the model, samples
 };
 
 }  // namespace mpm

@@ -69,9 +69,12 @@ void ChannelJudge::read_evidence(const JudgedChannel& channel, ChannelStatus& st
   status.usual = evidence.usual;
   status.log_time_error = evidence.log_time_error;
   status.dead_time_error = evidence.dead_time_error;
+  status.dead_time = evidence.dead_time;
   const double half =
       kNormalTwoSided95 * std::min(evidence.gain_error.deviation, visibility::kBlindGainError);
-  status.effect_size = evidence.gain_error.value * evidence.reference_gain;
+  status.effect_size = std::clamp(evidence.gain_error.value, -visibility::kBlindGainError,
+                                  visibility::kBlindGainError) *
+                       evidence.reference_gain;
   status.effect_low = status.effect_size - half * std::abs(evidence.reference_gain);
   status.effect_high = status.effect_size + half * std::abs(evidence.reference_gain);
   status.smallest_error = std::min(visibility::kSeenDeviations * evidence.excitation_index,

@@ -21,6 +21,7 @@ struct ChannelRecord : ChannelVerdict {
   std::int64_t interval = 0;
   std::int64_t source_time_ns = 0;
   std::string confounder;  ///< tag of the input that this one moved with, for Reason::kCollinear
+  /// Where the data do not resolve them NaN, as on the topic.
   double time_constant_ratio = 1.0, time_constant_low = 1.0, time_constant_high = 1.0;
   double dead_time_error_s = 0.0, dead_time_low_s = 0.0, dead_time_high_s = 0.0;
   AlarmState alarm = AlarmState::kCleared;
@@ -32,10 +33,21 @@ struct ChannelRecord : ChannelVerdict {
     return 100.0 * (model_gain < 0.0 ? -effect : effect) / std::abs(model_gain);
   }
 
+  /// Whether the data resolve the gain: its 95 % interval is no wider than +-100 % of the model's.
+  [[nodiscard]] bool gain_resolved() const {
+    return model_gain != 0.0 && std::abs(effect_high - effect_low) <= 2.0 * std::abs(model_gain);
+  }
+  [[nodiscard]] bool time_constant_resolved() const {
+    return usual && std::isfinite(time_constant_ratio);
+  }
+  [[nodiscard]] bool dead_time_resolved() const {
+    return usual && std::isfinite(dead_time_error_s);
+  }
+
   /// See FieldKey.
   template <class Visit, class Record, class... Sample>
   static void fields(Visit&& visit, Record& record, Sample&... sample) {
-    const bool has_gain = record.model_gain != 0.0;
+    const bool has_gain = record.gain_resolved();
     const std::array ends{record.percent_of_gain(record.effect_low),
                           record.percent_of_gain(record.effect_high)};
     visit("record", std::string_view("channel"));
@@ -63,13 +75,14 @@ struct ChannelRecord : ChannelVerdict {
     visit({"gain_error_percent_interval", has_gain},
           std::array{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
     visit({"usual", false}, record.usual, sample.usual...);
-    visit({"time_constant_ratio", record.usual}, record.time_constant_ratio,
+    visit({"time_constant_ratio", record.time_constant_resolved()}, record.time_constant_ratio,
           sample.time_constant_ratio...);
-    visit({"time_constant_ratio_interval", record.usual},
+    visit({"time_constant_ratio_interval", record.time_constant_resolved()},
           std::tie(record.time_constant_low, record.time_constant_high),
           std::tie(sample.time_constant_low, sample.time_constant_high)...);
-    visit({"dead_time_error", record.usual}, record.dead_time_error_s, sample.dead_time_error...);
-    visit({"dead_time_error_interval", record.usual},
+    visit({"dead_time_error", record.dead_time_resolved()}, record.dead_time_error_s,
+          sample.dead_time_error...);
+    visit({"dead_time_error_interval", record.dead_time_resolved()},
           std::tie(record.dead_time_low_s, record.dead_time_high_s),
           std::tie(sample.dead_time_low, sample.dead_time_high)...);
     visit("smallest_error", record.smallest_error, sample.smallest_error...);

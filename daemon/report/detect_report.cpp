@@ -22,12 +22,19 @@ std::string format(const char* pattern, double a, double b) {
 std::string size_of(const ChannelRecord& channel) {
   if (channel.model_gain == 0.0)
     return format("  gain off by about %.3g (CV per MV unit)", channel.effect_size, 0.0);
-  const double percent = 100.0 / channel.model_gain;
-  const double half = 0.5 * std::abs((channel.effect_high - channel.effect_low) * percent);
-  std::string text = format("  gain %+.1f +- %.1f %%", channel.effect_size * percent, half);
+  const double half =
+      0.5 * channel.percent_of_gain(std::abs(channel.effect_high - channel.effect_low));
+  std::string text = "  gain --";
+  if (channel.gain_resolved())
+    text = format("  gain %+.1f +- %.1f %%", channel.percent_of_gain(channel.effect_size),
+                  std::abs(half));
   if (channel.usual) {
-    text += format(", time constant x%.2f, dead time %+.2g s", channel.time_constant_ratio,
-                   channel.dead_time_error_s);
+    text += channel.time_constant_resolved()
+                ? format(", time constant x%.2f", channel.time_constant_ratio, 0.0)
+                : ", time constant --";
+    text += channel.dead_time_resolved()
+                ? format(", dead time %+.2g s", channel.dead_time_error_s, 0.0)
+                : ", dead time --";
   } else {
     text += ", but not of that alone: the dynamics or the dead time differ by much";
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "core/statistics/normal.hpp"
@@ -15,23 +16,33 @@ std::vector<bool> predictions_of(const config::UnitConfig& config) {
   return given;
 }
 
-// What is not known at all stays finite for readers.
-constexpr double kWidest = 1e6;
+// Beyond these the data do not resolve a number, or the errors are no longer those of small steps
+// that are estimated: a factor of 10 of the time constants, an interval of a factor of 5 either
+// way, one of the dead time that is wider than it and a few samples.
+constexpr double kMostLogTime = 2.3, kWidestLogTime = 1.6, kWidestDeadTimeSamples = 5.0;
 
+// What no dead time allows is not in the interval.
 void fill_errors(const ChannelStatus& status, double sample_time_s, ChannelRecord& record) {
-  const auto bounded = [](double value) { return std::clamp(value, -kWidest, kWidest); };
-  const auto half = [&](const Estimate& estimate) {
-    return std::min(kNormalTwoSided95 * estimate.deviation, std::log(kWidest));
-  };
+  const auto half = [](const Estimate& estimate) { return kNormalTwoSided95 * estimate.deviation; };
+  constexpr double kUnresolved = std::numeric_limits<double>::quiet_NaN();
+  record.time_constant_ratio = record.time_constant_low = record.time_constant_high = kUnresolved;
   const Estimate& time = status.log_time_error;
-  record.time_constant_ratio = std::min(std::exp(time.value), kWidest);
-  record.time_constant_low = std::exp(bounded(time.value - half(time)));
-  record.time_constant_high = std::min(std::exp(time.value + half(time)), kWidest);
+  if (std::abs(time.value) <= kMostLogTime && half(time) <= kWidestLogTime) {
+    record.time_constant_ratio = std::exp(time.value);
+    record.time_constant_low = std::exp(time.value - half(time));
+    record.time_constant_high = std::exp(time.value + half(time));
+  }
+  record.dead_time_error_s = record.dead_time_low_s = record.dead_time_high_s = kUnresolved;
   const Estimate& dead = status.dead_time_error;
-  const double dead_half = std::min(kNormalTwoSided95 * dead.deviation, kWidest);
-  record.dead_time_error_s = bounded(dead.value) * sample_time_s;
-  record.dead_time_low_s = bounded(dead.value - dead_half) * sample_time_s;
-  record.dead_time_high_s = bounded(dead.value + dead_half) * sample_time_s;
+  const double widest = status.dead_time + kWidestDeadTimeSamples;
+  if (half(dead) <= widest && std::abs(dead.value) <= 2.0 * widest) {
+    const auto seconds = [&](double samples) {
+      return std::max(samples, -status.dead_time) * sample_time_s;
+    };
+    record.dead_time_error_s = seconds(dead.value);
+    record.dead_time_low_s = seconds(dead.value - half(dead));
+    record.dead_time_high_s = seconds(dead.value + half(dead));
+  }
 }
 
 AlarmRecord alarm_of(const ChannelRecord& channel, AlarmState to) {
