@@ -98,6 +98,26 @@ inline constexpr int kTailFitFewest = 50;
 inline constexpr int kTailFitMost = 20000;
 }  // namespace usual_errors
 
+/// The sizes of errors that are not small (`ErrorSizes`). Chosen: from these starts a gain, a time
+/// constant or a dead time that is off by up to a factor of 3 or 10 samples is found
+/// (tests/core/mismatch/error_sizes_test.cpp).
+namespace error_sizes {
+/// Below this p-value of "no error" an error may be too large for its linear estimate.
+inline constexpr double kRefinedBelow = 1e-3;
+/// ln of the time constants' ratio, and dead time in samples.
+inline constexpr std::array<std::array<double, 2>, 6> kStarts = {
+    {{0.0, 3.0}, {0.0, 6.0}, {0.0, 10.0}, {0.7, 0.0}, {-0.7, 0.0}, {0.0, -3.0}}};
+inline constexpr int kMostSteps = 8;
+inline constexpr int kMostHalvings = 4;
+/// In variances of the estimates.
+inline constexpr double kWorthAnotherStep = 1e-3;
+/// Differences that slopes are taken of: gain, ln time, samples.
+inline constexpr std::array kSlopeSteps = {0.01, 0.02, 0.25};
+/// No estimate leaves these.
+inline constexpr double kMostGain = 100.0;
+inline constexpr double kMostLogTime = 2.5;
+}  // namespace error_sizes
+
 /// The other inputs mask one where they make its gain's s.d. this many times larger. Chosen.
 namespace confounding {
 inline constexpr double kMasked = 2.0;

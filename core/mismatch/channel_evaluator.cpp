@@ -20,6 +20,7 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
       excitation_(estimates_),
       usual_(shape.block()),
       materiality_(shape.block()),
+      sizes_(shape, model),
       estimate_(Eigen::VectorXd::Zero(shape.block())),
       directions_(Eigen::MatrixXd::Zero(shape.block(), error_column::kCount)),
       error_(Eigen::VectorXd::Zero(shape.block())) {
@@ -65,7 +66,14 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
   scaled_error(channel.shifts[1], input, directions_.col(error_column::kEarlier));
   covariance_.whiten(directions_.col(error_column::kLater));
   covariance_.whiten(directions_.col(error_column::kEarlier));
-  materiality_.judge(estimate_, directions_, usual_, limits_[index(cv, input)], noise, evidence);
+  double left = materiality_.fit(estimate_, directions_, noise, evidence);
+  if (evidence.p_value < calibration::error_sizes::kRefinedBelow) {
+    const double enough = noise.variance * static_cast<double>(estimate_.size());
+    left = sizes_.refine({cv, input, estimates_, covariance_, estimate_, noise.variance}, left,
+                         enough, evidence);
+  }
+  materiality_.judge(left, estimate_, directions_, usual_, limits_[index(cv, input)], noise,
+                     evidence);
   if (!evidence.usual) estimate_free_gain(channel.gain, input, noise, evidence);
 }
 

@@ -8,6 +8,7 @@
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/channel_signatures.hpp"
 #include "core/mismatch/error_reduction.hpp"
+#include "core/mismatch/error_sizes.hpp"
 #include "core/mismatch/estimate_noise.hpp"
 #include "core/mismatch/gain_excitation.hpp"
 #include "core/mismatch/input_estimates.hpp"
@@ -60,6 +61,7 @@ class ChannelEvaluator {
   GainExcitation excitation_;
   UsualErrorSpace usual_;
   Materiality materiality_;
+  ErrorSizes sizes_;
   Eigen::VectorXd estimate_;    // of the input's coefficients, whitened
   Eigen::MatrixXd directions_;  // block x error_column::kCount, whitened
   Eigen::VectorXd error_;

@@ -32,13 +32,17 @@ Materiality::Materiality(int block)
       usual_directions_(Eigen::MatrixXd::Zero(kUsualErrors, error_column::kCount)),
       usual_estimate_(Eigen::VectorXd::Zero(kUsualErrors)) {}
 
-void Materiality::judge(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
-                        const UsualErrorSpace& usual, const MaterialityLimits& limits,
-                        const EstimateNoise& noise, ChannelEvidence& evidence) {
-  const double left = fit(estimate, directions, noise, evidence);
-  const auto free = static_cast<double>(estimate.size() - 3);
-  evidence.usual = free > 0.0 && f_upper_tail(left / (free * noise.variance), free, noise.freedom) >
-                                     calibration::usual_errors::kUnusualPValue;
+bool Materiality::explained(double left, Eigen::Index block, const EstimateNoise& noise) {
+  const auto free = static_cast<double>(block - 3);
+  return free > 0.0 && f_upper_tail(left / (free * noise.variance), free, noise.freedom) >
+                           calibration::usual_errors::kUnusualPValue;
+}
+
+void Materiality::judge(double left, const Eigen::VectorXd& estimate,
+                        const Eigen::MatrixXd& directions, const UsualErrorSpace& usual,
+                        const MaterialityLimits& limits, const EstimateNoise& noise,
+                        ChannelEvidence& evidence) {
+  evidence.usual = explained(left, estimate.size(), noise);
   if (evidence.usual)
     judge_usual(limits, noise, evidence);
   else

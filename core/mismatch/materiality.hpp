@@ -19,16 +19,18 @@ class Materiality {
   /// `block`: coefficients of a channel.
   explicit Materiality(int block);
 
-  /// `estimate` and `directions` (block x error_column::kCount): whitened; `usual`: the space that
-  /// the directed test looks at.
-  void judge(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
+  /// Estimates the three errors as if they were small; what they leave, in squares. `estimate` and
+  /// `directions` (block x error_column::kCount): whitened.
+  [[nodiscard]] double fit(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
+                           const EstimateNoise& noise, ChannelEvidence& evidence);
+  /// Whether no more than noise is left of a block of so many coefficients.
+  [[nodiscard]] static bool explained(double left, Eigen::Index block, const EstimateNoise& noise);
+  /// `left`: by the errors in `evidence`. `usual`: the space that the directed test looks at.
+  void judge(double left, const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
              const UsualErrorSpace& usual, const MaterialityLimits& limits,
              const EstimateNoise& noise, ChannelEvidence& evidence);
 
  private:
-  /// Estimates the three errors; what they leave, in squares.
-  [[nodiscard]] double fit(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
-                           const EstimateNoise& noise, ChannelEvidence& evidence);
   static void judge_usual(const MaterialityLimits& limits, const EstimateNoise& noise,
                           ChannelEvidence& evidence);
   void judge_unusual(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,

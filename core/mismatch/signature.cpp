@@ -22,17 +22,29 @@ BlockBasis::BlockBasis(int fir_lags, std::vector<double> tail_poles)
     for (int l = 0; l < beyond_; ++l)
       steps(l, t) = 1.0 - std::pow(tail_poles_[static_cast<std::size_t>(t)], l + 1);
   tail_fit_.compute(steps);
+  projection_ = tail_fit_.solve(Eigen::MatrixXd::Identity(beyond_, beyond_));
 }
 
 Eigen::VectorXd BlockBasis::tail_coefficients(const Eigen::VectorXd& pulse, int shift) const {
   Eigen::VectorXd step(beyond_);
+  sum_beyond(pulse, shift, step);
+  return tail_fit_.solve(step);
+}
+
+void BlockBasis::tail_coefficients(const Eigen::VectorXd& pulse, int shift, Eigen::VectorXd& work,
+                                   Eigen::Ref<Eigen::VectorXd> out) const {
+  sum_beyond(pulse, shift, work.head(beyond_));
+  out.noalias() = projection_ * work.head(beyond_);
+}
+
+void BlockBasis::sum_beyond(const Eigen::VectorXd& pulse, int shift,
+                            Eigen::Ref<Eigen::VectorXd> step) const {
   double sum = 0.0;
   for (int l = 0; l < beyond_; ++l) {
     const int at = fir_lags_ + 1 + l - shift;
     sum += at >= 0 ? pulse(at) : 0.0;
     step(l) = sum;
   }
-  return tail_fit_.solve(step);
 }
 
 Signature::Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int order)
@@ -40,6 +52,13 @@ Signature::Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int 
       tails_(basis.columns() - basis.fir_lags(), order + 1) {
   for (int shift = 0; shift <= order; ++shift)
     tails_.col(shift) = basis.tail_coefficients(pulse, shift);
+}
+
+void Signature::replace(const BlockBasis& basis, const Eigen::VectorXd& pulse,
+                        Eigen::VectorXd& work) {
+  pulse_ = pulse.segment(1, basis.fir_lags());
+  for (Eigen::Index shift = 0; shift < tails_.cols(); ++shift)
+    basis.tail_coefficients(pulse, static_cast<int>(shift), work, tails_.col(shift));
 }
 
 void Signature::filter(const double* a, Eigen::Ref<Eigen::VectorXd> coefficients) const {

@@ -24,13 +24,19 @@ class BlockBasis {
   [[nodiscard]] double slowest() const { return slowest_; }
   /// Of `pulse` delayed by `shift` samples.
   [[nodiscard]] Eigen::VectorXd tail_coefficients(const Eigen::VectorXd& pulse, int shift) const;
+  /// The same without allocation, to rounding: `work` takes `length` values.
+  void tail_coefficients(const Eigen::VectorXd& pulse, int shift, Eigen::VectorXd& work,
+                         Eigen::Ref<Eigen::VectorXd> out) const;
 
  private:
+  void sum_beyond(const Eigen::VectorXd& pulse, int shift, Eigen::Ref<Eigen::VectorXd> step) const;
+
   int fir_lags_;
   std::vector<double> tail_poles_;
   double slowest_ = 1.0;
   int beyond_ = 0;
   Eigen::HouseholderQR<Eigen::MatrixXd> tail_fit_;
+  Eigen::MatrixXd projection_;  // the fit's solution of the identity
 };
 
 /// What one kind of model error adds to a CV's innovation: b(q) = A(q) h(q) on a block's basis,
@@ -39,6 +45,8 @@ class Signature {
  public:
   /// `pulse`: h(0), h(1), ... (basis.length() values).
   Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int order);
+  /// Takes another pulse response in place of the first; no allocation.
+  void replace(const BlockBasis& basis, const Eigen::VectorXd& pulse, Eigen::VectorXd& work);
   /// `a` points at a_1..a_p; writes basis.columns() coefficients.
   void filter(const double* a, Eigen::Ref<Eigen::VectorXd> coefficients) const;
 

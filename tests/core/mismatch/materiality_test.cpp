@@ -81,7 +81,8 @@ TEST_CASE("an error of the model's own kind is sized and held against its limit"
   ChannelEvidence evidence;
   const Eigen::VectorXd estimate = 0.12 * d.col(0) + 0.03 * d.col(1);
   const std::uint64_t before = test::allocation_count();
-  materiality.judge(estimate, d, space, limits, noise, evidence);
+  materiality.judge(materiality.fit(estimate, d, noise, evidence), estimate, d, space, limits,
+                    noise, evidence);
   CHECK(test::allocation_count() == before);
   CHECK(evidence.usual);
   CHECK(evidence.gain_error.value == Approx(0.12).epsilon(1e-9));
@@ -103,12 +104,14 @@ TEST_CASE("an error of another kind matters where no allowed combination comes n
   const Eigen::VectorXd outside = 60.0 * (x - basis * basis.colPivHouseholderQr().solve(x));
   ChannelEvidence large, small;
   const std::uint64_t before = test::allocation_count();
-  materiality.judge(outside, d, space, limits, noise, large);
+  materiality.judge(materiality.fit(outside, d, noise, large), outside, d, space, limits, noise,
+                    large);
   CHECK(test::allocation_count() == before);
   CHECK_FALSE(large.usual);
   CHECK_FALSE(large.harmless);
   CHECK(large.p_value_material < 1e-6);
-  materiality.judge(1e-4 * outside, d, space, limits, noise, small);
+  materiality.judge(materiality.fit(1e-4 * outside, d, noise, small), 1e-4 * outside, d, space,
+                    limits, noise, small);
   CHECK(small.usual);
   CHECK(small.p_value_material == 1.0);
 }
