@@ -68,7 +68,8 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
   covariance_.whiten(directions_.col(error_column::kEarlier));
   double left = materiality_.fit(estimate_, directions_, noise, evidence);
   if (evidence.p_value < calibration::error_sizes::kRefinedBelow) {
-    const double enough = noise.variance * static_cast<double>(estimate_.size());
+    const auto block = static_cast<double>(estimate_.size());
+    const double enough = noise.variance * (block + 2.0 * std::sqrt(2.0 * block));  // two s.d.
     left = sizes_.refine({cv, input, estimates_, covariance_, estimate_, noise.variance}, left,
                          enough, evidence);
   }
