@@ -22,7 +22,13 @@ BlockBasis::BlockBasis(int fir_lags, std::vector<double> tail_poles)
     for (int l = 0; l < beyond_; ++l)
       steps(l, t) = 1.0 - std::pow(tail_poles_[static_cast<std::size_t>(t)], l + 1);
   tail_fit_.compute(steps);
-  projection_ = tail_fit_.solve(Eigen::MatrixXd::Identity(beyond_, beyond_));
+  // R^-1 Q', Q's first columns alone.
+  projection_ = (tail_fit_.householderQ() * Eigen::MatrixXd::Identity(beyond_, steps.cols()))
+                    .transpose();
+  tail_fit_.matrixQR()
+      .topRows(steps.cols())
+      .triangularView<Eigen::Upper>()
+      .solveInPlace(projection_);
 }
 
 Eigen::VectorXd BlockBasis::tail_coefficients(const Eigen::VectorXd& pulse, int shift) const {
