@@ -6,6 +6,8 @@
 #include <system_error>
 
 #include "config/load_sections.hpp"
+#include "core/monitor/cost.hpp"
+#include "core/text/number_text.hpp"
 
 namespace mpm::config {
 namespace {
@@ -24,7 +26,27 @@ void load_name(const Map& root, UnitConfig& config) {
   config.unit = *name;
 }
 
-void load_root(const Value& document, UnitConfig& config) {
+constexpr double kMostBytes = 16e9;
+
+/// A unit that no machine has room for is refused where its size comes from; one that is too slow
+/// to keep up is told.
+void check_cost(const Map& root, const UnitConfig& config) {
+  const MonitorCost cost = monitor_cost(config.model, config.monitor);
+  const Value* monitor = root.find("monitor");
+  const Value* cause = monitor != nullptr ? monitor : root.find("model");
+  if (cause == nullptr) cause = root.find("signals");
+  const std::string size = number_text(cost.columns) + " regression columns for each of " +
+                           std::to_string(config.cv.size()) + " CVs, " +
+                           number_text(cost.remembered) + " samples remembered";
+  if (cost.bytes > kMostBytes)
+    cause->error("the monitor of this unit would need " + number_text(1e-9 * cost.bytes) +
+                 " GB of memory (" + size + "); split the unit, or shorten its memory");
+  else if (cost.seconds > config.sample_time_s)
+    cause->warning("the monitor of this unit would take about " + number_text(cost.seconds) +
+                   " s of every " + number_text(config.sample_time_s) + " s sample (" + size + ")");
+}
+
+void load_root(const Value& document, Report& report, UnitConfig& config) {
   if (!document.is_map()) {
     document.error("a unit file is a map of keys such as `unit:` and `signals:`");
     return;
@@ -43,10 +65,12 @@ void load_root(const Value& document, UnitConfig& config) {
   load_alarms(root.find("alarms"), config);
   load_dds(root.find("dds"), config);
   load_simulation(root.find("simulation"), config);
+  if (!report.has_error()) check_cost(root, config);
 }
 
 void load_text(const std::string& text, Report& report, UnitConfig& config) {
-  if (const std::optional<Value> document = parse_yaml(text, report)) load_root(*document, config);
+  if (const std::optional<Value> document = parse_yaml(text, report))
+    load_root(*document, report, config);
 }
 
 }  // namespace

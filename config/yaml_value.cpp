@@ -94,6 +94,12 @@ void Report::add(Severity severity, const YAML::Mark& mark, std::string key, std
                        std::move(key), std::move(message)});
 }
 
+bool Report::has_error() const {
+  return std::any_of(findings_.begin(), findings_.end(), [](const Finding& finding) {
+    return finding.severity == Severity::kError;
+  });
+}
+
 std::vector<Finding> Report::take() {
   std::stable_sort(findings_.begin(), findings_.end(), [](const Finding& a, const Finding& b) {
     return std::tie(a.line, a.column) < std::tie(b.line, b.column);

@@ -21,6 +21,7 @@ class Report {
 
   [[nodiscard]] const std::string& file() const { return file_; }
   void add(Severity severity, const YAML::Mark& mark, std::string key, std::string message);
+  [[nodiscard]] bool has_error() const;
   /// Sorted by place, one per place and message.
   [[nodiscard]] std::vector<Finding> take();
 

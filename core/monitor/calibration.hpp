@@ -116,6 +116,8 @@ inline constexpr double kSlowerThanLags = 2.0;
 /// exp(-5) = 0.7 %.
 namespace simulation {
 inline constexpr double kSettlingTimeConstants = 5.0;
+/// Samples behind its dead time in which a channel that acts at all has moved. Chosen.
+inline constexpr double kBeginsToAnswer = 20000.0;
 }
 
 }  // namespace mpm::calibration

@@ -12,9 +12,11 @@ namespace memories = calibration::memories;
 namespace evaluation = calibration::evaluation;
 namespace regression_shape = calibration::regression_shape;
 
+// What no int holds is never reached either.
+int whole(double samples) { return static_cast<int>(std::min(samples, 1e9)); }
+
 int samples(double seconds, double sample_time_s, int otherwise) {
-  return seconds > 0.0 ? std::max(1, static_cast<int>(std::lround(seconds / sample_time_s)))
-                       : otherwise;
+  return seconds > 0.0 ? std::max(1, whole(std::round(seconds / sample_time_s))) : otherwise;
 }
 
 // lambda whose (1 + lambda) / (1 - lambda) is that many.
@@ -37,11 +39,11 @@ void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
                                 memories::kFastRowsPerColumn);
   derived.lambda = forgetting(lasting);
   if (monitor.sliding_window)
-    derived.memories.push_back({1.0, static_cast<int>(lasting)});
+    derived.memories.push_back({1.0, whole(lasting)});
   else
     derived.memories.push_back({derived.lambda, 0});
   if (fast < lasting) derived.memories.push_back({forgetting(fast), 0});
-  derived.remembered = static_cast<int>(std::ceil(memories::kRememberedShare * lasting));
+  derived.remembered = whole(std::ceil(memories::kRememberedShare * lasting));
   derived.evaluation_stride = std::clamp(static_cast<int>(columns / evaluation::kColumnsPerStride),
                                          1, evaluation::kLongestStride);
 }
@@ -80,7 +82,7 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
   derived.fir_lags =
       monitor.fir_lags > 0
           ? monitor.fir_lags
-          : std::clamp(static_cast<int>(std::ceil(dead_time)) + regression_shape::kDeadTimeMargin,
+          : std::clamp(whole(std::ceil(dead_time)) + regression_shape::kDeadTimeMargin,
                        regression_shape::kFewestFirLags, regression_shape::kMostFirLags);
   derived.residual_order =
       monitor.residual_order > 0 ? monitor.residual_order : regression_shape::kResidualOrder;
@@ -94,8 +96,8 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
   derive_memories(spec, monitor, derived);
 
   derive_materiality(spec, monitor, derived);
-  derived.settling_samples = static_cast<int>(
-      std::ceil(calibration::simulation::kSettlingTimeConstants * slowest + dead_time));
+  derived.settling_samples =
+      whole(std::ceil(calibration::simulation::kSettlingTimeConstants * slowest + dead_time));
   derived.alarm.raise_below = alarms.raise_p_value;
   derived.alarm.clear_above = alarms.clear_p_value;
   derived.alarm.on_delay =

@@ -72,13 +72,24 @@ struct Monitor::State {
   std::int64_t samples = 0;
 };
 
+namespace {
+
+// In which every channel begins to answer: however slow, it does so behind its dead time.
+int answering_samples(const LinearModel& model, const DerivedSettings& derived) {
+  const double dead_time = std::ceil(model.longest_dead_time_samples());
+  return static_cast<int>(std::min(static_cast<double>(derived.settling_samples) + derived.fir_lags,
+                                   dead_time + calibration::simulation::kBeginsToAnswer));
+}
+
+}  // namespace
+
 Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_counts,
                       const std::vector<bool>& may_predict, const DerivedSettings& derived)
     : model(unit_model),
       counts(signal_counts),
       expected(may_predict),
       settings(derived),
-      acts(channels_of(model, derived.settling_samples + derived.fir_lags)),
+      acts(channels_of(model, answering_samples(model, derived))),
       screen(counts, may_predict, acts,
              static_cast<int>(std::ceil(model.longest_dead_time_samples()))),
       inputs(counts, settings.remembered * calibration::input_motion::kMemoryShare),

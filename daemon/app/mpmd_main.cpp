@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
+#include "core/monitor/cost.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/version.hpp"
@@ -71,12 +73,22 @@ void declare(CLI::App& app, Options& options) {
       "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or bad unit file");
 }
 
+std::string cost_text(const config::UnitConfig& unit) {
+  const MonitorCost cost = monitor_cost(unit.model, unit.monitor);
+  return unit.unit + ": about " + number_text(1e-6 * cost.bytes, 2) + " MB and " +
+         number_text(1e6 * cost.seconds, 2) + " us a sample (" + number_text(cost.columns) +
+         " regression columns per CV)";
+}
+
 int run(const Options& options) {
   config::LoadUnitsResult loaded = config::load_units(options.config);
   for (const config::Finding& finding : loaded.findings)
     (options.check ? std::cout : std::cerr) << config::format(finding) << '\n';
   if (!loaded.ok()) return options.check ? kFound : kBadInput;
-  if (options.check) return kDone;
+  if (options.check) {
+    for (const config::UnitConfig& unit : loaded.units) std::cout << cost_text(unit) << '\n';
+    return kDone;
+  }
 
   for (config::UnitConfig& unit : loaded.units) {
     if (options.domain) unit.dds.domain = *options.domain;

@@ -1,0 +1,47 @@
+#include "core/monitor/cost.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/mismatch/calibration.hpp"
+#include "core/model/linear_model.hpp"
+#include "core/monitor/derived_settings.hpp"
+
+namespace mpm {
+namespace {
+
+// Seconds for each entry of a factor that a row is rotated into, and for each that an evaluation
+// inverts: measured, `./run bench`.
+constexpr double kPerRotated = 2e-10, kPerInverted = 1e-10;
+constexpr double kNumber = sizeof(double);
+constexpr double kTwice = 2.0;  // a lag window holds each value twice
+
+}  // namespace
+
+MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings) {
+  const DerivedSettings derived = derive_settings(spec, LinearModel(spec), settings, {});
+  const double inputs = spec.input_count, cvs = spec.cv_count;
+  const double tails = static_cast<double>(derived.tail_poles.size());
+  const double block = derived.fir_lags + tails;
+  const auto memories = static_cast<double>(derived.memories.size());
+  MonitorCost cost;
+  cost.columns = 1.0 + cvs * derived.residual_order + inputs * block;
+  cost.remembered = derived.remembered;
+  const double history = kTwice * cost.remembered * (inputs * (1.0 + tails) + 3.0 * cvs);
+  const double factors = cvs * memories * cost.columns * cost.columns;
+  const double evaluation = std::pow(inputs * block, 2);
+  const double own = inputs * (derived.controlling_lags + 1.0);  // of the reported correlations
+  const double responses = cvs * (derived.last_lag - derived.first_lag + 1.0);
+  const double tree = (1.0 + std::log2(inputs)) * own * (0.5 * own + responses);
+  const double slowest = -1.0 / std::log(derived.tail_poles.front());
+  const double shapes = kTwice * inputs * cvs *
+                        std::min(calibration::usual_errors::kTailFitTimeConstants * slowest,
+                                 static_cast<double>(calibration::usual_errors::kTailFitMost));
+  cost.bytes = kNumber * (history + factors + 2.0 * evaluation + tree + shapes);
+  cost.seconds = kPerRotated * (factors + tree) + kPerInverted * cvs * memories *
+                                                      std::pow(inputs * block, 3) /
+                                                      derived.evaluation_stride;
+  return cost;
+}
+
+}  // namespace mpm

@@ -1,0 +1,75 @@
+#include <catch2/catch.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/load_unit.hpp"
+#include "core/monitor/monitor.hpp"
+
+namespace mpm::config {
+namespace {
+
+std::string unit(int inputs, int cvs, const std::string& channel, const std::string& rest = "") {
+  std::string text = "unit: u\nsample_time: 1\nsignals:\n  mv: [";
+  for (int i = 0; i < inputs; ++i)
+    text += (i > 0 ? ", " : "") + ("{tag: u" + std::to_string(i)) + "}";
+  text += "]\n  cv: [";
+  for (int j = 0; j < cvs; ++j) text += (j > 0 ? ", " : "") + ("{tag: y" + std::to_string(j)) + "}";
+  return text + "]\nmodel:\n  channels:\n    - {cv: y0, mv: u0, gain: 1, " + channel + "}\n" + rest;
+}
+
+/// What is said of the cost: the rest are signals without channels.
+std::vector<Finding> of_cost(const std::string& text) {
+  std::vector<Finding> found;
+  for (Finding& finding : load_unit_text(text, "unit.yaml").findings)
+    if (finding.message.find("the monitor of this unit would") == 0)
+      found.push_back(std::move(finding));
+  return found;
+}
+
+// By hand: 1 + 200 * 8 + 200 * 21 columns at least, squared, of 8 bytes, for two memories of each
+// of 200 CVs, is more than 100 GB.
+TEST_CASE("a unit that no machine has room for is refused at its place") {
+  const std::vector<Finding> large = of_cost(unit(200, 200, "time_constants: [10]"));
+  REQUIRE(large.size() == 1);
+  CHECK(large[0].severity == Severity::kError);
+  CHECK(large[0].line == 7);
+  const std::vector<Finding> endless =
+      of_cost(unit(1, 1, "time_constants: [10]", "monitor: {memory: 1e9}\n"));
+  REQUIRE(endless.size() == 1);
+  CHECK(endless[0].line == 9);
+  CHECK(endless[0].severity == Severity::kError);
+}
+
+TEST_CASE("a unit that takes longer than its samples is told") {
+  std::string busy = unit(40, 40, "time_constants: [10]");
+  CHECK(of_cost(busy).empty());
+  busy.replace(busy.find("sample_time: 1"), 14, "sample_time: 0.001");
+  const std::vector<Finding> told = of_cost(busy);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].severity == Severity::kWarning);
+}
+
+// 5 time constants of 1e9 samples are no int any more.
+TEST_CASE("a channel however slow can be monitored") {
+  for (const char* slow : {"1e5", "1e9", "1e15"}) {
+    CAPTURE(slow);
+    const LoadResult loaded =
+        load_unit_text(unit(1, 1, "time_constants: [" + std::string(slow) + "]"), "slow.yaml");
+    REQUIRE(loaded.ok());
+    Monitor monitor(loaded.config.model, loaded.config.counts(), {false}, {}, {});
+    Frame frame(loaded.config.counts());
+    for (int k = 0; k < 50; ++k) {
+      frame.interval = k;
+      for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv}) {
+        frame[kind].values(0) = k % 7;
+        frame[kind].quality.assign(1, Quality::kGood);
+      }
+      monitor.push(frame);
+    }
+    CHECK(monitor.channel(0, 0).verdict == Verdict::kUndetermined);
+  }
+}
+
+}  // namespace
+}  // namespace mpm::config
