@@ -5,6 +5,7 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "core/signal/saturated.hpp"
 #include "daemon/bag/sample_stream.hpp"
 #include "daemon/files/times/time_text.hpp"
 #include "daemon/mcap/format/printable.hpp"
@@ -23,7 +24,7 @@ Json span_json(const TimeTally& times) {
   if (times.count == 0) return json;
   json["start"] = files::utc_text(times.first_ns);
   json["end"] = files::utc_text(times.last_ns);
-  json["duration_s"] = seconds(times.last_ns - times.first_ns);
+  json["duration_s"] = seconds(saturated_difference(times.last_ns, times.first_ns));
   json["rate_hz"] = times.rate_hz();
   return json;
 }
@@ -115,7 +116,7 @@ std::string bytes_text(std::uint64_t bytes) {
 std::string span_text(const TimeTally& times) {
   if (times.count == 0) return "nothing";
   return files::utc_text(times.first_ns) + " to " + files::utc_text(times.last_ns) + " (" +
-         duration_text(seconds(times.last_ns - times.first_ns)) + ")";
+         duration_text(seconds(saturated_difference(times.last_ns, times.first_ns))) + ")";
 }
 
 std::string gaps_text(const TimeTally& times) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/signal/saturated.hpp"
 #include "daemon/bag/lifecycle.hpp"
 
 namespace mpm::bag {
@@ -131,7 +132,8 @@ void RecordingWriter::look_for_gap(const RecordedSample& sample) {
   const auto [entry, is_new] = unit.topics.try_emplace(sample.topic);
   TopicIntervals& topic = entry->second;
   if (!is_new && stamp->interval > topic.last)  // else the controller restarted
-    topic.missing += static_cast<std::uint64_t>(stamp->interval - topic.last - 1);
+    topic.missing +=
+        static_cast<std::uint64_t>(saturated_difference(stamp->interval, topic.last) - 1);
   topic.last = stamp->interval;
   if (topic.missing <= unit.missing) return;
   totals_.missing_intervals += topic.missing - unit.missing;

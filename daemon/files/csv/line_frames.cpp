@@ -201,7 +201,9 @@ bool LineFrames::next(Frame& frame) {
   if (!rows_->next(frame, interval)) return false;
   if (!std::exchange(started_, true)) first_ns_ = frame.source_time_ns;
   const auto elapsed_ns = static_cast<double>(frame.source_time_ns - first_ns_);
-  frame.interval = interval.value_or(std::llround(elapsed_ns / (sample_time_s_ * kNsPerSecond)));
+  const double elapsed = elapsed_ns / (sample_time_s_ * kNsPerSecond);
+  frame.interval =
+      interval.value_or(std::llround(std::clamp(elapsed, -kLargestInterval, kLargestInterval)));
   return true;
 }
 
