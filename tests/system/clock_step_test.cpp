@@ -23,7 +23,9 @@ void check_recording_under(const ClockTrouble& trouble) {
   const idl::DomainOptions domain = idl::test_domain(std::string("clock_step") + trouble.name);
   const auto must = [&](const std::vector<std::string>& command) {
     CAPTURE(command);
-    REQUIRE(run(command, folder.file("out"), folder.file("err")) == 0);
+    const auto code = run(command, folder.file("out"), folder.file("err"));
+    INFO(read_file(folder.file("err")));
+    REQUIRE(code == 0);
   };
   const std::vector<std::string> simulate = {"mpmsim",
                                              "--config",
