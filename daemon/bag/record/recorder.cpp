@@ -103,6 +103,7 @@ void Recorder::write_all() {
   } catch (const std::exception& error) {
     const MutexLock lock(mutex_);
     problem_ = error.what();
+    recording_.give_up();
     unwritten_ = samples.size() - std::min(written, samples.size());
   }
   while (queue_.pop(samples, kTick)) {  // after a problem: what was taken has no place any more

@@ -1,6 +1,7 @@
 #include "daemon/bag/record/recording_writer.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "core/signal/saturated.hpp"
@@ -17,6 +18,7 @@ constexpr std::uint64_t kChunksPerFile = 4;
 constexpr std::uint64_t kSmallestChunk = 4096;
 
 RecordingOptions with_size(RecordingOptions options) {
+  options.file.must_be_new = true;
   if (options.quota_bytes > 0 && options.max_size_bytes == 0)
     options.max_size_bytes = std::max<std::uint64_t>(options.quota_bytes / kFilesPerQuota, 1);
   if (options.max_size_bytes > 0)
@@ -149,8 +151,14 @@ void RecordingWriter::finish() {
   if (writer_) close();
 }
 
-std::uint64_t RecordingWriter::unsaved() const {
-  return writer_ && writer_->has_open_chunk() ? totals_.samples - saved_ : 0;
+void RecordingWriter::give_up() noexcept {
+  if (!writer_) return;
+  if (writer_->has_open_chunk()) unsaved_ = totals_.samples - saved_;
+  try {
+    writer_->drop_chunk();
+    close();
+  } catch (const std::exception&) {  // the caller has told already; `mpm recover` mends it
+  }
 }
 
 RecordingTotals RecordingWriter::totals() const {
