@@ -87,6 +87,8 @@ bool CsvReader::read(Frame& frame) {
 
 bool CsvReader::next(Frame& frame) {
   if (!read(frame)) {
+    if (std::optional<std::string> notice = lines_.take_notice())
+      notices_.push_back(std::move(*notice));
     notices_.insert(notices_.end(), row_notices_.begin(), row_notices_.end());
     row_notices_.clear();
     return false;
