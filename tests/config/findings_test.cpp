@@ -312,9 +312,9 @@ TEST_CASE("A file that is no UTF-8 is refused at the first byte that is none") {
   for (const char* bytes : {"\xb0", "\xc2", "\xed\xa0\x80"}) {
     const std::string head = "unit: t\nsample_time: 2\nsignals:\n  mv: [{tag: u1, description: \"";
     const std::vector<std::string> findings = findings_of(head + bytes + "\"}]\n");
-    // 2 spaces, `mv: [{tag: u1, description: "` has 30 letters.
+    // Behind the 31 letters of `  mv: [{tag: u1, description: "`.
     CHECK(findings ==
-          std::vector<std::string>{"u.yaml:4:33: error: is no UTF-8; save the file as UTF-8"});
+          std::vector<std::string>{"u.yaml:4:32: error: is no UTF-8; save the file as UTF-8"});
   }
   CHECK(findings_of("unit: t\xff\n").front().rfind("u.yaml:1:8: ", 0) == 0);
   CHECK(findings_below("  # \u00b0C\n" + kModel).empty());
