@@ -20,7 +20,8 @@ struct Finding {
   std::string message;  ///< without file, place, severity and key
 };
 
-/// `file:line:col: error: key: message`
+/// `file:line:col: error: key: message`, in one line: what the file holds is no part of a
+/// terminal's commands, and what is very long ends in dots.
 [[nodiscard]] std::string format(const Finding& finding);
 
 [[nodiscard]] bool has_errors(const std::vector<Finding>& findings);

@@ -3,9 +3,12 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 namespace mpm::config {
 namespace {
+
+constexpr std::int64_t kLatestSeconds = 9'000'000'000;  // in ns it still fits
 
 /// Takes `digits` digits off the front of `text`.
 std::optional<int> take_number(std::string_view& text, std::size_t digits) {
@@ -71,6 +74,7 @@ std::optional<std::int64_t> parse_iso(std::string_view text) {
   if (!text.empty() || !date.ok() || *hour > 23 || *minute > 59 || second > 59) return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
   const std::int64_t seconds = ((days * 24 + *hour) * 60 + *minute - zone_minutes) * 60 + second;
+  if (std::abs(seconds) >= kLatestSeconds) return std::nullopt;
   return seconds * 1000000000 + fraction_ns;
 }
 
@@ -81,7 +85,7 @@ std::optional<std::int64_t> parse_time(std::string_view text) {
   const char* end = text.data() + text.size();
   const std::from_chars_result number = std::from_chars(text.data(), end, seconds);
   if (number.ec == std::errc() && number.ptr == end) {
-    if (!(std::abs(seconds) < 9e9)) return std::nullopt;
+    if (!(std::abs(seconds) < kLatestSeconds)) return std::nullopt;
     return std::llround(seconds * 1e9);
   }
   return parse_iso(text);

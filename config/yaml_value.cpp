@@ -16,6 +16,8 @@
 
 #include "config/suggest.hpp"
 #include "config/yaml_text.hpp"
+#include "core/text/printable.hpp"
+#include "core/text/utf8.hpp"
 
 namespace mpm::config {
 namespace {
@@ -23,12 +25,7 @@ namespace {
 constexpr std::uintmax_t kLargestFile = 16U << 20U;
 constexpr std::size_t kLongestShown = 40;
 
-std::string shown(std::string_view text) {
-  std::string line;
-  for (const char c : text.substr(0, kLongestShown))
-    line += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  return "'" + line + (text.size() > kLongestShown ? "..." : "") + "'";
-}
+std::string shown(std::string_view text) { return "'" + printable(text, kLongestShown) + "'"; }
 
 std::string range_text(const Range& range) {
   const bool low = std::isfinite(range.low);
@@ -38,12 +35,6 @@ std::string range_text(const Range& range) {
   if (low && high) text += " and ";
   if (high) text += (range.high_open ? "< " : "<= ") + yaml_text(range.high);
   return text;
-}
-
-bool printable(const std::string& text) {
-  return std::none_of(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f;
-  });
 }
 
 /// Listens to a parser only to learn where documents begin.
@@ -84,6 +75,15 @@ void check_single_document(const std::string& text, Report& report) {
   if (counter.count() > 1)
     report.add(Severity::kError, counter.last_start(), "",
                "text after the end of the document; give one document per file");
+}
+
+YAML::Mark mark_of(const std::string& text, std::size_t at) {
+  const std::string_view before = std::string_view(text).substr(0, at);
+  YAML::Mark mark;
+  mark.pos = static_cast<int>(at);
+  mark.line = static_cast<int>(std::count(before.begin(), before.end(), '\n'));
+  mark.column = static_cast<int>(before.size() - (before.rfind('\n') + 1));
+  return mark;
 }
 
 }  // namespace
@@ -219,7 +219,7 @@ std::optional<std::string> Value::text(std::size_t longest) const {
     error("must not be empty");
   } else if (value->size() > longest) {
     error("is longer than " + std::to_string(longest) + " bytes");
-  } else if (!printable(*value)) {
+  } else if (printable(*value, std::string::npos) != *value) {
     error("must not hold control characters");
   } else {
     return value;
@@ -295,6 +295,10 @@ const Value* Map::require(std::string_view key) const {
 
 std::optional<Value> parse_yaml(const std::string& text, Report& report) {
   const YAML::Mark start;
+  if (const std::size_t at = find_invalid_utf8(text); at != std::string::npos) {
+    report.add(Severity::kError, mark_of(text, at), "", "is no UTF-8; save the file as UTF-8");
+    return std::nullopt;
+  }
   try {
     const YAML::Node root = YAML::Load(text);
     if (!root.IsDefined() || root.IsNull()) {

@@ -81,7 +81,10 @@ std::string domain_xml(const DomainOptions& options) {
   xml += "</Discovery><Internal>";
   xml += R"(<HeartbeatInterval min="1 ms" minsched="1 ms">1 ms</HeartbeatInterval>)";
   xml += "<Watermarks><WhcHigh>" + std::to_string(options.max_unacknowledged_kb) +
-         " kB</WhcHigh></Watermarks></Internal>";
+         " kB</WhcHigh></Watermarks>";
+  if (options.max_sample_kb > 0)
+    xml += "<MaxSampleSize>" + std::to_string(options.max_sample_kb) + " kB</MaxSampleSize>";
+  xml += "</Internal>";
   return xml;
 }
 

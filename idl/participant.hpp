@@ -18,6 +18,8 @@ struct DomainOptions {
   /// A lossless writer waits for its readers above this. Small, so that no topic of a unit gets far
   /// ahead of the others. Writers that keep only the last samples never wait.
   int max_unacknowledged_kb = 32;
+  /// Larger samples are dropped, whether read or written; 0 = no limit of ours.
+  int max_sample_kb = 0;
   bool use_environment = false;  ///< CYCLONEDDS_URI, where set, overrides all but the domain
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include "core/signal/saturated.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/raw_writer.hpp"
 #include "mpm.h"
@@ -74,8 +75,8 @@ class Decoded {
     }
     if (&type_ != &mpm_Sample_desc) return;
     auto* sample = static_cast<mpm_Sample*>(memory_);
-    sample->interval += change.add_intervals;
-    sample->source_time_ns += change.add_time_ns;
+    sample->interval = saturated_sum(sample->interval, change.add_intervals);
+    sample->source_time_ns = saturated_sum(sample->source_time_ns, change.add_time_ns);
   }
   [[nodiscard]] const void* get() const { return memory_; }
 

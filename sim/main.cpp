@@ -183,7 +183,10 @@ int parse_and_run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace mpm::sim;
   try {
-    return parse_and_run(argc, argv);
+    const int exit_code = parse_and_run(argc, argv);
+    std::cout.flush();
+    if (!std::cout) throw std::runtime_error("standard output cannot be written to");
+    return exit_code;
   } catch (const BadInput& error) {
     if (*error.what() != '\0') std::cerr << "mpmsim: " << error.what() << '\n';
     return kBadInput;

@@ -198,7 +198,9 @@ bool Aligner::past_lateness(std::int64_t interval) const {
 
 void Aligner::take_over() {
   while (pending()) settle_next(current_);
-  if (counters_.frames > 0 && candidate_.next + offset_ <= last_emitted_) {
+  const std::int64_t next = candidate_.next + offset_;
+  // Every leap would be added to those before it: beyond what is exact there is none.
+  if (counters_.frames > 0 && (next <= last_emitted_ || next > kLargestInterval)) {
     ++counters_.restarts;
     offset_ = last_emitted_ + 2 - candidate_.next;  // 2: never adjacent, so that windows close
   }

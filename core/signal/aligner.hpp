@@ -58,7 +58,8 @@ struct AlignerCounters {
 ///
 /// Blocks far from the current window are gathered in a second one. When that one has a complete
 /// frame, it takes over: the controller restarted or was away. A single stray number changes
-/// nothing. After a restart the emitted interval numbers go on increasing, with a gap.
+/// nothing. After a restart the emitted interval numbers go on increasing, with a gap; so they do
+/// after a leap forward that would take them beyond 2^53.
 class Aligner {
  public:
   using Sink = std::function<void(const Frame&)>;

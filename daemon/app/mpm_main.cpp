@@ -41,12 +41,14 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   int exit_code = 2;
+  bool told = false;
   try {
     exit_code = mpm::app::run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "mpm: error: " << error.what() << '\n';
+    told = true;
   }
   if (mpm::host::finish_standard_output()) return exit_code;
-  std::cerr << "mpm: error: standard output cannot be written to\n";
+  if (!told) std::cerr << "mpm: error: standard output cannot be written to\n";
   return 2;
 }

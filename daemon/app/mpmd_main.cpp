@@ -14,6 +14,7 @@
 #include "core/text/number_text.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "daemon/host/standard_output.hpp"
 #include "daemon/host/version.hpp"
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/make_diagnosis.hpp"
@@ -146,10 +147,15 @@ int parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace mpm::app;
+  int exit_code = kFailed;
+  bool told = false;
   try {
-    return parse_and_run(argc, argv);
+    exit_code = parse_and_run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "mpmd: error: " << error.what() << '\n';
-    return kFailed;
+    told = true;
   }
+  if (mpm::host::finish_standard_output()) return exit_code;
+  if (!told) std::cerr << "mpmd: error: standard output cannot be written to\n";
+  return kFailed;
 }

@@ -1,8 +1,8 @@
 #include "daemon/bag/contents.hpp"
 
 #include "config/finding.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/bag/sample_stream.hpp"
-#include "daemon/mcap/format/printable.hpp"
 #include "idl/layout_sample.hpp"
 
 namespace mpm::bag {
@@ -56,7 +56,7 @@ Contents contents_of(const std::vector<std::string>& paths,
 std::string names_of(const Contents& contents) {
   std::string text;
   for (const auto& [name, unit] : contents)
-    text += (text.empty() ? "'" : ", '") + mcap::printable(name) + "'";
+    text += (text.empty() ? "'" : ", '") + printable(name) + "'";
   return text;
 }
 

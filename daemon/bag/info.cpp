@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "config/finding.hpp"
+#include "core/signal/saturated.hpp"
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/bag/sample_stream.hpp"
 #include "daemon/files/csv/csv_rows.hpp"
@@ -85,7 +86,7 @@ class McapInspector {
     if (unit == nullptr) return;
     SampleTally& tally = unit->samples[sample.kind];
     tally.kind = sample.kind;
-    const std::int64_t step = sample.interval - tally.last_interval;
+    const std::int64_t step = saturated_difference(sample.interval, tally.last_interval);
     if (tally.times.count > 0 && step > 1)
       tally.times.add_gap(tally.last_ns, sample.source_time_ns,
                           static_cast<std::uint64_t>(step - 1));
@@ -247,19 +248,21 @@ void TimeTally::add(std::int64_t time_ns) {
 void TimeTally::add_gap(std::int64_t before_ns, std::int64_t after_ns, std::uint64_t intervals) {
   ++gaps;
   missing += intervals;
-  if (after_ns - before_ns <= longest_gap_ns) return;
-  longest_gap_ns = after_ns - before_ns;
+  const std::int64_t length_ns = saturated_difference(after_ns, before_ns);
+  if (length_ns <= longest_gap_ns) return;
+  longest_gap_ns = length_ns;
   longest_gap_at_ns = before_ns;
 }
 
 void TimeTally::add_step_back(std::int64_t before_ns, std::int64_t after_ns) {
-  if (out_of_order++ > 0 && before_ns - after_ns <= farthest_back_ns) return;
-  farthest_back_ns = before_ns - after_ns;
+  const std::int64_t back_ns = saturated_difference(before_ns, after_ns);
+  if (out_of_order++ > 0 && back_ns <= farthest_back_ns) return;
+  farthest_back_ns = back_ns;
   farthest_back_at_ns = before_ns;
 }
 
 double TimeTally::rate_hz() const {
-  const double span_s = static_cast<double>(last_ns - first_ns) / kNsPerSecond;
+  const double span_s = static_cast<double>(saturated_difference(last_ns, first_ns)) / kNsPerSecond;
   return count > 1 && span_s > 0.0 ? static_cast<double>(count - 1) / span_s : 0.0;
 }
 

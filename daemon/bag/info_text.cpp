@@ -5,9 +5,10 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "core/signal/saturated.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/bag/sample_stream.hpp"
 #include "daemon/files/times/time_text.hpp"
-#include "daemon/mcap/format/printable.hpp"
 
 namespace mpm::bag {
 namespace {
@@ -23,7 +24,7 @@ Json span_json(const TimeTally& times) {
   if (times.count == 0) return json;
   json["start"] = files::utc_text(times.first_ns);
   json["end"] = files::utc_text(times.last_ns);
-  json["duration_s"] = seconds(times.last_ns - times.first_ns);
+  json["duration_s"] = seconds(saturated_difference(times.last_ns, times.first_ns));
   json["rate_hz"] = times.rate_hz();
   return json;
 }
@@ -115,7 +116,7 @@ std::string bytes_text(std::uint64_t bytes) {
 std::string span_text(const TimeTally& times) {
   if (times.count == 0) return "nothing";
   return files::utc_text(times.first_ns) + " to " + files::utc_text(times.last_ns) + " (" +
-         duration_text(seconds(times.last_ns - times.first_ns)) + ")";
+         duration_text(seconds(saturated_difference(times.last_ns, times.first_ns))) + ")";
 }
 
 std::string gaps_text(const TimeTally& times) {
@@ -146,7 +147,7 @@ std::string signal_text(const SignalTally& signal) {
   text += share(signal.uncertain, "uncertain");
   text += share(signal.bad, "bad");
   text += share(signal.missing, "missing");
-  return line("    %-20s ", mcap::printable(signal.tag).c_str()) + text + '\n';
+  return line("    %-20s ", printable(signal.tag).c_str()) + text + '\n';
 }
 
 std::string mcap_text(const FileInfo& info) {
@@ -154,7 +155,7 @@ std::string mcap_text(const FileInfo& info) {
   std::string packing;
   for (const std::string& name : info.compressions)
     packing += (packing.empty() ? "" : ", ") +
-               (name.empty() ? std::string("not packed") : mcap::printable(name));
+               (name.empty() ? std::string("not packed") : printable(name));
   text += "  chunks: " + std::to_string(info.chunks);
   if (info.chunks > 0)
     text += " (" + packing + "), " + bytes_text(info.unpacked_bytes) + " in " +
@@ -162,13 +163,12 @@ std::string mcap_text(const FileInfo& info) {
   text += "\n  index: " + (info.index_problem.empty() ? "intact" : info.index_problem) + "\n";
   text += "  topics:\n";
   for (const auto& [name, topic] : info.topics)
-    text += line("    %-24s %10llu messages  %8.4g Hz  ", mcap::printable(name).c_str(),
+    text += line("    %-24s %10llu messages  %8.4g Hz  ", printable(name).c_str(),
                  static_cast<unsigned long long>(topic.times.count), topic.times.rate_hz()) +
-            mcap::printable(topic.type) + " (" + mcap::printable(topic.message_encoding) +
-            (topic.schema_encoding.empty() ? "" : ", " + mcap::printable(topic.schema_encoding)) +
-            ")\n";
+            printable(topic.type) + " (" + printable(topic.message_encoding) +
+            (topic.schema_encoding.empty() ? "" : ", " + printable(topic.schema_encoding)) + ")\n";
   for (const auto& [name, unit] : info.units) {
-    text += "  unit " + mcap::printable(name);
+    text += "  unit " + printable(name);
     if (unit.sample_time_s > 0.0) text += line(", every %.6g s", unit.sample_time_s);
     text += "\n";
     for (const auto& [kind, samples] : unit.samples) {
@@ -217,7 +217,7 @@ std::string to_text(const FileInfo& info) {
   std::string text =
       info.path + ": " + (info.is_mcap ? "MCAP" : "CSV") + ", " + bytes_text(info.bytes);
   if (info.files.size() > 1) text += ", " + std::to_string(info.files.size()) + " files";
-  if (!info.library.empty()) text += ", written by " + mcap::printable(info.library);
+  if (!info.library.empty()) text += ", written by " + printable(info.library);
   text += "\n  " + std::to_string(info.times.count) + (info.is_mcap ? " messages, " : " rows, ") +
           span_text(info.times) + "\n";
   if (!info.problem.empty()) text += "  NOT WHOLE: " + info.problem + "\n";

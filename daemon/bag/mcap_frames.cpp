@@ -4,10 +4,10 @@
 
 #include "config/finding.hpp"
 #include "config/unit_layout.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/bag/contents.hpp"
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/files/aligning.hpp"
-#include "daemon/mcap/format/printable.hpp"
 
 namespace mpm::bag {
 namespace {
@@ -144,7 +144,7 @@ void McapFrames::tell_counters() {
   if (purpose_ != files::Purpose::kKeep) return;
   tell(of_other_units_, " samples of other units left out");
   for (const auto& [topic, count] : samples_.others())
-    notices_.push_back(std::to_string(count) + " messages on " + mcap::printable(topic) +
+    notices_.push_back(std::to_string(count) + " messages on " + printable(topic) +
                        " left out: they hold no signals");
 }
 

@@ -1,7 +1,7 @@
 #include "daemon/bag/sample_stream.hpp"
 
 #include "config/finding.hpp"
-#include "daemon/mcap/format/printable.hpp"
+#include "core/text/printable.hpp"
 #include "idl/layout_sample.hpp"
 
 namespace mpm::bag {
@@ -25,9 +25,9 @@ std::optional<SignalKind> kind_of(std::string_view topic) {
 void SampleStream::refuse(const char* type) const {
   throw config::InputError({messages_.file(), 0, 0, config::Severity::kError, "",
                             "message " + std::to_string(message_.sequence) + " on " +
-                                mcap::printable(message_.channel->topic) + " (" +
-                                mcap::printable(message_.channel->message_encoding) + ") is no " +
-                                type + " in CDR"});
+                                printable(message_.channel->topic) + " (" +
+                                printable(message_.channel->message_encoding) + ") is no " + type +
+                                " in CDR"});
 }
 
 SampleStream::Event SampleStream::next() {

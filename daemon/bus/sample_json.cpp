@@ -2,12 +2,15 @@
 
 #include <array>
 
+#include "core/text/printable.hpp"
 #include "idl/layout_sample.hpp"
 
 namespace mpm::bus {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kLongestText = 1000;  // a diagnosis in words
 
 const char* text(const char* string) { return string == nullptr ? "" : string; }
 
@@ -27,7 +30,10 @@ void append(const Json& json, const std::string& indent, std::string& lines) {
       lines += '\n';
       append(value, indent + "  ", lines);
     } else {
-      lines += " " + (value.is_string() ? value.get<std::string>() : scalar(value)) + "\n";
+      lines +=
+          " " +
+          (value.is_string() ? printable(value.get<std::string>(), kLongestText) : scalar(value)) +
+          "\n";
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/text/printable.hpp"
 #include "idl/topic_catalog.hpp"
 
 namespace mpm::bus {
@@ -10,7 +11,7 @@ namespace {
 
 std::string joined(const std::set<std::string>& words) {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + printable(word);
   return text;
 }
 
@@ -72,13 +73,13 @@ std::string to_text(const std::vector<TopicRow>& rows) {
   if (rows.empty()) return "nobody else is on this domain\n";
   std::size_t name_width = 5, type_width = 4;
   for (const TopicRow& row : rows) {
-    name_width = std::max(name_width, row.name.size());
-    type_width = std::max(type_width, row.type.size());
+    name_width = std::max(name_width, printable(row.name).size());
+    type_width = std::max(type_width, printable(row.type).size());
   }
   std::string text = line("topic", name_width, "type", type_width, "writers", "readers", "units");
   for (const TopicRow& row : rows)
-    text += line(row.name, name_width, row.type, type_width, std::to_string(row.writers),
-                 std::to_string(row.readers), joined(row.units));
+    text += line(printable(row.name), name_width, printable(row.type), type_width,
+                 std::to_string(row.writers), std::to_string(row.readers), joined(row.units));
   return text;
 }
 

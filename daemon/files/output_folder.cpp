@@ -3,8 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <stdexcept>
 
 #include "config/finding.hpp"
 
@@ -25,7 +23,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(fs::absolute(path)) 
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  for (const auto& file : files_) fs::remove(file.first, ignored);
+  files_.clear();
   for (std::size_t k = made_.size(); k-- > 0;)  // the innermost first
     fs::remove(made_[k], ignored);              // fails, as it should, on one that is not empty
 }
@@ -41,16 +39,11 @@ void OutputFolder::make() {
 
 void OutputFolder::write(const std::string& name, const std::string& text) {
   make();
-  const fs::path place = path_ / ("." + name + "." + std::to_string(getpid()));
-  files_.emplace_back(place, path_ / name);
-  std::ofstream out(place, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + (path_ / name).string());
+  files_.emplace_back((path_ / name).string()).write(text);
 }
 
 void OutputFolder::commit() {
-  for (const auto& [from, to] : files_) fs::rename(from, to);
+  for (ReplacementFile& file : files_) file.commit();
   files_.clear();
   made_.clear();
 }

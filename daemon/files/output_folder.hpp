@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <list>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "daemon/files/replacement_file.hpp"
 
 namespace mpm::files {
 
@@ -17,7 +19,7 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
   ~OutputFolder();
 
-  /// Writes `text` for the file `name`. Throws std::runtime_error where it cannot.
+  /// Writes `text` for the file `name`. Throws as ReplacementFile does.
   void write(const std::string& name, const std::string& text);
   void commit();
 
@@ -26,7 +28,7 @@ class OutputFolder {
 
   std::filesystem::path path_;
   std::vector<std::filesystem::path> made_;  ///< folders, outermost first
-  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> files_;  ///< from, to
+  std::list<ReplacementFile> files_;
 };
 
 }  // namespace mpm::files

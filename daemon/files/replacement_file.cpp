@@ -1,30 +1,70 @@
 #include "daemon/files/replacement_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <stdexcept>
 
 #include "config/finding.hpp"
 
 namespace mpm::files {
 namespace fs = std::filesystem;
+namespace {
+
+constexpr int kUsualMode = 0666;  // less what the process masks
+
+std::string unforeseen_ending() {
+  std::random_device device;
+  std::array<char, 20> text{};
+  std::snprintf(text.data(), text.size(), ".%08x%08x", device(), device());
+  return text.data();
+}
+
+}  // namespace
 
 ReplacementFile::ReplacementFile(const std::string& path) : path_(fs::absolute(path)) {
-  const auto fail = [&](const std::string& message) {
+  const auto refuse = [&](const std::string& message) {
     throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
   };
   std::error_code ignored;
   const fs::path folder = path_.parent_path();
-  if (!path_.has_filename() || fs::is_directory(path_, ignored)) fail("is a folder, not a file");
-  if (!fs::is_directory(folder, ignored)) fail("there is no folder " + folder.string());
-  if (access(folder.c_str(), W_OK | X_OK) != 0) fail("cannot be written to");
-  temporary_ = folder / ("." + path_.filename().string() + "." + std::to_string(getpid()));
+  if (!path_.has_filename() || fs::is_directory(path_, ignored)) refuse("is a folder, not a file");
+  if (!fs::is_directory(folder, ignored)) refuse("there is no folder " + folder.string());
+  temporary_ = folder / ("." + path_.filename().string() + unforeseen_ending());
+  descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUsualMode);
+  if (descriptor_ < 0) refuse(std::string("cannot be written to: ") + std::strerror(errno));
 }
 
 ReplacementFile::~ReplacementFile() {
+  close(descriptor_);
   std::error_code ignored;
   fs::remove(temporary_, ignored);
 }
 
-void ReplacementFile::commit() { fs::rename(temporary_, path_); }
+void ReplacementFile::write(const std::string& text) {
+  std::ofstream out(temporary_, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) fail();
+}
+
+void ReplacementFile::commit() {
+  if (fsync(descriptor_) != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
+  const int folder = open(path_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;  // one that may be written to and not read: the name comes in its time
+  static_cast<void>(fsync(folder));
+  close(folder);
+}
+
+void ReplacementFile::fail() const {
+  throw std::runtime_error(path_.string() + ": cannot be written to: " + std::strerror(errno));
+}
 
 bool same_file(const std::string& a, const std::string& b) {
   std::error_code ignored;

@@ -9,7 +9,8 @@ namespace mpm::files {
 /// place and renamed by commit(). An older file of that name stays until then.
 class ReplacementFile {
  public:
-  /// Touches nothing yet. Throws config::InputError where no such file can be made.
+  /// Makes the temporary file, under a name that nobody can foresee and that was not there: what
+  /// others put in its folder is never written to. Throws config::InputError where it cannot.
   explicit ReplacementFile(const std::string& path);
   ReplacementFile(const ReplacementFile&) = delete;
   ReplacementFile& operator=(const ReplacementFile&) = delete;
@@ -17,11 +18,18 @@ class ReplacementFile {
 
   /// Where to write.
   [[nodiscard]] const std::string& temporary() const { return temporary_; }
+  /// Throws std::runtime_error where it cannot.
+  void write(const std::string& text);
+  /// It is on the disk before it has its name, so that no power cut leaves half of it. Throws
+  /// std::runtime_error where it cannot.
   void commit();
 
  private:
+  [[noreturn]] void fail() const;
+
   std::filesystem::path path_;
   std::string temporary_;
+  int descriptor_ = -1;
 };
 
 /// True where both are names of one file that exists.

@@ -14,8 +14,9 @@ void SteadyClock::sleep_until(std::int64_t time) {
       std::chrono::steady_clock::time_point(std::chrono::nanoseconds(time)));
 }
 
-std::int64_t wall_time_ns() {
-  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
-}
+ArrivalClock::ArrivalClock()
+    : since_1970_ns_(
+          std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count() -
+          steady_.now()) {}
 
 }  // namespace mpm::host

@@ -25,7 +25,17 @@ class SteadyClock : public Clock {
   void sleep_until(std::int64_t time) override;
 };
 
-/// ns of UTC since 1970, for time stamps only.
-[[nodiscard]] std::int64_t wall_time_ns();
+/// UTC as it was when this was made, carried on by the steady clock: what is stamped with it keeps
+/// its order and its distances when somebody sets the machine's clock.
+class ArrivalClock {
+ public:
+  ArrivalClock();
+  /// ns since 1970; never goes back.
+  [[nodiscard]] std::int64_t now_ns() const { return since_1970_ns_ + steady_.now(); }
+
+ private:
+  SteadyClock steady_;
+  std::int64_t since_1970_ns_;  ///< to the beginning of the steady clock
+};
 
 }  // namespace mpm::host

@@ -7,6 +7,7 @@
 
 #include <memory>
 
+#include "core/text/printable.hpp"
 #include "idl/log.hpp"
 
 namespace mpm::host {
@@ -40,7 +41,10 @@ class SyslogPriority : public spdlog::custom_flag_formatter {
   }
 };
 
-void log_dds(idl::LogLevel level, const std::string& line) {
+constexpr std::size_t kLongestLine = 1000;
+
+void log_dds(idl::LogLevel level, const std::string& message) {
+  const std::string line = printable(message, kLongestLine);  // it may hold names from the bus
   switch (level) {
     case idl::LogLevel::kError:
       spdlog::error("dds: {}", line);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/signal/saturated.hpp"
+
 namespace mpm::live {
 namespace {
 
@@ -23,7 +25,7 @@ bool DiagnosisSchedule::due(std::int64_t time_ns, int rows, bool raised, bool ac
   if (last_start_ns_) {
     // A clock that was set back begins the period anew.
     last_start_ns_ = std::min(*last_start_ns_, time_ns);
-    if (time_ns - *last_start_ns_ < settings_.period_ns) return false;
+    if (saturated_difference(time_ns, *last_start_ns_) < settings_.period_ns) return false;
   }
   last_start_ns_ = time_ns;
   next_at_ = since_alarm_ + std::clamp<std::int64_t>(since_alarm_, 1, settings_.renewed_rows);

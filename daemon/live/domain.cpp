@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "core/text/printable.hpp"
+
 namespace mpm::live {
 
 Domain::Domain(const idl::DomainOptions& options)
@@ -38,7 +40,7 @@ void Domain::poll(Clock::time_point now) {
 void Domain::report_unknown(std::string_view unit, Clock::time_point now) {
   ++unknown_unit_;
   if (!unknown_limit_.admit(now)) return;
-  spdlog::warn("sample of unit '{}', which no unit file describes; ignored{}", unit,
+  spdlog::warn("sample of unit '{}', which no unit file describes; ignored{}", printable(unit),
                unknown_limit_.held_back() == 0
                    ? ""
                    : fmt::format(" ({} more like this before)", unknown_limit_.held_back()));

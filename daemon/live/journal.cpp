@@ -15,9 +15,9 @@ bool Journal::write(const std::vector<ChannelRecord>& channels,
                     const std::vector<AlarmRecord>& alarms) {
   lines_.clear();
   for (const ChannelRecord& record : channels)
-    lines_.append(report::json_of(record).dump()).append("\n");
+    lines_.append(report::json_text(report::json_of(record))).append("\n");
   for (const AlarmRecord& record : alarms)
-    lines_.append(report::json_of(record).dump()).append("\n");
+    lines_.append(report::json_text(report::json_of(record))).append("\n");
   const bool written = std::fwrite(lines_.data(), 1, lines_.size(), file_.get()) == lines_.size();
   return std::fflush(file_.get()) == 0 && written;
 }

@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{200};
 constexpr std::chrono::seconds kStatusPeriod{1};
+// A layout of 8000 tags of the greatest length. Whoever sends more fills the memory.
+constexpr int kLargestSampleKb = 1024;
 
 }  // namespace
 
@@ -23,6 +25,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
   for (const config::UnitConfig& unit : units) {
     idl::DomainOptions settings = bus::domain_options(unit.dds);
     settings.use_environment = options.use_environment;
+    settings.max_sample_kb = kLargestSampleKb;
     Domain*& domain = domain_of[idl::domain_xml(settings)];
     if (domain == nullptr) {
       domain = domains_.emplace_back(std::make_unique<Domain>(settings)).get();

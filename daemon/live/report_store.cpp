@@ -34,8 +34,9 @@ void prune(const fs::path& unit, const fs::path& newest, std::size_t kept) {
 
 std::string time_folder(std::int64_t time_ns) {
   constexpr std::int64_t kSecond = 1'000'000'000;
-  const auto part = ((time_ns % kSecond) + kSecond) % kSecond;
-  std::string name = files::formatted_utc((time_ns - part) / kSecond, "%Y%m%dT%H%M%S");
+  const std::int64_t part = ((time_ns % kSecond) + kSecond) % kSecond;
+  const std::int64_t second = time_ns / kSecond - (time_ns % kSecond < 0 ? 1 : 0);
+  std::string name = files::formatted_utc(second, "%Y%m%dT%H%M%S");
   const auto milliseconds = static_cast<int>(part / 1'000'000);
   if (milliseconds > 0) {
     std::array<char, 16> text{};

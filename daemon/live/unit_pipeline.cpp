@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "config/unit_layout.hpp"
@@ -25,13 +26,13 @@ host::RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
                     std::chrono::duration<double>(sample_time_s * samples)));
 }
 
-std::vector<std::string> tags_of(const config::UnitConfig& unit, std::string_view kind) {
+/// Nothing for a word that is none of a layout's kinds.
+std::optional<SignalKind> kind_of(std::string_view word) {
   for (std::size_t k = 0; k < kSignalKindCount; ++k) {
-    const auto candidate = static_cast<SignalKind>(k);
-    if (candidate != SignalKind::kAux && kind == idl::kind_name(candidate))
-      return config::tags_of(unit, candidate);
+    const auto kind = static_cast<SignalKind>(k);
+    if (kind != SignalKind::kAux && word == idl::kind_name(kind)) return kind;
   }
-  return {};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -153,12 +154,15 @@ void UnitPipeline::publish_diagnosis() {
 }
 
 void UnitPipeline::check_layout(const mpm_Layout& layout) {
-  const std::string kind = layout.kind;
-  const std::vector<std::string> expected = tags_of(config_, kind);
-  const bool same =
-      std::equal(expected.begin(), expected.end(), layout.tags._buffer,
-                 layout.tags._buffer + layout.tags._length,
-                 [](const std::string& a, const char* b) { return b != nullptr && a == b; });
+  const std::optional<SignalKind> known = kind_of(layout.kind);
+  const std::string kind = known ? layout.kind : "unknown kind";
+  const std::vector<std::string> expected =
+      known ? config::tags_of(config_, *known) : std::vector<std::string>();
+  const bool same = known && std::equal(expected.begin(), expected.end(), layout.tags._buffer,
+                                        layout.tags._buffer + layout.tags._length,
+                                        [](const std::string& a, const char* b) {
+                                          return b != nullptr && a == b;
+                                        });
   if (same && layout.sample_time_s == config_.sample_time_s) return;
   if (wrong_layout_.find(kind) != std::string::npos) return;
   wrong_layout_ += (wrong_layout_.empty() ? "" : ", ") + kind;

@@ -33,4 +33,8 @@ Json JsonMaker::value_of(const std::tuple<const int&, const std::vector<double>&
           {"values", values}};
 }
 
+std::string json_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace mpm::report

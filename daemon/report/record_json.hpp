@@ -55,4 +55,8 @@ template <class Record>
   return json;
 }
 
+/// JSON as text, in one line or indented. What is no UTF-8, and comes from the bus or the command
+/// line, is replaced.
+[[nodiscard]] std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+
 }  // namespace mpm::report

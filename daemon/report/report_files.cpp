@@ -4,12 +4,13 @@
 #include "daemon/report/diagnosis/extended_unit.hpp"
 #include "daemon/report/page/page.hpp"
 #include "daemon/report/page/page_data.hpp"
+#include "daemon/report/record_json.hpp"
 
 namespace mpm::report {
 
 std::string write_reports(const DiagnosisRun& run, files::OutputFolder& folder) {
   folder.write("extended.yaml", extended_yaml(run));
-  std::string json = to_json(run).dump(2) + "\n";
+  std::string json = json_text(to_json(run), 2) + "\n";
   folder.write("report.json", json);
   folder.write("report.html", page_html(page_data(run)));
   return json;

@@ -165,7 +165,7 @@ std::string truth_json(const LoopSetup& setup, const std::string& controller_fil
       unit.simulation.cv_weights);
   truth["determinant"] = {{"model", or_null(gains.model_determinant)},
                           {"plant", or_null(gains.plant_determinant)}};
-  return truth.dump(2) + "\n";
+  return truth.dump(2, ' ', false, decltype(truth)::error_handler_t::replace) + "\n";
 }
 
 }  // namespace mpm::sim

@@ -305,3 +305,29 @@ TEST_CASE("A CV that no channel leads to is a warning, an MV without a channel i
   CHECK(result.ok());
   CHECK(format(result.findings[0]) == "u.yaml:4:8: warning: model: no channel leads to cv 'y2'");
 }
+
+// A byte of ISO 8859-1 (the degree sign), one that is cut off, a surrogate: all pass yaml-cpp, and
+// no JSON could be made of them later.
+TEST_CASE("A file that is no UTF-8 is refused at the first byte that is none") {
+  for (const char* bytes : {"\xb0", "\xc2", "\xed\xa0\x80"}) {
+    const std::string head = "unit: t\nsample_time: 2\nsignals:\n  mv: [{tag: u1, description: \"";
+    const std::vector<std::string> findings = findings_of(head + bytes + "\"}]\n");
+    // Behind the 31 letters of `  mv: [{tag: u1, description: "`.
+    CHECK(findings ==
+          std::vector<std::string>{"u.yaml:4:32: error: is no UTF-8; save the file as UTF-8"});
+  }
+  CHECK(findings_of("unit: t\xff\n").front().rfind("u.yaml:1:8: ", 0) == 0);
+  CHECK(findings_below("  # \u00b0C\n" + kModel).empty());
+}
+
+TEST_CASE("A finding is one line of ordinary length, whatever the file holds") {
+  for (const std::string& text :
+       {kHead + "\"a\\nb\\e[2J" + std::string(1'000'000, 'x') + "\": 1\n" + kModel,
+        std::string("unit: \"t\\u009b\"\n"),
+        "unit: t\nsample_time: \"" + std::string(1'000'000, '1') + "x\"\n"})
+    for (const std::string& finding : findings_of(text)) {
+      CHECK(finding.size() < 3000);
+      CHECK(finding.find('\n') == std::string::npos);
+      CHECK(finding.find('\x1b') == std::string::npos);
+    }
+}

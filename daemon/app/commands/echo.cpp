@@ -7,6 +7,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "core/text/printable.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
@@ -53,7 +54,8 @@ void print(const EchoOptions& options, const nlohmann::ordered_json& sample,
   } else if (info.valid) {
     std::cout << bus::yaml_text(sample) << "---\n";
   } else {
-    std::cout << "# " << sample["unit"].get<std::string>() << ": " << state_name(info) << "\n---\n";
+    std::cout << "# " << printable(sample["unit"].get<std::string>()) << ": " << state_name(info)
+              << "\n---\n";
   }
 }
 

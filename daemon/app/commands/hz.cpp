@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/signal/saturated.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
@@ -92,7 +93,8 @@ int measure_topic(const HzOptions& options, Measure measure) {
     const Clock::time_point now = Clock::now();
     if (measure == Measure::kDelay) {
       const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
-      values.add(1e-9 * static_cast<double>(wall.count() - sample.source_time_ns));
+      values.add(1e-9 *
+                 static_cast<double>(saturated_difference(wall.count(), sample.source_time_ns)));
     } else if (last) {
       values.add(std::chrono::duration<double>(now - *last).count());
     }

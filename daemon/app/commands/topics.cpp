@@ -9,6 +9,7 @@
 #include "daemon/bus/survey.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "daemon/report/record_json.hpp"
 
 namespace mpm::app {
 namespace {
@@ -35,7 +36,7 @@ int topics(const TopicsOptions& options) {
   if (options.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const bus::TopicRow& row : rows) list.push_back(to_json(row));
-    std::cout << list.dump() << '\n';
+    std::cout << report::json_text(list) << '\n';
   } else {
     std::cout << to_text(rows);
   }

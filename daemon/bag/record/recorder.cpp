@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 
-#include "daemon/host/clock.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/topics.hpp"
 
@@ -25,7 +24,7 @@ Recorder::Recorder(const idl::Participant& participant, const RecorderOptions& o
       discovery_(participant),
       unit_(options.unit),
       queue_(options.queue_bytes),
-      recording_(options.recording, host::wall_time_ns()) {
+      recording_(options.recording, clock_.now_ns()) {
   for (const idl::KnownTopic& topic : idl::known_topics())
     if (options.topics.empty()) add_known(topic);
   for (const std::string& name : options.topics) {
@@ -75,7 +74,7 @@ void Recorder::poll(std::chrono::milliseconds longest) {
 
 int Recorder::take() {
   int count = 0;
-  const std::int64_t now_ns = host::wall_time_ns();
+  const std::int64_t now_ns = clock_.now_ns();
   for (std::size_t topic = 0; topic < readers_.size(); ++topic) {
     const bool ours = idl::find_known_topic(readers_[topic].topic()) != nullptr;
     count += readers_[topic].take([&](idl::RawSample& sample) {
@@ -97,13 +96,14 @@ void Recorder::write_all() {
     while (queue_.pop(samples, kTick)) {
       const MutexLock lock(mutex_);
       for (written = 0; written < samples.size(); ++written) recording_.write(samples[written]);
-      recording_.tick(host::wall_time_ns());
+      recording_.tick(clock_.now_ns());
     }
     const MutexLock lock(mutex_);
     recording_.finish();
   } catch (const std::exception& error) {
     const MutexLock lock(mutex_);
     problem_ = error.what();
+    recording_.give_up();
     unwritten_ = samples.size() - std::min(written, samples.size());
   }
   while (queue_.pop(samples, kTick)) {  // after a problem: what was taken has no place any more

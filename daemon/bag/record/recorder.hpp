@@ -8,6 +8,7 @@
 
 #include "core/parallel/mutex.hpp"
 #include "daemon/bag/record/recording_writer.hpp"
+#include "daemon/host/clock.hpp"
 #include "idl/discovery.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/wait_set.hpp"
@@ -61,6 +62,7 @@ class Recorder {
   idl::Discovery discovery_;
   std::string unit_;
   std::set<std::string> not_found_;
+  host::ArrivalClock clock_;  // log times are its
 
   // Of the thread that takes; topic i of the recording is read by reader i.
   std::vector<idl::RawReader> readers_;

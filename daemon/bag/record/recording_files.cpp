@@ -51,6 +51,11 @@ std::optional<NumberedName> numbered_name(const std::string& name) {
   return found;
 }
 
+// A link counts, wherever it leads.
+bool is_there(const std::filesystem::path& path) {
+  return std::filesystem::exists(std::filesystem::symlink_status(path));
+}
+
 }  // namespace
 
 RecordingFiles::RecordingFiles(const std::string& output, bool split, std::uint64_t quota_bytes,
@@ -88,7 +93,7 @@ void RecordingFiles::find_earlier(bool of_any_time) {
 std::string RecordingFiles::next() {
   std::filesystem::path path = folder_ / (stem_ + std::string(kExtension));
   if (!numbered_) {
-    if (std::filesystem::exists(path))
+    if (is_there(path))
       throw std::invalid_argument(path.string() + ": there is such a file already");
     return path.string();
   }
@@ -96,7 +101,7 @@ std::string RecordingFiles::next() {
     std::array<char, 16> number{};
     std::snprintf(number.data(), number.size(), "-%04d", ++number_);
     path = folder_ / (stem_ + number.data() + std::string(kExtension));
-  } while (std::filesystem::exists(path));
+  } while (is_there(path));
   return path.string();
 }
 

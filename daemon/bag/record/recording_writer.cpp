@@ -1,8 +1,10 @@
 #include "daemon/bag/record/recording_writer.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
+#include "core/signal/saturated.hpp"
 #include "daemon/bag/lifecycle.hpp"
 
 namespace mpm::bag {
@@ -16,6 +18,7 @@ constexpr std::uint64_t kChunksPerFile = 4;
 constexpr std::uint64_t kSmallestChunk = 4096;
 
 RecordingOptions with_size(RecordingOptions options) {
+  options.file.must_be_new = true;
   if (options.quota_bytes > 0 && options.max_size_bytes == 0)
     options.max_size_bytes = std::max<std::uint64_t>(options.quota_bytes / kFilesPerQuota, 1);
   if (options.max_size_bytes > 0)
@@ -131,7 +134,8 @@ void RecordingWriter::look_for_gap(const RecordedSample& sample) {
   const auto [entry, is_new] = unit.topics.try_emplace(sample.topic);
   TopicIntervals& topic = entry->second;
   if (!is_new && stamp->interval > topic.last)  // else the controller restarted
-    topic.missing += static_cast<std::uint64_t>(stamp->interval - topic.last - 1);
+    topic.missing +=
+        static_cast<std::uint64_t>(saturated_difference(stamp->interval, topic.last) - 1);
   topic.last = stamp->interval;
   if (topic.missing <= unit.missing) return;
   totals_.missing_intervals += topic.missing - unit.missing;
@@ -147,8 +151,14 @@ void RecordingWriter::finish() {
   if (writer_) close();
 }
 
-std::uint64_t RecordingWriter::unsaved() const {
-  return writer_ && writer_->has_open_chunk() ? totals_.samples - saved_ : 0;
+void RecordingWriter::give_up() noexcept {
+  if (!writer_) return;
+  if (writer_->has_open_chunk()) unsaved_ = totals_.samples - saved_;
+  try {
+    writer_->drop_chunk();
+    close();
+  } catch (const std::exception&) {  // the caller has told already; `mpm recover` mends it
+  }
 }
 
 RecordingTotals RecordingWriter::totals() const {

@@ -59,10 +59,12 @@ class RecordingWriter {
   /// For when nothing comes: closes a chunk or a file that is old enough.
   void tick(std::int64_t now_ns);
   void finish();
+  /// After a failure: the file is finished with what fitted, as far as the disk lets it.
+  void give_up() noexcept;
 
   [[nodiscard]] RecordingTotals totals() const;
-  /// Of the samples, those in the open chunk: lost if the disk takes no more.
-  [[nodiscard]] std::uint64_t unsaved() const;
+  /// Of the samples, those that were given up.
+  [[nodiscard]] std::uint64_t unsaved() const { return unsaved_; }
   /// The file that is being written.
   [[nodiscard]] const std::string& path() const { return path_; }
 
@@ -102,6 +104,7 @@ class RecordingWriter {
   RecordingTotals totals_;
   std::uint64_t chunks_seen_ = 0;  // of the open file
   std::uint64_t saved_ = 0;        // samples before the open chunk
+  std::uint64_t unsaved_ = 0;
 };
 
 }  // namespace mpm::bag

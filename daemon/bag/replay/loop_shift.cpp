@@ -26,11 +26,14 @@ void LoopShift::see(const ReplaySample& sample, const std::string& unit) {
 void LoopShift::next_pass() {
   for (auto& [name, unit] : units_) {
     const std::int64_t length = unit.intervals.length();
-    unit.add_intervals += length + 2;
-    unit.add_time_ns += unit.times_ns.length();
-    if (length > 0) unit.add_time_ns += 2 * (unit.times_ns.length() / length);
+    const std::int64_t length_ns = unit.times_ns.length();
+    const std::int64_t step_ns = length > 0 ? length_ns / length : 0;
+    unit.add_intervals = saturated_sum(unit.add_intervals, saturated_sum(length, 2));
+    unit.add_time_ns = saturated_sum(unit.add_time_ns, length_ns);
+    for (int step = 0; step < 2; ++step)
+      unit.add_time_ns = saturated_sum(unit.add_time_ns, step_ns);
   }
-  time_shift_ns_ += written_ns_.length() + 1;
+  time_shift_ns_ = saturated_sum(time_shift_ns_, saturated_sum(written_ns_.length(), 1));
 }
 
 idl::SampleChange LoopShift::change_of(const std::string& unit) const {

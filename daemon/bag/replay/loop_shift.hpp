@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/signal/saturated.hpp"
 #include "daemon/bag/replay/replay_source.hpp"
 #include "idl/raw_writer.hpp"
 
@@ -31,7 +32,7 @@ class LoopShift {
     bool seen = false;
     std::int64_t first = 0, last = 0;
     void add(std::int64_t value);
-    [[nodiscard]] std::int64_t length() const { return last - first; }
+    [[nodiscard]] std::int64_t length() const { return saturated_difference(last, first); }
   };
   struct Unit {
     Span intervals, times_ns;

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "core/signal/saturated.hpp"
 #include "daemon/bag/replay/selection.hpp"
 
 namespace mpm::bag {
@@ -67,7 +68,8 @@ bool Player::play_pass() {
     if (state_.passes == 0) change = {};
     if (const auto to = options_.remap.find(unit); to != options_.remap.end())
       change.unit = to->second;
-    if (!send_(sample, sample.source_time_ns + shift_.time_shift_ns(), change)) return false;
+    if (!send_(sample, saturated_sum(sample.source_time_ns, shift_.time_shift_ns()), change))
+      return false;
     ++state_.samples;
     sent_any_ = true;
   }

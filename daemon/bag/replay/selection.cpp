@@ -7,6 +7,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/text/printable.hpp"
+
 namespace mpm::bag {
 namespace {
 
@@ -18,7 +20,8 @@ constexpr double kNsPerSecond = 1e9;
 
 std::string without(const std::string& unit, const Units& units) {
   std::string text = "the recording has no unit '" + unit + "', but ";
-  for (const std::string& other : units) text += (&other == &*units.begin() ? "" : ", ") + other;
+  for (const std::string& other : units)
+    text += (&other == &*units.begin() ? "" : ", ") + printable(other);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "daemon/bus/watch/printable_output.hpp"
 #include "daemon/report/record_json.hpp"
 
 namespace mpm::bus {
@@ -19,7 +20,7 @@ void print_line(const std::string& line) {
 }
 
 // Layouts, an alarm's state, which follows its change, and a monitor's end are no lines.
-std::string json_line(const auto& record) { return report::json_of(record).dump(); }
+std::string json_line(const auto& record) { return report::json_text(report::json_of(record)); }
 std::string json_line(const idl::LayoutRecord&) { return ""; }
 std::string json_line(const AlarmStateRecord&) { return ""; }
 std::string json_line(const idl::MonitorGone&) { return ""; }
@@ -42,9 +43,14 @@ Viewer::Viewer(ViewMode mode, const RenderOptions& options, std::string unit)
 }
 
 void Viewer::show(const idl::Output& output) {
-  if (mode_ == ViewMode::kJson) print_json(output);
-  if (mode_ == ViewMode::kLines) print_change(output);
-  board_.update(output);
+  if (mode_ == ViewMode::kJson) {
+    print_json(output);
+    board_.update(output);
+    return;
+  }
+  const idl::Output shown = printable_output(output);
+  if (mode_ == ViewMode::kLines) print_change(shown);
+  board_.update(shown);
 }
 
 void Viewer::print_json(const idl::Output& output) {

@@ -2,12 +2,16 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <utility>
+
+#include "core/text/utf8.hpp"
 
 namespace mpm::files {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::size_t kLongestLine = std::size_t{4} << 20U;  // names of some 100 000 signals
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -29,10 +33,26 @@ std::unique_ptr<std::istream> open_file(const std::string& path) {
 LineReader::LineReader(std::unique_ptr<std::istream> input, std::string name)
     : input_(std::move(input)), name_(std::move(name)) {}
 
-bool LineReader::next() {
-  while (std::getline(*input_, line_)) {
+bool LineReader::read_line() {
+  if (std::exchange(too_long_, false))
+    input_->ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  ++number_;
+  line_.clear();
+  while (true) {
+    input_->getline(piece_.data(), piece_.size());
+    const auto count = static_cast<std::size_t>(input_->gcount());
     complete_ = !input_->eof();
-    ++number_;
+    const bool goes_on = complete_ && input_->fail() && count + 1 == piece_.size();
+    line_.append(piece_.data(), complete_ && !goes_on && count > 0 ? count - 1 : count);
+    if (!goes_on) return complete_ ? !input_->fail() : !line_.empty();
+    input_->clear();
+    too_long_ = line_.size() > kLongestLine;
+    if (too_long_) fail(1, "a line of more than 4 MiB");
+  }
+}
+
+bool LineReader::next() {
+  while (read_line()) {
     if (number_ == 1) {
       if (line_.size() > 1 &&
           (line_.substr(0, 2) == "\xFF\xFE" || line_.substr(0, 2) == "\xFE\xFF"))
@@ -41,6 +61,8 @@ bool LineReader::next() {
         line_.erase(0, kByteOrderMark.size());
     }
     if (line_.find('\0') != std::string::npos) fail(1, "is no text file: it holds a zero byte");
+    latin1_ = latin1_ || find_invalid_utf8(line_) != std::string::npos;
+    if (latin1_) line_ = utf8_from_latin1(line_);
     std::size_t first = 0;
     while (first < line_.size() && is_blank(line_[first])) ++first;
     if (first < line_.size() && line_[first] != '#') return true;
@@ -89,6 +111,12 @@ void LineReader::rewind() {
   input_->clear();
   input_->seekg(0);
   number_ = 0;
+  too_long_ = false;
+}
+
+std::optional<std::string> LineReader::take_notice() {
+  if (!latin1_ || std::exchange(told_, true)) return std::nullopt;
+  return "is no UTF-8; it is read as ISO 8859-1";
 }
 
 void LineReader::fail(int column, const std::string& message) const {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <istream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,17 +19,21 @@ struct Cell {
 };
 
 /// Non-empty lines that are no `#` comment. Takes off the byte order mark and carriage returns.
+/// From the first line on that is no UTF-8 all are taken as ISO 8859-1, and turned into UTF-8.
 class LineReader {
  public:
   LineReader(std::unique_ptr<std::istream> input, std::string name);
 
-  /// Moves to the next line; false at the end.
+  /// Moves to the next line; false at the end. Fails where it is longer than 4 MiB, and then goes
+  /// on behind it.
   [[nodiscard]] bool next();
   [[nodiscard]] const std::string& text() const { return line_; }
   /// Cuts the line into cells, which stay valid until `next`.
   void split(char delimiter, std::vector<Cell>& cells);
   /// Back to the first line.
   void rewind();
+  /// Once, what is to be said of the text: that it was no UTF-8.
+  [[nodiscard]] std::optional<std::string> take_notice();
 
   /// True if the line ended with a newline, as all but the last one of a cut-off file do.
   [[nodiscard]] bool complete() const { return complete_; }
@@ -39,9 +45,16 @@ class LineReader {
  private:
   std::unique_ptr<std::istream> input_;
   std::string name_;
+  /// Everything up to the next newline; false at the end of the input.
+  [[nodiscard]] bool read_line();
+
+  std::array<char, 4096> piece_{};  // as it comes from the input
   std::string line_;
   int number_ = 0;
   bool complete_ = true;
+  bool too_long_ = false;  // the rest of the line is still to come
+  bool latin1_ = false;
+  bool told_ = false;
 };
 
 /// A file to read lines from. Throws config::InputError where it cannot be read.

@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kRowsAhead = 200;
 constexpr double kSampleTimeTolerance = 0.1;
 constexpr double kNsPerSecond = 1e9;
+constexpr double kLargestInterval = 9e15;  // exact in a double
 
 // A clock was set back by more intervals than these if that many rows in a row say so.
 constexpr double kClockStep = 10.0;
@@ -86,6 +87,8 @@ bool CsvReader::read(Frame& frame) {
 
 bool CsvReader::next(Frame& frame) {
   if (!read(frame)) {
+    if (std::optional<std::string> notice = lines_.take_notice())
+      notices_.push_back(std::move(*notice));
     notices_.insert(notices_.end(), row_notices_.begin(), row_notices_.end());
     row_notices_.clear();
     return false;
@@ -111,7 +114,7 @@ void CsvReader::number(Frame& frame) {
     phase_ += at - static_cast<double>(last_ + 2);
     at = static_cast<double>(last_ + 2);
   }
-  frame.interval = std::llround(at);
+  frame.interval = std::llround(std::clamp(at, -kLargestInterval, kLargestInterval));
   if (frame.interval != last_ + 1) {
     last_ = std::max(last_, frame.interval);
     return;

@@ -68,6 +68,11 @@ CsvRows::CsvRows(const std::string& path, std::shared_ptr<const TimeZone> zone)
                    : read_wide(lines_, format_, header, *tags_, counts, notices_);
 }
 
-bool CsvRows::next(Frame& frame) { return rows_->next(frame); }
+bool CsvRows::next(Frame& frame) {
+  if (rows_->next(frame)) return true;
+  if (std::optional<std::string> notice = lines_.take_notice())
+    notices_.push_back(std::move(*notice));
+  return false;
+}
 
 }  // namespace mpm::files

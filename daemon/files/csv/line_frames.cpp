@@ -7,6 +7,7 @@
 #include <set>
 
 #include "config/finding.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/files/csv/cell.hpp"
 #include "daemon/files/csv/row_source.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -17,8 +18,10 @@ namespace {
 constexpr double kNsPerSecond = 1e9;
 constexpr double kLargestInterval = 9e15;  // exact in a double
 constexpr std::string_view kQualitySuffix = ".quality";
+constexpr int kDeepest = 16;            // lists and objects in each other
+constexpr std::size_t kMostTold = 100;  // names that are ignored
 
-std::string quoted(const std::string& text) { return "'" + text + "'"; }
+std::string in_quotes(const std::string& text) { return "'" + printable(text) + "'"; }
 
 }  // namespace
 
@@ -32,6 +35,12 @@ class LineFrames::Rows {
   /// `interval`: where the line gives it.
   [[nodiscard]] virtual bool next(Frame& frame, std::optional<std::int64_t>& interval) = 0;
   std::vector<std::string> notices;
+
+ protected:
+  void tell(LineReader& lines) {
+    if (std::optional<std::string> notice = lines.take_notice())
+      notices.push_back(std::move(*notice));
+  }
 };
 
 namespace {
@@ -59,7 +68,9 @@ class CsvRows : public LineFrames::Rows {
   }
 
   [[nodiscard]] bool next(Frame& frame, std::optional<std::int64_t>&) override {
-    return rows_->next(frame);
+    const bool there = rows_->next(frame);
+    tell(lines_);
+    return there;
   }
 
  private:
@@ -76,6 +87,7 @@ class JsonRows : public LineFrames::Rows {
 
   [[nodiscard]] bool next(Frame& frame, std::optional<std::int64_t>& interval) override {
     if (!std::exchange(on_line_, false) && !lines_.next()) return false;
+    tell(lines_);
     const nlohmann::json line = parse();
     if (!line.is_object()) lines_.fail(1, "is no JSON object");
     clear(frame, counts_);
@@ -83,7 +95,7 @@ class JsonRows : public LineFrames::Rows {
     if (time == line.end()) lines_.fail(1, "has no \"time\"");
     std::string problem;
     const std::optional<std::int64_t> time_ns = parse_time(text_of(*time), problem);
-    if (!time_ns) fail_at("time", "\"time\": " + quoted(text_of(*time)) + " " + problem);
+    if (!time_ns) fail_at("time", "\"time\": " + in_quotes(text_of(*time)) + " " + problem);
     frame.source_time_ns = *time_ns;
     for (const auto& [name, value] : line.items()) {
       if (name == "interval")
@@ -97,16 +109,17 @@ class JsonRows : public LineFrames::Rows {
  private:
   nlohmann::json parse() const {
     std::string name;  // of the member at hand
-    const auto note_name = [&name](int, nlohmann::json::parse_event_t event, nlohmann::json& key) {
+    const auto note_name = [&](int depth, nlohmann::json::parse_event_t event,
+                               nlohmann::json& key) {
       if (event == nlohmann::json::parse_event_t::key) name = key.get<std::string>();
-      return true;
+      return depth <= kDeepest;  // what is below is no value, and would cost memory
     };
     try {
       return nlohmann::json::parse(lines_.text(), note_name);
     } catch (const nlohmann::json::parse_error& error) {
       lines_.fail(static_cast<int>(error.byte), "is no JSON");
     } catch (const nlohmann::json::exception&) {  // a number that no double holds
-      fail_at(name, "'" + name + "' is out of range");
+      fail_at(name, in_quotes(name) + " is out of range");
     }
   }
 
@@ -125,7 +138,7 @@ class JsonRows : public LineFrames::Rows {
   // Not what is inside of a list or an object: that may be deep, and no value is one.
   static std::string shown(const nlohmann::json& value) {
     if (value.is_array()) return "[...]";
-    return value.is_object() ? "{...}" : value.dump();
+    return value.is_object() ? "{...}" : printable(value.dump());
   }
 
   static std::string text_of(const nlohmann::json& value) {
@@ -142,7 +155,7 @@ class JsonRows : public LineFrames::Rows {
     if (const Slot* slot = tags_.find(name)) {
       const std::optional<double> number =
           value.is_null() ? parse_value("", false) : parse_value(text_of(value), false);
-      if (!number) fail_at(name, quoted(name) + ": " + shown(value) + " is no number");
+      if (!number) fail_at(name, in_quotes(name) + ": " + shown(value) + " is no number");
       frame[slot->kind].values(slot->index) = *number;
       Quality& quality = quality_of(frame, *slot);
       if (std::isfinite(*number)) quality = Quality::kGood;
@@ -150,8 +163,8 @@ class JsonRows : public LineFrames::Rows {
     }
     const std::size_t suffix = name.size() - std::min(name.size(), kQualitySuffix.size());
     if (name.substr(suffix) == kQualitySuffix) return read_quality(name, value, suffix, frame);
-    if (told_.insert(name).second)
-      notices.push_back("ignored, since the unit file does not name it: " + name);
+    if (told_.size() < kMostTold && told_.insert(name).second)
+      notices.push_back("ignored, since the unit file does not name it: " + printable(name));
   }
 
   // Members come in the order of their names, so a quality follows its value; no value stays bad.
@@ -161,7 +174,7 @@ class JsonRows : public LineFrames::Rows {
     if (slot == nullptr) return;
     const std::optional<Quality> said = parse_quality(text_of(value));
     if (!said)
-      fail_at(name, quoted(name) + ": " + shown(value) +
+      fail_at(name, in_quotes(name) + ": " + shown(value) +
                         " is no quality: good, uncertain, bad or an OPC code");
     Quality& quality = quality_of(frame, *slot);
     quality = std::max(quality, *said);
@@ -201,7 +214,9 @@ bool LineFrames::next(Frame& frame) {
   if (!rows_->next(frame, interval)) return false;
   if (!std::exchange(started_, true)) first_ns_ = frame.source_time_ns;
   const auto elapsed_ns = static_cast<double>(frame.source_time_ns - first_ns_);
-  frame.interval = interval.value_or(std::llround(elapsed_ns / (sample_time_s_ * kNsPerSecond)));
+  const double elapsed = elapsed_ns / (sample_time_s_ * kNsPerSecond);
+  frame.interval =
+      interval.value_or(std::llround(std::clamp(elapsed, -kLargestInterval, kLargestInterval)));
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/text/printable.hpp"
 #include "daemon/files/csv/cell.hpp"
 
 namespace mpm::files {
@@ -23,7 +24,7 @@ double read_value(const LineReader& lines, const CsvFormat& format, const Cell& 
   const std::optional<double> value = parse_value(cell.text, format.decimal_comma());
   if (!value)
     lines.fail(cell.column,
-               "'" + std::string(cell.text) + "' is no number; leave empty what is missing");
+               "'" + printable(cell.text) + "' is no number; leave empty what is missing");
   if (!std::isinf(*value)) return *value;
   ++tally.not_finite;
   return std::numeric_limits<double>::quiet_NaN();
@@ -33,15 +34,15 @@ std::int64_t read_time(const LineReader& lines, const Cell& cell, LocalTimes& ti
                        std::string_view series) {
   std::string problem;
   const std::optional<std::int64_t> time_ns = times.read(cell.text, series, problem);
-  if (!time_ns) lines.fail(cell.column, "'" + std::string(cell.text) + "' " + problem);
+  if (!time_ns) lines.fail(cell.column, "'" + printable(cell.text) + "' " + problem);
   return *time_ns;
 }
 
 Quality read_quality(const LineReader& lines, const Cell& cell) {
   const std::optional<Quality> quality = parse_quality(cell.text);
   if (!quality)
-    lines.fail(cell.column, "'" + std::string(cell.text) +
-                                "' is no quality: good, uncertain, bad or an OPC code");
+    lines.fail(cell.column,
+               "'" + printable(cell.text) + "' is no quality: good, uncertain, bad or an OPC code");
   return *quality;
 }
 

@@ -1,6 +1,7 @@
 #include "daemon/files/csv/tag_table.hpp"
 
 #include "config/suggest.hpp"
+#include "core/text/printable.hpp"
 
 namespace mpm::files {
 
@@ -26,7 +27,8 @@ const Slot* TagTable::find(std::string_view tag) const {
 
 void TagTable::see(std::string_view tag) {
   const auto [entry, is_new] = seen_.emplace(tag, true);
-  if (is_new && slots_.find(entry->first) == slots_.end()) ignored_.push_back(entry->first);
+  if (is_new && slots_.find(entry->first) == slots_.end())
+    ignored_.push_back(printable(entry->first));
 }
 
 bool TagTable::seen(const std::string& tag) const { return seen_.count(tag) > 0; }

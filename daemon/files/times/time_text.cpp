@@ -223,9 +223,9 @@ std::optional<LocalTime> parse_local_time(std::string_view text) {
 }
 
 std::string utc_text(std::int64_t time_ns, int offset_s) {
-  const std::chrono::sys_time<std::chrono::nanoseconds> time{std::chrono::nanoseconds(time_ns)};
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
-  const auto local = seconds + std::chrono::seconds(offset_s);
+  const std::int64_t second = time_ns / kNsPerSecond - (time_ns % kNsPerSecond < 0 ? 1 : 0);
+  const std::int64_t fraction_ns = (time_ns % kNsPerSecond + kNsPerSecond) % kNsPerSecond;
+  const std::chrono::sys_seconds local{std::chrono::seconds(second + offset_s)};
   const auto day = std::chrono::floor<std::chrono::days>(local);
   const std::chrono::year_month_day date(day);
   const std::chrono::hh_mm_ss clock(local - day);
@@ -236,7 +236,7 @@ std::string utc_text(std::int64_t time_ns, int offset_s) {
       static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
       static_cast<int>(clock.seconds().count()));
   std::string result(text.data(), static_cast<std::size_t>(size));
-  result += fraction_text((time - seconds).count());
+  result += fraction_text(fraction_ns);
   if (offset_s == 0) return result + 'Z';
   const int minutes = std::abs(offset_s) / 60;
   size = std::snprintf(text.data(), text.size(), "%c%02d:%02d", offset_s < 0 ? '-' : '+',

@@ -1,10 +1,11 @@
 #include "daemon/mcap/read/unpacker.hpp"
-#include "daemon/mcap/format/printable.hpp"
 
 #include <lz4frame.h>
 #include <zstd.h>
 
 #include <algorithm>
+
+#include "core/text/printable.hpp"
 
 namespace mpm::mcap {
 namespace {

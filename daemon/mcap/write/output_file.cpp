@@ -1,12 +1,14 @@
 #include "daemon/mcap/write/output_file.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
 namespace mpm::mcap {
@@ -25,11 +27,21 @@ bool write_all(int descriptor, ByteView bytes) {
   return true;
 }
 
+std::uint64_t most_file_bytes() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) != 0) return std::numeric_limits<std::uint64_t>::max();
+  return limit.rlim_cur;
+}
+
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path)
+OutputFile::OutputFile(const std::string& path, Opening opening)
     : path_(path),
-      descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+      descriptor_(
+          ::open(path.c_str(),
+                 O_WRONLY | O_CREAT | O_CLOEXEC | (opening == Opening::kMakeNew ? O_EXCL : O_TRUNC),
+                 0666)),
+      most_bytes_(most_file_bytes()) {
   if (descriptor_ < 0) fail("cannot be written to");
 }
 
@@ -37,7 +49,22 @@ OutputFile::~OutputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void OutputFile::write(ByteView bytes) {
+bool OutputFile::make_room(std::uint64_t bytes) {
+  if (bytes > most_bytes_) {
+    errno = EFBIG;
+    return false;
+  }
+  if (bytes <= reserved_) return true;
+  if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(reserved_),
+                  static_cast<off_t>(bytes - reserved_)) == 0)
+    reserved_ = bytes;
+  else if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG)
+    return false;
+  return true;  // or the file system promises nothing
+}
+
+void OutputFile::write(ByteView bytes, std::uint64_t reserve) {
+  if (!make_room(size_ + bytes.size() + reserve)) fail("cannot be written to");
   if (!write_all(descriptor_, bytes)) {
     const int reason = errno;
     // Best effort: where even this fails, `mpm recover` cuts the rest off.
@@ -51,6 +78,7 @@ void OutputFile::write(ByteView bytes) {
 }
 
 void OutputFile::close() {
+  if (reserved_ > size_) static_cast<void>(::ftruncate(descriptor_, static_cast<off_t>(size_)));
   const int result = ::close(descriptor_);
   descriptor_ = -1;
   if (result != 0) fail("could not be closed");
@@ -66,19 +94,21 @@ SpillFile::~SpillFile() {
 
 void SpillFile::add(ByteView bytes) {
   buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
-  if (buffer_.size() >= kSpillBytes) spill();
+  if (buffer_.size() >= kSpillBytes && spill()) buffer_.clear();
 }
 
-void SpillFile::spill() {
+bool SpillFile::spill() {
   if (descriptor_ < 0) {
     std::string name = path_ + ".index.XXXXXX";
     descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
-    if (descriptor_ < 0) fail();
+    if (descriptor_ < 0) return false;
     ::unlink(name.c_str());
   }
-  if (!write_all(descriptor_, buffer_)) fail();
+  // Over what a failed attempt may have left.
+  if (::lseek(descriptor_, static_cast<off_t>(spilled_), SEEK_SET) < 0) return false;
+  if (!write_all(descriptor_, buffer_)) return false;
   spilled_ += buffer_.size();
-  buffer_.clear();
+  return true;
 }
 
 void SpillFile::copy_to(OutputFile& out) {

@@ -10,14 +10,19 @@ namespace mpm::mcap {
 /// A file that only grows, and knows its length and the CRC of what was written since a mark.
 class OutputFile {
  public:
-  /// Makes or empties `path`. Throws std::runtime_error where it cannot, as do all the others.
-  explicit OutputFile(const std::string& path);
+  enum class Opening { kMakeOrEmpty, kMakeNew };  ///< the latter follows no link
+
+  /// Throws std::runtime_error where it cannot, as do all the others.
+  OutputFile(const std::string& path, Opening opening);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
 
   /// All of `bytes` or, where the disk is full, none of them: the file keeps its last whole write.
-  void write(ByteView bytes);
+  /// `reserve`: bytes that are sure to fit behind them, as far as the file system can promise that.
+  /// What is reserved is used by the next write.
+  void write(ByteView bytes, std::uint64_t reserve = 0);
+  /// Gives back what is reserved and was not used.
   void close();
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
@@ -25,10 +30,14 @@ class OutputFile {
   [[nodiscard]] std::uint32_t crc() const { return crc_.value(); }
 
  private:
+  /// False with errno where the disk is full.
+  [[nodiscard]] bool make_room(std::uint64_t bytes);
   [[noreturn]] void fail(const char* what) const;
 
   std::string path_;
   int descriptor_;
+  std::uint64_t most_bytes_;    // that this process may write into one file
+  std::uint64_t reserved_ = 0;  // bytes of the file that have their place on the disk
   std::uint64_t size_ = 0;
   Crc32 crc_;
 };
@@ -42,13 +51,15 @@ class SpillFile {
   SpillFile& operator=(const SpillFile&) = delete;
   ~SpillFile();
 
-  /// Throws std::runtime_error where it cannot.
+  /// On a full disk they stay in memory.
   void add(ByteView bytes);
   [[nodiscard]] std::uint64_t size() const { return spilled_ + buffer_.size(); }
+  /// Throws std::runtime_error where it cannot.
   void copy_to(OutputFile& out);
 
  private:
-  void spill();
+  /// False where the disk is full.
+  [[nodiscard]] bool spill();
   [[noreturn]] void fail() const;
 
   std::string path_;

@@ -1,6 +1,7 @@
 #include "daemon/mcap/write/writer.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -11,6 +12,13 @@ namespace mpm::mcap {
 namespace {
 
 constexpr std::uint64_t kMessageFields = 22;  // bytes before a message's data
+constexpr std::size_t kIndexEntry = 16;       // bytes of a message in its channel's index
+
+// Of the ending, in bytes: what has always the same length, and what each channel adds.
+constexpr std::uint64_t kDataEnd = kRecordHead + 4;
+constexpr std::uint64_t kStatistics = kRecordHead + 46, kStatisticsEntry = 10;
+constexpr std::uint64_t kSummaryOffsets = 5 * (kRecordHead + 17);
+constexpr std::uint64_t kFooter = kRecordHead + kFooterBytes + kMagic.size();
 
 std::uint64_t unsigned_time(std::int64_t time_ns) {
   if (time_ns < 0) throw std::invalid_argument("MCAP: a time before 1970 cannot be recorded");
@@ -26,7 +34,8 @@ std::uint16_t next_id(std::size_t so_far, const char* what) {
 }  // namespace
 
 Writer::Writer(const std::string& path, WriterOptions options)
-    : file_(path),
+    : file_(path, options.must_be_new ? OutputFile::Opening::kMakeNew
+                                      : OutputFile::Opening::kMakeOrEmpty),
       options_(std::move(options)),
       compressor_(options_.compression),
       chunk_indexes_(path) {
@@ -36,12 +45,34 @@ Writer::Writer(const std::string& path, WriterOptions options)
     encode.text(options_.profile);
     encode.text(options_.library);
   });
-  write_record();
+  try {
+    write_record(ending_bytes());
+  } catch (const std::runtime_error&) {
+    if (options_.must_be_new) static_cast<void>(std::remove(path.c_str()));
+    throw;
+  }
 }
 
-void Writer::write_record() {
-  file_.write(record_);
+void Writer::write_record(std::uint64_t reserve) {
+  try {
+    file_.write(record_, reserve);
+  } catch (const std::runtime_error&) {
+    record_.clear();
+    throw;
+  }
   record_.clear();
+}
+
+void Writer::write_definition(Bytes& in_summary) {
+  const Bytes record = record_;
+  write_record(ending_bytes() + record.size());
+  in_summary.insert(in_summary.end(), record.begin(), record.end());
+}
+
+std::uint64_t Writer::ending_bytes() const {
+  return kDataEnd + schema_records_.size() + channel_records_.size() + chunk_indexes_.size() +
+         metadata_indexes_.size() + kStatistics + kStatisticsEntry * (channels_.size() + 1) +
+         kSummaryOffsets + kFooter;
 }
 
 SchemaId Writer::add_schema(std::string_view name, std::string_view encoding,
@@ -54,8 +85,7 @@ SchemaId Writer::add_schema(std::string_view name, std::string_view encoding,
     encode.text(encoding);
     encode.text(data);
   });
-  schema_records_.insert(schema_records_.end(), record_.begin(), record_.end());
-  write_record();
+  write_definition(schema_records_);
   schemas_ = id;
   return id;
 }
@@ -72,8 +102,7 @@ ChannelId Writer::add_channel(SchemaId schema, std::string_view topic,
     encode.text(message_encoding);
     encode.map(metadata);
   });
-  channel_records_.insert(channel_records_.end(), record_.begin(), record_.end());
-  write_record();
+  write_definition(channel_records_);
   channels_[id];
   return id;
 }
@@ -108,8 +137,6 @@ void Writer::write(ChannelId channel, std::int64_t log_time_ns, std::int64_t pub
     encode.bytes(data);
   });
 
-  start_ns_ = messages_ == 0 ? log_ns : std::min(start_ns_, log_ns);
-  end_ns_ = std::max(end_ns_, log_ns);
   ++state.messages;
   ++messages_;
   if (chunk_.size() >= options_.chunk_bytes) close_chunk();
@@ -141,7 +168,7 @@ void Writer::close_chunk() {
 
   Bytes offsets;
   Encoder encode_offsets(offsets);
-  for (auto& [id, state] : channels_) {
+  for (const auto& [id, state] : channels_) {
     if (state.index.empty()) continue;
     encode_offsets.u16(id);
     encode_offsets.u64(chunk_offset + record_.size());
@@ -150,10 +177,8 @@ void Writer::close_chunk() {
       encode.u32(static_cast<std::uint32_t>(index.size()));
       encode.bytes(index);
     });
-    state.index.clear();
   }
   const std::uint64_t index_length = record_.size() - chunk_length;
-  write_record();
 
   Bytes chunk_index;
   Encoder encode_index(chunk_index);
@@ -169,9 +194,25 @@ void Writer::close_chunk() {
     encode_index.u64(packed.size());
     encode_index.u64(chunk_.size());
   });
+  write_record(ending_bytes() + chunk_index.size());
   chunk_indexes_.add(chunk_index);
+  start_ns_ = chunks_ == 0 ? chunk_start_ns_ : std::min(start_ns_, chunk_start_ns_);
+  end_ns_ = std::max(end_ns_, chunk_end_ns_);
   ++chunks_;
+  forget_chunk();
+}
+
+void Writer::forget_chunk() {
   chunk_.clear();
+  for (auto& [id, state] : channels_) state.index.clear();
+}
+
+void Writer::drop_chunk() {
+  for (auto& [id, state] : channels_) {
+    state.messages -= state.index.size() / kIndexEntry;
+    messages_ -= state.index.size() / kIndexEntry;
+  }
+  forget_chunk();
 }
 
 void Writer::add_metadata(std::string_view name, const TextMap& values) {
@@ -181,14 +222,15 @@ void Writer::add_metadata(std::string_view name, const TextMap& values) {
     encode.text(name);
     encode.map(values);
   });
-  const std::uint64_t length = record_.size();
-  write_record();
-  Encoder index(metadata_indexes_);
+  Bytes index_record;
+  Encoder index(index_record);
   index.record(Op::kMetadataIndex, [&] {
     index.u64(offset);
-    index.u64(length);
+    index.u64(record_.size());
     index.text(name);
   });
+  write_record(ending_bytes() + index_record.size());
+  metadata_indexes_.insert(metadata_indexes_.end(), index_record.begin(), index_record.end());
   ++metadata_;
 }
 
@@ -233,7 +275,7 @@ void Writer::finish() {
   const std::uint32_t data_crc = file_.crc();
   Encoder encode(record_);
   encode.record(Op::kDataEnd, [&] { encode.u32(data_crc); });
-  write_record();
+  write_record(0);
 
   file_.begin_crc();
   const std::uint64_t summary_start = file_.size();
@@ -257,10 +299,10 @@ void Writer::finish() {
   encode.u64(kFooterBytes);
   encode.u64(summary_start);
   encode.u64(offset_start);
-  write_record();
+  write_record(0);
   encode.u32(file_.crc());
   encode.bytes(kMagic);
-  write_record();
+  write_record(0);
   file_.close();
 }
 

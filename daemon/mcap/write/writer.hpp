@@ -19,6 +19,7 @@ struct WriterOptions {
   std::int64_t chunk_age_ns = 1'000'000'000;  ///< or when it spans this much log time
   std::string profile;                        ///< of the header; may be empty
   std::string library = "mpm";                ///< who wrote the file
+  bool must_be_new = false;                   ///< refuse a file, or a link, that is there already
 };
 
 /// Writes an MCAP file from start to end. Needs memory for one chunk, whatever the length of the
@@ -29,10 +30,11 @@ struct WriterOptions {
 /// the summary. All CRCs are written. The same calls give the same bytes.
 ///
 /// Throws std::runtime_error where the file cannot be written (the disk is full, say): it then ends
-/// behind the last whole record and nothing more should be written.
+/// behind the last whole record. Its summary has a place on the disk before anything that it tells
+/// of is written, so after `drop_chunk()` the file can be finished all the same.
 class Writer {
  public:
-  /// Makes or empties the file.
+  /// Makes or empties the file; leaves none where nothing fits into it.
   explicit Writer(const std::string& path, WriterOptions options = {});
 
   /// Ids count from 1; at most 65535 of each, std::length_error beyond.
@@ -59,6 +61,9 @@ class Writer {
   /// clock, when no message comes that would close it.
   void close_old_chunk(std::int64_t now_ns);
 
+  /// Forgets the open chunk, for which there is no place any more.
+  void drop_chunk();
+
   /// Writes the summary and closes the file. A file without it is whole for sequential readers
   /// only.
   void finish();
@@ -77,7 +82,12 @@ class Writer {
     Bytes index;  ///< of the open chunk: log time and offset of each message
   };
 
-  void write_record();
+  void write_record(std::uint64_t reserve);
+  void forget_chunk();
+  /// Writes a definition, which comes once more in the summary.
+  void write_definition(Bytes& in_summary);
+  /// What comes behind the data as they are.
+  [[nodiscard]] std::uint64_t ending_bytes() const;
   void write_summary_group(Op op, ByteView records, Bytes& offsets);
   void write_offset(Op op, std::uint64_t start, Bytes& offsets) const;
   void encode_statistics(Bytes& out) const;
@@ -97,7 +107,7 @@ class Writer {
   Bytes schema_records_, channel_records_, metadata_indexes_;
   SpillFile chunk_indexes_;
   std::uint64_t messages_ = 0, chunks_ = 0, metadata_ = 0;
-  std::uint64_t start_ns_ = 0, end_ns_ = 0;
+  std::uint64_t start_ns_ = 0, end_ns_ = 0;  // of the closed chunks
 };
 
 }  // namespace mpm::mcap

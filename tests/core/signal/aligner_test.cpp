@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <random>
 #include <vector>
@@ -354,6 +355,25 @@ TEST_CASE("aligner: any stream of numbers gives increasing frames") {
     REQUIRE(std::adjacent_find(seen.begin(), seen.end(), std::greater_equal<>()) == seen.end());
     REQUIRE(bench.aligner.counters().frames == seen.size());
   }
+}
+
+// What a broken controller or an attacker may send. Each leap forward to the end of the numbers and
+// each return would add 2^53 to what was emitted before: after a thousand of them int64 is full.
+TEST_CASE("intervals that leap to and fro never run away") {
+  constexpr std::int64_t kEnd = std::int64_t{1} << 53;
+  constexpr int kLeaps = 3000, kLength = 40;
+  Bench bench;
+  for (int leap = 0; leap < kLeaps; ++leap) {
+    const std::int64_t first = leap % 2 == 0 ? -kEnd : kEnd - kLength + 1;
+    bench.push_all(first, first + kLength - 1);
+  }
+  bench.aligner.finish();
+  CHECK(bench.frames.size() == std::size_t{kLeaps} * kLength);
+  const std::vector<std::int64_t> intervals = bench.intervals();
+  CHECK(std::adjacent_find(intervals.begin(), intervals.end(), std::greater_equal<>()) ==
+        intervals.end());
+  // The last numbers there are, and then per leap its length and a gap of the lateness.
+  CHECK(intervals.back() <= kEnd + std::int64_t{kLeaps} * 2 * kLength);
 }
 
 }  // namespace mpm

@@ -291,7 +291,7 @@ TEST_CASE("What is wrong with a file is told with its byte") {
     file.begin_chunk();
     file.end_chunk("\n\x1B[31m", 0, 0);
     file.end();
-    expect(file, "'??[31m', which is not known here");
+    expect(file, "'\\n\\x1b[31m', which is not known here");
   }
   SECTION("a chunk that lies about its times") {
     HandMade file;

@@ -98,3 +98,38 @@ TEST_CASE("No slip of the pen brings the reader down") {
   }
   CHECK(sound > 100);
 }
+
+TEST_CASE("Lines end where they end, whatever their length") {
+  // Around the size of the pieces in which they come.
+  for (const std::size_t length : {1U, 4094U, 4095U, 4096U, 4097U, 8190U, 8191U, 100'000U}) {
+    CAPTURE(length);
+    const std::string line(length, 'x');
+    LineReader lines(std::make_unique<std::istringstream>(line + "\n" + line + "\nlast"), "d.csv");
+    REQUIRE(lines.next());
+    CHECK((lines.text() == line && lines.number() == 1 && lines.complete()));
+    REQUIRE(lines.next());
+    CHECK((lines.text() == line && lines.number() == 2 && lines.complete()));
+    REQUIRE(lines.next());
+    CHECK((lines.text() == "last" && lines.number() == 3 && !lines.complete()));
+    CHECK_FALSE(lines.next());
+  }
+}
+
+TEST_CASE("A line without an end is refused, and what follows it is read") {
+  const std::string most(std::size_t{4} << 20U, 'x');
+  LineReader lines(
+      std::make_unique<std::istringstream>("a\n" + most + "\n" + most + most + "\nb\n"), "d.csv");
+  REQUIRE(lines.next());
+  REQUIRE(lines.next());
+  CHECK(lines.text().size() == most.size());
+  std::string error;
+  try {
+    static_cast<void>(lines.next());
+  } catch (const config::InputError& refused) {
+    error = refused.what();
+  }
+  CHECK(error == "d.csv:3:1: error: a line of more than 4 MiB");
+  REQUIRE(lines.next());
+  CHECK((lines.text() == "b" && lines.number() == 4));
+  CHECK_FALSE(lines.next());
+}

@@ -274,3 +274,31 @@ TEST_CASE("A file that is not there is an error") {
   CHECK_THROWS_WITH(CsvReader("/nowhere/d.csv", unit()), "/nowhere/d.csv: error: no such file");
   CHECK_THROWS_WITH(CsvReader("/tmp", unit()), "/tmp: error: is a folder, not a file");
 }
+
+TEST_CASE("A file in ISO 8859-1 is read, and told") {
+  const auto config = config::load_unit_text(
+      "unit: t\nsample_time: 1\nsignals: {mv: [\"S\u00e4ure\", u2], cv: [y1]}\n"
+      "model: {channels: [{cv: y1, mv: u2, gain: 1}]}\n",
+      "u.yaml");
+  REQUIRE(config.ok());
+  for (const char* header : {"time,S\xe4ure,u2,y1", "time,S\u00e4ure,u2,y1"}) {
+    CsvReader csv = reader(std::string(header) + "\n0,1.5,-2,3.25\n1,4,,6\n", config.config);
+    Frame frame;
+    std::vector<Frame> frames;
+    while (csv.next(frame)) frames.push_back(frame);
+    check_two_rows(frames);
+    const std::vector<std::string> notices = csv.notices();
+    const bool told = std::find(notices.begin(), notices.end(),
+                                "is no UTF-8; it is read as ISO 8859-1") != notices.end();
+    CHECK(told == (std::string(header).find('\xe4') != std::string::npos));
+  }
+}
+
+TEST_CASE("What a wrong cell holds is told in one short line") {
+  const std::string cell = "\x1b[2J" + std::string(100'000, 'x');
+  const std::string error = error_of("time,u1,u2,y1\n0,1," + cell + ",3\n");
+  CHECK(error.rfind("d.csv:2:5: error: '\\x1b[2Jxxx", 0) == 0);
+  CHECK(error.size() < 300);
+  CHECK(error_of("time,u1,u2,y1," + cell + "\n0,1,x,3,4\n") ==
+        "d.csv:2:5: error: 'x' is no number; leave empty what is missing");
+}

@@ -1,6 +1,7 @@
 #include "daemon/files/times/time_text.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
 
 using namespace mpm;
 using namespace mpm::files;
@@ -64,4 +65,11 @@ TEST_CASE("ISO 8601 times with a zone are UTC") {
         "2024-05-01T12:00:00+25:00", "2024-05-01T12:00:00Zx", "9999-05-01T12:00:00Z",
         "2024-5-1T12:00:00Z", "2024-05-01T12:00:00.Z"})
     CHECK_FALSE(is_time(text));
+}
+
+TEST_CASE("Every time that int64 holds has a text") {
+  // Python: datetime(1970, 1, 1) + timedelta(microseconds=...), and the digits after them.
+  CHECK(utc_text(std::numeric_limits<std::int64_t>::min()) == "1677-09-21T00:12:43.145224192Z");
+  CHECK(utc_text(std::numeric_limits<std::int64_t>::max()) == "2262-04-11T23:47:16.854775807Z");
+  CHECK(utc_text(-1) == "1969-12-31T23:59:59.999999999Z");
 }

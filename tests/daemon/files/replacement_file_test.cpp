@@ -1,0 +1,69 @@
+#include "daemon/files/replacement_file.hpp"
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+
+#include "config/finding.hpp"
+#include "daemon/files/output_folder.hpp"
+#include "tests/system/process.hpp"
+
+using mpm::files::OutputFolder;
+using mpm::files::ReplacementFile;
+using mpm::test::read_file;
+using mpm::test::TemporaryFolder;
+using mpm::test::write_file;
+
+namespace {
+
+/// What somebody else lays beside `name`: every name that can be foreseen leads to `victim`.
+void plant_links(const TemporaryFolder& folder, const std::string& name,
+                 const std::string& victim) {
+  const std::string pid = std::to_string(getpid());
+  for (const std::string& foreseen :
+       {"." + name + "." + pid, name + "." + pid, "." + name + ".tmp", name + ".tmp", name + "~"})
+    std::filesystem::create_symlink(victim, folder.file(foreseen));
+}
+
+std::size_t entries_of(const std::string& folder) {
+  std::size_t count = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a file that replaces another is written to nothing that others made") {
+  TemporaryFolder folder;
+  const std::string victim = folder.file("victim");
+  write_file(victim, "precious");
+  plant_links(folder, "out.csv", victim);
+  plant_links(folder, "report.json", victim);
+  {
+    ReplacementFile file(folder.file("out.csv"));
+    write_file(folder.file("out.csv"), "old");
+    file.write("new");
+    CHECK(read_file(folder.file("out.csv")) == "old");
+    file.commit();
+  }
+  CHECK(read_file(folder.file("out.csv")) == "new");
+  OutputFolder reports(folder.file("."));
+  reports.write("report.json", "{}");
+  reports.commit();
+  CHECK(read_file(folder.file("report.json")) == "{}");
+  CHECK(read_file(victim) == "precious");
+}
+
+TEST_CASE("what is not committed leaves nothing behind") {
+  TemporaryFolder folder;
+  {
+    ReplacementFile file(folder.file("out.csv"));
+    ReplacementFile other(folder.file("out.csv"));
+    CHECK(file.temporary() != other.temporary());
+    file.write("half");
+    CHECK(entries_of(folder.file(".")) == 2);
+  }
+  CHECK(entries_of(folder.file(".")) == 0);
+  CHECK_THROWS_AS(ReplacementFile(folder.file("nowhere/out.csv")), mpm::config::InputError);
+  CHECK_THROWS_AS(ReplacementFile(folder.file(".")), mpm::config::InputError);
+}

@@ -1,0 +1,58 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "tests/system/bench.hpp"
+
+namespace mpm::test {
+namespace {
+
+constexpr std::size_t kMegabyte = 1'000'000;
+
+/// A unit of one MV and one CV that nobody watches.
+idl::UnitPublisher stranger(const Bench& bench, const std::string& name) {
+  UnitLayout layout;
+  layout.unit = name;
+  layout[SignalKind::kMv].tags = {name};
+  layout[SignalKind::kCv].tags = {name};
+  return {bench.participant, layout, idl::WriterPace::kRealTime};
+}
+
+}  // namespace
+
+TEST_CASE("a name on the bus neither forges a line of the log nor fills the memory") {
+  Bench bench("hostile_names");
+  const Frame frame(SignalCounts{1, 0, 1, 0});
+  const long before_kb = bench.daemon.resident_kb();
+  const auto unknown = [&] { return bench.health().unknown_unit; };
+
+  const idl::UnitPublisher forger = stranger(bench, "x\n<3>toy: u1 -> y1: alarm active\x1b[2J\xff");
+  REQUIRE(forger.wait_for_readers(std::chrono::seconds(20)));
+  static_cast<void>(forger.publish(frame));
+  REQUIRE(bench.observe([&] { return unknown() >= 2; }));
+
+  for (int i = 0; i < 10; ++i) {
+    const idl::UnitPublisher flood =
+        stranger(bench, std::to_string(i) + std::string(10 * kMegabyte, 'n'));
+    static_cast<void>(flood.publish(frame));
+  }
+  const idl::UnitPublisher known = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  bench.publish(known, plant, 50);
+  CHECK(bench.observe([&] { return bench.health().frames >= 40; }));
+  CHECK(bench.daemon.resident_kb() < before_kb + 50'000);
+
+  bench.daemon.send(SIGTERM);
+  CHECK(bench.daemon.wait(std::chrono::seconds(10)) == 0);
+  bool told = false;
+  for (const std::string& line : lines_of(read_file(bench.folder.file("mpmd.err")))) {
+    CAPTURE(line.substr(0, 200));
+    CHECK(line.size() < 2000);
+    CHECK(line.rfind("<3>toy", 0) != 0);
+    CHECK(line.find('\x1b') == std::string::npos);
+    told =
+        told || line.find("'x\\n<3>toy: u1 -> y1: alarm active\\x1b[2J\\xff'") != std::string::npos;
+  }
+  CHECK(told);
+}
+
+}  // namespace mpm::test
