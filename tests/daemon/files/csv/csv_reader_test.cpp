@@ -225,19 +225,19 @@ TEST_CASE("Bad input is an error at its place") {
       {"time,u1\n0,1\n", "d.csv:1:1: error: the file does not hold mv 'u2', cv 'y1'"},
       {"time,u1,u2,y1,u1\n0,1,2,3,4\n",
        "d.csv:1:15: error: a second column 'u1'; the first is at column 6"},
-      {"# c\ntime,u1,u2,y1\n0,1,2,3\n1,1,abc,3\n",
-       "d.csv:4:5: error: 'abc' is no number; leave empty what is missing"},
+      {"# c\ntime,u1,u2,y1\n0,1,2,3\n1,1,12abc,3\n",
+       "d.csv:4:5: error: '12abc' is no number; leave empty what is missing"},
       {"time,u1,u2,y1\n0,1,2,3\n1,1,2.3.4,3\n",
        "d.csv:3:5: error: '2.3.4' is no number; leave empty what is missing"},
       {"time,u1,u2,y1\n0,1,2,3\nnoon,1,2,3\n",
        "d.csv:3:1: error: 'noon' is no time: give seconds or ISO 8601 such as "
-       "2024-05-01T12:00:00Z"},
+       "2024-05-01T12:00:00Z, or say how it is written with --time-format"},
       {"time,u1,u2,y1\n2024-05-01T12:00:00,1,2,3\n",
        "d.csv:2:1: error: '2024-05-01T12:00:00' is a local time: add its zone, Z or +hh:mm, or "
-       "name "
-       "it to convert, detect, diagnose or info with --time-zone"},
+       "name it with --time-zone, such as Europe/Berlin or UTC"},
       {"time,u1,u2,y1\n,1,2,3\n",
-       "d.csv:2:1: error: '' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z"},
+       "d.csv:2:1: error: '' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z, "
+       "or say how it is written with --time-format"},
       {"time,u1,u2,y1\n0,1,2\n1,1,2,3\n", "d.csv:2:5: error: has 3 cells, the header 4"},
       {"time,u1,u2,y1\n0,1,2,3,4\n", "d.csv:2:9: error: has 5 cells, the header 4"},
       {"time,u1,u2,y1,y1.quality\n0,1,2,3,fine\n",
@@ -250,10 +250,11 @@ TEST_CASE("Bad input is an error at its place") {
       {std::string("time,u1,u2,y1\n0,1,\0,3\n", 22),
        "d.csv:2:1: error: is no text file: it holds a zero byte"},
       {"tag,time,value\nu1,0,1\ny1,0,2\n", "d.csv:1:1: error: the file does not hold mv 'u2'"},
-      {"tag,time,value\nu1,0,1\nu2,0,1\ny1,0,x\n",
-       "d.csv:4:6: error: 'x' is no number; leave empty what is missing"},
-      {"tag,time,value\nu1,0,1\nu2,?,1\n",
-       "d.csv:3:4: error: '?' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z"},
+      {"tag,time,value\nu1,0,1\nu2,0,1\ny1,0,7x\n",
+       "d.csv:4:6: error: '7x' is no number; leave empty what is missing"},
+      {"tag,time,value\nu1,0,1\nu2,9?,1\n",
+       "d.csv:3:4: error: '9?' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z, "
+       "or say how it is written with --time-format"},
   }));
   CAPTURE(text);
   CHECK(error_of(text) == error);
