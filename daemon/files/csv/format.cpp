@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "config/suggest.hpp"
 #include "daemon/files/csv/cell.hpp"
@@ -87,7 +88,9 @@ class Survey {
     if (const std::string notice = dates_.notice(); !notice.empty()) notices.push_back(notice);
     std::vector<std::string> names;
     for (const QualityColumn& column : format_.layout.qualities)
-      if (!column.sure) names.emplace_back(header[column.cell].text);
+      if (!column.sure &&
+          std::find(names.begin(), names.end(), header[column.cell].text) == names.end())
+        names.emplace_back(header[column.cell].text);
     if (!names.empty()) notices.push_back("quality is read from " + config::join(names));
     if (format_.zero_is_good)
       notices.emplace_back(

@@ -19,7 +19,7 @@ constexpr std::int64_t kCalendarNs = 315'532'800'000'000'000;
 std::int64_t time_of(const std::string& option, const std::string& text,
                      const std::shared_ptr<const TimeZone>& zone) {
   std::string problem;
-  const std::optional<std::int64_t> time_ns = LocalTimes(zone).read(text, "", problem);
+  const std::optional<std::int64_t> time_ns = LocalTimes({zone, nullptr}).read(text, "", problem);
   if (!time_ns) refuse(option, "'" + text + "' " + problem);
   return *time_ns;
 }
