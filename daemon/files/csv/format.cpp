@@ -112,7 +112,8 @@ class Survey {
       const std::string_view clock = cells_[*columns.clock].text;
       if (clock.empty()) return;
       // A date that is only a remark beside a time of its own.
-      if (clock.find(':') == std::string_view::npos) columns = {*columns.clock, std::nullopt};
+      if (clock.find(':') == std::string_view::npos || is_date(format_.times, clock))
+        columns = {*columns.clock, std::nullopt};
     }
     const std::string text = time_text(cells_, columns);
     if (text.find_first_of("0123456789") == std::string::npos) return;

@@ -117,7 +117,7 @@ class LongRows : public RowSource {
     const std::string text = time_text(cells_, columns_.time);
     if (text.find_first_of("0123456789") == std::string::npos) return true;
     std::string problem;
-    return value.empty() && !LocalTimes(times_).read(text, tag(), problem);
+    return value.empty() && !parse_calendar(text) && !LocalTimes(times_).read(text, tag(), problem);
   }
 
   /// The next line of a tag that the unit names.
