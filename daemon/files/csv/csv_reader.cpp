@@ -64,6 +64,10 @@ void CsvReader::check_sample_time(int first_line) const {
         static_cast<double>(ahead_[i].source_time_ns - ahead_[i - 1].source_time_ns);
     if (step_ns > 0.0) steps_s.push_back(step_ns / kNsPerSecond);
   }
+  if (steps_s.empty() && ahead_.size() > 2 &&
+      ahead_.back().source_time_ns < ahead_.front().source_time_ns)
+    lines_.fail(first_line, 1,
+                "the rows go back in time: export or sort them with the oldest first");
   if (steps_s.empty()) return;
   const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
   std::nth_element(steps_s.begin(), middle, steps_s.end());

@@ -35,13 +35,31 @@ std::vector<Cell> split_header(LineReader& lines, char delimiter) {
   return header;
 }
 
+/// True where the line above has the names of the columns, and the one at hand their units with a
+/// word for the time before them.
+bool names_stand_above(const std::vector<bool>& above, const Layout& layout) {
+  if (layout.is_long || above.size() < layout.width || above[layout.time.time]) return false;
+  return std::count(above.begin(), above.end(), true) + 1 >=
+         static_cast<std::ptrdiff_t>(layout.width);
+}
+
 std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
+  std::vector<bool> above;  // which cells of the line before are not empty
+  int line_above = 0;
   for (int i = 0; i <= kLinesAbove && (i == 0 || lines.next()); ++i) {
     const char delimiter = find_delimiter(lines.text());
     const std::vector<Cell> cells = split_header(lines, delimiter);
     if (cells.size() < 2) continue;
-    if (const std::optional<Layout> layout = find_layout(cells, tags))
-      return Header{lines.number(), delimiter, *layout, true};
+    if (const std::optional<Layout> layout = find_layout(cells, tags)) {
+      if (!names_stand_above(above, *layout))
+        return Header{lines.number(), delimiter, *layout, true};
+      return_to(lines, line_above);
+      const std::vector<Cell> names = split_header(lines, delimiter);
+      return Header{line_above, delimiter, layout_with_time(names, layout->time, tags), true};
+    }
+    above.clear();
+    for (const Cell& cell : cells) above.push_back(!cell.text.empty());
+    line_above = lines.number();
   }
   return std::nullopt;
 }
@@ -111,8 +129,9 @@ class Survey {
     if (columns.clock && !there_) {
       const std::string_view clock = cells_[*columns.clock].text;
       if (clock.empty()) return;
-      // A date that is only a remark beside a time of its own.
-      if (clock.find(':') == std::string_view::npos || is_date(format_.times, clock))
+      const bool remark = !is_date(format_.times, cells_[columns.time].text) &&
+                          clock.find(':') == std::string_view::npos;
+      if (remark || is_date(format_.times, clock))  // the other is a time of its own
         columns = {*columns.clock, std::nullopt};
     }
     const std::string text = time_text(cells_, columns);

@@ -47,6 +47,10 @@ void count(std::string_view word, std::map<std::string, std::uint64_t, std::less
 void ReadTally::tell(std::vector<std::string>& notices) const {
   if (decimal_commas > 0)
     notices.emplace_back("the comma is read as a decimal point, for it does not part the columns");
+  if (decimal_commas > 0 && decimal_points > 0)
+    notices.push_back(std::to_string(decimal_points) +
+                      " numbers beside those have a point; it is read as a decimal point too, so "
+                      "there may be no thousands separators");
   if (!states.empty())
     notices.push_back(std::to_string(sum(states)) +
                       " values taken as missing, since they are words: " + listed(states));
@@ -73,12 +77,14 @@ double read_value(const LineReader& lines, const CsvFormat& format, const Cell& 
     return std::numeric_limits<double>::quiet_NaN();
   }
   if (!value) {
-    const bool thousands = comma && cell.text.find('.') != std::string_view::npos;
     lines.fail(cell.column, "'" + std::string(cell.text) + "' is no number; " +
-                                (thousands ? "export it without thousands separators"
-                                           : "leave empty what is missing"));
+                                (comma ? "export it with a decimal point and without thousands "
+                                         "separators"
+                                       : "leave empty what is missing"));
   }
   if (comma && std::isfinite(*value)) ++tally.decimal_commas;
+  if (format.decimal_comma() && cell.text.find('.') != std::string_view::npos)
+    ++tally.decimal_points;
   if (!std::isinf(*value)) return *value;
   ++tally.not_finite;
   return std::numeric_limits<double>::quiet_NaN();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kDay = 86400;
-constexpr std::string_view kLetters = "YymbBdeHIMSpzjs%";
+constexpr std::string_view kLetters = "YymbBdeHIMSpzZaAjs%";
 
 /// What the letters gave so far; -1 = nothing.
 struct Parts {
@@ -109,6 +109,10 @@ bool take_letter(char letter, bool digit_follows, Cursor& cursor, Parts& parts) 
       return take_half(cursor, parts);
     case 'z':
       return take_zone_letters(cursor, parts.time);
+    case 'Z':
+    case 'a':
+    case 'A':
+      return !cursor.take_letters().empty();
     case 'j':
       return number(parts.day_of_year, 3) && parts.day_of_year > 0;
     case 's':
@@ -154,7 +158,7 @@ TimeFormat::TimeFormat(const std::string& pattern, const std::string& option) : 
       plain_.replace(plain_.size() - 2, 2, found->second);
     else if (kLetters.find(letter) == std::string_view::npos)
       refuse(std::string("has %") + letter +
-             "; known are %Y %y %m %b %B %d %e %H %I %M %S %p %z %j " + "%s %F %T %D %R");
+             "; known are %Y %y %m %b %B %d %e %H %I %M %S %p %z %Z %a %A %j " + "%s %F %T %D %R");
   }
   const auto has = [this](std::string_view letter) {
     return plain_.find(letter) != std::string::npos;

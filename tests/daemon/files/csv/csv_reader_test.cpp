@@ -246,6 +246,11 @@ TEST_CASE("Bad input is an error at its place") {
       {"time,u1,u2,y1\n0,\"1\"x,2,3\n", "d.csv:2:6: error: text after a closing quote"},
       {"time,u1,u2,y1\n0,1,2,3\n60,1,2,3\n120,1,2,3\n",
        "d.csv:1:1: error: the rows are 60 s apart (median), the unit's sample_time is 1 s"},
+      {"time,u1,u2,y1\n2,1,2,3\n1,1,2,3\n0,1,2,3\n",
+       "d.csv:1:1: error: the rows go back in time: export or sort them with the oldest first"},
+      {"time;u1;u2;y1\n0;1.234,5;2;3\n",
+       "d.csv:2:3: error: '1.234,5' is no number; export it with a decimal point and without "
+       "thousands separators"},
       {"\xFF\xFEt\n", "d.csv:1:1: error: is UTF-16 text; save it as UTF-8"},
       {std::string("time,u1,u2,y1\n0,1,\0,3\n", 22),
        "d.csv:2:1: error: is no text file: it holds a zero byte"},

@@ -34,6 +34,13 @@ TEST_CASE("The header is found below what stands above it") {
   CHECK(result.notices.size() == 1);
 }
 
+TEST_CASE("Names may stand above the line that names the time") {
+  const Found result = found(",a,b\nTimestamp,m3/h,degC\n2026-02-01 00:00,1,2\n");
+  CHECK(result.line == 1);
+  CHECK(result.format.layout.values == std::vector<std::size_t>{1, 2});
+  CHECK(found(",,\nTimestamp,a,b\n2026-02-01 00:00,1,2\n").line == 2);
+}
+
 TEST_CASE("A first column of dates is the time, whatever it is called") {
   CHECK(found("Horodatage,a\n2026-02-01 00:00,1\n").format.layout.time.time == 0);
   CHECK_THROWS_WITH(found("Horodatage,a\n17,1\n"),
@@ -67,6 +74,8 @@ TEST_CASE("A date beside a time of its own is only a remark") {
   const Found remark = found("Date,Time,a\nMonday,0,1\nMonday,60,1\n");
   CHECK(remark.format.layout.time.time == 1);
   CHECK_FALSE(remark.format.layout.time.clock);
+  const Found fraction = found("Datum;Zeit;a\n26.03.2026;0,5868;1\n");  // not a time on its own
+  CHECK(fraction.format.layout.time.clock);
   const Found whole = found("Time,Date,a\n2026-02-01T14:05:00Z,Monday,1\n");
   CHECK(whole.format.layout.time.time == 0);
 }

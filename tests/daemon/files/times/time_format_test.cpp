@@ -28,6 +28,7 @@ TEST_CASE("Times are read as a format says") {
   CHECK(seconds("%F %T", "2026-03-28 14:05:00.5") == kMarch28);
   CHECK(seconds("%y.%j %R", "26.87 14:05") == kMarch28);  // 31 + 28 + 28
   CHECK(seconds("%d.%m.%Y %H:%M:%S CET", "28.03.2026 14:05:00 CET") == kMarch28);
+  CHECK(seconds("%a %b %d %H:%M:%S %Z %Y", "Sat Mar 28 14:05:00 CET 2026") == kMarch28);
   CHECK(seconds("%s", "1774706700.25") == kMarch28);
   CHECK(TimeFormat("%s").parse("1774706700.25")->fraction_ns == 250'000'000);
   CHECK(TimeFormat("%s").parse("1")->zone_s == 0);
