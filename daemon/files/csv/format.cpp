@@ -21,6 +21,11 @@ bool is_date(const TimeStyle& times, std::string_view text) {
   return times.format ? times.format->parse(text).has_value() : parse_calendar(text).has_value();
 }
 
+bool is_number(std::string_view text) {
+  std::string problem;
+  return parse_seconds(text, problem).has_value();
+}
+
 /// The header at hand, on line `line`.
 struct Header {
   int line = 0;
@@ -129,7 +134,8 @@ class Survey {
     if (columns.clock && !there_) {
       const std::string_view clock = cells_[*columns.clock].text;
       if (clock.empty()) return;
-      const bool remark = !is_date(format_.times, cells_[columns.time].text) &&
+      const std::string_view date = cells_[columns.time].text;
+      const bool remark = !is_date(format_.times, date) && !is_number(date) &&
                           clock.find(':') == std::string_view::npos;
       if (remark || is_date(format_.times, clock))  // the other is a time of its own
         columns = {*columns.clock, std::nullopt};

@@ -68,7 +68,10 @@ std::optional<std::int64_t> LocalTimes::read_local(const LocalTime& local, std::
   }
   const TimeZone::Moments moments = style_.zone->moments(local.seconds);
   if (moments.count == 0) {
-    problem = "does not exist in " + style_.zone->name() + ": the clock goes forward over it";
+    problem =
+        "does not exist in " + style_.zone->name() +
+        ": the clock goes forward over it; if the "
+        "file's clock never does, name a zone without summer time, such as Etc/GMT-1 for UTC+1";
     return std::nullopt;
   }
   ++local_;
