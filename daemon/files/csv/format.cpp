@@ -37,6 +37,7 @@ struct Header {
 std::vector<Cell> split_header(LineReader& lines, char delimiter) {
   std::vector<Cell> header;
   lines.split(delimiter, header);
+  if (header.size() > 1 && header.back().text.empty()) header.pop_back();  // a delimiter at the end
   return header;
 }
 

@@ -71,6 +71,7 @@ class WideRows : public RowSource {
     std::map<std::string_view, int> first_columns;
     for (std::size_t i = 0; i < header.size(); ++i) {
       const std::string_view name = header[i].text;
+      if (name.empty()) continue;
       const auto [first, is_new] = first_columns.emplace(name, header[i].column);
       if (!is_new && (tags.find(name) != nullptr || name == header[layout.time.time].text))
         lines_.fail(header[i].column, "a second column '" + std::string(name) +

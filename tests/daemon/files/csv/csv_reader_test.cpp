@@ -84,6 +84,8 @@ TEST_CASE("Wide files in all their dialects give the same frames") {
       "y1,time,u2,u1\n3.25,0,-2,1.5\n6,1,,4\n",
       "time,u1,u2,y1,\n0,1.5,-2,3.25,\n1,4,,6,\n",
       "t_s,u1,u2,y1\n0,1.5,-2,3.25\n1,4,,6",
+      ",u1,u2,,y1,\n2024-05-01T12:00:00Z,1.5,-2,,3.25,\n2024-05-01T12:00:01Z,4,,,6,\n",
+      "Date,Time,u1,u2,y1\n5/13/2024,12:00:00Z,1.5,-2,3.25\n5/13/2024,12:00:01Z,4,Manual,6\n",
       "time,u1,u2,y1\n0,+1.5,-2,325e-2\n1,4,#N/A,6\n",
   }));
   CAPTURE(text);
