@@ -81,7 +81,7 @@ int detect(const DetectOptions& options) {
     const files::TimeStyle times = times_of(options.times);
     const std::unique_ptr<files::FrameSource> frames =
         bag::open_recording(options.data, loaded.config, times);
-    const files::TimeChoice choice(options.time, times.zone);
+    const files::TimeChoice choice(options.time, times);
     std::optional<live::Journal> journal;
     if (!options.journal.empty()) journal.emplace(options.journal);
     const report::DetectReport report =

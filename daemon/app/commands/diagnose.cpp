@@ -129,7 +129,7 @@ report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig 
   report::DiagnosisRun run;
   run.unit = std::move(unit);
   const files::TimeStyle times = times_of(options.times);
-  const files::TimeChoice choice(options.time, times.zone);
+  const files::TimeChoice choice(options.time, times);
   run.time_chosen = !choice.all();
   Given data = read_all(options.data, run.unit, times, choice, run.notices);
   run.recording = std::move(data.recording);
