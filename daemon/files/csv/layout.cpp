@@ -151,7 +151,7 @@ Layout layout_with_time(const Names& header, TimeColumns time, const TagTable* t
 std::optional<Layout> find_layout(const std::vector<Cell>& cells, const TagTable* tags) {
   Names header = cells;
   if (header.size() > 1 && header.back().text.empty()) header.pop_back();  // a delimiter at the end
-  if (const std::optional<Layout> layout = find_long(header, tags)) return layout;
+  if (std::optional<Layout> layout = find_long(header, tags)) return layout;
   const std::optional<TimeColumns> time = find_time(header, tags);
   return time ? std::optional(layout_with_time(header, *time, tags)) : std::nullopt;
 }

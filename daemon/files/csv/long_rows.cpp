@@ -111,7 +111,7 @@ class LongRows : public RowSource {
   }
 
   /// Neither a value nor a time: units below the header, counts below the data.
-  bool is_remark() const {
+  [[nodiscard]] bool is_remark() const {
     const std::string_view value = cells_[columns_.value].text;
     if (std::isfinite(parse_value(value, format_.decimal_comma()).value_or(NAN))) return false;
     const std::string text = time_text(cells_, columns_.time);

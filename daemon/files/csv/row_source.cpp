@@ -16,6 +16,7 @@ constexpr std::size_t kNamed = 5;  // words that a notice names
 /// `Manual (12), Over Range (3)`, the most frequent first.
 std::string listed(const std::map<std::string, std::uint64_t, std::less<>>& counts) {
   std::vector<std::pair<std::uint64_t, std::string>> words;
+  words.reserve(counts.size());
   for (const auto& [word, count] : counts) words.emplace_back(count, word);
   std::stable_sort(words.begin(), words.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
