@@ -71,7 +71,7 @@ ConvertReport convert(const std::string& input, const std::string& output,
     file.emplace(output);
   }
   const TableOptions table_options{options.unit ? &*options.unit : nullptr, options.unit_name,
-                                   options.input_zone, to_mcap};
+                                   options.input_times, to_mcap};
   ConvertReport report;
   try {
     files::CsvOptions csv{options.layout, options.seconds, options.output_zone, {}};

@@ -15,7 +15,7 @@ struct ConvertOptions {
   std::string unit_name;                               ///< see TableOptions
   files::CsvLayout layout = files::CsvLayout::kWide;   ///< of a CSV output
   bool seconds = false;                                ///< its times as seconds
-  std::shared_ptr<const files::TimeZone> input_zone;   ///< of local times; null = there may be none
+  files::TimeStyle input_times;                        ///< of a CSV input
   std::shared_ptr<const files::TimeZone> output_zone;  ///< null = UTC
 };
 

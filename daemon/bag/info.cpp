@@ -206,8 +206,8 @@ class RowClock {
   double step_ns_ = 0.0;
 };
 
-void inspect_csv(FileInfo& info, std::shared_ptr<const files::TimeZone> zone) {
-  files::CsvRows rows(info.path, std::move(zone));
+void inspect_csv(FileInfo& info, const files::TimeStyle& times) {
+  files::CsvRows rows(info.path, times);
   info.is_long = rows.is_long();
   info.delimiter = rows.delimiter();
   for (const files::Column& column : rows.columns()) {
@@ -266,23 +266,22 @@ double TimeTally::rate_hz() const {
   return count > 1 && span_s > 0.0 ? static_cast<double>(count - 1) / span_s : 0.0;
 }
 
-FileInfo inspect(const std::vector<std::string>& paths,
-                 std::shared_ptr<const files::TimeZone> zone) {
+FileInfo inspect(const std::vector<std::string>& paths, const files::TimeStyle& times) {
   FileInfo info;
   info.path = mcap::name_of(paths);
   info.is_mcap = mcap::is_recording(paths);
   if (info.is_mcap)
     inspect_mcap(paths, info);
   else
-    inspect_csv(info, std::move(zone));
+    inspect_csv(info, times);
   std::error_code ignored;
   for (const std::string& file : info.is_mcap ? info.files : paths)
     info.bytes += std::filesystem::file_size(file, ignored);
   return info;
 }
 
-FileInfo inspect(const std::string& path, std::shared_ptr<const files::TimeZone> zone) {
-  return inspect(std::vector{path}, std::move(zone));
+FileInfo inspect(const std::string& path, const files::TimeStyle& times) {
+  return inspect(std::vector{path}, times);
 }
 
 }  // namespace mpm::bag

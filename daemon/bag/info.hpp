@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/signal/frame.hpp"
-#include "daemon/files/times/time_zone.hpp"
+#include "daemon/files/times/time_style.hpp"
 
 namespace mpm::bag {
 
@@ -90,10 +90,9 @@ struct FileInfo {
 
 /// Reads all of the files. Several MCAP files, or a folder of them, are one recording. Throws
 /// config::InputError where it is no data file at all; one that is torn is told as far as it goes.
-/// Local times of a CSV are those of `zone`; refused without one.
+/// Local times of a CSV without a zone in `times` are refused.
 [[nodiscard]] FileInfo inspect(const std::vector<std::string>& paths,
-                               std::shared_ptr<const files::TimeZone> zone = nullptr);
-[[nodiscard]] FileInfo inspect(const std::string& path,
-                               std::shared_ptr<const files::TimeZone> zone = nullptr);
+                               const files::TimeStyle& times = {});
+[[nodiscard]] FileInfo inspect(const std::string& path, const files::TimeStyle& times = {});
 
 }  // namespace mpm::bag

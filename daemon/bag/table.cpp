@@ -95,14 +95,14 @@ Table open_csv(const std::string& path, const TableOptions& options) {
   if (options.unit != nullptr && options.number) {
     table.unit = *options.unit;
     auto reader =
-        std::make_unique<files::CsvReader>(path, table.unit, options.zone, files::Purpose::kKeep);
+        std::make_unique<files::CsvReader>(path, table.unit, options.times, files::Purpose::kKeep);
     table.columns = columns_of(table.unit, [&](SignalKind, std::size_t, const std::string& tag) {
       return reader->holds(tag);
     });
     table.frames = std::move(reader);
     return table;
   }
-  auto rows = std::make_unique<files::CsvRows>(path, options.zone);
+  auto rows = std::make_unique<files::CsvRows>(path, options.times);
   table.columns = rows->columns();
   table.frames = std::move(rows);
   if (options.unit == nullptr) return table;

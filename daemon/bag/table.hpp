@@ -8,6 +8,7 @@
 #include "daemon/files/csv/column.hpp"
 #include "daemon/files/csv/csv_writer.hpp"
 #include "daemon/files/frame_source.hpp"
+#include "daemon/files/times/time_style.hpp"
 
 namespace mpm::bag {
 
@@ -15,8 +16,8 @@ namespace mpm::bag {
 struct TableOptions {
   const config::UnitConfig* unit = nullptr;  ///< its signals; null = whatever the file tells
   std::string unit_name;                     ///< of several in an MCAP file; empty = the only one
-  std::shared_ptr<const files::TimeZone> zone;  ///< of local times in a CSV file
-  bool number = false;                          ///< the frames need the unit's interval numbers
+  files::TimeStyle times;                    ///< of a CSV file
+  bool number = false;                       ///< the frames need the unit's interval numbers
 };
 
 /// A data file of either kind as rows of named signals.

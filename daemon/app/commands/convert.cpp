@@ -20,6 +20,7 @@ struct Options {
   std::string layout = "wide";
   std::string time_zone;
   std::string from_time_zone;
+  std::string time_format;
 };
 
 void tell(const Options& options, const bag::ConvertReport& report) {
@@ -48,8 +49,9 @@ int convert(const Options& options) {
     wanted.layout = options.layout == "long" ? files::CsvLayout::kLong : files::CsvLayout::kWide;
     wanted.seconds = options.time_zone == "seconds";
     wanted.output_zone = zone_of(options.time_zone);
-    wanted.input_zone =
-        options.from_time_zone.empty() ? wanted.output_zone : zone_of(options.from_time_zone);
+    wanted.input_times =
+        times_of({options.from_time_zone.empty() ? options.time_zone : options.from_time_zone,
+                  options.time_format});
     tell(options, bag::convert(options.input, options.output, wanted));
     return 0;
   } catch (const config::InputError& error) {
@@ -85,6 +87,7 @@ void add_convert(CLI::App& app, int& exit_code) {
       "refused)");
   command->add_option("--from-time-zone", options->from_time_zone,
                       "zone of local times in a CSV input, where it is not that of --time-zone");
+  add_time_format(*command, options->time_format);
   command->footer(
       "Examples:\n"
       "  mpm convert night.mcap night.csv\n"

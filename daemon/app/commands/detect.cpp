@@ -25,7 +25,7 @@ struct DetectOptions {
   files::TimeChoiceText time;
   std::string scenario;
   std::string journal;
-  std::string time_zone;
+  TimesText times;
   bool json = false;
   bool fail_on_mismatch = false;
 };
@@ -78,10 +78,10 @@ int detect(const DetectOptions& options) {
       if (!report(scenario.findings)) return 3;
       loaded.config.monitor = scenario.scenario.monitor;
     }
-    const std::shared_ptr<const files::TimeZone> zone = zone_of(options.time_zone);
+    const files::TimeStyle times = times_of(options.times);
     const std::unique_ptr<files::FrameSource> frames =
-        bag::open_recording(options.data, loaded.config, zone);
-    const files::TimeChoice choice(options.time, zone);
+        bag::open_recording(options.data, loaded.config, times);
+    const files::TimeChoice choice(options.time, times);
     std::optional<live::Journal> journal;
     if (!options.journal.empty()) journal.emplace(options.journal);
     const report::DetectReport report =
@@ -114,7 +114,7 @@ void add_detect(CLI::App& app, int& exit_code) {
   command->add_option("--scenario", options->scenario,
                       "scenario (name or file) whose `monitor` settings replace the unit file's");
   add_time_choice(*command, options->time);
-  add_time_zone(*command, options->time_zone);
+  add_times(*command, options->times);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--journal", options->journal,
                       "append every sample's verdicts and alarms to this file as JSON lines");

@@ -36,7 +36,7 @@ struct DiagnoseOptions {
   files::TimeChoiceText time;
   std::string out;
   std::string scenario;
-  std::string time_zone;
+  TimesText times;
   double fit_share = DiagnosisSettings().fit_share;
   int max_findings = DiagnosisSettings().max_findings;
   std::uint64_t seed = DiagnosisSettings().seed;
@@ -84,9 +84,9 @@ std::optional<config::UnitConfig> load(const std::string& file) {
 }
 
 Recording read(const std::string& file, const config::UnitConfig& unit,
-               const std::shared_ptr<const files::TimeZone>& zone, const files::TimeChoice& choice,
+               const files::TimeStyle& times, const files::TimeChoice& choice,
                std::vector<std::string>& notices) {
-  const std::unique_ptr<files::FrameSource> frames = bag::open_recording(file, unit, zone);
+  const std::unique_ptr<files::FrameSource> frames = bag::open_recording(file, unit, times);
   files::RecordingFile data = files::read_recording(*frames, unit, file, choice);
   const std::string prefix = file + ": ";
   for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
@@ -110,12 +110,12 @@ struct Given {
 };
 
 Given read_all(const std::vector<std::string>& files, const config::UnitConfig& unit,
-               const std::shared_ptr<const files::TimeZone>& zone, const files::TimeChoice& choice,
+               const files::TimeStyle& times, const files::TimeChoice& choice,
                std::vector<std::string>& notices) {
   std::vector<Recording> recordings;
   Given all;
   for (const std::string& file : files) {
-    recordings.push_back(read(file, unit, zone, choice, notices));
+    recordings.push_back(read(file, unit, times, choice, notices));
     all.files.insert(all.files.end(), runs_of(recordings.back()).size(), file);
     all.name += (all.name.empty() ? "" : ", ") + file;
   }
@@ -128,15 +128,15 @@ Given read_all(const std::vector<std::string>& files, const config::UnitConfig& 
 report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
   report::DiagnosisRun run;
   run.unit = std::move(unit);
-  const std::shared_ptr<const files::TimeZone> zone = zone_of(options.time_zone);
-  const files::TimeChoice choice(options.time, zone);
+  const files::TimeStyle times = times_of(options.times);
+  const files::TimeChoice choice(options.time, times);
   run.time_chosen = !choice.all();
-  Given data = read_all(options.data, run.unit, zone, choice, run.notices);
+  Given data = read_all(options.data, run.unit, times, choice, run.notices);
   run.recording = std::move(data.recording);
   run.run_files = std::move(data.files);
   run.data_file = std::move(data.name);
   if (!options.validate.empty()) {
-    Given unseen = read_all(options.validate, run.unit, zone, {}, run.notices);
+    Given unseen = read_all(options.validate, run.unit, times, {}, run.notices);
     run.validation = std::move(unseen.recording);
     run.validation_run_files = std::move(unseen.files);
     run.validation_file = std::move(unseen.name);
@@ -294,7 +294,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
                       "compare how well the simulator's controller does on this scenario with the "
                       "unit file's model and with the extended one");
   add_time_choice(*command, options->time);
-  add_time_zone(*command, options->time_zone);
+  add_times(*command, options->times);
   command->add_flag("--json", options->json, "print report.json too");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,

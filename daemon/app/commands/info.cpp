@@ -13,9 +13,9 @@ namespace mpm::app {
 namespace {
 
 // 0, or 3 on bad input. A torn file is no bad input here: that it is torn is the information.
-int run_info(const std::vector<std::string>& paths, const std::string& zone, bool json) {
+int run_info(const std::vector<std::string>& paths, const TimesText& times, bool json) {
   try {
-    const bag::FileInfo info = bag::inspect(paths, zone_of(zone));
+    const bag::FileInfo info = bag::inspect(paths, times_of(times));
     for (const std::string& notice : info.notices) std::cerr << info.path << ": " << notice << '\n';
     std::cout << (json ? to_json(info).dump(-1, ' ', false,
                                             nlohmann::ordered_json::error_handler_t::replace) +
@@ -33,7 +33,7 @@ int run_info(const std::vector<std::string>& paths, const std::string& zone, boo
 
 void add_info(CLI::App& app, int& exit_code) {
   auto paths = std::make_shared<std::vector<std::string>>();
-  auto zone = std::make_shared<std::string>();
+  auto times = std::make_shared<TimesText>();
   auto json = std::make_shared<bool>(false);
   CLI::App* command =
       app.add_subcommand("info",
@@ -45,11 +45,11 @@ void add_info(CLI::App& app, int& exit_code) {
           "CSV in any historian layout, or MCAP recording; several of those, or a folder of "
           "them, are one")
       ->required();
-  add_time_zone(*command, *zone);
+  add_times(*command, *times);
   command->add_flag("--json", *json, "print one JSON object");
   command->footer("Example:\n  mpm info night.mcap");
   command->callback(
-      [paths, zone, json, &exit_code] { exit_code = run_info(*paths, *zone, *json); });
+      [paths, times, json, &exit_code] { exit_code = run_info(*paths, *times, *json); });
 }
 
 }  // namespace mpm::app

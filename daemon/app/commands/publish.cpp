@@ -10,6 +10,7 @@
 #include "config/load_unit.hpp"
 #include "config/unit_layout.hpp"
 #include "daemon/app/commands/quantity.hpp"
+#include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bus/domain_options.hpp"
 #include "daemon/files/csv/line_frames.hpp"
 #include "daemon/host/interruptible_input.hpp"
@@ -27,6 +28,7 @@ struct PublishOptions {
   std::string config;
   std::string format = "auto";
   std::string on_error = "stop";
+  TimesText times;
   std::optional<int> domain;
   std::optional<std::string> partition;
   double wait_readers_s = 5.0;
@@ -70,9 +72,11 @@ void tell_notices(files::LineFrames& lines) {
 
 int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
                   host::StopSignal& stop) {
+  const files::TimeStyle times = times_of(options.times);  // before any thread
   std::optional<files::LineFrames> first;
   try {
-    first.emplace(std::make_unique<StandardInput>(stop), "stdin", format_of(options.format), unit);
+    first.emplace(std::make_unique<StandardInput>(stop), "stdin", format_of(options.format), unit,
+                  times);
   } catch (const config::InputError&) {
     if (!stop.received()) throw;
     std::cerr << "mpm publish: stopped before the first line\n";
@@ -145,6 +149,7 @@ void add_publish(CLI::App& app, int& exit_code) {
   command->add_option("--on-error", options->on_error, "what to do about a line that is wrong")
       ->capture_default_str()
       ->check(CLI::IsMember({"stop", "skip"}));
+  add_times(*command, options->times);
   command
       ->add_option("--wait-readers", options->wait_readers_s,
                    "how long to wait for a reader of every topic before the first line")

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -60,23 +59,12 @@ std::optional<double> parse_value(std::string_view text, bool decimal_comma) {
   return std::nullopt;
 }
 
-std::optional<Quality> parse_quality(std::string_view text) {
-  if (text.empty() || begins_with(text, "good")) return Quality::kGood;
-  if (begins_with(text, "uncertain") || same_word(text, "questionable")) return Quality::kUncertain;
-  if (begins_with(text, "bad")) return Quality::kBad;
-  std::uint64_t code = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), code);
-  if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  // Severity sits in the top two of 32 bits in OPC UA, in bits 6 and 7 in OPC DA.
-  if (code >= 0x40000000U) return code >= 0x80000000U ? Quality::kBad : Quality::kUncertain;
-  switch (code & 0xC0U) {
-    case 0xC0U:
-      return Quality::kGood;
-    case 0x40U:
-      return Quality::kUncertain;
-    default:
-      return Quality::kBad;
-  }
+bool is_state(std::string_view text) {
+  if (text.find('#') != std::string_view::npos) return true;  // 1.#QNAN, #DIV/0!
+  const std::size_t first = text.find_first_not_of("+-");
+  if (first == std::string_view::npos) return !text.empty();
+  const std::size_t digit = text[first] == '.' || text[first] == ',' ? first + 1 : first;
+  return digit >= text.size() || text[digit] < '0' || text[digit] > '9';
 }
 
 }  // namespace mpm::files

@@ -3,8 +3,6 @@
 #include <optional>
 #include <string_view>
 
-#include "core/signal/frame.hpp"
-
 /// What a cell of a data file says.
 namespace mpm::files {
 
@@ -13,9 +11,9 @@ namespace mpm::files {
 /// for any other text.
 [[nodiscard]] std::optional<double> parse_value(std::string_view text, bool decimal_comma);
 
-/// good | uncertain | bad, OPC DA codes (192 | 64 | 0 with substatus) or OPC UA status codes; empty
-/// = good. Nothing for any other text.
-[[nodiscard]] std::optional<Quality> parse_quality(std::string_view text);
+/// True for a text that is no attempt at a number: the name of a state, such as `Manual` or
+/// `Over Range`, or a message.
+[[nodiscard]] bool is_state(std::string_view text);
 
 /// Without case, as file headers and words are compared.
 [[nodiscard]] bool same_word(std::string_view a, std::string_view b);

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "config/finding.hpp"
-#include "daemon/files/csv/cell.hpp"
 
 namespace mpm::files {
 namespace {
@@ -32,24 +31,21 @@ std::string seconds(double value) {
 }  // namespace
 
 CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit,
-                     std::shared_ptr<const TimeZone> zone, Purpose purpose)
-    : CsvReader(open_file(path), path, unit, std::move(zone), purpose) {}
+                     const TimeStyle& times, Purpose purpose)
+    : CsvReader(open_file(path), path, unit, times, purpose) {}
 
 CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
-                     const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone,
-                     Purpose purpose)
+                     const config::UnitConfig& unit, const TimeStyle& times, Purpose purpose)
     : sample_time_s_(unit.sample_time_s), lines_(std::move(input), name), tags_(unit, purpose) {
-  open(unit.counts(), std::move(zone));
+  open(unit.counts(), times);
 }
 
-void CsvReader::open(const SignalCounts& counts, std::shared_ptr<const TimeZone> zone) {
-  if (!lines_.next()) lines_.fail(1, 1, "the file is empty");
-  const int header_line = lines_.number();
-  const CsvFormat format{find_delimiter(lines_.text()), std::move(zone)};
+void CsvReader::open(const SignalCounts& counts, const TimeStyle& times) {
   std::vector<Cell> header;
-  lines_.split(format.delimiter, header);
-  rows_ = is_long_header(header) ? read_long(lines_, format, header, tags_, counts, row_notices_)
-                                 : read_wide(lines_, format, header, tags_, counts, row_notices_);
+  const CsvFormat format = find_format(lines_, times, sample_time_s_, &tags_, header, row_notices_);
+  const int header_line = lines_.number();
+  rows_ = format.layout.is_long ? read_long(lines_, format, tags_, counts, row_notices_)
+                                : read_wide(lines_, format, header, tags_, counts, row_notices_);
   notices_ = tags_.notices();
 
   for (std::size_t i = 0; i < kRowsAhead; ++i) {
@@ -69,6 +65,10 @@ void CsvReader::check_sample_time(int first_line) const {
         static_cast<double>(ahead_[i].source_time_ns - ahead_[i - 1].source_time_ns);
     if (step_ns > 0.0) steps_s.push_back(step_ns / kNsPerSecond);
   }
+  if (steps_s.empty() && ahead_.size() > 2 &&
+      ahead_.back().source_time_ns < ahead_.front().source_time_ns)
+    lines_.fail(first_line, 1,
+                "the rows go back in time: export or sort them with the oldest first");
   if (steps_s.empty()) return;
   const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
   std::nth_element(steps_s.begin(), middle, steps_s.end());

@@ -13,8 +13,8 @@
 namespace mpm::files {
 
 /// Data files (interfaces: "Data file"): wide rows `time,<tag>,...` or long ones
-/// `tag,time,value,quality`, with comma, semicolon or tab, decimal point or comma. Memory stays
-/// flat, except for a long file that is not sorted by time.
+/// `tag,time,value,quality`, in the layouts of docs/data.md. Memory stays flat, except for a long
+/// file that is not sorted by time.
 ///
 /// Frame k of a file is numbered round((t - t_first) / sample_time); rows whose time does not grow
 /// keep their number, for the monitor to judge.
@@ -23,12 +23,12 @@ class CsvReader : public FrameSource {
   /// Reads the header and the first rows. Throws config::InputError (`file:line:col: message`) if
   /// the file cannot be opened, a tag that the purpose needs is missing or the rows are not
   /// sample_time apart.
-  /// Local times are read as those of `zone`; refused without one.
-  CsvReader(const std::string& path, const config::UnitConfig& unit,
-            std::shared_ptr<const TimeZone> zone = nullptr, Purpose purpose = Purpose::kJudge);
+  /// Local times without a zone in `times` are refused.
+  CsvReader(const std::string& path, const config::UnitConfig& unit, const TimeStyle& times = {},
+            Purpose purpose = Purpose::kJudge);
   /// The same from a stream that can seek; `name` stands for the file in messages.
   CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
-            const config::UnitConfig& unit, std::shared_ptr<const TimeZone> zone = nullptr,
+            const config::UnitConfig& unit, const TimeStyle& times = {},
             Purpose purpose = Purpose::kJudge);
 
   [[nodiscard]] bool next(Frame& frame) override;
@@ -37,7 +37,7 @@ class CsvReader : public FrameSource {
   [[nodiscard]] bool holds(const std::string& tag) const { return tags_.seen(tag); }
 
  private:
-  void open(const SignalCounts& counts, std::shared_ptr<const TimeZone> zone);
+  void open(const SignalCounts& counts, const TimeStyle& times);
   void check_sample_time(int first_line) const;
   [[nodiscard]] bool read(Frame& frame);
   void number(Frame& frame);

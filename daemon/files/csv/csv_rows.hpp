@@ -16,19 +16,18 @@ namespace mpm::files {
 class CsvRows : public FrameSource {
  public:
   /// All tags of the file, as aux signals. Throws config::InputError where it cannot be read.
-  explicit CsvRows(const std::string& path, std::shared_ptr<const TimeZone> zone = nullptr);
+  explicit CsvRows(const std::string& path, const TimeStyle& times = {});
 
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
   /// In the order of the file.
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
-  [[nodiscard]] bool is_long() const { return is_long_; }
+  [[nodiscard]] bool is_long() const { return format_.layout.is_long; }
   [[nodiscard]] char delimiter() const { return format_.delimiter; }
 
  private:
   LineReader lines_;
   CsvFormat format_;
-  bool is_long_ = false;
   std::vector<Column> columns_;
   std::unique_ptr<TagTable> tags_;
   std::unique_ptr<RowSource> rows_;

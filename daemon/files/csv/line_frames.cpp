@@ -10,7 +10,7 @@
 #include "core/text/printable.hpp"
 #include "daemon/files/csv/cell.hpp"
 #include "daemon/files/csv/row_source.hpp"
-#include "daemon/files/times/time_text.hpp"
+#include "daemon/files/times/local_times.hpp"
 
 namespace mpm::files {
 namespace {
@@ -48,16 +48,23 @@ namespace {
 class CsvRows : public LineFrames::Rows {
  public:
   /// `lines` stands on the header.
-  CsvRows(LineReader lines, const config::UnitConfig& unit,
+  CsvRows(LineReader lines, const config::UnitConfig& unit, const TimeStyle& times,
           std::array<bool, kSignalKindCount>& absent)
       : lines_(std::move(lines)), tags_(unit) {
-    const CsvFormat format{find_delimiter(lines_.text())};
+    CsvFormat format;
+    format.delimiter = find_delimiter(lines_.text());
+    format.times = times;
     std::vector<Cell> header;
     lines_.split(format.delimiter, header);
-    if (is_long_header(header))
+    const std::optional<Layout> layout = find_layout(header, &tags_);
+    if (!layout)
+      lines_.fail(
+          1, "the first column must be `time`, not '" + std::string(header.front().text) + "'");
+    if (layout->is_long)
       lines_.fail(1,
                   "rows `tag,time,value` cannot be published as they come: convert them to "
                   "`time,<tag>,...` first");
+    format.layout = *layout;
     rows_ = read_wide(lines_, format, header, tags_, unit.counts(), notices);
     const auto seen = [this](const std::string& tag) { return !tag.empty() && tags_.seen(tag); };
     absent[static_cast<std::size_t>(SignalKind::kSetpoint)] =
@@ -82,8 +89,8 @@ class CsvRows : public LineFrames::Rows {
 class JsonRows : public LineFrames::Rows {
  public:
   /// `lines` stands on the first object.
-  JsonRows(LineReader lines, const config::UnitConfig& unit)
-      : lines_(std::move(lines)), tags_(unit), counts_(unit.counts()) {}
+  JsonRows(LineReader lines, const config::UnitConfig& unit, const TimeStyle& times)
+      : lines_(std::move(lines)), tags_(unit), counts_(unit.counts()), times_(times) {}
 
   [[nodiscard]] bool next(Frame& frame, std::optional<std::int64_t>& interval) override {
     if (!std::exchange(on_line_, false) && !lines_.next()) return false;
@@ -94,7 +101,7 @@ class JsonRows : public LineFrames::Rows {
     const auto time = line.find("time");
     if (time == line.end()) lines_.fail(1, "has no \"time\"");
     std::string problem;
-    const std::optional<std::int64_t> time_ns = parse_time(text_of(*time), problem);
+    const std::optional<std::int64_t> time_ns = times_.read(text_of(*time), "", problem);
     if (!time_ns) fail_at("time", "\"time\": " + in_quotes(text_of(*time)) + " " + problem);
     frame.source_time_ns = *time_ns;
     for (const auto& [name, value] : line.items()) {
@@ -187,6 +194,7 @@ class JsonRows : public LineFrames::Rows {
   LineReader lines_;
   TagTable tags_;
   SignalCounts counts_;
+  LocalTimes times_;
   std::set<std::string> told_;
   bool on_line_ = true;
 };
@@ -194,7 +202,7 @@ class JsonRows : public LineFrames::Rows {
 }  // namespace
 
 LineFrames::LineFrames(std::unique_ptr<std::istream> input, const std::string& name,
-                       LineFormat format, const config::UnitConfig& unit)
+                       LineFormat format, const config::UnitConfig& unit, const TimeStyle& times)
     : sample_time_s_(unit.sample_time_s) {
   LineReader lines(std::move(input), name);
   if (!lines.next()) lines.fail(1, 1, "nothing came");
@@ -202,9 +210,9 @@ LineFrames::LineFrames(std::unique_ptr<std::istream> input, const std::string& n
   if (format == LineFormat::kAuto)
     format = lines.text()[first] == '{' ? LineFormat::kJson : LineFormat::kCsv;
   if (format == LineFormat::kJson)
-    rows_ = std::make_unique<JsonRows>(std::move(lines), unit);
+    rows_ = std::make_unique<JsonRows>(std::move(lines), unit, times);
   else
-    rows_ = std::make_unique<CsvRows>(std::move(lines), unit, absent_);
+    rows_ = std::make_unique<CsvRows>(std::move(lines), unit, times, absent_);
 }
 
 LineFrames::~LineFrames() = default;

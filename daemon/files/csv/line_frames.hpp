@@ -9,6 +9,7 @@
 
 #include "config/unit_config.hpp"
 #include "core/signal/frame.hpp"
+#include "daemon/files/times/time_style.hpp"
 
 namespace mpm::files {
 
@@ -22,9 +23,10 @@ enum class LineFormat { kAuto, kJson, kCsv };
 /// its own "interval".
 class LineFrames {
  public:
-  /// Reads the first line. Throws config::InputError (`name:line:col: error: message`).
+  /// Reads the first line. Local times without a zone in `times` are refused. Throws
+  /// config::InputError (`name:line:col: error: message`).
   LineFrames(std::unique_ptr<std::istream> input, const std::string& name, LineFormat format,
-             const config::UnitConfig& unit);
+             const config::UnitConfig& unit, const TimeStyle& times = {});
   ~LineFrames();
 
   /// False at the end. After an InputError the next line may be read.

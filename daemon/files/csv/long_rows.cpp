@@ -3,40 +3,13 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "daemon/files/csv/cell.hpp"
 #include "daemon/files/csv/row_source.hpp"
 
 namespace mpm::files {
 namespace {
-
-struct LongColumns {
-  std::optional<std::size_t> tag, time, value, quality;
-
-  [[nodiscard]] bool complete() const { return tag && time && value; }
-};
-
-template <std::size_t n>
-std::optional<std::size_t> find_column(const std::vector<Cell>& header,
-                                       const std::array<std::string_view, n>& names) {
-  for (const std::string_view name : names)
-    for (std::size_t i = 0; i < header.size(); ++i)
-      if (same_word(header[i].text, name)) return i;
-  return std::nullopt;
-}
-
-LongColumns find_columns(const std::vector<Cell>& header) {
-  LongColumns columns;
-  columns.tag = find_column(
-      header, std::array<std::string_view, 4>{"tag", "tagname", "tag_name", "tag name"});
-  columns.value = find_column(header, std::array<std::string_view, 2>{"value", "val"});
-  // AVEVA's Quality is a code of its own beside OPCQuality.
-  columns.quality =
-      find_column(header, std::array<std::string_view, 3>{"opcquality", "quality", "status"});
-  for (std::size_t i = 0; i < header.size() && !columns.time; ++i)
-    if (is_time_name(header[i].text)) columns.time = i;
-  return columns;
-}
 
 /// One line of the file.
 struct Sample {
@@ -61,13 +34,12 @@ struct Row {
 
 class LongRows : public RowSource {
  public:
-  LongRows(LineReader& lines, const CsvFormat& format, const std::vector<Cell>& header,
-           TagTable& tags, const SignalCounts& counts, std::vector<std::string>& notices)
+  LongRows(LineReader& lines, const CsvFormat& format, TagTable& tags, const SignalCounts& counts,
+           std::vector<std::string>& notices)
       : lines_(lines),
         format_(format),
-        times_(format.zone),
-        columns_(find_columns(header)),
-        width_(header.back().text.empty() ? header.size() - 1 : header.size()),
+        times_(format.times, format.order),
+        columns_(format_.layout),
         tags_(tags),
         counts_(counts),
         notices_(notices) {
@@ -75,8 +47,7 @@ class LongRows : public RowSource {
     const bool sorted = survey();
     const std::string problem = tags.problem();
     if (!problem.empty()) lines_.fail(header_line, 1, problem);
-    lines_.rewind();
-    if (!lines_.next()) lines_.fail(1, "the file changed while it was read");
+    return_to(lines_, header_line);
     if (!sorted) gather();
   }
 
@@ -99,21 +70,23 @@ class LongRows : public RowSource {
   }
 
  private:
-  /// Notes every tag; true if time never goes back.
+  /// Notes every tag; true if the time of those that count never goes back.
   bool survey() {
     bool sorted = true;
     std::int64_t last_ns = 0;
     bool first = true;
+    const std::size_t told = notices_.size();
     while (next_line()) {
-      tags_.see(cells_[*columns_.tag].text);
-      const std::int64_t time_ns =
-          read_time(lines_, cells_[*columns_.time], times_, cells_[*columns_.tag].text);
+      tags_.see(tag());
+      if (tags_.find(tag()) == nullptr || is_remark()) continue;
+      const std::int64_t time_ns = read_time(lines_, cells_, columns_.time, times_, tag());
       sorted = sorted && (first || time_ns >= last_ns);
       last_ns = time_ns;
       first = false;
     }
-    notices_.clear();  // a cut-off line is told when it is read again
+    notices_.resize(told);  // a cut-off line is told when it is read again
     times_.restart();
+    tally_ = {};
     return sorted;
   }
 
@@ -127,30 +100,49 @@ class LongRows : public RowSource {
     }
   }
 
+  [[nodiscard]] std::string_view tag() const { return cells_[columns_.tag].text; }
+
   bool next_line() {
-    if (!lines_.next()) return false;
-    lines_.split(format_.delimiter, cells_);
-    return check_width(lines_, cells_, width_, notices_);
+    do {
+      if (!lines_.next()) return false;
+      lines_.split(format_.delimiter, cells_);
+    } while (is_empty(cells_) && ++tally_.empty_rows > 0);
+    return check_width(lines_, cells_, columns_.width, notices_);
+  }
+
+  /// Neither a value nor a time: units below the header, counts below the data.
+  [[nodiscard]] bool is_remark() const {
+    const std::string_view value = cells_[columns_.value].text;
+    if (std::isfinite(parse_value(value, format_.decimal_comma()).value_or(NAN))) return false;
+    const std::string text = time_text(cells_, columns_.time);
+    if (text.find_first_of("0123456789") == std::string::npos) return true;
+    std::string problem;
+    return value.empty() && !parse_calendar(text) && !LocalTimes(times_).read(text, tag(), problem);
   }
 
   /// The next line of a tag that the unit names.
   std::optional<Sample> read_sample() {
     while (next_line()) {
-      const Slot* slot = tags_.find(cells_[*columns_.tag].text);
+      const Slot* slot = tags_.find(tag());
       if (slot == nullptr) continue;
+      if (is_remark()) {
+        ++tally_.empty_rows;
+        continue;
+      }
       Sample sample;
       sample.slot = *slot;
-      sample.time_ns =
-          read_time(lines_, cells_[*columns_.time], times_, cells_[*columns_.tag].text);
-      sample.value = read_value(lines_, format_, cells_[*columns_.value], tally_);
+      sample.time_ns = read_time(lines_, cells_, columns_.time, times_, tag());
+      sample.value = read_value(lines_, format_, cells_[columns_.value], tally_);
       sample.quality = Quality::kGood;
-      if (columns_.quality) sample.quality = read_quality(lines_, cells_[*columns_.quality]);
+      for (const QualityColumn& column : columns_.qualities)
+        sample.quality = std::max(
+            sample.quality, read_quality(lines_, format_, column, cells_[column.cell], tally_));
       if (!std::isfinite(sample.value)) sample.quality = Quality::kBad;
       return sample;
     }
     tally_.tell(notices_);
     tally_ = {};
-    if (const std::string notice = times_.notice(); !notice.empty()) notices_.push_back(notice);
+    for (std::string& notice : times_.notices()) notices_.push_back(std::move(notice));
     times_.restart();
     return std::nullopt;
   }
@@ -168,8 +160,7 @@ class LongRows : public RowSource {
   LineReader& lines_;
   CsvFormat format_;
   LocalTimes times_;
-  LongColumns columns_;
-  std::size_t width_;
+  Layout columns_;
   TagTable& tags_;
   SignalCounts counts_;
   std::vector<std::string>& notices_;
@@ -182,17 +173,10 @@ class LongRows : public RowSource {
 
 }  // namespace
 
-bool is_long_header(const std::vector<Cell>& header) { return find_columns(header).complete(); }
-
-std::size_t tag_column(const std::vector<Cell>& header) {
-  return find_columns(header).tag.value_or(0);
-}
-
-std::unique_ptr<RowSource> read_long(LineReader& lines, const CsvFormat& format,
-                                     const std::vector<Cell>& header, TagTable& tags,
+std::unique_ptr<RowSource> read_long(LineReader& lines, const CsvFormat& format, TagTable& tags,
                                      const SignalCounts& counts,
                                      std::vector<std::string>& notices) {
-  return std::make_unique<LongRows>(lines, format, header, tags, counts, notices);
+  return std::make_unique<LongRows>(lines, format, tags, counts, notices);
 }
 
 }  // namespace mpm::files

@@ -1,56 +1,125 @@
 #include "daemon/files/csv/row_source.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/text/printable.hpp"
 #include "daemon/files/csv/cell.hpp"
 
 namespace mpm::files {
 
+namespace {
+
+constexpr std::size_t kNamed = 5;  // words that a notice names
+
+/// `Manual (12), Over Range (3)`, the most frequent first.
+std::string listed(const std::map<std::string, std::uint64_t, std::less<>>& counts) {
+  std::vector<std::pair<std::uint64_t, std::string>> words;
+  words.reserve(counts.size());
+  for (const auto& [word, count] : counts) words.emplace_back(count, word);
+  std::stable_sort(words.begin(), words.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string text;
+  for (std::size_t i = 0; i < words.size() && i < kNamed; ++i)
+    text += (i > 0 ? ", " : "") + words[i].second + " (" + std::to_string(words[i].first) + ")";
+  return words.size() > kNamed ? text + " ..." : text;
+}
+
+std::uint64_t sum(const std::map<std::string, std::uint64_t, std::less<>>& counts) {
+  std::uint64_t total = 0;
+  for (const auto& [word, count] : counts) total += count;
+  return total;
+}
+
+void count(std::string_view word, std::map<std::string, std::uint64_t, std::less<>>& counts) {
+  static constexpr std::size_t kMostWords = 1000;  // of a file that is not what it seems
+  const auto found = counts.find(word);
+  if (found != counts.end())
+    ++found->second;
+  else if (counts.size() < kMostWords)
+    counts.emplace(word, 1);
+  else
+    ++counts[std::string()];
+}
+
+}  // namespace
+
 void ReadTally::tell(std::vector<std::string>& notices) const {
+  if (decimal_commas > 0)
+    notices.emplace_back("the comma is read as a decimal point, for it does not part the columns");
+  if (decimal_commas > 0 && decimal_points > 0)
+    notices.push_back(std::to_string(decimal_points) +
+                      " numbers beside those have a point; it is read as a decimal point too, so "
+                      "there may be no thousands separators");
+  if (!states.empty())
+    notices.push_back(std::to_string(sum(states)) +
+                      " values taken as missing, since they are words: " + listed(states));
+  if (!qualities.empty())
+    notices.push_back(
+        std::to_string(sum(qualities)) +
+        " qualities taken as bad, since their words are not known: " + listed(qualities));
   if (not_finite > 0)
     notices.push_back(std::to_string(not_finite) +
                       " values taken as missing: they are not finite, or too large for a double");
   if (repeated > 0)
     notices.push_back(std::to_string(repeated) +
                       " values replaced by later ones of the same tag and time");
+  if (empty_rows > 0)
+    notices.push_back(std::to_string(empty_rows) + " rows without time and values are left out");
 }
 
 double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell,
                   ReadTally& tally) {
   const std::optional<double> value = parse_value(cell.text, format.decimal_comma());
-  if (!value)
-    lines.fail(cell.column,
-               "'" + printable(cell.text) + "' is no number; leave empty what is missing");
+  const bool comma = cell.text.find(',') != std::string_view::npos;
+  if (!value && is_state(cell.text)) {
+    count(cell.text, tally.states);
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (!value) {
+    lines.fail(cell.column, "'" + printable(cell.text) + "' is no number; " +
+                                (comma ? "export it with a decimal point and without thousands "
+                                         "separators"
+                                       : "leave empty what is missing"));
+  }
+  if (comma && std::isfinite(*value)) ++tally.decimal_commas;
+  if (format.decimal_comma() && cell.text.find('.') != std::string_view::npos)
+    ++tally.decimal_points;
   if (!std::isinf(*value)) return *value;
   ++tally.not_finite;
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-std::int64_t read_time(const LineReader& lines, const Cell& cell, LocalTimes& times,
-                       std::string_view series) {
+std::int64_t read_time(const LineReader& lines, const std::vector<Cell>& cells,
+                       const TimeColumns& columns, LocalTimes& times, std::string_view series) {
   std::string problem;
-  const std::optional<std::int64_t> time_ns = times.read(cell.text, series, problem);
-  if (!time_ns) lines.fail(cell.column, "'" + printable(cell.text) + "' " + problem);
-  return *time_ns;
+  if (!columns.clock) {
+    const Cell& cell = cells[columns.time];
+    if (const auto time_ns = times.read(cell.text, series, problem)) return *time_ns;
+    lines.fail(cell.column, "'" + printable(cell.text) + "' " + problem);
+  }
+  const std::string text = time_text(cells, columns);
+  if (const auto time_ns = times.read(text, series, problem)) return *time_ns;
+  lines.fail(cells[columns.time].column, "'" + text + "' " + problem);
 }
 
-Quality read_quality(const LineReader& lines, const Cell& cell) {
-  const std::optional<Quality> quality = parse_quality(cell.text);
-  if (!quality)
-    lines.fail(cell.column,
-               "'" + printable(cell.text) + "' is no quality: good, uncertain, bad or an OPC code");
-  return *quality;
+Quality read_quality(const LineReader& lines, const CsvFormat& format, const QualityColumn& column,
+                     const Cell& cell, ReadTally& tally) {
+  const std::optional<Quality> quality =
+      parse_quality(cell.text, column.kind, format.zero_is_good && !column.sure);
+  if (quality) return *quality;
+  if (column.sure)
+    lines.fail(cell.column, "'" + printable(cell.text) +
+                                "' is no quality: good, uncertain, bad or an OPC code");
+  count(cell.text, tally.qualities);
+  return Quality::kBad;
 }
 
-bool is_time_name(std::string_view name) {
-  static constexpr std::array<std::string_view, 8> kNames = {
-      "time", "timestamp", "time stamp", "datetime", "date_time", "time_s", "t_s", "t"};
-  return std::any_of(kNames.begin(), kNames.end(),
-                     [name](std::string_view known) { return same_word(name, known); });
+bool is_empty(const std::vector<Cell>& cells) {
+  return std::all_of(cells.begin(), cells.end(),
+                     [](const Cell& cell) { return cell.text.empty(); });
 }
 
 void clear(Frame& frame, const SignalCounts& counts) {

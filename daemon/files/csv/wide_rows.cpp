@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "config/suggest.hpp"
 #include "daemon/files/csv/cell.hpp"
@@ -11,7 +11,7 @@
 namespace mpm::files {
 namespace {
 
-constexpr std::string_view kQualitySuffix = ".quality";
+constexpr int kRowsBelow = 3;  // that may stand between a header and its first row
 
 /// What a column of the file fills.
 struct Column {
@@ -19,24 +19,15 @@ struct Column {
   Slot slot;
 };
 
-bool is_units_word(std::string_view text) {
-  static constexpr std::array<std::string_view, 7> kWords = {"",    "unit", "units",  "s",
-                                                             "[s]", "sec",  "seconds"};
-  return std::any_of(kWords.begin(), kWords.end(),
-                     [text](std::string_view word) { return same_word(text, word); });
-}
-
 class WideRows : public RowSource {
  public:
   WideRows(LineReader& lines, const CsvFormat& format, const std::vector<Cell>& header,
            TagTable& tags, const SignalCounts& counts, std::vector<std::string>& notices)
       : lines_(lines),
         format_(format),
-        times_(format.zone),
-        width_(header.size()),
+        times_(format.times, format.order),
         counts_(counts),
         notices_(notices) {
-    find_time(header);
     find_columns(header, tags);
     const std::string problem = tags.problem();
     if (!problem.empty()) lines_.fail(1, problem);
@@ -46,10 +37,11 @@ class WideRows : public RowSource {
     do {
       if (!lines_.next()) return end();
       lines_.split(format_.delimiter, cells_);
-    } while (is_units_row());
-    if (!check_width(lines_, cells_, width_, notices_)) return end();
+    } while (is_no_data());
+    begun_ = true;
+    if (!check_width(lines_, cells_, format_.layout.width, notices_)) return end();
     clear(frame, counts_);
-    frame.source_time_ns = read_time(lines_, cells_[time_], times_);
+    frame.source_time_ns = read_time(lines_, cells_, format_.layout.time, times_);
     for (const Column& column : values_) {
       const double value = read_value(lines_, format_, cells_[column.cell], tally_);
       SignalBlock& block = frame[column.slot.kind];
@@ -57,10 +49,9 @@ class WideRows : public RowSource {
       if (std::isfinite(value))
         block.quality[static_cast<std::size_t>(column.slot.index)] = Quality::kGood;
     }
-    for (const Column& column : qualities_) {
-      const Quality quality = read_quality(lines_, cells_[column.cell]);
-      Quality& target =
-          frame[column.slot.kind].quality[static_cast<std::size_t>(column.slot.index)];
+    for (const auto& [column, slot] : qualities_) {
+      const Quality quality = read_quality(lines_, format_, column, cells_[column.cell], tally_);
+      Quality& target = frame[slot.kind].quality[static_cast<std::size_t>(slot.index)];
       target = std::max(target, quality);  // a missing value stays bad
     }
     return true;
@@ -70,78 +61,56 @@ class WideRows : public RowSource {
   bool end() {
     tally_.tell(notices_);
     tally_ = {};
-    if (const std::string notice = times_.notice(); !notice.empty()) notices_.push_back(notice);
+    for (std::string& notice : times_.notices()) notices_.push_back(std::move(notice));
     times_.restart();
     return false;
   }
 
-  void find_time(const std::vector<Cell>& header) {
-    const auto found = std::find_if(header.begin(), header.end(),
-                                    [](const Cell& cell) { return same_word(cell.text, "time"); });
-    if (found != header.end()) {
-      time_ = static_cast<std::size_t>(found - header.begin());
-    } else if (!is_time_name(header.front().text)) {
-      lines_.fail(header.front().column, "the first column must be `time`, not '" +
-                                             std::string(header.front().text) + "'");
-    }
-  }
-
   void find_columns(const std::vector<Cell>& header, TagTable& tags) {
+    const Layout& layout = format_.layout;
     std::map<std::string_view, int> first_columns;
-    std::vector<std::string> without_tag;
-    std::size_t without_name = 0;
     for (std::size_t i = 0; i < header.size(); ++i) {
       const std::string_view name = header[i].text;
-      if (name.empty() && i + 1 == header.size()) {  // a delimiter at the end
-        --width_;
-        break;
-      }
-      if (name.empty()) {
-        ++without_name;
-        continue;
-      }
+      if (name.empty()) continue;
       const auto [first, is_new] = first_columns.emplace(name, header[i].column);
-      if (!is_new && (tags.find(name) != nullptr || i == time_))
+      if (!is_new && (tags.find(name) != nullptr || name == header[layout.time.time].text))
         lines_.fail(header[i].column, "a second column '" + std::string(name) +
                                           "'; the first is at column " +
                                           std::to_string(first->second));
-      if (i == time_ || !is_new) continue;
-      const std::size_t suffix = name.size() - std::min(name.size(), kQualitySuffix.size());
-      if (suffix > 0 && same_word(name.substr(suffix), kQualitySuffix)) {
-        const std::string_view tag = name.substr(0, suffix);
-        const Slot* slot = tags.find(tag);
-        if (!holds(header, tag))
-          without_tag.emplace_back(name);
-        else if (slot != nullptr)
-          qualities_.push_back({i, *slot});
-        continue;
-      }
-      tags.see(name);
-      if (const Slot* slot = tags.find(name)) values_.push_back({i, *slot});
     }
-    if (!without_tag.empty())
+    for (const std::size_t cell : layout.values) {
+      const std::string_view name = header[cell].text;
+      tags.see(name);
+      if (const Slot* slot = tags.find(name)) values_.push_back({cell, *slot});
+    }
+    for (const QualityColumn& column : layout.qualities)
+      if (const Slot* slot = tags.find(header[column.value].text))
+        qualities_.emplace_back(column, *slot);
+    if (!layout.orphans.empty())
       notices_.push_back("ignored, since the tag that they qualify has no column: " +
-                         config::join(without_tag));
-    if (without_name > 0)
-      notices_.push_back(std::to_string(without_name) + " columns without a name are ignored");
+                         config::join(layout.orphans));
+    if (layout.without_name > 0)
+      notices_.push_back(std::to_string(layout.without_name) +
+                         " columns without a name are ignored");
   }
 
-  static bool holds(const std::vector<Cell>& header, std::string_view name) {
-    return std::any_of(header.begin(), header.end(),
-                       [name](const Cell& cell) { return cell.text == name; });
-  }
-
-  /// Engineering units below the header, as historians export them.
-  bool is_units_row() {
-    if (seen_first_) return false;
-    seen_first_ = true;
-    if (time_ >= cells_.size() || !is_units_word(cells_[time_].text)) return false;
+  /// Rows of nothing, as spreadsheets leave them behind; before the first time units and
+  /// descriptions, as historians export them.
+  bool is_no_data() {
+    if (is_empty(cells_)) {
+      ++tally_.empty_rows;
+      return true;
+    }
+    const std::size_t time = format_.layout.time.time;
+    if (begun_ || above_ == kRowsBelow || time >= cells_.size()) return false;
+    if (cells_[time].text.find_first_of("0123456789") != std::string_view::npos) return false;
     for (const Column& column : values_) {
       if (column.cell >= cells_.size()) continue;
       const std::optional<double> value =
           parse_value(cells_[column.cell].text, format_.decimal_comma());
       if (value && std::isfinite(*value)) return false;  // data without a time
     }
+    ++above_;
     notices_.push_back("line " + std::to_string(lines_.number()) +
                        " is taken for a row of units and left out");
     return true;
@@ -150,14 +119,14 @@ class WideRows : public RowSource {
   LineReader& lines_;
   CsvFormat format_;
   LocalTimes times_;
-  std::size_t width_;
   SignalCounts counts_;
   std::vector<std::string>& notices_;
-  std::size_t time_ = 0;
-  std::vector<Column> values_, qualities_;
+  std::vector<Column> values_;
+  std::vector<std::pair<QualityColumn, Slot>> qualities_;
   std::vector<Cell> cells_;
   ReadTally tally_;
-  bool seen_first_ = false;
+  bool begun_ = false;
+  int above_ = 0;  ///< rows of units
 };
 
 }  // namespace

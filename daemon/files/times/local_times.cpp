@@ -12,28 +12,78 @@ constexpr std::int64_t kHalfHourNs = 1800 * kNsPerSecond;
 
 std::optional<std::int64_t> LocalTimes::read(std::string_view text, std::string_view series,
                                              std::string& problem) {
-  const std::optional<LocalTime> local = parse_local_time(text);
-  if (!local) return parse_time(text, problem);
-  if (!zone_) {
+  const std::optional<CalendarTime> written =
+      style_.format ? style_.format->parse(text) : parse_calendar(text);
+  if (!written && style_.format) {
+    problem = "is not written as --time-format '" + style_.format->pattern() + "' says";
+    return std::nullopt;
+  }
+  if (!written) return read_number(text, problem);
+  if (written->two_numbers && order_ == DateOrder::kUnknown) {
     problem =
-        "is a local time: add its zone, Z or +hh:mm, or name it to convert, detect, diagnose "
-        "or info with --time-zone";
+        "may be day or month first, and nothing in the file tells: say it with --time-format '" +
+        format_like(text, DateOrder::kDayFirst) + "' or '" +
+        format_like(text, DateOrder::kMonthFirst) + "'";
     return std::nullopt;
   }
-  const TimeZone::Moments moments = zone_->moments(local->seconds);
+  const std::optional<LocalTime> local = written->local(order_);
+  if (!local) {
+    problem = "is no day of the calendar";
+    if (written->two_numbers)
+      problem += order_ == DateOrder::kDayFirst ? ": the dates of the file have the day first"
+                                                : ": the dates of the file have the month first";
+    return std::nullopt;
+  }
+  dates_ = true;
+  if (!written->zone_s) return read_local(*local, series, problem);
+  const auto time_ns = moment_ns(local->seconds - *written->zone_s, local->fraction_ns);
+  if (!time_ns) problem = "is out of range";
+  return time_ns;
+}
+
+std::optional<std::int64_t> LocalTimes::read_number(std::string_view text, std::string& problem) {
+  const std::optional<EpochTime> epoch = parse_epoch(text);
+  const std::optional<std::int64_t> time_ns =
+      epoch ? std::optional(epoch->time_ns) : parse_seconds(text, problem);
+  if (time_ns && dates_) {
+    problem = "is a number, where the times before it are dates";
+    return std::nullopt;
+  }
+  if (epoch) unit_ = epoch->unit;
+  if (!time_ns && problem == kNoTime) problem += ", or say how it is written with --time-format";
+  return time_ns;
+}
+
+std::optional<std::int64_t> LocalTimes::read_local(const LocalTime& local, std::string_view series,
+                                                   std::string& problem) {
+  if (!style_.zone) {
+    problem =
+        "is a local time: add its zone, Z or +hh:mm, or name it with --time-zone, such as "
+        "Europe/Berlin or UTC";
+    return std::nullopt;
+  }
+  if (!moment_ns(local.seconds, 0)) {
+    problem = "is out of range";
+    return std::nullopt;
+  }
+  const TimeZone::Moments moments = style_.zone->moments(local.seconds);
   if (moments.count == 0) {
-    problem = "does not exist in " + zone_->name() + ": the clock goes forward over it";
+    problem =
+        "does not exist in " + style_.zone->name() +
+        ": the clock goes forward over it; if the "
+        "file's clock never does, name a zone without summer time, such as Etc/GMT-1 for UTC+1";
     return std::nullopt;
   }
+  ++local_;
   auto found = series_.find(series);
   if (found == series_.end()) found = series_.emplace(series, Series{}).first;
   Series& rows = found->second;
-  std::int64_t time_ns = moments.utc_s[0] * kNsPerSecond + local->fraction_ns;
+  std::int64_t time_ns = moments.utc_s[0] * kNsPerSecond + local.fraction_ns;
   if (moments.count == 2) {
     ++twice_;
     const bool past = rows.begun && (time_ns < rows.last_ns ||
                                      (time_ns == rows.last_ns && rows.step_ns > kHalfHourNs));
-    if (past) time_ns = moments.utc_s[1] * kNsPerSecond + local->fraction_ns;
+    if (past) time_ns = moments.utc_s[1] * kNsPerSecond + local.fraction_ns;
   }
   if (rows.begun && time_ns > rows.last_ns) rows.step_ns = time_ns - rows.last_ns;
   rows.last_ns = time_ns;
@@ -43,13 +93,21 @@ std::optional<std::int64_t> LocalTimes::read(std::string_view text, std::string_
 
 void LocalTimes::restart() {
   series_.clear();
-  twice_ = 0;
+  local_ = twice_ = 0;
+  unit_ = nullptr;
+  dates_ = false;
 }
 
-std::string LocalTimes::notice() const {
-  if (twice_ == 0) return {};
-  return std::to_string(twice_) + " times lie in an hour that " + zone_->name() +
-         " has twice; they are taken in the order of the rows";
+std::vector<std::string> LocalTimes::notices() const {
+  std::vector<std::string> notices;
+  if (unit_ != nullptr)
+    notices.push_back("times are read as " + std::string(unit_) + " since 1970");
+  if (local_ > 0)
+    notices.push_back("times without a zone are read as those of " + style_.zone->name());
+  if (twice_ > 0)
+    notices.push_back(std::to_string(twice_) + " times lie in an hour that " + style_.zone->name() +
+                      " has twice; they are taken in the order of the rows");
+  return notices;
 }
 
 }  // namespace mpm::files

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
-#include "daemon/files/times/time_zone.hpp"
+#include "daemon/files/times/calendar_time.hpp"
+#include "daemon/files/times/time_style.hpp"
 
 namespace mpm::files {
 
@@ -16,8 +18,10 @@ namespace mpm::files {
 /// that, or at it with more than half an hour between rows.
 class LocalTimes {
  public:
-  /// Null: local times are refused.
-  explicit LocalTimes(std::shared_ptr<const TimeZone> zone = nullptr) : zone_(std::move(zone)) {}
+  /// Without a zone in `style` local times are refused, and without `order` dates that may be read
+  /// either way.
+  explicit LocalTimes(TimeStyle style = {}, DateOrder order = DateOrder::kUnknown)
+      : style_(std::move(style)), order_(order) {}
 
   /// ns since 1970. Rows are in order among those with the same `series` (a tag; or "" for all).
   /// Nothing with a `problem` where the text is no time.
@@ -25,8 +29,9 @@ class LocalTimes {
                                                  std::string& problem);
   /// For reading the file once more.
   void restart();
-  /// What was done about times that the clock shows twice; empty if there were none.
-  [[nodiscard]] std::string notice() const;
+  /// What was assumed: the zone, the unit of numbers, what was done about times that the clock
+  /// shows twice.
+  [[nodiscard]] std::vector<std::string> notices() const;
 
  private:
   struct Series {
@@ -35,9 +40,18 @@ class LocalTimes {
     bool begun = false;
   };
 
-  std::shared_ptr<const TimeZone> zone_;
+  [[nodiscard]] std::optional<std::int64_t> read_number(std::string_view text,
+                                                        std::string& problem);
+  [[nodiscard]] std::optional<std::int64_t> read_local(const LocalTime& local,
+                                                       std::string_view series,
+                                                       std::string& problem);
+
+  TimeStyle style_;
+  DateOrder order_;
   std::map<std::string, Series, std::less<>> series_;
-  std::uint64_t twice_ = 0;
+  std::uint64_t local_ = 0, twice_ = 0;
+  const char* unit_ = nullptr;  ///< of numbers, where it is not seconds
+  bool dates_ = false;          ///< a date came
 };
 
 }  // namespace mpm::files

@@ -16,21 +16,20 @@ constexpr std::int64_t kCalendarNs = 315'532'800'000'000'000;
   throw config::InputError({option, 0, 0, config::Severity::kError, "", message});
 }
 
-std::int64_t time_of(const std::string& option, const std::string& text,
-                     const std::shared_ptr<const TimeZone>& zone) {
+std::int64_t time_of(const std::string& option, const std::string& text, const TimeStyle& times) {
   std::string problem;
-  const std::optional<std::int64_t> time_ns = LocalTimes(zone).read(text, "", problem);
+  std::optional<std::int64_t> time_ns = LocalTimes({times.zone, nullptr}).read(text, "", problem);
+  if (!time_ns && times.format) time_ns = LocalTimes(times).read(text, "", problem);
   if (!time_ns) refuse(option, "'" + text + "' " + problem);
   return *time_ns;
 }
 
-Stretch stretch_of(const std::string& option, const std::string& text,
-                   const std::shared_ptr<const TimeZone>& zone) {
+Stretch stretch_of(const std::string& option, const std::string& text, const TimeStyle& times) {
   const std::size_t slashes = static_cast<std::size_t>(std::count(text.begin(), text.end(), '/'));
   if (slashes != 1) refuse(option, "'" + text + "' is no stretch of time: write A/B, two times");
   const std::size_t slash = text.find('/');
-  const Stretch stretch{time_of(option, text.substr(0, slash), zone),
-                        time_of(option, text.substr(slash + 1), zone)};
+  const Stretch stretch{time_of(option, text.substr(0, slash), times),
+                        time_of(option, text.substr(slash + 1), times)};
   if (stretch.until_ns <= stretch.from_ns) refuse(option, "'" + text + "' ends before it begins");
   return stretch;
 }
@@ -41,13 +40,13 @@ std::string shown(std::int64_t time_ns) {
 
 }  // namespace
 
-TimeChoice::TimeChoice(const TimeChoiceText& text, std::shared_ptr<const TimeZone> zone) {
-  if (!text.from.empty()) from_ns_ = time_of("--from", text.from, zone);
-  if (!text.until.empty()) until_ns_ = time_of("--until", text.until, zone);
+TimeChoice::TimeChoice(const TimeChoiceText& text, const TimeStyle& times) {
+  if (!text.from.empty()) from_ns_ = time_of("--from", text.from, times);
+  if (!text.until.empty()) until_ns_ = time_of("--until", text.until, times);
   if (from_ns_ && until_ns_ && *until_ns_ <= *from_ns_)
     refuse("--until", "'" + text.until + "' is not after --from '" + text.from + "'");
   for (const std::string& exclude : text.exclude)
-    excluded_.push_back(stretch_of("--exclude", exclude, zone));
+    excluded_.push_back(stretch_of("--exclude", exclude, times));
 }
 
 bool TimeChoice::takes(std::int64_t time_ns) const {

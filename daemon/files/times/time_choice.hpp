@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/files/times/time_zone.hpp"
+#include "daemon/files/times/time_style.hpp"
 
 namespace mpm::files {
 
@@ -28,9 +28,10 @@ class TimeChoice {
  public:
   /// All of them.
   TimeChoice() = default;
-  /// Local times are those of `zone`; refused without one. Throws config::InputError, naming the
-  /// option, where a text is no time or a stretch ends before it begins.
-  explicit TimeChoice(const TimeChoiceText& text, std::shared_ptr<const TimeZone> zone = nullptr);
+  /// Times are written in the usual ways or as in the file; local ones are refused without a zone
+  /// in `times`. Throws config::InputError, naming the option, where a text is no time or a stretch
+  /// ends before it begins.
+  explicit TimeChoice(const TimeChoiceText& text, const TimeStyle& times = {});
 
   /// Whether all rows are to be used.
   [[nodiscard]] bool all() const { return !from_ns_ && !until_ns_ && excluded_.empty(); }

@@ -8,54 +8,16 @@
 #include <ctime>
 #include <limits>
 
+#include "daemon/files/times/calendar_time.hpp"
+#include "daemon/files/times/cursor.hpp"
+
 namespace mpm::files {
 namespace {
 
 constexpr std::int64_t kLatestNs = std::numeric_limits<std::int64_t>::max() / 2;
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr int kMostDigits = 18;  // always fits an int64
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// Takes leading pieces off a text.
-class Cursor {
- public:
-  explicit Cursor(std::string_view text) : rest_(text) {}
-
-  [[nodiscard]] bool done() const { return rest_.empty(); }
-  [[nodiscard]] char peek() const { return rest_.empty() ? '\0' : rest_.front(); }
-  bool take(char c) {
-    if (peek() != c || rest_.empty()) return false;
-    rest_.remove_prefix(1);
-    return true;
-  }
-  bool take_word(std::string_view word) {
-    if (rest_.substr(0, word.size()) != word) return false;
-    rest_.remove_prefix(word.size());
-    return true;
-  }
-  std::string_view take_digits() {
-    std::size_t count = 0;
-    while (count < rest_.size() && is_digit(rest_[count])) ++count;
-    const std::string_view digits = rest_.substr(0, count);
-    rest_.remove_prefix(count);
-    return digits;
-  }
-  /// A number of exactly `count` digits, or -1.
-  int take_number(std::size_t count) {
-    int value = 0;
-    if (rest_.size() < count) return -1;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!is_digit(rest_[i])) return -1;
-      value = 10 * value + (rest_[i] - '0');
-    }
-    rest_.remove_prefix(count);
-    return value;
-  }
-
- private:
-  std::string_view rest_;
-};
+constexpr std::uint64_t kEarliestEpochS = 900'000'000;  // 1998
+constexpr int kMostDigits = 18;                         // always fits an int64
 
 /// digits * 10^exponent, rounded half up; nothing beyond 18 digits.
 std::optional<std::int64_t> scaled(std::string_view digits, int exponent) {
@@ -74,6 +36,19 @@ std::optional<std::int64_t> scaled(std::string_view digits, int exponent) {
   if (value > static_cast<std::uint64_t>(kLatestNs)) return std::nullopt;
   return static_cast<std::int64_t>(value);
 }
+
+/// Three, six or nine digits with their point; empty for none.
+std::string fraction_text(std::int64_t fraction_ns) {
+  if (fraction_ns == 0) return {};
+  std::string digits = std::to_string(kNsPerSecond + fraction_ns);
+  digits[0] = '.';
+  while (digits.size() > 4 && digits.ends_with("000")) digits.resize(digits.size() - 3);
+  return digits;
+}
+
+}  // namespace
+
+const char* const kNoTime = "is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z";
 
 std::optional<std::int64_t> parse_seconds(std::string_view text, std::string& problem) {
   Cursor cursor(text);
@@ -97,7 +72,7 @@ std::optional<std::int64_t> parse_seconds(std::string_view text, std::string& pr
     exponent += down ? -value : value;
   }
   if (!well_formed || !cursor.done()) {
-    problem = "is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z";
+    problem = kNoTime;
     return std::nullopt;
   }
   const std::optional<std::int64_t> value = scaled(digits, exponent);
@@ -108,118 +83,44 @@ std::optional<std::int64_t> parse_seconds(std::string_view text, std::string& pr
   return negative ? -*value : *value;
 }
 
-/// Seconds east of UTC, or nothing where there is no zone.
-std::optional<int> parse_zone(Cursor& cursor) {
-  cursor.take(' ');
-  if (cursor.take('Z') || cursor.take('z') || cursor.take_word("UTC") || cursor.take_word("GMT"))
-    return cursor.done() ? std::optional<int>(0) : std::nullopt;
-  const bool west = cursor.take('-');
-  if (!west && !cursor.take('+')) return std::nullopt;
-  const int hours = cursor.take_number(2);
-  cursor.take(':');
-  const int minutes = cursor.done() ? 0 : cursor.take_number(2);
-  if (hours < 0 || hours > 14 || minutes < 0 || minutes > 59 || !cursor.done()) return std::nullopt;
-  const int seconds = 3600 * hours + 60 * minutes;
-  return west ? -seconds : seconds;
-}
-
-/// hh:mm[:ss[.fraction]] of a day.
-std::optional<LocalTime> parse_clock(Cursor& cursor, const std::chrono::year_month_day& date) {
-  const int hour = cursor.take_number(2);
-  if (!cursor.take(':')) return std::nullopt;
-  const int minute = cursor.take_number(2);
-  int second = 0;
-  std::int64_t fraction_ns = 0;
-  if (cursor.take(':')) {
-    second = cursor.take_number(2);
-    if (cursor.take('.') || cursor.take(',')) {
-      const std::string_view digits = cursor.take_digits();
-      if (digits.empty()) return std::nullopt;
-      fraction_ns = scaled(digits, 9 - static_cast<int>(digits.size())).value_or(0);
-    }
-  }
-  if (!date.ok() || hour < 0 || hour > 23 || minute < 0 || minute > 59 || second < 0 ||
-      second > 60)  // 60 = leap second
-    return std::nullopt;
-  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  return LocalTime{86400 * days + 3600 * hour + 60 * minute + second, fraction_ns};
-}
-
-std::optional<std::chrono::year_month_day> make_date(int year, int month, int day) {
-  if (year < 0 || month < 0 || day < 0) return std::nullopt;
-  return std::chrono::year_month_day{std::chrono::year(year),
-                                     std::chrono::month(static_cast<unsigned>(month)),
-                                     std::chrono::day(static_cast<unsigned>(day))};
-}
-
-/// 2024-05-01T12:00:00, without a zone.
-std::optional<LocalTime> parse_iso_clock(Cursor& cursor) {
-  const int year = cursor.take_number(4);
-  if (!cursor.take('-')) return std::nullopt;
-  const int month = cursor.take_number(2);
-  if (!cursor.take('-')) return std::nullopt;
-  const int day = cursor.take_number(2);
-  if (!cursor.take('T') && !cursor.take(' ') && !cursor.take('t')) return std::nullopt;
-  const auto date = make_date(year, month, day);
-  return date ? parse_clock(cursor, *date) : std::nullopt;
-}
-
-/// 01.05.2024 12:00:00
-std::optional<LocalTime> parse_dotted_clock(Cursor& cursor) {
-  const int day = cursor.take_number(2);
-  if (!cursor.take('.')) return std::nullopt;
-  const int month = cursor.take_number(2);
-  if (!cursor.take('.')) return std::nullopt;
-  const int year = cursor.take_number(4);
-  if (!cursor.take(' ')) return std::nullopt;
-  const auto date = make_date(year, month, day);
-  return date ? parse_clock(cursor, *date) : std::nullopt;
-}
-
-std::optional<std::int64_t> parse_iso(std::string_view text, std::string& problem) {
+std::optional<EpochTime> parse_epoch(std::string_view text) {
+  struct Unit {
+    const char* name;
+    std::uint64_t per_second;
+  };
+  static constexpr std::array<Unit, 3> kUnits = {
+      {{"milliseconds", 1'000}, {"microseconds", 1'000'000}, {"nanoseconds", 1'000'000'000}}};
   Cursor cursor(text);
-  problem = "is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z";
-  const std::optional<LocalTime> local = parse_iso_clock(cursor);
-  if (!local) return std::nullopt;
-  if (cursor.done()) {
-    problem = "is a local time: add its zone, Z or +hh:mm";
-    return std::nullopt;
-  }
-  const std::optional<int> zone_s = parse_zone(cursor);
-  if (!zone_s) return std::nullopt;
-  const std::int64_t seconds = local->seconds - *zone_s;
-  if (std::abs(seconds) >= kLatestNs / kNsPerSecond) {
-    problem = "is out of range";
-    return std::nullopt;
-  }
-  problem.clear();
-  return seconds * kNsPerSecond + local->fraction_ns;
+  const std::string_view digits = cursor.take_digits(19);
+  if (!cursor.done()) return std::nullopt;
+  std::uint64_t number = 0;
+  for (const char c : digits) number = 10 * number + static_cast<std::uint64_t>(c - '0');
+  for (const Unit& unit : kUnits)
+    if (number / unit.per_second >= kEarliestEpochS &&
+        number / unit.per_second < static_cast<std::uint64_t>(kLatestNs / kNsPerSecond))
+      return EpochTime{static_cast<std::int64_t>(number) *
+                           (kNsPerSecond / static_cast<std::int64_t>(unit.per_second)),
+                       unit.name};
+  return std::nullopt;
 }
 
-/// Three, six or nine digits with their point; empty for none.
-std::string fraction_text(std::int64_t fraction_ns) {
-  if (fraction_ns == 0) return {};
-  std::string digits = std::to_string(kNsPerSecond + fraction_ns);
-  digits[0] = '.';
-  while (digits.size() > 4 && digits.ends_with("000")) digits.resize(digits.size() - 3);
-  return digits;
+std::optional<std::int64_t> moment_ns(std::int64_t utc_s, std::int64_t fraction_ns) {
+  if (std::abs(utc_s) >= kLatestNs / kNsPerSecond) return std::nullopt;
+  return utc_s * kNsPerSecond + fraction_ns;
 }
-
-}  // namespace
 
 std::optional<std::int64_t> parse_time(std::string_view text, std::string& problem) {
-  const bool iso = text.size() > 5 && text[4] == '-' && is_digit(text[0]);
-  return iso ? parse_iso(text, problem) : parse_seconds(text, problem);
-}
-
-std::optional<LocalTime> parse_local_time(std::string_view text) {
-  const bool dotted = text.size() > 2 && text[2] == '.';
-  Cursor cursor(text);
-  const std::optional<LocalTime> local =
-      dotted ? parse_dotted_clock(cursor) : parse_iso_clock(cursor);
-  if (!local || !cursor.done()) return std::nullopt;
-  if (std::abs(local->seconds) >= kLatestNs / kNsPerSecond - 2 * 86400) return std::nullopt;
-  return local;
+  const std::optional<CalendarTime> written = parse_calendar(text);
+  if (!written) return parse_seconds(text, problem);
+  const std::optional<LocalTime> local = written->local(DateOrder::kUnknown);
+  problem = kNoTime;
+  if (!local) return std::nullopt;
+  problem = "is a local time: add its zone, Z or +hh:mm";
+  if (!written->zone_s) return std::nullopt;
+  problem.clear();
+  const auto time_ns = moment_ns(local->seconds - *written->zone_s, local->fraction_ns);
+  if (!time_ns) problem = "is out of range";
+  return time_ns;
 }
 
 std::string utc_text(std::int64_t time_ns, int offset_s) {

@@ -32,6 +32,7 @@ TimeZone::TimeZone(const std::string& name) : name_(name) {
     throw config::InputError({"", 0, 0, config::Severity::kError, "",
                               "no time zone '" + name + "' in " + zones.string() +
                                   "; they are called like Europe/Berlin"});
+  activate(name_);
 }
 
 int TimeZone::offset_s(std::int64_t utc_s) const {

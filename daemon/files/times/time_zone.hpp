@@ -6,8 +6,8 @@
 
 namespace mpm::files {
 
-/// A zone of the time zone database, e.g. Europe/Berlin. For programs of one thread: it sets the
-/// process's own zone.
+/// A zone of the time zone database, e.g. Europe/Berlin. It sets the process's own zone: for
+/// programs of one thread, or of one zone that is made before the other threads.
 class TimeZone {
  public:
   /// Throws config::InputError (naming the zone) where the database does not have it.

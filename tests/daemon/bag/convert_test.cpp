@@ -85,7 +85,7 @@ TEST_CASE("A historian's export becomes a recording and says what was left out")
   CHECK(bench.error("h.csv", "h.mcap", options)
             .find("h.csv:3:1: error: '2024-10-27 02:58:00' is a "
                   "local time") != std::string::npos);
-  options.input_zone = std::make_shared<files::TimeZone>("Europe/Berlin");
+  options.input_times.zone = std::make_shared<files::TimeZone>("Europe/Berlin");
   const bag::ConvertReport report = bench.convert("h.csv", "h.mcap", options);
   CHECK(report.rows == 4);
   CHECK(report.signals == 4);
@@ -118,7 +118,7 @@ TEST_CASE("What cannot be converted is refused in one line and leaves no file") 
   CHECK(bench.error("none.csv", "x.csv", {}).find("no such file") != std::string::npos);
   CHECK(bench.error("old.csv", "x.mcap", {}).find("--config") != std::string::npos);
   bag::ConvertOptions options;
-  options.input_zone = std::make_shared<files::TimeZone>("Europe/Berlin");
+  options.input_times.zone = std::make_shared<files::TimeZone>("Europe/Berlin");
   CHECK(bench.error("gap.csv", "x.csv", options)
             .find("gap.csv:3:1: error: '2024-03-31 02:30:00' "
                   "does not exist in Europe/Berlin") != std::string::npos);

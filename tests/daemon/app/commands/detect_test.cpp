@@ -88,5 +88,36 @@ TEST_CASE("Exports in local times are read by every command that reads data") {
   CHECK(bench.text("err").find("too short: 2 usable samples") != std::string::npos);
 }
 
+TEST_CASE("Every command that reads data takes --time-zone and --time-format") {
+  Bench bench;
+  for (const char* command : {"detect", "diagnose", "convert", "info", "publish"}) {
+    CAPTURE(command);
+    CHECK(mpm(bench, {command, "--help"}) == 0);
+    CHECK(bench.text("out").find("--time-zone") != std::string::npos);
+    CHECK(bench.text("out").find("--time-format") != std::string::npos);
+  }
+  // Written as nobody else does: 2024-03-03 and 04, 23:59 and midnight.
+  write_file(bench.folder.file("o.csv"),
+             "time;u;d,1;y;z\n03032024-2359;1;1;2;3\n04032024-0000;2;1;2;3\n");
+  CHECK(detect(bench, "o.csv", {"--time-zone", "UTC"}) == 3);
+  CHECK(bench.text("err").find("--time-format") != std::string::npos);
+  const std::vector<std::string> said = {"--time-zone", "UTC", "--time-format", "%d%m%Y-%H%M"};
+  CHECK(detect(bench, "o.csv", {"--json", said[0], said[1], said[2], said[3]}) == 0);
+  CHECK(nlohmann::json::parse(bench.text("out"))["samples"] == 2);
+  CHECK(mpm(bench, {"info", bench.folder.file("o.csv"), said[0], said[1], said[2], said[3]}) == 0);
+  CHECK(bench.text("out").find("2024-03-03T23:59:00Z to 2024-03-04T00:00:00Z") !=
+        std::string::npos);
+  CHECK(mpm(bench, {"convert", bench.folder.file("o.csv"), bench.folder.file("p.csv"), said[0],
+                    said[1], said[2], said[3]}) == 0);
+  CHECK(bench.text("p.csv").find("2024-03-04T00:00:00Z,2,1,2,3") != std::string::npos);
+  CHECK(mpm(bench, {"diagnose", "--config", bench.folder.file("small.yaml"), "--data",
+                    bench.folder.file("o.csv"), "--out", bench.folder.file("d"), said[0], said[1],
+                    said[2], said[3]}) == 3);
+  CHECK(bench.text("err").find("too short: 2 usable samples") != std::string::npos);
+  CHECK(detect(bench, "o.csv", {said[0], said[1], "--time-format", "dd.mm.yyyy"}) == 3);
+  CHECK(bench.text("err").find("--time-format: error: 'dd.mm.yyyy' does not tell") !=
+        std::string::npos);
+}
+
 }  // namespace
 }  // namespace mpm::test

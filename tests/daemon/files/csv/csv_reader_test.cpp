@@ -84,6 +84,8 @@ TEST_CASE("Wide files in all their dialects give the same frames") {
       "y1,time,u2,u1\n3.25,0,-2,1.5\n6,1,,4\n",
       "time,u1,u2,y1,\n0,1.5,-2,3.25,\n1,4,,6,\n",
       "t_s,u1,u2,y1\n0,1.5,-2,3.25\n1,4,,6",
+      ",u1,u2,,y1,\n2024-05-01T12:00:00Z,1.5,-2,,3.25,\n2024-05-01T12:00:01Z,4,,,6,\n",
+      "Date,Time,u1,u2,y1\n5/13/2024,12:00:00Z,1.5,-2,3.25\n5/13/2024,12:00:01Z,4,Manual,6\n",
       "time,u1,u2,y1\n0,+1.5,-2,325e-2\n1,4,#N/A,6\n",
   }));
   CAPTURE(text);
@@ -225,19 +227,19 @@ TEST_CASE("Bad input is an error at its place") {
       {"time,u1\n0,1\n", "d.csv:1:1: error: the file does not hold mv 'u2', cv 'y1'"},
       {"time,u1,u2,y1,u1\n0,1,2,3,4\n",
        "d.csv:1:15: error: a second column 'u1'; the first is at column 6"},
-      {"# c\ntime,u1,u2,y1\n0,1,2,3\n1,1,abc,3\n",
-       "d.csv:4:5: error: 'abc' is no number; leave empty what is missing"},
+      {"# c\ntime,u1,u2,y1\n0,1,2,3\n1,1,12abc,3\n",
+       "d.csv:4:5: error: '12abc' is no number; leave empty what is missing"},
       {"time,u1,u2,y1\n0,1,2,3\n1,1,2.3.4,3\n",
        "d.csv:3:5: error: '2.3.4' is no number; leave empty what is missing"},
       {"time,u1,u2,y1\n0,1,2,3\nnoon,1,2,3\n",
        "d.csv:3:1: error: 'noon' is no time: give seconds or ISO 8601 such as "
-       "2024-05-01T12:00:00Z"},
+       "2024-05-01T12:00:00Z, or say how it is written with --time-format"},
       {"time,u1,u2,y1\n2024-05-01T12:00:00,1,2,3\n",
        "d.csv:2:1: error: '2024-05-01T12:00:00' is a local time: add its zone, Z or +hh:mm, or "
-       "name "
-       "it to convert, detect, diagnose or info with --time-zone"},
+       "name it with --time-zone, such as Europe/Berlin or UTC"},
       {"time,u1,u2,y1\n,1,2,3\n",
-       "d.csv:2:1: error: '' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z"},
+       "d.csv:2:1: error: '' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z, "
+       "or say how it is written with --time-format"},
       {"time,u1,u2,y1\n0,1,2\n1,1,2,3\n", "d.csv:2:5: error: has 3 cells, the header 4"},
       {"time,u1,u2,y1\n0,1,2,3,4\n", "d.csv:2:9: error: has 5 cells, the header 4"},
       {"time,u1,u2,y1,y1.quality\n0,1,2,3,fine\n",
@@ -246,14 +248,20 @@ TEST_CASE("Bad input is an error at its place") {
       {"time,u1,u2,y1\n0,\"1\"x,2,3\n", "d.csv:2:6: error: text after a closing quote"},
       {"time,u1,u2,y1\n0,1,2,3\n60,1,2,3\n120,1,2,3\n",
        "d.csv:1:1: error: the rows are 60 s apart (median), the unit's sample_time is 1 s"},
+      {"time,u1,u2,y1\n2,1,2,3\n1,1,2,3\n0,1,2,3\n",
+       "d.csv:1:1: error: the rows go back in time: export or sort them with the oldest first"},
+      {"time;u1;u2;y1\n0;1.234,5;2;3\n",
+       "d.csv:2:3: error: '1.234,5' is no number; export it with a decimal point and without "
+       "thousands separators"},
       {"\xFF\xFEt\n", "d.csv:1:1: error: is UTF-16 text; save it as UTF-8"},
       {std::string("time,u1,u2,y1\n0,1,\0,3\n", 22),
        "d.csv:2:1: error: is no text file: it holds a zero byte"},
       {"tag,time,value\nu1,0,1\ny1,0,2\n", "d.csv:1:1: error: the file does not hold mv 'u2'"},
-      {"tag,time,value\nu1,0,1\nu2,0,1\ny1,0,x\n",
-       "d.csv:4:6: error: 'x' is no number; leave empty what is missing"},
-      {"tag,time,value\nu1,0,1\nu2,?,1\n",
-       "d.csv:3:4: error: '?' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z"},
+      {"tag,time,value\nu1,0,1\nu2,0,1\ny1,0,7x\n",
+       "d.csv:4:6: error: '7x' is no number; leave empty what is missing"},
+      {"tag,time,value\nu1,0,1\nu2,9?,1\n",
+       "d.csv:3:4: error: '9?' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z, "
+       "or say how it is written with --time-format"},
   }));
   CAPTURE(text);
   CHECK(error_of(text) == error);

@@ -18,6 +18,11 @@ TEST_CASE("the first time is taken, the last no more, and what is excluded neith
   for (const std::int64_t second : {9, 20, 25, 30, 39, 100})
     CHECK_FALSE(choice.takes(second * kSecond));
   // 2024-01-01 is day 19723 since 1970.
+  const TimeStyle day_first{std::make_shared<TimeZone>("UTC"),
+                            std::make_shared<TimeFormat>("%d/%m/%Y %H:%M")};
+  const TimeChoice as_in_file({"01/02/2024 00:00", "", {}}, day_first);
+  CHECK(as_in_file.takes(1'706'745'600'000'000'000));  // date -u -d 2024-02-01 +%s
+  CHECK_FALSE(as_in_file.takes(1'706'745'599'000'000'000));
   const TimeChoice dates({"2024-01-01T01:00:00+01:00", "", {}});
   CHECK(dates.takes(19723 * 86400 * kSecond));
   CHECK_FALSE(dates.takes(19723 * 86400 * kSecond - 1));

@@ -1,0 +1,69 @@
+#include "daemon/files/csv/column_names.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace mpm::files {
+namespace {
+
+constexpr std::array<std::string_view, 20> kTimes = {
+    "time",      "timestamp",    "datetime",  "dateandtime", "datetimeutc",
+    "timeutc",   "utctime",      "localtime", "timestring",  "times",
+    "tstamp",    "iptrendtime",  "zeit",      "zeitstempel", "datumuhrzeit",
+    "datumzeit", "datumundzeit", "date",      "datum",       "timestamputc"};
+constexpr std::array<std::string_view, 2> kShortTimes = {"t", "ts"};
+constexpr std::array<std::string_view, 2> kDates = {"date", "datum"};
+constexpr std::array<std::string_view, 5> kClocks = {"time", "zeit", "uhrzeit", "timeofday",
+                                                     "clock"};
+constexpr std::array<std::string_view, 17> kTags = {"tag",
+                                                    "tagname",
+                                                    "varname",
+                                                    "variable",
+                                                    "variablenname",
+                                                    "archivvariable",
+                                                    "pointname",
+                                                    "point",
+                                                    "tagpath",
+                                                    "path",
+                                                    "itemid",
+                                                    "item",
+                                                    "fqn",
+                                                    "signal",
+                                                    "messstelle",
+                                                    "name",
+                                                    "id"};
+constexpr std::array<std::string_view, 8> kValues = {"value",        "val",  "varvalue", "tagvalue",
+                                                     "iptrendvalue", "wert", "messwert", "vvalue"};
+
+template <std::size_t n>
+int rank_in(const std::array<std::string_view, n>& names, std::string_view name) {
+  const auto found = std::find(names.begin(), names.end(), plain_name(name));
+  return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+}  // namespace
+
+std::string plain_name(std::string_view name) {
+  if (!name.empty() && (name.back() == ']' || name.back() == ')')) {
+    const std::size_t open = name.rfind(name.back() == ']' ? '[' : '(');
+    if (open != std::string_view::npos && open > 0) name = name.substr(0, open);
+  }
+  std::string plain;
+  for (const char c : name) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (c >= 'A' && c <= 'Z')
+      plain += static_cast<char>(c - 'A' + 'a');
+    else if (letter || static_cast<unsigned char>(c) > 127)
+      plain += c;
+  }
+  return plain;
+}
+
+bool is_time_name(std::string_view name) { return rank_in(kTimes, name) >= 0; }
+bool is_short_time_name(std::string_view name) { return rank_in(kShortTimes, name) >= 0; }
+bool is_date_name(std::string_view name) { return rank_in(kDates, name) >= 0; }
+bool is_clock_name(std::string_view name) { return rank_in(kClocks, name) >= 0; }
+int tag_name_rank(std::string_view name) { return rank_in(kTags, name); }
+int value_name_rank(std::string_view name) { return rank_in(kValues, name); }
+
+}  // namespace mpm::files

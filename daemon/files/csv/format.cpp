@@ -1,0 +1,262 @@
+#include "daemon/files/csv/format.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "config/suggest.hpp"
+#include "daemon/files/csv/cell.hpp"
+#include "daemon/files/times/date_order.hpp"
+#include "daemon/files/times/serial_dates.hpp"
+#include "daemon/files/times/time_text.hpp"
+
+namespace mpm::files {
+namespace {
+
+constexpr int kLinesAbove = 20;     // that may stand above a header
+constexpr int kRowsBelow = 3;       // that may stand between a header and the first time
+constexpr std::size_t kRows = 200;  // read of any file
+
+bool is_date(const TimeStyle& times, std::string_view text) {
+  return times.format ? times.format->parse(text).has_value() : parse_calendar(text).has_value();
+}
+
+bool is_number(std::string_view text) {
+  std::string problem;
+  return parse_seconds(text, problem).has_value();
+}
+
+/// The header at hand, on line `line`.
+struct Header {
+  int line = 0;
+  char delimiter = ',';
+  Layout layout;
+  bool by_name = false;  ///< the time column is called as one
+};
+
+std::vector<Cell> split_header(LineReader& lines, char delimiter) {
+  std::vector<Cell> header;
+  lines.split(delimiter, header);
+  if (header.size() > 1 && header.back().text.empty()) header.pop_back();  // a delimiter at the end
+  return header;
+}
+
+/// True where the line above has the names of the columns, and the one at hand their units with a
+/// word for the time before them.
+bool names_stand_above(const std::vector<bool>& above, const Layout& layout) {
+  if (layout.is_long || above.size() < layout.width || above[layout.time.time]) return false;
+  return std::count(above.begin(), above.end(), true) + 1 >=
+         static_cast<std::ptrdiff_t>(layout.width);
+}
+
+std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
+  std::vector<bool> above;  // which cells of the line before are not empty
+  int line_above = 0;
+  for (int i = 0; i <= kLinesAbove && (i == 0 || lines.next()); ++i) {
+    const char delimiter = find_delimiter(lines.text());
+    const std::vector<Cell> cells = split_header(lines, delimiter);
+    if (cells.size() < 2) continue;
+    if (const std::optional<Layout> layout = find_layout(cells, tags)) {
+      if (!names_stand_above(above, *layout))
+        return Header{lines.number(), delimiter, *layout, true};
+      return_to(lines, line_above);
+      const std::vector<Cell> names = split_header(lines, delimiter);
+      return Header{line_above, delimiter, layout_with_time(names, layout->time, tags), true};
+    }
+    above.clear();
+    for (const Cell& cell : cells) above.push_back(!cell.text.empty());
+    line_above = lines.number();
+  }
+  return std::nullopt;
+}
+
+/// A first column of any name, with dates below.
+std::optional<Header> header_by_dates(LineReader& lines, int line, const TimeStyle& times,
+                                      const TagTable* tags) {
+  return_to(lines, line);
+  const char delimiter = find_delimiter(lines.text());
+  for (int i = 0; i <= kRowsBelow && lines.next(); ++i) {
+    const std::vector<Cell> cells = split_header(lines, delimiter);
+    if (cells.size() < 2 || !is_date(times, cells[0].text)) continue;
+    return_to(lines, line);
+    const std::vector<Cell> header = split_header(lines, delimiter);
+    return Header{line, delimiter, layout_with_time(header, {}, tags), false};
+  }
+  return std::nullopt;
+}
+
+/// What the rows below a header tell.
+class Survey {
+ public:
+  Survey(LineReader& lines, CsvFormat& format, double sample_time_s)
+      : lines_(lines),
+        format_(format),
+        sample_time_s_(sample_time_s),
+        checked_(format.layout.qualities.size()) {}
+
+  void run() {
+    for (std::size_t row = 0; (row < kRows || open()) && lines_.next(); ++row) {
+      lines_.split(format_.delimiter, cells_);
+      if (cells_.size() < format_.layout.width) continue;
+      look_at_time();
+      look_at_qualities();
+      if (row + 1 == kRows) check_serial_dates();
+    }
+    check_serial_dates();
+    format_.order = dates_.order();
+    format_.zero_is_good = codes_ == Codes::kZeroIsGood;
+    drop_what_is_no_quality();
+  }
+
+  void tell(const std::vector<Cell>& header, std::vector<std::string>& notices) const {
+    if (const std::string notice = dates_.notice(); !notice.empty()) notices.push_back(notice);
+    std::vector<std::string> names;
+    for (const QualityColumn& column : format_.layout.qualities)
+      if (!column.sure &&
+          std::find(names.begin(), names.end(), header[column.cell].text) == names.end())
+        names.emplace_back(header[column.cell].text);
+    if (!names.empty()) notices.push_back("quality is read from " + config::join(names));
+    if (format_.zero_is_good)
+      notices.emplace_back(
+          "the quality codes are taken as 0 good, 1 bad, 16 doubtful: no other ones are there, "
+          "such "
+          "as OPC's 192");
+  }
+
+ private:
+  enum class Codes { kNone, kZeroIsGood, kOther };
+
+  [[nodiscard]] bool open() const {
+    return (two_numbers_ && !dates_.settled()) || codes_ == Codes::kZeroIsGood;
+  }
+
+  void look_at_time() {
+    TimeColumns& columns = format_.layout.time;
+    if (columns.clock && !there_) {
+      const std::string_view clock = cells_[*columns.clock].text;
+      if (clock.empty()) return;
+      const std::string_view date = cells_[columns.time].text;
+      const bool remark = !is_date(format_.times, date) && !is_number(date) &&
+                          clock.find(':') == std::string_view::npos;
+      if (remark || is_date(format_.times, clock))  // the other is a time of its own
+        columns = {*columns.clock, std::nullopt};
+    }
+    const std::string text = time_text(cells_, columns);
+    if (text.find_first_of("0123456789") == std::string::npos) return;
+    there_ = true;
+    if (format_.times.format) return;
+    if (const std::optional<CalendarTime> written = parse_calendar(text)) {
+      two_numbers_ = two_numbers_ || written->two_numbers;
+      const Layout& layout = format_.layout;
+      dates_.add(*written, layout.is_long ? cells_[layout.tag].text : std::string_view());
+    } else {
+      std::string problem;
+      const std::optional<std::int64_t> number = parse_seconds(text, problem);
+      if (!number || serial_checked_) return;
+      if (days_.empty()) first_number_ = {lines_.number(), cells_[columns.time].column, text};
+      days_.push_back(static_cast<double>(*number) * 1e-9);
+    }
+  }
+
+  void look_at_qualities() {
+    const std::vector<QualityColumn>& columns = format_.layout.qualities;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::string_view text = cells_[columns[i].cell].text;
+      if (columns[i].sure || text.empty()) continue;
+      if (there_ && checked_[i] == Check::kOpen)
+        checked_[i] = parse_quality(text, columns[i].kind) ? Check::kIs : Check::kIsNot;
+      if (columns[i].kind != QualityKind::kCode || checked_[i] != Check::kIs) continue;
+      const std::optional<std::int64_t> code = quality_code(text);
+      if (code && codes_ != Codes::kOther)
+        codes_ = fits_zero_is_good(*code) ? Codes::kZeroIsGood : Codes::kOther;
+    }
+  }
+
+  void check_serial_dates() {
+    if (std::exchange(serial_checked_, true)) return;
+    const std::string problem = serial_date_problem(days_, sample_time_s_);
+    if (!problem.empty())
+      lines_.fail(first_number_.line, first_number_.column,
+                  "'" + first_number_.text + "' " + problem);
+  }
+
+  void drop_what_is_no_quality() {
+    Layout& layout = format_.layout;
+    std::vector<QualityColumn> kept;
+    for (std::size_t i = 0; i < layout.qualities.size(); ++i) {
+      if (checked_[i] != Check::kIsNot)
+        kept.push_back(layout.qualities[i]);
+      else if (!layout.is_long)
+        layout.values.push_back(layout.qualities[i].cell);
+    }
+    std::sort(layout.values.begin(), layout.values.end());
+    layout.qualities = std::move(kept);
+  }
+
+  enum class Check { kOpen, kIs, kIsNot };
+  struct Place {
+    int line = 0, column = 0;
+    std::string text;
+  };
+
+  LineReader& lines_;
+  CsvFormat& format_;
+  double sample_time_s_;
+  std::vector<Cell> cells_;
+  bool there_ = false;  ///< a time came
+  DateOrderFinder dates_;
+  bool two_numbers_ = false;
+  std::vector<double> days_;
+  Place first_number_;
+  bool serial_checked_ = false;
+  std::vector<Check> checked_;
+  Codes codes_ = Codes::kNone;
+};
+
+}  // namespace
+
+std::string time_text(const std::vector<Cell>& cells, const TimeColumns& columns) {
+  std::string text(cells[columns.time].text);
+  if (columns.clock) text.append(" ").append(cells[*columns.clock].text);
+  return text;
+}
+
+void return_to(LineReader& lines, int line) {
+  lines.rewind();
+  while (lines.next() && lines.number() < line) continue;
+  if (lines.number() != line) lines.fail(1, "the file changed while it was read");
+}
+
+CsvFormat find_format(LineReader& lines, const TimeStyle& times, double sample_time_s,
+                      const TagTable* tags, std::vector<Cell>& header,
+                      std::vector<std::string>& notices) {
+  if (!lines.next()) lines.fail(1, 1, "the file is empty");
+  const int first_line = lines.number();
+  std::optional<Header> found = header_by_name(lines, tags);
+  if (!found) found = header_by_dates(lines, first_line, times, tags);
+  if (!found) {
+    return_to(lines, first_line);
+    header = split_header(lines, find_delimiter(lines.text()));
+    lines.fail(header.front().column,
+               "the first column must be `time`, not '" + std::string(header.front().text) + "'");
+  }
+  CsvFormat format;
+  format.delimiter = found->delimiter;
+  format.times = times;
+  format.layout = found->layout;
+  return_to(lines, found->line);
+  Survey survey(lines, format, sample_time_s);
+  survey.run();
+  return_to(lines, found->line);
+  header = split_header(lines, format.delimiter);
+  if (found->line != first_line)
+    notices.push_back("line " + std::to_string(found->line) +
+                      " is taken for the header, what stands above it left out");
+  if (!found->by_name)
+    notices.push_back("the first column, '" + std::string(header.front().text) +
+                      "', is taken for the time");
+  survey.tell(header, notices);
+  return format;
+}
+
+}  // namespace mpm::files

@@ -1,0 +1,214 @@
+#include "daemon/files/times/calendar_time.hpp"
+
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include "daemon/files/times/cursor.hpp"
+
+namespace mpm::files {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = lower(c);
+  return result;
+}
+
+bool is_separator(char c) { return c == '-' || c == '/' || c == '.'; }
+
+/// Blanks, or a sign with blanks behind it; '\0' where a name stands next to a number.
+char take_separator(Cursor& cursor) {
+  const bool blank = cursor.peek() == ' ';
+  cursor.take_blanks();
+  const char sign = cursor.peek();
+  if (!is_separator(sign) && sign != ',') return blank ? ' ' : '\0';
+  cursor.take(sign);
+  cursor.take_blanks();
+  return sign;
+}
+
+int take_month(Cursor& cursor) {
+  if (Cursor::is_digit(cursor.peek())) return cursor.take_number(1, 2);
+  const int month = month_of(cursor.take_letters());
+  return month == 0 ? -1 : month;
+}
+
+int take_year(Cursor& cursor) {
+  const std::string_view digits = cursor.take_digits(4);
+  if (digits.size() == 4) return Cursor(digits).take_number(4);
+  return digits.size() == 2 ? full_year(Cursor(digits).take_number(2)) : -1;
+}
+
+bool fill(CalendarTime& time, int year, int month, int day) {
+  time.year = year;
+  time.month = month;
+  time.day = day;
+  return year >= 0 && month >= 0 && day >= 0;
+}
+
+/// 2026-03-28, 2026/3/28, 28.03.2026, 28-Mar-26, Mar 28, 2026, and what may be either order.
+bool take_date(Cursor& cursor, CalendarTime& time) {
+  if (!Cursor::is_digit(cursor.peek())) {
+    const int month = take_month(cursor);
+    if (month < 0 || take_separator(cursor) == '\0') return false;
+    const int day = cursor.take_number(1, 2);
+    if (take_separator(cursor) == '\0') return false;
+    return fill(time, take_year(cursor), month, day);
+  }
+  const std::string_view digits = cursor.take_digits(4);
+  const int first = Cursor(digits).take_number(1, 4);
+  const char separator = take_separator(cursor);
+  if (separator == ',' || digits.size() == 3) return false;
+  if (digits.size() == 4) {
+    if (!is_separator(separator)) return false;
+    const int month = take_month(cursor);
+    if (take_separator(cursor) != separator) return false;
+    return fill(time, first, month, cursor.take_number(1, 2));
+  }
+  const bool named = !Cursor::is_digit(cursor.peek());
+  if (!named && !is_separator(separator)) return false;
+  const int month = take_month(cursor);
+  const char second = take_separator(cursor);
+  if (named ? second == '\0' : second != separator) return false;
+  if (!named && separator != '.') {
+    time.two_numbers = true;
+    return fill(time, take_year(cursor), first, month);
+  }
+  return fill(time, take_year(cursor), month, first);
+}
+
+/// AM or PM, `a.m.` too; nothing where there is neither.
+std::optional<bool> take_afternoon(Cursor& cursor) {
+  Cursor ahead = cursor;
+  ahead.take_blanks();
+  const char letter = lower(ahead.peek());
+  if (letter != 'a' && letter != 'p') return std::nullopt;
+  ahead.take(ahead.peek());
+  ahead.take('.');
+  if (!ahead.take('m') && !ahead.take('M')) return std::nullopt;
+  ahead.take('.');
+  cursor = ahead;
+  return letter == 'p';
+}
+
+/// 14:05[:00[.25]], 2:05 PM
+bool take_clock(Cursor& cursor, CalendarTime& time) {
+  int hour = cursor.take_number(1, 2);
+  if (hour < 0 || !cursor.take(':')) return false;
+  const int minute = cursor.take_number(2);
+  int second = 0;
+  if (cursor.take(':')) {
+    second = cursor.take_number(2);
+    if (cursor.take('.') || cursor.take(',')) {
+      const std::string_view digits = cursor.take_digits();
+      if (digits.empty()) return false;
+      time.fraction_ns = fraction_ns_of(digits);
+    }
+  }
+  if (const std::optional<bool> afternoon = take_afternoon(cursor)) {
+    if (hour < 1 || hour > 12) return false;
+    hour = hour % 12 + (*afternoon ? 12 : 0);
+  }
+  if (hour > 23 || minute < 0 || minute > 59 || second < 0 || second > 60)  // 60 = leap second
+    return false;
+  time.second_of_day = 3600 * hour + 60 * minute + second;
+  return true;
+}
+
+}  // namespace
+
+std::optional<LocalTime> CalendarTime::local(DateOrder order) const {
+  if (two_numbers && order == DateOrder::kUnknown) return std::nullopt;
+  const bool swapped = two_numbers && order == DateOrder::kDayFirst;
+  const std::chrono::year_month_day date{
+      std::chrono::year(year), std::chrono::month(static_cast<unsigned>(swapped ? day : month)),
+      std::chrono::day(static_cast<unsigned>(swapped ? month : day))};
+  if (!date.ok()) return std::nullopt;
+  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
+  return LocalTime{86400 * days + second_of_day, fraction_ns};
+}
+
+std::optional<CalendarTime> parse_calendar(std::string_view text) {
+  Cursor cursor(text);
+  CalendarTime time;
+  if (!take_date(cursor, time)) return std::nullopt;
+  if (cursor.done()) return time;
+  cursor.take(',');
+  if (cursor.peek() != ' ' && cursor.peek() != 'T' && cursor.peek() != 't') return std::nullopt;
+  cursor.take(cursor.peek());
+  cursor.take_blanks();
+  if (!take_clock(cursor, time)) return std::nullopt;
+  if (cursor.done()) return time;
+  time.zone_s = take_zone(cursor);
+  return time.zone_s ? std::optional(time) : std::nullopt;
+}
+
+int month_of(std::string_view name) {
+  static constexpr std::array<std::pair<std::string_view, int>, 17> kMonths = {{{"jan", 1},
+                                                                                {"feb", 2},
+                                                                                {"mar", 3},
+                                                                                {"m\xC3\xA4r", 3},
+                                                                                {"mrz", 3},
+                                                                                {"apr", 4},
+                                                                                {"may", 5},
+                                                                                {"mai", 5},
+                                                                                {"jun", 6},
+                                                                                {"jul", 7},
+                                                                                {"aug", 8},
+                                                                                {"sep", 9},
+                                                                                {"oct", 10},
+                                                                                {"okt", 10},
+                                                                                {"nov", 11},
+                                                                                {"dec", 12},
+                                                                                {"dez", 12}}};
+  const std::string text = lower(name);
+  for (const auto& [beginning, month] : kMonths)
+    if (text.starts_with(beginning)) return month;
+  return 0;
+}
+
+int full_year(int two_digits) { return two_digits + (two_digits < 70 ? 2000 : 1900); }
+
+std::optional<int> take_zone(Cursor& cursor) {
+  cursor.take_blanks();
+  if (cursor.take('Z') || cursor.take('z') || cursor.take_word("UTC") || cursor.take_word("GMT"))
+    return cursor.done() ? std::optional<int>(0) : std::nullopt;
+  const bool west = cursor.take('-');
+  if (!west && !cursor.take('+')) return std::nullopt;
+  const int hours = cursor.take_number(2);
+  cursor.take(':');
+  const int minutes = cursor.done() ? 0 : cursor.take_number(2);
+  if (hours < 0 || hours > 14 || minutes < 0 || minutes > 59 || !cursor.done()) return std::nullopt;
+  const int seconds = 3600 * hours + 60 * minutes;
+  return west ? -seconds : seconds;
+}
+
+std::int64_t fraction_ns_of(std::string_view digits) {
+  std::int64_t value = 0;
+  for (std::size_t i = 0; i < 9; ++i)
+    value = 10 * value + (i < digits.size() ? digits[i] - '0' : 0);
+  return digits.size() > 9 && digits[9] >= '5' ? value + 1 : value;
+}
+
+std::string format_like(std::string_view text, DateOrder order) {
+  Cursor cursor(text);
+  const bool day_first = order == DateOrder::kDayFirst;
+  cursor.take_digits();
+  const char separator = cursor.peek();
+  cursor.take(separator);
+  cursor.take_digits();
+  cursor.take(separator);
+  std::string format = std::string(day_first ? "%d" : "%m") + separator +
+                       (day_first ? "%m" : "%d") + separator +
+                       (cursor.take_digits().size() == 4 ? "%Y" : "%y");
+  if (cursor.done()) return format;
+  const bool half_day = text.back() == 'M' || text.back() == 'm';
+  const std::size_t seconds = text.find(':', text.find(':') + 1);
+  return format + (half_day ? " %I:%M" : " %H:%M") +
+         (seconds != std::string_view::npos ? ":%S" : "") + (half_day ? " %p" : "");
+}
+
+}  // namespace mpm::files

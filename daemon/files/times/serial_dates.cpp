@@ -1,0 +1,55 @@
+#include "daemon/files/times/serial_dates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "daemon/files/times/time_text.hpp"
+
+namespace mpm::files {
+namespace {
+
+constexpr double kSecondsPerDay = 86400.0;
+constexpr double kDaysTo1970 = 25569.0;                    // from the first day of a spreadsheet
+constexpr double kFirstDay = 29221.0, kLastDay = 73051.0;  // 1980 to 2100
+constexpr double kTolerance = 0.1;                         // as between rows and sample time
+
+// Rows an hour apart at most are days with a fraction; no process is sampled in such seconds.
+constexpr double kLongestStep = 0.05;
+
+/// Between times that differ; 0 if none do.
+double median_step(const std::vector<double>& times) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (times[i] > times[i - 1]) steps.push_back(times[i] - times[i - 1]);
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+bool is_about(double value, double wanted) {
+  return std::abs(value - wanted) <= kTolerance * wanted;
+}
+
+}  // namespace
+
+std::string serial_date_problem(const std::vector<double>& days, double sample_time_s) {
+  const bool in_range = std::all_of(days.begin(), days.end(),
+                                    [](double day) { return day >= kFirstDay && day < kLastDay; });
+  if (days.empty() || !in_range) return {};
+  const double step = median_step(days);
+  const bool fractions =
+      std::any_of(days.begin(), days.end(), [](double day) { return day != std::floor(day); });
+  const bool by_unit = sample_time_s > 0.0 && !is_about(step, sample_time_s);
+  const bool rows_fit = by_unit && is_about(step * kSecondsPerDay, sample_time_s);
+  const bool rows_tell = fractions && step < kLongestStep && (by_unit || sample_time_s <= 0.0);
+  if (!rows_fit && !rows_tell) return {};
+  const auto second =
+      static_cast<std::int64_t>(std::llround((days.front() - kDaysTo1970) * kSecondsPerDay));
+  return "is a day number of a spreadsheet (" + formatted_utc(second, "%Y-%m-%d %H:%M:%S") +
+         "), not a time: give the column a date format there, such as yyyy-mm-dd hh:mm:ss, and "
+         "export it again; if it is seconds, say so with --time-format %s";
+}
+
+}  // namespace mpm::files

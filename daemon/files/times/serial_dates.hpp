@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mpm::files {
+
+/// Why numbers in a time column are the days of a spreadsheet (since 1900, the time of day as a
+/// fraction) rather than seconds, one line for a person; empty where they may be seconds.
+/// `days`: the first times of the file; `sample_time_s` between its rows, 0 = not known.
+[[nodiscard]] std::string serial_date_problem(const std::vector<double>& days,
+                                              double sample_time_s);
+
+}  // namespace mpm::files

@@ -1,0 +1,58 @@
+#include "daemon/files/times/date_order.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace mpm::files;
+
+namespace {
+
+DateOrder order_of(const std::vector<std::string>& texts) {
+  DateOrderFinder finder;
+  for (const std::string& text : texts) {
+    const auto time = parse_calendar(text);
+    REQUIRE(time);
+    finder.add(*time, "");
+  }
+  return finder.order();
+}
+
+}  // namespace
+
+TEST_CASE("A number above twelve tells the order of the whole file") {
+  CHECK(order_of({"03/04/2026 1:00", "03/13/2026 1:00"}) == DateOrder::kMonthFirst);
+  CHECK(order_of({"03/04/2026 1:00", "13/04/2026 1:00"}) == DateOrder::kDayFirst);
+}
+
+TEST_CASE("Only one order may let time go on") {
+  // 31 January to 1 February day first; month first it would go back from December to January.
+  CHECK(order_of({"12/01/2026 23:59", "01/02/2026 0:00"}) == DateOrder::kDayFirst);
+  CHECK(order_of({"01/12/2026 23:59", "02/01/2026 0:00"}) == DateOrder::kMonthFirst);
+}
+
+TEST_CASE("Only one order may let the days follow one another") {
+  CHECK(order_of({"03/04/2026 23:59", "03/05/2026 0:00"}) == DateOrder::kMonthFirst);
+  CHECK(order_of({"04/03/2026 23:59", "05/03/2026 0:00"}) == DateOrder::kDayFirst);
+}
+
+TEST_CASE("One day alone tells nothing") {
+  CHECK(order_of({"03/04/2026 14:05", "03/04/2026 14:06"}) == DateOrder::kUnknown);
+  CHECK(order_of({"03/04/2026 14:05", "03/04/2026 12:05"}) == DateOrder::kUnknown);  // goes back
+  CHECK(order_of({"04/04/2026 14:05"}) == DateOrder::kUnknown);
+}
+
+TEST_CASE("An hour that clocks go back is no going back") {
+  // The night to 1 November 2026 in the United States, month first.
+  CHECK(order_of({"11/01/2026 1:59", "11/01/2026 1:00", "11/02/2026 0:00"}) ==
+        DateOrder::kMonthFirst);
+}
+
+TEST_CASE("Series are followed by themselves") {
+  DateOrderFinder finder;
+  for (const char* tag : {"a", "b"})  // a file sorted by tag goes back where the next begins
+    for (const char* text : {"03/04/2026 23:59", "03/05/2026 0:00"})
+      finder.add(*parse_calendar(text), tag);
+  CHECK(finder.order() == DateOrder::kMonthFirst);
+  CHECK(finder.notice().find("month first") != std::string::npos);
+  finder.add(*parse_calendar("2026-01-01 0:00"), "a");  // another way of writing tells nothing
+  CHECK_FALSE(finder.settled());
+}
