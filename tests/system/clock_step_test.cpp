@@ -8,6 +8,7 @@ namespace mpm::test {
 namespace {
 
 const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
+const std::string kPreload = std::string("LD_PRELOAD=") + MPM_STEP_CLOCK;
 constexpr int kSamples = 600;
 
 /// What the recorder's machine does to its clock meanwhile.
@@ -60,7 +61,7 @@ void check_recording_under(const ClockTrouble& trouble) {
     Process recorder({"mpm", "record", "--unit", "shell", "--partition", domain.partition,
                       "--output", folder.file("run.mcap")},
                      folder.file("record.out"), folder.file("record.err"),
-                     {"LD_PRELOAD=" MPM_STEP_CLOCK, "ASAN_OPTIONS=verify_asan_link_order=0",
+                     {kPreload, "ASAN_OPTIONS=verify_asan_link_order=0",
                       std::string("MPM_STEP_MS=") + trouble.step_ms,
                       std::string("MPM_STEP_EVERY=") + trouble.every});
     std::vector<std::string> to_bus = simulate;
@@ -101,8 +102,8 @@ TEST_CASE("a monitor goes on while the clock is set back by an hour") {
   const idl::DomainOptions domain = idl::test_domain("clock_back");
   Process daemon({"mpmd", "--config", kUnit, "--partition", domain.partition},
                  folder.file("mpmd.out"), folder.file("mpmd.err"),
-                 {"LD_PRELOAD=" MPM_STEP_CLOCK, "ASAN_OPTIONS=verify_asan_link_order=0",
-                  "MPM_STEP_MS=3600000", "MPM_STEP_EVERY=0", "MPM_STEP_WAITS=1"});
+                 {kPreload, "ASAN_OPTIONS=verify_asan_link_order=0", "MPM_STEP_MS=3600000",
+                  "MPM_STEP_EVERY=0", "MPM_STEP_WAITS=1"});
   const auto said = [&](const char* word) {
     return read_file(folder.file("mpmd.err")).find(word) != std::string::npos;
   };
