@@ -11,7 +11,7 @@ Journal::Journal(const std::string& path) : file_(std::fopen(path.c_str(), "ae")
   if (!file_) throw std::system_error(errno, std::generic_category(), path);
 }
 
-bool Journal::write(const std::vector<ChannelRecord>& channels,
+void Journal::write(const std::vector<ChannelRecord>& channels,
                     const std::vector<AlarmRecord>& alarms) {
   lines_.clear();
   for (const ChannelRecord& record : channels)
@@ -19,7 +19,10 @@ bool Journal::write(const std::vector<ChannelRecord>& channels,
   for (const AlarmRecord& record : alarms)
     lines_.append(report::json_of(record).dump()).append("\n");
   const bool written = std::fwrite(lines_.data(), 1, lines_.size(), file_.get()) == lines_.size();
-  return std::fflush(file_.get()) == 0 && written;
+  if (std::fflush(file_.get()) == 0 && written)
+    problem_.clear();
+  else
+    problem_ = std::generic_category().message(errno);
 }
 
 }  // namespace mpm::live
