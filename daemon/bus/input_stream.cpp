@@ -10,7 +10,7 @@ namespace {
 // Source times that are off by less are jitter: controllers are not held to the second.
 constexpr double kSmallestClockStep_s = 60.0;
 constexpr double kClockStepSamples = 10.0;
-// Nothing is asked of the clock across a larger distance.
+// Beyond this distance nothing was left out: another counter.
 constexpr std::int64_t kFar = 100'000;
 // As far as a number goes back when samples come in another order (core/signal/aligner).
 constexpr std::int64_t kReordered = 32;
@@ -48,7 +48,8 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
                                      static_cast<double>(writer.source_time_ns));
     const double step_s = elapsed_s - steps * sample_time_s;
     const bool dated = arrival.source_time_ns != writer.source_time_ns;  // else it has no clock
-    if (dated && steps > 0.0 && steps < static_cast<double>(kFar) &&
+    // A counter that jumps says nothing of the clock.
+    if (dated && steps > 0.0 && steps <= static_cast<double>(kJump) &&
         std::abs(step_s) > std::max(kSmallestClockStep_s, kClockStepSamples * sample_time_s))
       clock_step_ = ClockStep{now, arrival.interval, step_s};
     if (steps > -static_cast<double>(kReordered) && steps < 0.0) {  // late: the newer one stays

@@ -52,6 +52,7 @@ class UnitInputs {
   [[nodiscard]] bool wants_endpoints(Clock::time_point now) const;
 
   [[nodiscard]] const ExpectedInputs& expected() const { return expected_; }
+  void expect(ExpectedInputs expected) { expected_ = std::move(expected); }
   [[nodiscard]] const InputStream& stream(SignalKind kind) const {
     return streams_[static_cast<std::size_t>(kind)];
   }

@@ -11,7 +11,7 @@ Journal::Journal(const std::string& path) : file_(std::fopen(path.c_str(), "ae")
   if (!file_) throw std::system_error(errno, std::generic_category(), path);
 }
 
-void Journal::write(const std::vector<ChannelRecord>& channels,
+bool Journal::write(const std::vector<ChannelRecord>& channels,
                     const std::vector<AlarmRecord>& alarms) {
   lines_.clear();
   for (const ChannelRecord& record : channels)
@@ -23,6 +23,7 @@ void Journal::write(const std::vector<ChannelRecord>& channels,
     problem_.clear();
   else
     problem_ = std::generic_category().message(errno);
+  return problem_.empty();
 }
 
 }  // namespace mpm::live

@@ -16,10 +16,10 @@ class Journal {
   /// Throws std::system_error if the file cannot be written.
   explicit Journal(const std::string& path);
 
-  /// All channels after one frame, then the alarms that it changed. What the file does not take
-  /// (full disk ...) is lost.
-  void write(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& alarms);
-
+  /// All channels after one frame, then the alarms that it changed. False if the file would not
+  /// take it (full disk ...); what it does not take is lost.
+  [[nodiscard]] bool write(const std::vector<ChannelRecord>& channels,
+                           const std::vector<AlarmRecord>& alarms);
   /// Why the last write failed; empty if it did not.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 

@@ -141,7 +141,8 @@ void UnitPipeline::on_frame(const Frame& frame) {
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
-  if (journal_ != nullptr) journal_->write(monitor_.channels(), monitor_.alarms());
+  if (journal_ != nullptr)
+    (void)journal_->write(monitor_.channels(), monitor_.alarms());  // problem() is in the health
   // Last, when everybody has been told: it may copy the unit's samples.
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
 }
