@@ -20,10 +20,11 @@ constexpr std::int64_t kReordered = 32;
 InputStream::Writer& InputStream::writer_of(std::uint64_t handle, Clock::time_point now) {
   for (Writer& writer : writers_)
     if (writer.samples > 0 && writer.handle == handle) return writer;
-  Writer& place = *std::min_element(writers_.begin(), writers_.end(), [](const auto& a, const auto& b) {
-    if ((a.samples == 0) != (b.samples == 0)) return a.samples == 0;
-    return a.last < b.last;
-  });
+  Writer& place =
+      *std::min_element(writers_.begin(), writers_.end(), [](const auto& a, const auto& b) {
+        if ((a.samples == 0) != (b.samples == 0)) return a.samples == 0;
+        return a.last < b.last;
+      });
   place = {};
   place.handle = handle;
   place.first = now;

@@ -13,8 +13,7 @@ constexpr int kOk = 0, kWarning = 1, kCritical = 2;
 constexpr std::array kWords = {"OK", "WARNING", "CRITICAL"};
 
 int code_of(const MonitorWord& unit, const AgeLimits& limits) {
-  if (unit.state.empty() || unit.gone || unit.state == "failure" ||
-      unit.age_s >= limits.critical_s)
+  if (unit.state.empty() || unit.gone || unit.state == "failure" || unit.age_s >= limits.critical_s)
     return kCritical;
   return unit.state != "normal" || unit.active_alarms > 0 || unit.age_s >= limits.warning_s
              ? kWarning

@@ -18,9 +18,8 @@ const char* to_string(Severity severity) {
 }
 
 void sort_by_severity(std::vector<Trouble>& troubles) {
-  std::stable_sort(troubles.begin(), troubles.end(), [](const Trouble& a, const Trouble& b) {
-    return a.severity > b.severity;
-  });
+  std::stable_sort(troubles.begin(), troubles.end(),
+                   [](const Trouble& a, const Trouble& b) { return a.severity > b.severity; });
 }
 
 std::string joined_text(const std::vector<Trouble>& troubles, std::size_t most) {

@@ -78,8 +78,7 @@ bool UnitInputs::wants_endpoints(Clock::time_point now) const {
   });
 }
 
-std::vector<Trouble> UnitInputs::troubles(const Surroundings& around,
-                                          Clock::time_point now) const {
+std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::time_point now) const {
   std::vector<Trouble> troubles;
   add_silence(around, now, troubles);
   add_rivals(around, now, troubles);
@@ -128,8 +127,9 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
     // One sentence where all have the same reason.
     std::vector<std::string> reasons;
     for (const SignalKind kind : quiet) reasons.push_back(why_silent(kind, around));
-    std::string text = any_started ? "no data for " + std::to_string(whole_seconds(now - last)) + " s"
-                                   : "no data has come";
+    std::string text = any_started
+                           ? "no data for " + std::to_string(whole_seconds(now - last)) + " s"
+                           : "no data has come";
     if (std::all_of(reasons.begin(), reasons.end(),
                     [&](const std::string& reason) { return reason == reasons.front(); }))
       text += " (" + topic_of(quiet.front()) + (quiet.size() > 1 ? " ..." : "") + ": " +
@@ -138,8 +138,8 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
       for (std::size_t i = 0; i < quiet.size(); ++i)
         text += (i == 0 ? " (" : "; ") + topic_of(quiet[i]) + ": " + reasons[i] +
                 (i + 1 == quiet.size() ? ")" : "");
-    troubles.push_back({"no data", any_started ? Severity::kFailure : Severity::kFunctionCheck,
-                        std::move(text)});
+    troubles.push_back(
+        {"no data", any_started ? Severity::kFailure : Severity::kFunctionCheck, std::move(text)});
     return;
   }
   for (const SignalKind kind : quiet) {
@@ -147,9 +147,9 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
         stream(kind).started()
             ? " for " + std::to_string(whole_seconds(now - *stream(kind).last())) + " s"
             : "";
-    troubles.push_back({"silent " + topic_of(kind), Severity::kFailure,
-                        "nothing on " + topic_of(kind) + since + " (" + why_silent(kind, around) +
-                            ")"});
+    troubles.push_back(
+        {"silent " + topic_of(kind), Severity::kFailure,
+         "nothing on " + topic_of(kind) + since + " (" + why_silent(kind, around) + ")"});
   }
 }
 
@@ -205,8 +205,8 @@ void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troub
   const bool rivals = std::any_of(troubles.begin(), troubles.end(), [](const Trouble& trouble) {
     return trouble.key == "two gateways";
   });
-  if (rivals || !ahead || apart(stream(*ahead).newest().interval,
-                                stream(*behind).newest().interval) <= kApart)
+  if (rivals || !ahead ||
+      apart(stream(*ahead).newest().interval, stream(*behind).newest().interval) <= kApart)
     return;
   troubles.push_back({"apart", Severity::kFailure,
                       "interval numbers do not meet: " + topic_of(*ahead) + " is at " +

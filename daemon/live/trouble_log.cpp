@@ -21,8 +21,7 @@ std::vector<TroubleLog::Line> TroubleLog::update(const std::vector<bus::Trouble>
       continue;
     }
     const auto lasted = std::chrono::duration_cast<std::chrono::seconds>(entry.seen - entry.began);
-    lines.push_back(
-        {false, "over after " + std::to_string(lasted.count()) + " s: " + entry.text});
+    lines.push_back({false, "over after " + std::to_string(lasted.count()) + " s: " + entry.text});
     it = standing_.erase(it);
   }
   return lines;

@@ -252,8 +252,9 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
     add("incomplete", Severity::kOutOfSpecification, "data incomplete");
   if (stood_still_ && now_ - *stood_still_ < kTold)
     add("standstill", Severity::kOutOfSpecification,
-        fmt::format("the monitor itself stood still for {} s: its machine is too busy or was asleep",
-                    std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
+        fmt::format(
+            "the monitor itself stood still for {} s: its machine is too busy or was asleep",
+            std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
   if (!other_monitor_.empty() && now_ - other_monitor_heard_ < kOtherMonitorGone)
     add("other monitor", Severity::kMaintenanceRequired,
         "another monitor watches this unit as well: " + other_monitor_ +

@@ -2,6 +2,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "idl/sample_view.hpp"
 #include "tests/system/bench.hpp"
 
 namespace mpm::test {
@@ -11,9 +12,8 @@ using Json = nlohmann::json;
 
 std::vector<std::string> mpm(const char* command, const idl::DomainOptions& options,
                              const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {"mpm",         command,
-                                        "--domain",    std::to_string(options.domain),
-                                        "--partition", options.partition};
+  std::vector<std::string> arguments = {
+      "mpm", command, "--domain", std::to_string(options.domain), "--partition", options.partition};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -32,7 +32,8 @@ bool any_text(const Json& troubles, const std::string& word) {
 
 }  // namespace
 
-TEST_CASE("health and doctor name the topic that nobody writes and the writer that does not match") {
+TEST_CASE(
+    "health and doctor name the topic that nobody writes and the writer that does not match") {
   TemporaryFolder folder;
   const idl::DomainOptions options = idl::test_domain("doctor-topics");
   std::string yaml = unit_yaml("toy");
@@ -71,9 +72,9 @@ TEST_CASE("health and doctor name the topic that nobody writes and the writer th
   CHECK(detail.find("nothing on mpm/cv (its writer ") != std::string::npos);
   CHECK(detail.find("RELIABILITY (best effort offered, reliable requested)") != std::string::npos);
 
-  Process doctor(mpm("doctor", options,
-                     {"--config", folder.file("toy.yaml"), "--seconds", "2", "--json"}),
-                 folder.file("out"), folder.file("err"));
+  Process doctor(
+      mpm("doctor", options, {"--config", folder.file("toy.yaml"), "--seconds", "2", "--json"}),
+      folder.file("out"), folder.file("err"));
   std::optional<int> code;
   REQUIRE(idl::eventually(
       [&] {

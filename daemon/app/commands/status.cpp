@@ -96,14 +96,12 @@ bus::PluginStatus ask(const StatusOptions& options) {
   idl::WaitSet wait_set;
   wait_set.attach(reader.readable());
   LastWords words;
-  const Clock::time_point end =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                         std::chrono::duration<double>(options.wait_s));
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(options.wait_s));
   while (Clock::now() < end && !stop.received() && !words.all_here(options.units))
     if (wait_set.wait(kLongestWait))
-      reader.take_with_info([&](const mpm_Health& health, const idl::SampleInfo& info) {
-        words.hear(health, info);
-      });
+      reader.take_with_info(
+          [&](const mpm_Health& health, const idl::SampleInfo& info) { words.hear(health, info); });
   return bus::plugin_status(words.of(options.units), options.limits,
                             bus::place_text(options.domain.domain, options.domain.partition));
 }
@@ -118,8 +116,8 @@ int status(StatusOptions options) {
                 << '\n';
       return kUnknown;
     }
-    options.domain = with_flags(*options.command, bus::domain_options(loaded.units.front().dds),
-                                options.domain);
+    options.domain =
+        with_flags(*options.command, bus::domain_options(loaded.units.front().dds), options.domain);
     if (options.units.empty())
       for (const config::UnitConfig& unit : loaded.units) options.units.push_back(unit.unit);
   }
@@ -145,7 +143,8 @@ void add_status(CLI::App& app, int& exit_code) {
   command->add_option("--unit", options->units, "only this unit, which must be there; repeatable")
       ->allow_extra_args(false);
   add_domain_flags(*command, options->domain);
-  command->add_option("--warning", options->limits.warning_s, "age of the last health, as 90 or 5min")
+  command
+      ->add_option("--warning", options->limits.warning_s, "age of the last health, as 90 or 5min")
       ->capture_default_str()
       ->transform(positive_time_value());
   command->add_option("--critical", options->limits.critical_s, "the same")

@@ -45,12 +45,12 @@ std::vector<Trouble> unheard(const std::vector<idl::Endpoint>& endpoints) {
   for (const idl::Endpoint& endpoint : endpoints) {
     if (endpoint.mismatch.empty()) continue;
     const bool input = idl::find_known_topic(endpoint.topic)->input;
-    troubles.push_back(
-        {"mismatch", input ? Severity::kFailure : Severity::kMaintenanceRequired,
-         idl::name_of(endpoint.process) + (endpoint.writer ? " writes " : " reads ") +
-             endpoint.topic + (endpoint.writer ? ", and nobody of ours hears it: "
-                                               : ", and gets nothing of ours: ") +
-             listed(endpoint.mismatch)});
+    troubles.push_back({"mismatch", input ? Severity::kFailure : Severity::kMaintenanceRequired,
+                        idl::name_of(endpoint.process) +
+                            (endpoint.writer ? " writes " : " reads ") + endpoint.topic +
+                            (endpoint.writer ? ", and nobody of ours hears it: "
+                                             : ", and gets nothing of ours: ") +
+                            listed(endpoint.mismatch)});
   }
   return troubles;
 }
@@ -105,8 +105,7 @@ void Examination::hear(const std::string& topic, const idl::RawSample& sample) {
     if (Unit* unit = unit_of(health->unit))
       unit->monitors[sample.writer] = {health->state == nullptr ? "" : health->state,
                                        health->detail == nullptr ? "" : health->detail,
-                                       health->active_alarms,
-                                       Clock::now()};
+                                       health->active_alarms, Clock::now()};
   }
 }
 
@@ -139,8 +138,7 @@ void Examination::hear(const mpm_Layout& layout) {
     expected.counts.dv = count;
   else
     expected.counts.cv = count;
-  expected.needed[static_cast<std::size_t>(*kind)] =
-      count > 0 && *kind != SignalKind::kSetpoint;
+  expected.needed[static_cast<std::size_t>(*kind)] = count > 0 && *kind != SignalKind::kSetpoint;
   unit->inputs.expect(std::move(expected));
   unit->described = true;
 }
@@ -205,17 +203,17 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
     findings.troubles.push_back(
         {"no monitor", Severity::kMaintenanceRequired, "no monitor watches it"});
   if (findings.monitors.size() > 1)
-    findings.troubles.push_back({"other monitor", Severity::kMaintenanceRequired,
-                                 "two monitors watch it: " +
-                                     idl::name_of(findings.monitors[0].process) + " and " +
-                                     idl::name_of(findings.monitors[1].process)});
+    findings.troubles.push_back(
+        {"other monitor", Severity::kMaintenanceRequired,
+         "two monitors watch it: " + idl::name_of(findings.monitors[0].process) + " and " +
+             idl::name_of(findings.monitors[1].process)});
   // It knows more than the bus shows, of its disk for example. Alarms are what it is there for.
   for (const MonitorFindings& monitor : findings.monitors)
     if (monitor.state == "failure" || monitor.state == "out_of_specification" ||
         (monitor.state == "maintenance_required" && monitor.active_alarms == 0))
-      findings.troubles.push_back({"monitor says", Severity::kMaintenanceRequired,
-                                   idl::name_of(monitor.process) + " says " + monitor.state + ": " +
-                                       monitor.detail});
+      findings.troubles.push_back(
+          {"monitor says", Severity::kMaintenanceRequired,
+           idl::name_of(monitor.process) + " says " + monitor.state + ": " + monitor.detail});
   sort_by_severity(findings.troubles);
   return findings;
 }
@@ -226,14 +224,12 @@ Findings Examination::findings() const {
   Findings findings;
   findings.place = place_;
   if (around.endpoints.empty())
-    findings.troubles.push_back(
-        {"nobody", Severity::kFailure, "nobody else is on " + place_});
-  for (const auto& [name, unit] : units_)
-    findings.units.push_back(findings_of(unit, around, now));
+    findings.troubles.push_back({"nobody", Severity::kFailure, "nobody else is on " + place_});
+  for (const auto& [name, unit] : units_) findings.units.push_back(findings_of(unit, around, now));
   for (Trouble& trouble : unheard(around.endpoints)) {
     // One who should write a silent topic has been named there.
-    const bool told = std::any_of(
-        findings.units.begin(), findings.units.end(), [&](const UnitFindings& unit) {
+    const bool told =
+        std::any_of(findings.units.begin(), findings.units.end(), [&](const UnitFindings& unit) {
           return std::any_of(unit.troubles.begin(), unit.troubles.end(), [](const Trouble& other) {
             return other.text.find("does not match") != std::string::npos;
           });

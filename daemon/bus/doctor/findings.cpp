@@ -76,11 +76,13 @@ std::string monitor_text(const MonitorFindings& monitor) {
 std::string unit_text(const UnitFindings& unit) {
   std::string text = unit.unit + (unit.troubles.empty() ? ": well\n" : ": trouble\n");
   if (unit.monitors.empty()) text += row("monitor", "none");
-  for (const MonitorFindings& monitor : unit.monitors) text += row("monitor", monitor_text(monitor));
+  for (const MonitorFindings& monitor : unit.monitors)
+    text += row("monitor", monitor_text(monitor));
   for (const TopicFindings& topic : unit.topics) {
     if (topic.writers.empty())
       text += row(topic.topic, topic.needed ? "nobody writes it" : "nobody writes it; not needed");
-    for (const WriterFindings& writer : topic.writers) text += row(topic.topic, writer_text(writer));
+    for (const WriterFindings& writer : topic.writers)
+      text += row(topic.topic, writer_text(writer));
   }
   return text;
 }
@@ -100,7 +102,10 @@ Json json_of(const UnitFindings& unit) {
   Json monitors = Json::array(), topics = Json::array();
   for (const MonitorFindings& monitor : unit.monitors) {
     Json entry = json_of(monitor.process);
-    entry.update({{"state", monitor.state}, {"detail", monitor.detail}, {"active_alarms", monitor.active_alarms}, {"age_s", monitor.age_s}});
+    entry.update({{"state", monitor.state},
+                  {"detail", monitor.detail},
+                  {"active_alarms", monitor.active_alarms},
+                  {"age_s", monitor.age_s}});
     monitors.push_back(std::move(entry));
   }
   for (const TopicFindings& topic : unit.topics) {

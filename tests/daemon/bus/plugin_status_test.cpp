@@ -7,7 +7,8 @@
 namespace mpm::bus {
 namespace {
 
-MonitorWord word(const char* unit, const char* state, std::uint32_t alarms = 0, double age_s = 0.5) {
+MonitorWord word(const char* unit, const char* state, std::uint32_t alarms = 0,
+                 double age_s = 0.5) {
   return {unit, state, "", alarms, age_s, false};
 }
 
@@ -24,8 +25,9 @@ TEST_CASE("units that are well are OK, with their performance data") {
 
 TEST_CASE("the worst unit decides") {
   const AgeLimits limits;
-  CHECK(plugin_status({word("a", "normal"), word("b", "maintenance_required", 2)}, limits, "").code ==
-        1);
+  CHECK(
+      plugin_status({word("a", "normal"), word("b", "maintenance_required", 2)}, limits, "").code ==
+      1);
   CHECK(plugin_status({word("a", "normal", 1)}, limits, "").code == 1);
   CHECK(plugin_status({word("a", "function_check")}, limits, "").code == 1);
   CHECK(plugin_status({word("a", "out_of_specification"), word("b", "failure")}, limits, "").code ==

@@ -27,8 +27,8 @@ struct Scene {
 
   void add_writer(const char* topic, std::uint64_t handle, const char* program,
                   std::vector<std::string> mismatch = {}) {
-    around.endpoints.push_back({topic, "mpm::Sample", true, handle,
-                                {"plant1", program, "12"}, std::move(mismatch)});
+    around.endpoints.push_back(
+        {topic, "mpm::Sample", true, handle, {"plant1", program, "12"}, std::move(mismatch)});
   }
   void send(SignalKind kind, std::int64_t interval, std::uint64_t writer = kGateway) {
     const auto count = static_cast<std::size_t>(inputs->expected().counts.of(kind));
@@ -120,8 +120,9 @@ TEST_CASE("two gateways: with the same numbers a remark, with others a failure")
   REQUIRE(scene.troubles().size() == 1);
   CHECK(scene.troubles()[0].severity ==
         (same ? Severity::kMaintenanceRequired : Severity::kFailure));
-  CHECK(scene.text().find("two gateways write mpm/mv: spare (process 12 on host plant1) and gateway "
-                          "(process 12 on host plant1)") == 0);
+  CHECK(
+      scene.text().find("two gateways write mpm/mv: spare (process 12 on host plant1) and gateway "
+                        "(process 12 on host plant1)") == 0);
   if (!same) CHECK(scene.text().find("(5019, 19)") != std::string::npos);
 }
 
@@ -191,8 +192,9 @@ TEST_CASE("any numbers from any number of writers are borne") {
   Scene scene;
   for (std::uint64_t writer = 0; writer < 1000; ++writer) {
     scene.inputs->push(kMv, {writer, std::numeric_limits<std::int64_t>::min(), 0, 1, 0}, scene.now);
-    scene.inputs->push(kMv, {writer, std::numeric_limits<std::int64_t>::max(),
-                             std::numeric_limits<std::int64_t>::min(), 1, 0},
+    scene.inputs->push(kMv,
+                       {writer, std::numeric_limits<std::int64_t>::max(),
+                        std::numeric_limits<std::int64_t>::min(), 1, 0},
                        scene.now);
     scene.now += milliseconds(1);
   }

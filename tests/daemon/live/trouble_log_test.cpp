@@ -5,9 +5,9 @@
 namespace mpm::live {
 namespace {
 
-using std::chrono::seconds;
 using bus::Severity;
 using bus::Trouble;
+using std::chrono::seconds;
 
 const std::vector<Trouble> kSilent = {{"silent mpm/dv", Severity::kFailure, "nothing on mpm/dv"}};
 
