@@ -67,8 +67,8 @@ int main(int argc, char** argv) {
     fprintf(stderr, "participant: %s\n", dds_strretcode(participant));
     return 2;
   }
-  const dds_entity_t layout = writer_of(participant, &mpm_Layout_desc, "mpm/layout",
-                                        DDS_DURABILITY_TRANSIENT_LOCAL, 1);
+  const dds_entity_t layout =
+      writer_of(participant, &mpm_Layout_desc, "mpm/layout", DDS_DURABILITY_TRANSIENT_LOCAL, 1);
   const dds_entity_t mv =
       writer_of(participant, &mpm_Sample_desc, "mpm/mv", DDS_DURABILITY_VOLATILE, 256);
   const dds_entity_t cv =

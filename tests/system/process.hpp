@@ -31,8 +31,7 @@ void write_file(const std::string& path, const std::string& text);
 class Process {
  public:
   /// `arguments[0]`: mpmd, mpm ..., or the path of another one. Output goes to `output` and
-  /// `errors`. `environment`: additional
-  /// "NAME=value". `input`: file for standard input.
+  /// `errors`. `environment`: additional "NAME=value". `input`: file for standard input.
   Process(const std::vector<std::string>& arguments, const std::string& output,
           const std::string& errors, const std::vector<std::string>& environment = {},
           const std::string& input = "/dev/null");
