@@ -147,9 +147,12 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
         stream(kind).started()
             ? " for " + std::to_string(whole_seconds(now - *stream(kind).last())) + " s"
             : "";
-    troubles.push_back(
-        {"silent " + topic_of(kind), Severity::kFailure,
-         "nothing on " + topic_of(kind) + since + " (" + why_silent(kind, around) + ")"});
+    // Where no prediction ever came the monitor simulates them.
+    const bool simulated = kind == SignalKind::kPrediction && !stream(kind).started();
+    troubles.push_back({"silent " + topic_of(kind),
+                        simulated ? Severity::kOutOfSpecification : Severity::kFailure,
+                        "nothing on " + topic_of(kind) + since + " (" + why_silent(kind, around) +
+                            ")" + (simulated ? ": the unit file's model predicts" : "")});
   }
 }
 

@@ -77,6 +77,19 @@ TEST_CASE("a topic that never comes is named, with who should write it") {
         "RELIABILITY (best effort offered, reliable requested))");
 }
 
+TEST_CASE("predictions that never come are simulated, which is no failure") {
+  Scene scene;
+  ExpectedInputs expected = scene.inputs->expected();
+  expected.needed[static_cast<std::size_t>(SignalKind::kPrediction)] = true;
+  scene.inputs->expect(expected);
+  for (int k = 0; k < 6; ++k) scene.second({kMv, kDv, kCv}, k);
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+  CHECK(scene.text() ==
+        "nothing on mpm/prediction (nobody writes it on domain 3, partition 'plant-a'): the unit "
+        "file's model predicts");
+}
+
 TEST_CASE("a topic that stops is told with the time since, and no sooner than its silence") {
   Scene scene;
   for (int k = 0; k < 20; ++k) scene.second({kMv, kDv, kCv}, k);
