@@ -21,6 +21,8 @@ constexpr std::chrono::seconds kTold{60};
 constexpr double kApart = 200.0;
 // Intervals between two writers from which on they are not taken for the same numbers.
 constexpr double kSameNumbers = 32.0;
+// Only of topics that both came within so many sample times, and a second.
+constexpr double kComing = 2.0;
 // Samples of one interval in a row until its counter stands.
 constexpr std::uint64_t kStanding = 10;
 
@@ -147,10 +149,9 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
         stream(kind).started()
             ? " for " + std::to_string(whole_seconds(now - *stream(kind).last())) + " s"
             : "";
-    // Where no prediction ever came the monitor simulates them.
+    // Frames come all the same, without it; where no prediction ever came it is simulated.
     const bool simulated = kind == SignalKind::kPrediction && !stream(kind).started();
-    troubles.push_back({"silent " + topic_of(kind),
-                        simulated ? Severity::kOutOfSpecification : Severity::kFailure,
+    troubles.push_back({"silent " + topic_of(kind), Severity::kOutOfSpecification,
                         "nothing on " + topic_of(kind) + since + " (" + why_silent(kind, around) +
                             ")" + (simulated ? ": the unit file's model predicts" : "")});
   }
@@ -185,6 +186,10 @@ void UnitInputs::add_rivals(const Surroundings& around, Clock::time_point now,
 }
 
 void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troubles) const {
+  const Clock::duration coming = std::max<Clock::duration>(
+      std::chrono::seconds(1),
+      std::chrono::duration_cast<Clock::duration>(
+          std::chrono::duration<double>(kComing * expected_.sample_time_s)));
   std::optional<SignalKind> ahead, behind;
   for (const SignalKind kind : idl::kTopicKinds) {
     const InputStream& input = stream(kind);
@@ -202,6 +207,7 @@ void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troub
         troubles.push_back({"standing " + topic_of(kind), Severity::kFailure,
                             topic_of(kind) + " repeats interval " +
                                 std::to_string(writer.interval) + ": the counter stands"});
+    if (now - *input.last() > coming) continue;
     if (!ahead || newest.interval > stream(*ahead).newest().interval) ahead = kind;
     if (!behind || newest.interval < stream(*behind).newest().interval) behind = kind;
   }

@@ -246,9 +246,9 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   if (!wrong_layout_.empty())
     add("layout", Severity::kOutOfSpecification,
         "layout differs from the unit file: " + wrong_layout_);
-  // Whoever misses a topic, or has two counters, knows why already.
+  // Where a topic is missing or a counter jumped, that is why.
   if (health_.incomplete != incomplete_before_ &&
-      (found.empty() || found.front().severity != Severity::kFailure))
+      (found.empty() || found.front().severity == Severity::kMaintenanceRequired))
     add("incomplete", Severity::kOutOfSpecification, "data incomplete");
   if (stood_still_ && now_ - *stood_still_ < kTold)
     add("standstill", Severity::kOutOfSpecification,

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "idl/sample_view.hpp"
 #include "tests/system/bench.hpp"
@@ -63,7 +64,10 @@ TEST_CASE(
         publish();
         for (const idl::Output& output : readers.take())
           if (const auto* health = std::get_if<HealthRecord>(&output))
-            if (health->state == "failure") detail = health->detail;
+            if (health->detail.find("nothing on") == 0) {
+              CHECK(health->state == "out_of_specification");
+              detail = health->detail;
+            }
         return !detail.empty();
       },
       std::chrono::seconds(20)));
@@ -116,6 +120,17 @@ TEST_CASE("two gateways with counters of their own are named, and do not flood t
   CHECK(bench.health().state == "failure");
   CHECK(detail.find("with other interval numbers") != std::string::npos);
   CHECK(lines_of(read_file(bench.folder.file("mpmd.err"))).size() < 20);
+}
+
+TEST_CASE("a monitor that stood still itself says so") {
+  Bench bench("doctor-standstill");
+  bench.daemon.send(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(5500));
+  bench.daemon.send(SIGCONT);
+  CHECK(bench.observe([&] {
+    return bench.health().detail.find("the monitor itself stood still for ") != std::string::npos;
+  }));
+  CHECK(bench.health().state == "out_of_specification");
 }
 
 TEST_CASE("two monitors of one unit, and what the disk does not take, are in health and status") {

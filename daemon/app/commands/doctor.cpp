@@ -66,11 +66,11 @@ int examine(const DoctorOptions& options, const std::vector<bus::ExpectedInputs>
     seconds = std::min(seconds, kLongest_s);
   }
   const idl::Participant participant(options.domain);
-  const Clock::time_point end = Clock::now() + duration_of(seconds);
   bus::Examination examination(participant,
                                bus::place_text(options.domain.domain, options.domain.partition),
                                units, duration_of(seconds));
-  while (!stop.received() && (Clock::now() < end)) examination.listen(kLongestWait);
+  const Clock::time_point end = Clock::now() + duration_of(seconds);
+  while (!stop.received() && Clock::now() < end) examination.listen(kLongestWait);
   examination.listen(kLongestWait);
   bus::Findings findings = examination.findings();
   if (ignores_environment(options.domain))

@@ -63,7 +63,7 @@ TEST_CASE("a topic that never comes is named, with who should write it") {
   Scene scene;
   for (int k = 0; k < 6; ++k) scene.second({kMv, kCv}, k);
   REQUIRE(scene.troubles().size() == 1);
-  CHECK(scene.troubles()[0].severity == Severity::kFailure);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
   CHECK(scene.text() == "nothing on mpm/dv (nobody writes it on domain 3, partition 'plant-a')");
   CHECK(scene.inputs->wants_endpoints(scene.now));
 
@@ -77,7 +77,7 @@ TEST_CASE("a topic that never comes is named, with who should write it") {
         "RELIABILITY (best effort offered, reliable requested))");
 }
 
-TEST_CASE("predictions that never come are simulated, which is no failure") {
+TEST_CASE("predictions that never come are simulated") {
   Scene scene;
   ExpectedInputs expected = scene.inputs->expected();
   expected.needed[static_cast<std::size_t>(SignalKind::kPrediction)] = true;
