@@ -8,7 +8,7 @@ namespace mpm::bus {
 namespace {
 
 // Source times that are off by less are jitter: controllers are not held to the second.
-constexpr double kSmallestClockStep_s = 60.0;
+constexpr double kSmallestClockStepS = 60.0;
 constexpr double kClockStepSamples = 10.0;
 // Beyond this distance nothing was left out: another counter.
 constexpr std::int64_t kFar = 100'000;
@@ -51,7 +51,7 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
     const bool dated = arrival.source_time_ns != writer.source_time_ns;  // else it has no clock
     // A counter that jumps says nothing of the clock.
     if (dated && steps > 0.0 && steps <= static_cast<double>(kJump) &&
-        std::abs(step_s) > std::max(kSmallestClockStep_s, kClockStepSamples * sample_time_s))
+        std::abs(step_s) > std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s))
       clock_step_ = ClockStep{now, arrival.interval, step_s};
     if (steps > -static_cast<double>(kReordered) && steps < 0.0) {  // late: the newer one stays
       ++writer.samples;

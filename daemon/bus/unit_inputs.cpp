@@ -128,6 +128,7 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
   if (quiet.size() == wanted) {
     // One sentence where all have the same reason.
     std::vector<std::string> reasons;
+    reasons.reserve(quiet.size());
     for (const SignalKind kind : quiet) reasons.push_back(why_silent(kind, around));
     std::string text = any_started
                            ? "no data for " + std::to_string(whole_seconds(now - last)) + " s"
@@ -171,7 +172,7 @@ void UnitInputs::add_rivals(const Surroundings& around, Clock::time_point now,
     second = second == nullptr ? b : second;
     same = same && apart(a->interval, b->interval) <= kSameNumbers;
   }
-  if (topics.empty()) return;
+  if (first == nullptr || second == nullptr) return;
   const std::string who = "two gateways write " + listed(topics) + ": " +
                           writer_name(around, first->handle) + " and " +
                           writer_name(around, second->handle);

@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLongestWait{50};
 // How long to look where nobody says it: a slow unit must have had its turn.
-constexpr double kShortest_s = 5.0, kLongest_s = 180.0, kSampleTimes = 3.0;
+constexpr double kShortestS = 5.0, kLongestS = 180.0, kSampleTimes = 3.0;
 
 struct DoctorOptions {
   std::vector<std::string> config;
@@ -60,10 +60,10 @@ int examine(const DoctorOptions& options, const std::vector<bus::ExpectedInputs>
             host::StopSignal& stop) {
   double seconds = options.seconds;
   if (seconds == 0.0) {
-    seconds = kShortest_s;
+    seconds = kShortestS;
     for (const bus::ExpectedInputs& unit : units)
       seconds = std::max(seconds, kSampleTimes * unit.sample_time_s);
-    seconds = std::min(seconds, kLongest_s);
+    seconds = std::min(seconds, kLongestS);
   }
   const idl::Participant participant(options.domain);
   bus::Examination examination(participant,

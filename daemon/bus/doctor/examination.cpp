@@ -17,8 +17,8 @@ using Clock = std::chrono::steady_clock;
 // Units of a bus on which somebody makes names up.
 constexpr std::size_t kMostUnits = 1000;
 // A clock that is off by more is to be told; by more than a day it is a replay or a simulation.
-constexpr double kClockOff_s = 10.0;
-constexpr double kOtherTime_s = 86400.0;
+constexpr double kClockOffS = 10.0;
+constexpr double kOtherTimeS = 86400.0;
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -181,7 +181,7 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
     findings.topics.push_back(topic_of(unit, kind, around, now));
     for (const WriterFindings& writer : findings.topics.back().writers) {
       const double off_s = std::abs(writer.clock_offset_s);
-      if (writer.samples > 0 && off_s > kClockOff_s && off_s < kOtherTime_s)
+      if (writer.samples > 0 && off_s > kClockOffS && off_s < kOtherTimeS)
         findings.troubles.push_back(
             {"clock offset", Severity::kOutOfSpecification,
              fmt::format("the source times of {} are {:.0f} s {} this machine's clock",
@@ -242,7 +242,7 @@ Findings Examination::findings() const {
     findings.notes.push_back("samples of other units go by: " +
                              listed({strangers_.begin(), strangers_.end()}));
   if (open_ && units_.empty() && !around.endpoints.empty())
-    findings.notes.push_back("no unit's samples went by and no monitor spoke");
+    findings.notes.emplace_back("no unit's samples went by and no monitor spoke");
   return findings;
 }
 
