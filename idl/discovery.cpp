@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
 #include <tuple>
+
+#include "core/text/printable.hpp"
+#include "idl/qos_match.hpp"
+#include "idl/topic_catalog.hpp"
 
 namespace mpm::idl {
 namespace {
@@ -12,6 +17,7 @@ constexpr std::uint32_t kMost = 16384;  // endpoints; Cyclone itself ends there
 constexpr dds_duration_t kPatience = DDS_SECS(1);
 
 /// What a builtin reader holds, lent and given back.
+template <class Sample>
 class Loan {
  public:
   explicit Loan(dds_entity_t reader) : reader_(reader), samples_(kMost), infos_(kMost) {
@@ -23,10 +29,10 @@ class Loan {
     if (count_ > 0) dds_return_loan(reader_, samples_.data(), count_);
   }
   template <class Callback>
-  void for_each(Callback&& on_endpoint) const {
+  void for_each(Callback&& on_sample) const {
     for (std::size_t i = 0; static_cast<dds_return_t>(i) < count_; ++i)
       if (infos_[i].valid_data && infos_[i].instance_state == DDS_IST_ALIVE)
-        on_endpoint(*static_cast<const dds_builtintopic_endpoint_t*>(samples_[i]));
+        on_sample(*static_cast<const Sample*>(samples_[i]), infos_[i].instance_handle);
   }
 
  private:
@@ -36,10 +42,51 @@ class Loan {
   dds_return_t count_;
 };
 
+using EndpointLoan = Loan<dds_builtintopic_endpoint_t>;
+using Guid = std::array<std::uint8_t, sizeof(dds_guid_t)>;
+
+Guid bytes_of(const dds_guid_t& guid) {
+  Guid bytes{};
+  std::memcpy(bytes.data(), &guid, sizeof guid);
+  return bytes;
+}
+
+std::string property(const dds_qos_t* qos, const char* name) {
+  char* value = nullptr;
+  if (!dds_qget_prop(qos, name, &value) || value == nullptr) return "";
+  std::string text = value;
+  dds_free(value);
+  return text;
+}
+
+std::vector<std::string> mismatch_of(const dds_builtintopic_endpoint_t& endpoint, bool writer) {
+  const KnownTopic* topic = find_known_topic(endpoint.topic_name);
+  if (topic == nullptr) return {};
+  if (std::strcmp(endpoint.type_name, topic->type->m_typename) != 0)
+    return {"type " + std::string(endpoint.type_name) + " where the topic has " +
+            topic->type->m_typename};
+  if (writer) return incompatible_policies(endpoint.qos, topic->reader_qos().get());
+  // Nobody knows what the writer of an input offers.
+  if (topic->input) return {};
+  return incompatible_policies(topic->writer_qos(WriterPace::kRealTime).get(), endpoint.qos);
+}
+
 }  // namespace
+
+std::string name_of(const Process& process) {
+  if (process.program.empty() && process.pid.empty() && process.host.empty())
+    return "a process that does not give its name";
+  std::string text = process.program.empty() ? "a program" : printable(process.program);
+  text += process.pid.empty() ? " (" : " (process " + printable(process.pid) + " ";
+  return text + (process.host.empty() ? "on an unknown host)"
+                                      : "on host " + printable(process.host) + ")");
+}
 
 Discovery::Discovery(const Participant& participant)
     : participant_(participant.get()),
+      participants_(
+          dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
+          "reader of participants"),
       publications_(
           dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
           "reader of publications"),
@@ -47,19 +94,28 @@ Discovery::Discovery(const Participant& participant)
           dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr),
           "reader of subscriptions") {}
 
-void Discovery::add(const Entity& reader, bool writers, std::vector<Endpoint>& endpoints) const {
+std::vector<Endpoint> Discovery::endpoints() const {
+  std::map<Guid, Process> processes;
+  Loan<dds_builtintopic_participant_t>(participants_.get())
+      .for_each([&](const dds_builtintopic_participant_t& participant, std::uint64_t) {
+        processes[bytes_of(participant.key)] = {property(participant.qos, "__Hostname"),
+                                                property(participant.qos, "__ProcessName"),
+                                                property(participant.qos, "__Pid")};
+      });
   dds_guid_t own{};
   check(dds_get_guid(participant_, &own), "own identity");
-  Loan(reader.get()).for_each([&](const dds_builtintopic_endpoint_t& endpoint) {
-    if (std::memcmp(&endpoint.participant_key, &own, sizeof own) != 0)
-      endpoints.push_back({endpoint.topic_name, endpoint.type_name, writers});
-  });
-}
-
-std::vector<Endpoint> Discovery::endpoints() const {
   std::vector<Endpoint> endpoints;
-  add(publications_, true, endpoints);
-  add(subscriptions_, false, endpoints);
+  const auto add = [&](const Entity& reader, bool writers) {
+    EndpointLoan(reader.get())
+        .for_each([&](const dds_builtintopic_endpoint_t& endpoint, std::uint64_t handle) {
+          if (std::memcmp(&endpoint.participant_key, &own, sizeof own) == 0) return;
+          endpoints.push_back({endpoint.topic_name, endpoint.type_name, writers, handle,
+                               processes[bytes_of(endpoint.participant_key)],
+                               mismatch_of(endpoint, writers)});
+        });
+  };
+  add(publications_, true);
+  add(subscriptions_, false);
   std::sort(endpoints.begin(), endpoints.end(), [](const Endpoint& a, const Endpoint& b) {
     return std::tie(a.topic, a.type, b.writer) < std::tie(b.topic, b.type, a.writer);
   });
@@ -68,7 +124,8 @@ std::vector<Endpoint> Discovery::endpoints() const {
 
 DiscoveredType Discovery::type_of(const std::string& topic) const {
   DiscoveredType type;
-  Loan(publications_.get()).for_each([&](const dds_builtintopic_endpoint_t& endpoint) {
+  const EndpointLoan publications(publications_.get());
+  publications.for_each([&](const dds_builtintopic_endpoint_t& endpoint, std::uint64_t) {
     if (type || topic != endpoint.topic_name) return;
     // Cyclone's calls are not const here.
     auto* lent = const_cast<dds_builtintopic_endpoint_t*>(&endpoint);

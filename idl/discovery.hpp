@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,11 +9,25 @@
 
 namespace mpm::idl {
 
+/// Who reads or writes, as Cyclone says it of itself; other makes may leave all of it empty.
+struct Process {
+  std::string host;
+  std::string program;
+  std::string pid;
+};
+/// "mpmd (process 4711 on host plant1)", or "a process that does not give its name".
+[[nodiscard]] std::string name_of(const Process& process);
+
 /// Somebody's reader or writer on the bus.
 struct Endpoint {
   std::string topic;
   std::string type;
   bool writer = false;
+  std::uint64_t handle = 0;  ///< a writer's: as in SampleInfo
+  Process process;
+  /// Of a topic of ours: why it meets no reader (of an output: no writer) that has the topic's
+  /// profile, each reason in words. Empty where it does.
+  std::vector<std::string> mismatch;
 };
 
 /// A type that was asked of the one who uses it.
@@ -33,9 +48,8 @@ class Discovery {
   [[nodiscard]] DiscoveredType type_of(const std::string& topic) const;
 
  private:
-  void add(const Entity& reader, bool writers, std::vector<Endpoint>& endpoints) const;
-
   dds_entity_t participant_;
+  Entity participants_;
   Entity publications_;
   Entity subscriptions_;
 };

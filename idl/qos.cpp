@@ -15,6 +15,7 @@ constexpr int kStatusReaderLimit = 262144;
 // Alarm changes per channel that a late joiner gets to see.
 constexpr int kEventDepth = 64;
 constexpr int kForeignDepth = 4096;
+constexpr int kNeighbourUnits = 1024;
 
 Qos reliable(dds_duration_t max_blocking_time) {
   Qos qos(dds_create_qos());
@@ -72,6 +73,16 @@ Qos channel_status_writer_qos() { return transient_local(kStatusDepth, 1); }
 Qos channel_status_reader_qos() { return transient_local_reader(kStatusReaderLimit); }
 Qos alarm_event_writer_qos() { return transient_local(kEventDepth, kEventDepth); }
 Qos alarm_event_reader_qos() { return transient_local_reader(kStatusReaderLimit); }
+
+// Best effort: no writer waits for a reader that is full.
+Qos neighbour_health_qos() {
+  Qos qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+  dds_qset_resource_limits(qos.get(), DDS_LENGTH_UNLIMITED, kNeighbourUnits, DDS_LENGTH_UNLIMITED);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  return qos;
+}
 
 Qos foreign_reader_qos() {
   Qos qos(dds_create_qos());

@@ -30,6 +30,10 @@ enum class WriterPace {
 [[nodiscard]] Qos alarm_event_writer_qos();
 [[nodiscard]] Qos alarm_event_reader_qos();
 
+/// A reader of what other monitors say of their health: nothing of its own participant's, the last
+/// word only, of so many units at most.
+[[nodiscard]] Qos neighbour_health_qos();
+
 /// A reader of what others write: matches any writer, and drops the oldest samples of an instance
 /// where it cannot follow.
 [[nodiscard]] Qos foreign_reader_qos();

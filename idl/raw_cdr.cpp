@@ -116,6 +116,7 @@ int RawReader::take(const std::function<void(RawSample&)>& on_sample) {
       sample_.source_time_ns = info.source_time_ns;
       sample_.state = valid ? InstanceState::kAlive : info.state;
       sample_.valid = valid;
+      sample_.writer = info.writer;
       on_sample(sample_);
     };
     pass_on(data[i], info.valid);

@@ -17,7 +17,7 @@ InstanceState state_of(const dds_sample_info_t& info) {
 }  // namespace
 
 SampleInfo info_of(const dds_sample_info_t& info) {
-  return {info.source_timestamp, state_of(info), info.valid_data};
+  return {info.source_timestamp, state_of(info), info.valid_data, info.publication_handle};
 }
 
 }  // namespace mpm::idl

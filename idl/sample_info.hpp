@@ -14,6 +14,7 @@ struct SampleInfo {
   std::int64_t source_time_ns = 0;  ///< when it was written, UTC since 1970
   InstanceState state = InstanceState::kAlive;
   bool valid = true;  ///< false: it only says that the state changed, and has nothing but its key
+  std::uint64_t writer = 0;  ///< the same number for all samples of one writer
 };
 
 [[nodiscard]] SampleInfo info_of(const dds_sample_info_t& info);

@@ -26,8 +26,9 @@ class SampleReaders {
   int take(Callback&& on_sample) {
     int count = 0;
     for (std::size_t i = 0; i < readers_.size(); ++i)
-      count += readers_[i].take(
-          [&](const mpm_Sample& sample) { on_sample(view_of(kTopicKinds[i], sample)); });
+      count += readers_[i].take_with_info([&](const mpm_Sample& sample, const SampleInfo& info) {
+        if (info.valid) on_sample(view_of(kTopicKinds[i], sample, info.writer));
+      });
     return count;
   }
 

@@ -2,13 +2,14 @@
 
 namespace mpm::idl {
 
-SampleView view_of(SignalKind kind, const mpm_Sample& sample) {
+SampleView view_of(SignalKind kind, const mpm_Sample& sample, std::uint64_t writer) {
   return {kind,
           sample.unit == nullptr ? std::string_view() : std::string_view(sample.unit),
           sample.interval,
           sample.source_time_ns,
           {sample.values._buffer, sample.values._length},
-          {sample.quality._buffer, sample.quality._length}};
+          {sample.quality._buffer, sample.quality._length},
+          writer};
 }
 
 mpm_Sample sample_of(const char* unit, const Frame& frame, SignalKind kind) {

@@ -17,9 +17,11 @@ struct SampleView {
   std::int64_t source_time_ns = 0;
   std::span<const double> values;
   std::span<const std::uint8_t> quality;  ///< codes as in `Quality`; empty = all good
+  std::uint64_t writer = 0;               ///< as in SampleInfo
 };
 
-[[nodiscard]] SampleView view_of(SignalKind kind, const mpm_Sample& sample);
+[[nodiscard]] SampleView view_of(SignalKind kind, const mpm_Sample& sample,
+                                 std::uint64_t writer = 0);
 
 /// A sample that borrows `unit` and the values of one block of `frame`, ready to be written.
 [[nodiscard]] mpm_Sample sample_of(const char* unit, const Frame& frame, SignalKind kind);

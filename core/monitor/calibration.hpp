@@ -112,12 +112,22 @@ inline constexpr double kTailRatio = 4.0;
 inline constexpr double kSlowerThanLags = 2.0;
 }  // namespace regression_shape
 
+/// What a monitor takes (`monitor_cost`). Measured, `./run bench`: seconds for each entry of a
+/// factor that a row is rotated into, and for each that an evaluation inverts.
+namespace cost {
+inline constexpr double kPerRotated = 2e-10;
+inline constexpr double kPerInverted = 1e-10;
+}  // namespace cost
+
+/// No setting counts more samples than these: an int holds them, and nobody waits for them.
+inline constexpr double kMostSamples = 1e9;
+
 /// Slowest time constants after which what a wrong start left behind is below 1 %. Derived:
 /// exp(-5) = 0.7 %.
 namespace simulation {
 inline constexpr double kSettlingTimeConstants = 5.0;
 /// Samples behind its dead time in which a channel that acts at all has moved. Chosen.
 inline constexpr double kBeginsToAnswer = 20000.0;
-}
+}  // namespace simulation
 
 }  // namespace mpm::calibration

@@ -5,16 +5,18 @@
 
 #include "core/mismatch/calibration.hpp"
 #include "core/model/linear_model.hpp"
+#include "core/monitor/calibration.hpp"
 #include "core/monitor/derived_settings.hpp"
 
 namespace mpm {
 namespace {
 
-// Seconds for each entry of a factor that a row is rotated into, and for each that an evaluation
-// inverts: measured, `./run bench`.
-constexpr double kPerRotated = 2e-10, kPerInverted = 1e-10;
+using calibration::cost::kPerInverted;
+using calibration::cost::kPerRotated;
+
 constexpr double kNumber = sizeof(double);
-constexpr double kTwice = 2.0;  // a lag window holds each value twice
+constexpr double kTwice = 2.0;        // a lag window holds each value twice
+constexpr double kPerCv = 1.0 + 2.0;  // residual, weight and scale
 
 }  // namespace
 
@@ -27,7 +29,7 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   MonitorCost cost;
   cost.columns = 1.0 + cvs * derived.residual_order + inputs * block;
   cost.remembered = derived.remembered;
-  const double history = kTwice * cost.remembered * (inputs * (1.0 + tails) + 3.0 * cvs);
+  const double history = kTwice * cost.remembered * (inputs * (1.0 + tails) + kPerCv * cvs);
   const double factors = cvs * memories * cost.columns * cost.columns;
   const double evaluation = std::pow(inputs * block, 2);
   const double own = inputs * (derived.controlling_lags + 1.0);  // of the reported correlations

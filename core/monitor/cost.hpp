@@ -5,8 +5,8 @@
 
 namespace mpm {
 
-/// What the monitor of a unit takes: estimates to about a factor of two (docs/validation.md, speed),
-/// of any unit, however absurd.
+/// What the monitor of a unit takes: estimates to about a factor of two (docs/validation.md,
+/// speed), of any unit, however absurd.
 struct MonitorCost {
   double columns = 0.0;     ///< of the regression of each CV
   double remembered = 0.0;  ///< samples

@@ -12,8 +12,7 @@ namespace memories = calibration::memories;
 namespace evaluation = calibration::evaluation;
 namespace regression_shape = calibration::regression_shape;
 
-// What no int holds is never reached either.
-int whole(double samples) { return static_cast<int>(std::min(samples, 1e9)); }
+int whole(double samples) { return static_cast<int>(std::min(samples, calibration::kMostSamples)); }
 
 int samples(double seconds, double sample_time_s, int otherwise) {
   return seconds > 0.0 ? std::max(1, whole(std::round(seconds / sample_time_s))) : otherwise;

@@ -28,6 +28,8 @@ int run(int argc, char** argv) {
   add_echo(app, exit_code);
   add_hz(app, exit_code);
   add_delay(app, exit_code);
+  add_doctor(app, exit_code);
+  add_status(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -116,7 +116,9 @@ int run(const Options& options) {
         return live::make_diagnosis(job, store, go_on);
       });
   {
-    live::MonitorService service(loaded.units, options.service, worker);
+    live::ServiceOptions service_options = options.service;
+    service_options.report_problem = store.problem();
+    live::MonitorService service(loaded.units, service_options, worker);
     service.run([&] { return stop.received(); });
   }
   const bool idle = worker.stop(kPatience);

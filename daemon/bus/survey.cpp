@@ -35,12 +35,13 @@ Survey::Survey(const idl::Participant& participant) : discovery_(participant) {
   for (const idl::RawReader& reader : readers_) wait_set_.attach(reader.readable());
 }
 
-void Survey::listen(std::chrono::milliseconds longest) {
+void Survey::listen(std::chrono::milliseconds longest, const OnSample& on_sample) {
   if (!wait_set_.wait(longest)) return;
   for (idl::RawReader& reader : readers_) {
     reader.take([&](const idl::RawSample& sample) {
       const std::string unit = sample.valid ? idl::unit_of(sample.cdr) : "";
       if (!unit.empty()) units_[reader.topic()].insert(unit);
+      if (on_sample) on_sample(reader.topic(), sample);
     });
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -26,10 +27,14 @@ class Survey {
  public:
   explicit Survey(const idl::Participant& participant);
 
-  /// Waits for samples, at most `longest`, and notes their units.
-  void listen(std::chrono::milliseconds longest);
+  /// Called with the topic's name and each of its samples.
+  using OnSample = std::function<void(const std::string&, const idl::RawSample&)>;
+
+  /// Waits for samples, at most `longest`, and notes their units. `on_sample` may be empty.
+  void listen(std::chrono::milliseconds longest, const OnSample& on_sample = {});
   /// Every topic that somebody else reads or writes, by name.
   [[nodiscard]] std::vector<TopicRow> rows() const;
+  [[nodiscard]] std::vector<idl::Endpoint> endpoints() const { return discovery_.endpoints(); }
 
  private:
   idl::Discovery discovery_;

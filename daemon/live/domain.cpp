@@ -2,15 +2,28 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "core/text/printable.hpp"
 
 namespace mpm::live {
+namespace {
+
+constexpr std::chrono::seconds kLookPeriod{5};
+constexpr std::chrono::seconds kMemoryOfStrangers{10};
+constexpr std::size_t kMostStrangers = 8;
+
+}  // namespace
 
 Domain::Domain(const idl::DomainOptions& options)
     : participant_(options),
+      discovery_(participant_),
       samples_(participant_),
       layouts_(participant_, idl::kLayoutTopic, idl::layout_qos()),
-      outputs_(participant_) {}
+      other_monitors_(participant_, idl::kHealthTopic, idl::neighbour_health_qos()),
+      outputs_(participant_) {
+  around_.place = bus::place_text(options.domain, options.partition);
+}
 
 UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, Journal* journal,
                                Clock::time_point now) {
@@ -39,6 +52,7 @@ void Domain::poll(Clock::time_point now) {
 
 void Domain::report_unknown(std::string_view unit, Clock::time_point now) {
   ++unknown_unit_;
+  if (around_.strangers.size() < kMostStrangers) around_.strangers.emplace(printable(unit));
   if (!unknown_limit_.admit(now)) return;
   spdlog::warn("sample of unit '{}', which no unit file describes; ignored{}", printable(unit),
                unknown_limit_.held_back() == 0
@@ -46,8 +60,36 @@ void Domain::report_unknown(std::string_view unit, Clock::time_point now) {
                    : fmt::format(" ({} more like this before)", unknown_limit_.held_back()));
 }
 
+void Domain::hear_other_monitors(Clock::time_point now) {
+  other_monitors_.take_with_info([&](const mpm_Health& health, const idl::SampleInfo& info) {
+    if (!info.valid || health.unit == nullptr) return;
+    const auto it = units_.find(std::string_view(health.unit));
+    if (it == units_.end()) return;
+    if (bus::find_writer(around_, info.writer) == nullptr) look_around(now);
+    it->second->hear_other_monitor(bus::writer_name(around_, info.writer), now);
+  });
+}
+
+void Domain::forget_strangers(Clock::time_point now) {
+  if (now < next_forgetting_) return;
+  next_forgetting_ = now + kMemoryOfStrangers;
+  around_.strangers.clear();
+}
+
+// Reading all endpoints may take a millisecond.
+void Domain::look_around(Clock::time_point now) {
+  if (now < next_look_) return;
+  next_look_ = now + kLookPeriod;
+  around_.endpoints = discovery_.endpoints();
+}
+
 void Domain::tick(Clock::time_point now) {
-  for (const auto& [name, unit] : units_) unit->tick(now, unknown_unit_);
+  hear_other_monitors(now);
+  if (std::any_of(units_.begin(), units_.end(),
+                  [&](const auto& unit) { return unit.second->wants_endpoints(now); }))
+    look_around(now);
+  for (const auto& [name, unit] : units_) unit->tick(now, unknown_unit_, around_);
+  forget_strangers(now);
 }
 
 }  // namespace mpm::live

@@ -8,6 +8,7 @@
 #include "config/unit_config.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/unit_pipeline.hpp"
+#include "idl/discovery.hpp"
 #include "idl/output_writers.hpp"
 #include "idl/sample_readers.hpp"
 
@@ -33,12 +34,19 @@ class Domain {
 
  private:
   void report_unknown(std::string_view unit, Clock::time_point now);
+  void hear_other_monitors(Clock::time_point now);
+  void forget_strangers(Clock::time_point now);
+  void look_around(Clock::time_point now);
 
   idl::Participant participant_;
+  idl::Discovery discovery_;
   idl::SampleReaders samples_;
   idl::Reader<mpm_Layout> layouts_;
+  idl::Reader<mpm_Health> other_monitors_;
   idl::OutputWriters outputs_;
   std::map<std::string, std::unique_ptr<UnitPipeline>, std::less<>> units_;
+  bus::Surroundings around_;
+  Clock::time_point next_look_{}, next_forgetting_{};
   std::uint64_t unknown_unit_ = 0;
   host::RateLimiter unknown_limit_;
 };

@@ -19,7 +19,11 @@ bool Journal::write(const std::vector<ChannelRecord>& channels,
   for (const AlarmRecord& record : alarms)
     lines_.append(report::json_text(report::json_of(record))).append("\n");
   const bool written = std::fwrite(lines_.data(), 1, lines_.size(), file_.get()) == lines_.size();
-  return std::fflush(file_.get()) == 0 && written;
+  if (std::fflush(file_.get()) == 0 && written)
+    problem_.clear();
+  else
+    problem_ = std::generic_category().message(errno);
+  return problem_.empty();
 }
 
 }  // namespace mpm::live

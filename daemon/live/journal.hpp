@@ -17,9 +17,11 @@ class Journal {
   explicit Journal(const std::string& path);
 
   /// All channels after one frame, then the alarms that it changed. False if the file would not
-  /// take it (full disk ...).
+  /// take it (full disk ...); what it does not take is lost.
   [[nodiscard]] bool write(const std::vector<ChannelRecord>& channels,
                            const std::vector<AlarmRecord>& alarms);
+  /// Why the last write failed; empty if it did not.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
   struct Close {
@@ -27,6 +29,7 @@ class Journal {
   };
   std::unique_ptr<std::FILE, Close> file_;
   std::string lines_;
+  std::string problem_;
 };
 
 }  // namespace mpm::live

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cstdlib>
 #include <map>
 
 #include "daemon/bus/domain_options.hpp"
@@ -13,12 +14,17 @@ constexpr std::chrono::milliseconds kLongestWait{200};
 constexpr std::chrono::seconds kStatusPeriod{1};
 // A layout of 8000 tags of the greatest length. Whoever sends more fills the memory.
 constexpr int kLargestSampleKb = 1024;
+constexpr std::size_t kMostInStatus = 3;  // units whose troubles are told
 
 }  // namespace
 
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
                                const ServiceOptions& options, DiagnosisWorker& worker) {
   if (!options.journal.empty()) journal_.emplace(options.journal);
+  if (!options.use_environment && std::getenv("CYCLONEDDS_URI") != nullptr)
+    spdlog::warn(
+        "CYCLONEDDS_URI is set, but the unit files' DDS settings are used; --dds-from-environment "
+        "takes it instead");
   const Clock::time_point now = Clock::now();
   std::map<std::string, Domain*> domain_of;  // by its settings
   int asker = 0;
@@ -31,7 +37,9 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       domain = domains_.emplace_back(std::make_unique<Domain>(settings)).get();
       domain->attach_to(wait_set_);
     }
-    domain->add_unit(unit, journal_ ? &*journal_ : nullptr, now).diagnose_with(worker, asker++);
+    UnitPipeline& pipeline = domain->add_unit(unit, journal_ ? &*journal_ : nullptr, now);
+    pipeline.diagnose_with(worker, asker++);
+    if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);
     spdlog::info("{}: watching {} channels on domain {}{}", unit.unit,
                  unit.counts().inputs() * unit.counts().cv, unit.dds.domain,
                  unit.dds.partition.empty() ? "" : ", partition " + unit.dds.partition);
@@ -68,8 +76,17 @@ std::string MonitorService::status() const {
       alarms += health.active_alarms;
     }
   }
-  return fmt::format("{} units; channels: {} match, {} mismatch, {} undetermined; {} alarms", units,
-                     matching, mismatching, undetermined, alarms);
+  std::string text =
+      fmt::format("{} units; channels: {} match, {} mismatch, {} undetermined; {} alarms", units,
+                  matching, mismatching, undetermined, alarms);
+  std::size_t troubled = 0;
+  for (const auto& domain : domains_)
+    for (const auto& [name, unit] : domain->units())
+      if (!unit->trouble_text().empty() && ++troubled <= kMostInStatus)
+        text += "; " + name + ": " + unit->trouble_text();
+  if (troubled > kMostInStatus)
+    text += fmt::format("; {} more units in trouble", troubled - kMostInStatus);
+  return text;
 }
 
 }  // namespace mpm::live

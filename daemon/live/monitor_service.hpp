@@ -15,6 +15,7 @@ namespace mpm::live {
 struct ServiceOptions {
   std::string journal;           ///< file; empty: none
   bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
+  std::string report_problem;    ///< why reports of diagnoses cannot be kept; empty: they can
 };
 
 /// All units of a daemon and the loop that drives them. Everything but the diagnoses happens in the

@@ -1,11 +1,15 @@
 #include "daemon/live/report_store.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <regex>
+#include <system_error>
 #include <vector>
 
 #include "daemon/files/times/time_text.hpp"
@@ -64,6 +68,15 @@ std::string unit_folder(const std::string& unit) {
 
 ReportStore::ReportStore(std::string folder, std::size_t kept)
     : folder_(std::move(folder)), kept_(kept) {}
+
+std::string ReportStore::problem() const {
+  if (folder_.empty()) return {};
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (!error && access(folder_.c_str(), W_OK | X_OK) != 0)
+    error.assign(errno, std::generic_category());
+  return error ? folder_ + ": " + error.message() : "";
+}
 
 std::string ReportStore::write(const report::DiagnosisRun& run, std::int64_t alarm_time_ns) const {
   if (folder_.empty()) return {};

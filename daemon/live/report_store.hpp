@@ -16,6 +16,8 @@ class ReportStore {
   /// `folder` empty: nothing is kept.
   explicit ReportStore(std::string folder, std::size_t kept = kKept);
 
+  /// Why nothing can be written there, as of now; empty if it can, or nothing is kept.
+  [[nodiscard]] std::string problem() const;
   /// Returns where the report lies; empty if nothing is kept. Throws std::exception where it cannot
   /// be written.
   [[nodiscard]] std::string write(const report::DiagnosisRun& run,

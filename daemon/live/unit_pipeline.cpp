@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -18,12 +17,28 @@ namespace {
 
 constexpr std::chrono::seconds kHealthPeriod{1};
 constexpr int kSilentSamples = 10;
+// The loop turns five times a second at least.
+constexpr std::chrono::seconds kStandstill{5};
+constexpr std::chrono::seconds kTold{60};
+// Another monitor says something each second.
+constexpr std::chrono::seconds kOtherMonitorGone{10};
+constexpr std::size_t kMostInDetail = 3;
 
 host::RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
                                               std::chrono::seconds at_least) {
   return std::max<host::RateLimiter::Clock::duration>(
       at_least, std::chrono::duration_cast<host::RateLimiter::Clock::duration>(
                     std::chrono::duration<double>(sample_time_s * samples)));
+}
+
+bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
+  bus::ExpectedInputs expected;
+  expected.unit = unit.unit;
+  expected.sample_time_s = unit.sample_time_s;
+  expected.counts = unit.counts();
+  expected.needed = files::needed_kinds(unit);
+  expected.silence = samples_or(unit.sample_time_s, kSilentSamples, std::chrono::seconds(5));
+  return expected;
 }
 
 /// Nothing for a word that is none of a layout's kinds.
@@ -46,10 +61,9 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       aligner_(config.counts(), files::needed_kinds(config),
                [this](const Frame& frame) { on_frame(frame); }),
       patience_(files::frame_patience(config)),
-      silence_(samples_or(config.sample_time_s, kSilentSamples, std::chrono::seconds(5))),
+      inputs_(expected_of(config), now),
       now_(now),
       last_frame_(now),
-      last_sample_(now),
       next_health_(now) {
   health_.unit = config.unit;
   publish_initial_alarms();
@@ -81,15 +95,21 @@ void UnitPipeline::publish_initial_alarms() {
 void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
   now_ = now;
   if (!aligner_.pending()) last_frame_ = now;  // patience counts from here
-  last_sample_ = now;
+  inputs_.push(sample.kind,
+               {sample.writer, sample.interval, sample.source_time_ns, sample.values.size(),
+                sample.quality.size()},
+               now);
   const AlignerCounters before = aligner_.counters();
   aligner_.push(
       {sample.kind, sample.interval, sample.source_time_ns, sample.values, sample.quality});
   const AlignerCounters& after = aligner_.counters();
   if (after.wrong_length != before.wrong_length) report_refused(sample);
-  if (after.restarts != before.restarts)
-    spdlog::info("{}: the controller restarted: interval {} after {}", config_.unit,
-                 sample.interval, health_.interval);
+  if (after.restarts != before.restarts && restart_limit_.admit(now))
+    spdlog::info("{}: the controller restarted: interval {} after {}{}", config_.unit,
+                 sample.interval, health_.interval,
+                 restart_limit_.held_back() == 0
+                     ? ""
+                     : fmt::format(" ({} more like this before)", restart_limit_.held_back()));
 }
 
 void UnitPipeline::report_refused(const idl::SampleView& sample) {
@@ -122,9 +142,8 @@ void UnitPipeline::on_frame(const Frame& frame) {
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
-  if (journal_ != nullptr && !journal_->write(monitor_.channels(), monitor_.alarms()) &&
-      journal_limit_.admit(now_))
-    spdlog::error("{}: cannot write the journal: {}", config_.unit, std::strerror(errno));
+  if (journal_ != nullptr)
+    (void)journal_->write(monitor_.channels(), monitor_.alarms());  // problem() is in the health
   // Last, when everybody has been told: it may copy the unit's samples.
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
 }
@@ -140,8 +159,7 @@ void UnitPipeline::publish_diagnosis() {
   spdlog::warn("{}: diagnosed up to interval {}: {}{}", config_.unit, outcome->interval,
                outcome->headline,
                outcome->folder.empty() ? "" : " Report in " + outcome->folder + ".");
-  if (!outcome->file_problem.empty())
-    spdlog::error("{}: the report could not be written: {}", config_.unit, outcome->file_problem);
+  report_problem_ = outcome->file_problem;
   bool written = true;
   for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
     written = outputs_.write(AlarmStateRecord(alarm)) && written;  // the alarm is as old as it was
@@ -170,16 +188,26 @@ void UnitPipeline::check_layout(const mpm_Layout& layout) {
                config_.unit, kind, same ? "sample time" : "tags or their order");
 }
 
-void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit) {
+void UnitPipeline::hear_other_monitor(std::string name, Clock::time_point now) {
+  other_monitor_ = std::move(name);
+  other_monitor_heard_ = now;
+}
+
+void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
+                        const bus::Surroundings& around) {
+  if (now - now_ > kStandstill) {
+    stood_still_ = now;
+    stood_still_for_ = now - now_;
+  }
   now_ = now;
   if (aligner_.pending() && now - last_frame_ > patience_) aligner_.expire();
   if (diagnosis_) publish_diagnosis();
   if (now < next_health_) return;
   next_health_ = now + kHealthPeriod;
-  publish_health(unknown_unit);
+  publish_health(unknown_unit, around);
 }
 
-void UnitPipeline::publish_health(std::uint64_t unknown_unit) {
+void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around) {
   const AlignerCounters& aligner = aligner_.counters();
   health_.frames = aligner.frames;
   health_.used = monitor_.counters().used;
@@ -202,29 +230,65 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit) {
       ++health_.undetermined;
     if (channel.alarm == AlarmState::kActive) ++health_.active_alarms;
   }
-  judge_health();
+  const std::vector<bus::Trouble> found = troubles(around);
+  trouble_text_ = bus::joined_text(found, kMostInDetail);
+  for (const TroubleLog::Line& line : trouble_log_.update(found, now_))
+    spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", config_.unit,
+                line.text);
+  judge_health(found);
   incomplete_before_ = aligner.incomplete;
   if (!outputs_.write(health_) && output_limit_.admit(now_))
     spdlog::warn("{}: the health could not be published", config_.unit);
 }
 
+std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around) const {
+  using bus::Severity;
+  std::vector<bus::Trouble> found = inputs_.troubles(around, now_);
+  const auto add = [&found](const char* key, Severity severity, std::string text) {
+    found.push_back({key, severity, std::move(text)});
+  };
+  if (!wrong_layout_.empty())
+    add("layout", Severity::kOutOfSpecification,
+        "layout differs from the unit file: " + wrong_layout_);
+  // Where a topic is missing or a counter jumped, that is why.
+  if (health_.incomplete != incomplete_before_ &&
+      (found.empty() || found.front().severity == Severity::kMaintenanceRequired))
+    add("incomplete", Severity::kOutOfSpecification, "data incomplete");
+  if (stood_still_ && now_ - *stood_still_ < kTold)
+    add("standstill", Severity::kOutOfSpecification,
+        fmt::format(
+            "the monitor itself stood still for {} s: its machine is too busy or was asleep",
+            std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
+  if (!other_monitor_.empty() && now_ - other_monitor_heard_ < kOtherMonitorGone)
+    add("other monitor", Severity::kMaintenanceRequired,
+        "another monitor watches this unit as well: " + other_monitor_ +
+            "; readers see both in turn");
+  if (journal_ != nullptr && !journal_->problem().empty())
+    add("journal", Severity::kMaintenanceRequired,
+        "the journal cannot be written: " + journal_->problem());
+  if (!report_problem_.empty())
+    add("reports", Severity::kMaintenanceRequired,
+        "reports of diagnoses cannot be kept: " + report_problem_);
+  sort_by_severity(found);
+  return found;
+}
+
 // The worst of what NE 107 has a word for.
-void UnitPipeline::judge_health() {
+void UnitPipeline::judge_health(const std::vector<bus::Trouble>& troubles) {
   const auto set = [this](const char* state, std::string detail) {
     health_.state = state;
     health_.detail = std::move(detail);
   };
-  const auto silent_s = std::chrono::duration_cast<std::chrono::seconds>(now_ - last_sample_);
-  if (health_.frames == 0)
-    set("function_check", "no complete data yet");
-  else if (now_ - last_sample_ > silence_)
-    set("failure", "no data for " + std::to_string(silent_s.count()) + " s");
-  else if (!wrong_layout_.empty())
-    set("out_of_specification", "layout differs from the unit file: " + wrong_layout_);
-  else if (health_.incomplete != incomplete_before_)
-    set("out_of_specification", "data incomplete");
+  const std::string alarms = std::to_string(health_.active_alarms) + " alarms";
+  if (!troubles.empty() && troubles.front().severity > bus::Severity::kMaintenanceRequired)
+    set(to_string(troubles.front().severity), trouble_text_);
+  else if (health_.frames == 0)
+    set("function_check",
+        "no complete data yet" + (trouble_text_.empty() ? "" : "; " + trouble_text_));
   else if (health_.active_alarms > 0)
-    set("maintenance_required", std::to_string(health_.active_alarms) + " alarms");
+    set("maintenance_required", alarms + (trouble_text_.empty() ? "" : "; " + trouble_text_));
+  else if (!troubles.empty())
+    set(to_string(troubles.front().severity), trouble_text_);
   else if (health_.matching + health_.mismatching == 0)
     set("function_check", "nothing determined yet");
   else

@@ -4,20 +4,23 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/unit_config.hpp"
 #include "core/signal/aligner.hpp"
+#include "daemon/bus/unit_inputs.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/journal.hpp"
 #include "daemon/live/live_diagnosis.hpp"
+#include "daemon/live/trouble_log.hpp"
 #include "daemon/report/unit_monitor.hpp"
 #include "idl/output_writers.hpp"
 #include "idl/sample_view.hpp"
 
 namespace mpm::live {
 
-/// One unit from samples to outputs: aligner -> monitor -> records -> DDS and journal; and what its
-/// alarms are diagnosed to come from.
+/// One unit from samples to outputs: aligner -> monitor -> records -> DDS and journal; what its
+/// alarms are diagnosed to come from; and what is wrong with its data, its neighbours and its disk.
 class UnitPipeline {
  public:
   using Clock = std::chrono::steady_clock;
@@ -33,17 +36,28 @@ class UnitPipeline {
   void push(const idl::SampleView& sample, Clock::time_point now);
   /// What the control system says its values are; complains if the unit file says otherwise.
   void check_layout(const mpm_Layout& layout);
+  /// Another monitor of this unit said something: `name`, as idl::name_of.
+  void hear_other_monitor(std::string name, Clock::time_point now);
+  /// Reports cannot be kept, and why; empty: they can.
+  void set_report_problem(std::string problem) { report_problem_ = std::move(problem); }
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
-  void tick(Clock::time_point now, std::uint64_t unknown_unit);
+  void tick(Clock::time_point now, std::uint64_t unknown_unit, const bus::Surroundings& around);
+  /// True while the list of endpoints in the surroundings is of use.
+  [[nodiscard]] bool wants_endpoints(Clock::time_point now) const {
+    return inputs_.wants_endpoints(now);
+  }
 
   [[nodiscard]] const HealthRecord& health() const { return health_; }
+  /// What is wrong, in words, apart from the alarms; empty if nothing is.
+  [[nodiscard]] const std::string& trouble_text() const { return trouble_text_; }
 
  private:
   void on_frame(const Frame& frame);
   void publish_initial_alarms();
   void publish_diagnosis();
-  void publish_health(std::uint64_t unknown_unit);
-  void judge_health();
+  void publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around);
+  [[nodiscard]] std::vector<bus::Trouble> troubles(const bus::Surroundings& around) const;
+  void judge_health(const std::vector<bus::Trouble>& troubles);
   void report_refused(const idl::SampleView& sample);
 
   config::UnitConfig config_;
@@ -53,15 +67,21 @@ class UnitPipeline {
   Aligner aligner_;
   std::optional<LiveDiagnosis> diagnosis_;
   Clock::duration patience_;  // without a frame while something waits
-  Clock::duration silence_;   // without any sample until that is a failure
-  Clock::time_point now_;     // of the event loop
+  bus::UnitInputs inputs_;
+  TroubleLog trouble_log_;
+  std::string trouble_text_;
+  Clock::time_point now_;  // of the event loop
   Clock::time_point last_frame_;
-  Clock::time_point last_sample_;
   Clock::time_point next_health_;
+  std::optional<Clock::time_point> stood_still_;  // when this process went on
+  Clock::duration stood_still_for_{};
+  std::string other_monitor_;  // who, and when it was heard
+  Clock::time_point other_monitor_heard_;
+  std::string report_problem_;
   HealthRecord health_;
   std::uint64_t incomplete_before_ = 0;  // at the last health
   std::string wrong_layout_;             // kinds whose layout differs; empty = none known
-  host::RateLimiter refused_limit_, output_limit_, journal_limit_;
+  host::RateLimiter refused_limit_, output_limit_, restart_limit_;
 };
 
 }  // namespace mpm::live

@@ -172,8 +172,7 @@ std::optional<std::size_t> needed_by(std::size_t i, const Problem& problem,
     in[j] = false;
     const ModelSpec with = extend(problem, found, in, keep, judges.open);
     in[i] = false;
-    const Errors errors(effect, with, extend(problem, found, in, keep, judges.open),
-                        judges.unseen);
+    const Errors errors(effect, with, extend(problem, found, in, keep, judges.open), judges.unseen);
     double sure_gain = 0.0;
     if (judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
                selection.wanders[i], sure_gain) == Fate::kRepaired ||

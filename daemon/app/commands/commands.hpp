@@ -31,5 +31,9 @@ void add_echo(CLI::App& app, int& exit_code);
 /// `mpm hz` and `mpm delay`: how often samples come, and how old they are.
 void add_hz(CLI::App& app, int& exit_code);
 void add_delay(CLI::App& app, int& exit_code);
+/// `mpm doctor`: what is wrong between gateway, bus and monitor.
+void add_doctor(CLI::App& app, int& exit_code);
+/// `mpm status`: one line for a monitoring system.
+void add_status(CLI::App& app, int& exit_code);
 
 }  // namespace mpm::app

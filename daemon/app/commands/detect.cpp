@@ -45,7 +45,7 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
     monitor.push(frame);
     report.alarms.insert(report.alarms.end(), monitor.alarms().begin(), monitor.alarms().end());
     if (journal != nullptr && !journal->write(monitor.channels(), monitor.alarms()))
-      throw std::runtime_error("the journal could not be written");
+      throw std::runtime_error("the journal could not be written: " + journal->problem());
   }
   const MonitorCounters& counters = monitor.counters();
   report.samples = counters.frames;

@@ -15,4 +15,16 @@ void add_domain_flags(CLI::App& command, idl::DomainOptions& domain) {
                    "take the DDS settings from CYCLONEDDS_URI");
 }
 
+idl::DomainOptions with_flags(const CLI::App& command, idl::DomainOptions settings,
+                              const idl::DomainOptions& flags) {
+  const auto given = [&](const char* name) { return command.get_option(name)->count() > 0; };
+  if (given("--domain")) settings.domain = flags.domain;
+  if (given("--partition")) settings.partition = flags.partition;
+  if (given("--interface")) settings.interface = flags.interface;
+  if (given("--peer")) settings.peers = flags.peers;
+  if (given("--multicast")) settings.multicast = flags.multicast;
+  settings.use_environment = flags.use_environment;
+  return settings;
+}
+
 }  // namespace mpm::app

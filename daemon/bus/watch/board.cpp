@@ -99,6 +99,11 @@ void Board::show(const AlarmStateRecord& alarm) {
 void Board::show(const HealthRecord& health) {
   UnitBoard* board = board_of(health.unit);
   if (board == nullptr) return;
+  // It counts from the start of its daemon. What another one found does not stand any more.
+  if (board->gone || health.frames < board->health.frames) {
+    board->channels.clear();
+    board->alarms.clear();
+  }
   board->gone = false;
   board->health = health;
 }

@@ -28,7 +28,8 @@ struct UnitBoard {
   std::uint64_t samples_at_rate = 0;  // when the rate was last taken
 };
 
-/// Gathers outputs into what is worth showing.
+/// Gathers outputs into what is worth showing. When the monitor of a unit starts anew, what the one
+/// before it said goes.
 class Board {
  public:
   /// `unit` empty: all.

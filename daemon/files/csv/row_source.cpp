@@ -23,7 +23,8 @@ std::string listed(const std::map<std::string, std::uint64_t, std::less<>>& coun
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::string text;
   for (std::size_t i = 0; i < words.size() && i < kNamed; ++i)
-    text += (i > 0 ? ", " : "") + words[i].second + " (" + std::to_string(words[i].first) + ")";
+    text += (i > 0 ? ", " : "") + printable(words[i].second) + " (" +
+            std::to_string(words[i].first) + ")";
   return words.size() > kNamed ? text + " ..." : text;
 }
 
@@ -102,7 +103,7 @@ std::int64_t read_time(const LineReader& lines, const std::vector<Cell>& cells,
   }
   const std::string text = time_text(cells, columns);
   if (const auto time_ns = times.read(text, series, problem)) return *time_ns;
-  lines.fail(cells[columns.time].column, "'" + text + "' " + problem);
+  lines.fail(cells[columns.time].column, "'" + printable(text) + "' " + problem);
 }
 
 Quality read_quality(const LineReader& lines, const CsvFormat& format, const QualityColumn& column,
@@ -111,8 +112,8 @@ Quality read_quality(const LineReader& lines, const CsvFormat& format, const Qua
       parse_quality(cell.text, column.kind, format.zero_is_good && !column.sure);
   if (quality) return *quality;
   if (column.sure)
-    lines.fail(cell.column, "'" + printable(cell.text) +
-                                "' is no quality: good, uncertain, bad or an OPC code");
+    lines.fail(cell.column,
+               "'" + printable(cell.text) + "' is no quality: good, uncertain, bad or an OPC code");
   count(cell.text, tally.qualities);
   return Quality::kBad;
 }

@@ -15,7 +15,8 @@ using Eigen::VectorXd;
 using test::lag;
 
 // Loops in closed form: y(k+1) = p y(k) + ratio * 2 (1 - p) u(k), a disturbance on the output, and
-// a PI controller at a set-point that stands still where none is given. The model says gain 2, time constant 10.
+// a PI controller at a set-point that stands still where none is given. The model says gain 2, time
+// constant 10.
 constexpr Index kRows = 1800;
 
 struct Loop {
@@ -84,9 +85,9 @@ TEST_CASE("what follows the CV's own set-point is told, and not named") {
     CAPTURE(seed);
     const VectorXd setpoint = test::telegraph(seed, kRows, 60);
     const VectorXd moved = test::first_order(setpoint, 0.3, 12.0);
-    const Diagnosis diagnosis = Loop(1.0, moved + 0.05 * test::normal(seed + 5, kRows),
-                                     VectorXd::Zero(kRows), setpoint)
-                                    .diagnosed();
+    const Diagnosis diagnosis =
+        Loop(1.0, moved + 0.05 * test::normal(seed + 5, kRows), VectorXd::Zero(kRows), setpoint)
+            .diagnosed();
     CHECK(accusations(diagnosis).empty());
     for (const Finding& finding : diagnosis.findings)
       CHECK(finding.subject.cause != &causes::unmodelled_input());

@@ -46,6 +46,26 @@ TEST_CASE("rows and columns follow the layout, then the natural order") {
   CHECK(unit.inputs == std::vector<std::string>{"u10", "u1", "u2", "d1"});
 }
 
+TEST_CASE("a monitor that starts anew does not stand by what the one before it said") {
+  const bool heard_of_the_end = GENERATE(true, false);
+  Board board("");
+  HealthRecord health;
+  health.unit = "shell";
+  health.frames = 812;
+  board.update(health);
+  board.update(channel("u1", "y1", Verdict::kMismatch));
+  board.update(alarm("u1", "y1", AlarmChange::kActive));
+  health.frames = 813;
+  board.update(health);
+  CHECK(board.units().at("shell").channels.size() == 1);
+  if (heard_of_the_end) board.update(idl::MonitorGone{"shell"});
+  health.frames = 0;
+  board.update(health);
+  CHECK(board.units().at("shell").channels.empty());
+  CHECK_FALSE(board.any_alarm());
+  CHECK(render(board, {false, false}).find("mismatch") == std::string::npos);
+}
+
 TEST_CASE("the picture says every verdict in words, why it is undetermined, and the alarms") {
   Board board("");
   CHECK(render(board, {}) == "waiting for a monitor ...\n");

@@ -303,10 +303,10 @@ TEST_CASE("A file in ISO 8859-1 is read, and told") {
 }
 
 TEST_CASE("What a wrong cell holds is told in one short line") {
-  const std::string cell = "\x1b[2J" + std::string(100'000, 'x');
+  const std::string cell = "1\x1b[2J" + std::string(100'000, 'x');
   const std::string error = error_of("time,u1,u2,y1\n0,1," + cell + ",3\n");
-  CHECK(error.rfind("d.csv:2:5: error: '\\x1b[2Jxxx", 0) == 0);
+  CHECK(error.rfind("d.csv:2:5: error: '1\\x1b[2Jxxx", 0) == 0);
   CHECK(error.size() < 300);
-  CHECK(error_of("time,u1,u2,y1," + cell + "\n0,1,x,3,4\n") ==
-        "d.csv:2:5: error: 'x' is no number; leave empty what is missing");
+  CHECK(error_of("time,u1,u2,y1," + cell + "\n0,1,2x,3,4\n") ==
+        "d.csv:2:5: error: '2x' is no number; leave empty what is missing");
 }

@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/load_unit.hpp"
+#include "daemon/app/commands/commands.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/quantity.hpp"
+#include "daemon/bus/doctor/examination.hpp"
+#include "daemon/bus/domain_options.hpp"
+#include "daemon/files/aligning.hpp"
+#include "daemon/host/logging.hpp"
+#include "daemon/host/signals.hpp"
+
+namespace mpm::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kLongestWait{50};
+// How long to look where nobody says it: a slow unit must have had its turn.
+constexpr double kShortestS = 5.0, kLongestS = 180.0, kSampleTimes = 3.0;
+
+struct DoctorOptions {
+  std::vector<std::string> config;
+  idl::DomainOptions domain;
+  CLI::App* command = nullptr;  // knows which flags were given
+  double seconds = 0.0;         // 0: as long as the units need
+  bool json = false;
+};
+
+Clock::duration duration_of(double seconds) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
+  bus::ExpectedInputs expected;
+  expected.unit = unit.unit;
+  expected.sample_time_s = unit.sample_time_s;
+  expected.counts = unit.counts();
+  expected.needed = files::needed_kinds(unit);
+  return expected;
+}
+
+bool same_place(const idl::DomainOptions& a, const idl::DomainOptions& b) {
+  return idl::domain_xml(a) == idl::domain_xml(b);
+}
+
+bool ignores_environment(const idl::DomainOptions& domain) {
+  return !domain.use_environment && std::getenv("CYCLONEDDS_URI") != nullptr;
+}
+
+// 0, or 1 if something is wrong.
+int examine(const DoctorOptions& options, const std::vector<bus::ExpectedInputs>& units,
+            host::StopSignal& stop) {
+  double seconds = options.seconds;
+  if (seconds == 0.0) {
+    seconds = kShortestS;
+    for (const bus::ExpectedInputs& unit : units)
+      seconds = std::max(seconds, kSampleTimes * unit.sample_time_s);
+    seconds = std::min(seconds, kLongestS);
+  }
+  const idl::Participant participant(options.domain);
+  bus::Examination examination(participant,
+                               bus::place_text(options.domain.domain, options.domain.partition),
+                               units, duration_of(seconds));
+  const Clock::time_point end = Clock::now() + duration_of(seconds);
+  while (!stop.received() && Clock::now() < end) examination.listen(kLongestWait);
+  examination.listen(kLongestWait);
+  bus::Findings findings = examination.findings();
+  if (ignores_environment(options.domain))
+    findings.notes.emplace_back(
+        "CYCLONEDDS_URI is set and was not used; --dds-from-environment takes it");
+  if (options.json)
+    std::cout << to_json(findings).dump(-1, ' ', false,
+                                        nlohmann::ordered_json::error_handler_t::replace)
+              << '\n';
+  else
+    std::cout << to_text(findings);
+  return findings.all_well() ? 0 : 1;
+}
+
+int doctor(DoctorOptions options) {
+  host::StopSignal stop;  // before any thread
+  host::set_up_logging("error");
+  std::vector<bus::ExpectedInputs> units;
+  if (!options.config.empty()) {
+    const config::LoadUnitsResult loaded = config::load_units(options.config);
+    for (const config::Finding& finding : loaded.findings) std::cerr << format(finding) << '\n';
+    if (!loaded.ok() || loaded.units.empty()) return 3;
+    std::optional<idl::DomainOptions> place;
+    for (const config::UnitConfig& unit : loaded.units) {
+      const idl::DomainOptions here =
+          with_flags(*options.command, bus::domain_options(unit.dds), options.domain);
+      if (place && !same_place(*place, here)) {
+        std::cerr << "mpm: error: the units are on different domains; examine them one by one\n";
+        return 3;
+      }
+      place = here;
+      units.push_back(expected_of(unit));
+    }
+    options.domain = *place;
+  }
+  return examine(options, units, stop);
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("doctor", "say what is wrong between gateway, bus and monitor");
+  const auto options = std::make_shared<DoctorOptions>();
+  options->command = command;
+  command->add_option("-c,--config", options->config,
+                      "unit file, or folder of unit files: what should be there, and where; "
+                      "without it, whatever is on the domain");
+  add_domain_flags(*command, options->domain);
+  command
+      ->add_option("--seconds", options->seconds,
+                   "how long to look, as 90 or 1.5h (default: three sample times, 5 s to 180 s)")
+      ->transform(positive_time_value());
+  command->add_flag("--json", options->json, "print one JSON object");
+  command->footer(
+      "Writes nothing to the bus.\n"
+      "Examples:\n"
+      "  mpm doctor --config shell.yaml\n"
+      "  mpm doctor --domain 3 --seconds 30 --json\n"
+      "Exit codes: 0 all is well, 1 something is wrong, 2 failed, 3 bad usage or bad unit file");
+  command->callback([options, &exit_code] { exit_code = doctor(*options); });
+}
+
+}  // namespace mpm::app

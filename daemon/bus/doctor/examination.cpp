@@ -1,0 +1,250 @@
+#include "daemon/bus/doctor/examination.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "core/text/printable.hpp"
+#include "idl/topic_catalog.hpp"
+
+namespace mpm::bus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Units of a bus on which somebody makes names up.
+constexpr std::size_t kMostUnits = 1000;
+// A clock that is off by more is to be told; by more than a day it is a replay or a simulation.
+constexpr double kClockOffS = 10.0;
+constexpr double kOtherTimeS = 86400.0;
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+std::optional<SignalKind> kind_of(const char* name, const char* (*name_of)(SignalKind)) {
+  for (const SignalKind kind : idl::kTopicKinds)
+    if (std::strcmp(name_of(kind), name) == 0) return kind;
+  return std::nullopt;
+}
+
+double clock_offset_s(std::int64_t source_time_ns) {
+  const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
+  return 1e-9 * (static_cast<double>(wall.count()) - static_cast<double>(source_time_ns));
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + printable(word);
+  return text;
+}
+
+// Whom nobody hears.
+std::vector<Trouble> unheard(const std::vector<idl::Endpoint>& endpoints) {
+  std::vector<Trouble> troubles;
+  for (const idl::Endpoint& endpoint : endpoints) {
+    if (endpoint.mismatch.empty()) continue;
+    const bool input = idl::find_known_topic(endpoint.topic)->input;
+    troubles.push_back({"mismatch", input ? Severity::kFailure : Severity::kMaintenanceRequired,
+                        idl::name_of(endpoint.process) +
+                            (endpoint.writer ? " writes " : " reads ") + endpoint.topic +
+                            (endpoint.writer ? ", and nobody of ours hears it: "
+                                             : ", and gets nothing of ours: ") +
+                            listed(endpoint.mismatch)});
+  }
+  return troubles;
+}
+
+}  // namespace
+
+Examination::Examination(const idl::Participant& participant, std::string place,
+                         const std::vector<ExpectedInputs>& units, Clock::duration silence)
+    : survey_(participant),
+      place_(std::move(place)),
+      start_(Clock::now()),
+      silence_(silence),
+      open_(units.empty()) {
+  for (ExpectedInputs expected : units) {
+    expected.silence = silence;
+    const std::string name = expected.unit;
+    units_.emplace(name, Unit{UnitInputs(std::move(expected), start_), true, {}, {}});
+  }
+}
+
+void Examination::listen(std::chrono::milliseconds longest) {
+  survey_.listen(longest, [this](const std::string& topic, const idl::RawSample& sample) {
+    if (sample.valid) hear(topic, sample);
+  });
+}
+
+Examination::Unit* Examination::unit_of(const char* name) {
+  if (name == nullptr || *name == '\0') return nullptr;
+  if (const auto it = units_.find(name); it != units_.end()) return &it->second;
+  if (!open_) {
+    if (strangers_.size() < kMostUnits) strangers_.insert(printable(name));
+    return nullptr;
+  }
+  if (units_.size() >= kMostUnits) return nullptr;
+  ExpectedInputs expected;
+  expected.unit = name;
+  expected.silence = silence_;
+  return &units_.emplace(name, Unit{UnitInputs(std::move(expected), start_), false, {}, {}})
+              .first->second;
+}
+
+void Examination::hear(const std::string& topic, const idl::RawSample& sample) {
+  if (const auto kind = kind_of(topic.c_str(), idl::sample_topic)) {
+    if (const mpm_Sample* input = samples_.decode(sample.cdr)) hear(*kind, *input, sample.writer);
+  } else if (topic == idl::kLayoutTopic) {
+    if (const mpm_Layout* layout = layouts_.decode(sample.cdr)) hear(*layout);
+  } else if (topic == idl::kHealthTopic) {
+    const mpm_Health* health = health_.decode(sample.cdr);
+    if (health == nullptr || health->unit == nullptr) return;
+    // The monitor of another unit is no stranger.
+    if (!open_ && units_.find(health->unit) == units_.end()) return;
+    if (Unit* unit = unit_of(health->unit))
+      unit->monitors[sample.writer] = {health->state == nullptr ? "" : health->state,
+                                       health->detail == nullptr ? "" : health->detail,
+                                       health->active_alarms, Clock::now()};
+  }
+}
+
+void Examination::hear(SignalKind kind, const mpm_Sample& sample, std::uint64_t writer) {
+  Unit* unit = unit_of(sample.unit);
+  if (unit == nullptr) return;
+  const Clock::time_point now = Clock::now();
+  unit->inputs.push(kind,
+                    {writer, sample.interval, sample.source_time_ns, sample.values._length,
+                     sample.quality._length},
+                    now);
+  Stream& stream = unit->streams[{kind, writer}];
+  if (stream.last != Clock::time_point{}) stream.periods_s.add(seconds(now - stream.last));
+  stream.last = now;
+  stream.offsets_s.add(clock_offset_s(sample.source_time_ns));
+}
+
+// A unit that no file describes is what its control system says.
+void Examination::hear(const mpm_Layout& layout) {
+  const auto kind = layout.kind == nullptr ? std::nullopt : kind_of(layout.kind, idl::kind_name);
+  if (!kind || !open_) return;
+  Unit* unit = unit_of(layout.unit);
+  if (unit == nullptr) return;
+  ExpectedInputs expected = unit->inputs.expected();
+  expected.sample_time_s = layout.sample_time_s;
+  const auto count = static_cast<int>(layout.tags._length);
+  if (*kind == SignalKind::kMv)
+    expected.counts.mv = count;
+  else if (*kind == SignalKind::kDv)
+    expected.counts.dv = count;
+  else
+    expected.counts.cv = count;
+  expected.needed[static_cast<std::size_t>(*kind)] = count > 0 && *kind != SignalKind::kSetpoint;
+  unit->inputs.expect(std::move(expected));
+  unit->described = true;
+}
+
+TopicFindings Examination::topic_of(const Unit& unit, SignalKind kind, const Surroundings& around,
+                                    Clock::time_point now) const {
+  TopicFindings topic;
+  topic.topic = idl::sample_topic(kind);
+  topic.needed = unit.inputs.expected().needed[static_cast<std::size_t>(kind)];
+  for (const idl::Endpoint& endpoint : around.endpoints) {
+    if (!endpoint.writer || endpoint.topic != topic.topic) continue;
+    const bool others = std::any_of(units_.begin(), units_.end(), [&](const auto& other) {
+      return other.second.streams.count({kind, endpoint.handle}) > 0;
+    });
+    const auto stream = unit.streams.find({kind, endpoint.handle});
+    if (stream == unit.streams.end() && others) continue;  // a gateway of other units
+    WriterFindings& writer = topic.writers.emplace_back();
+    writer.process = endpoint.process;
+    writer.mismatch = endpoint.mismatch;
+    if (stream == unit.streams.end()) continue;
+    const WindowStatistics& periods = stream->second.periods_s;
+    writer.rate_hz = periods.mean() > 0.0 ? 1.0 / periods.mean() : 0.0;
+    writer.age_s = seconds(now - stream->second.last);
+    writer.clock_offset_s = stream->second.offsets_s.mean();
+    for (const InputStream::Writer& seen : unit.inputs.stream(kind).writers())
+      if (seen.samples > 0 && seen.handle == endpoint.handle) {
+        writer.samples = seen.samples;
+        writer.skipped = seen.skipped;
+        writer.repeated = seen.repeated;
+      }
+  }
+  return topic;
+}
+
+UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& around,
+                                      Clock::time_point now) const {
+  UnitFindings findings;
+  findings.unit = unit.inputs.expected().unit;
+  for (const SignalKind kind : idl::kTopicKinds) {
+    findings.topics.push_back(topic_of(unit, kind, around, now));
+    for (const WriterFindings& writer : findings.topics.back().writers) {
+      const double off_s = std::abs(writer.clock_offset_s);
+      if (writer.samples > 0 && off_s > kClockOffS && off_s < kOtherTimeS)
+        findings.troubles.push_back(
+            {"clock offset", Severity::kOutOfSpecification,
+             fmt::format("the source times of {} are {:.0f} s {} this machine's clock",
+                         findings.topics.back().topic, off_s,
+                         writer.clock_offset_s > 0.0 ? "behind" : "ahead of")});
+    }
+  }
+  if (unit.described) {
+    const std::vector<Trouble> troubles = unit.inputs.troubles(around, now);
+    findings.troubles.insert(findings.troubles.end(), troubles.begin(), troubles.end());
+  }
+  for (const auto& [writer, word] : unit.monitors) {
+    const idl::Endpoint* endpoint = find_writer(around, writer);
+    if (endpoint == nullptr) continue;  // it has left
+    findings.monitors.push_back(
+        {endpoint->process, word.state, word.detail, word.active_alarms, seconds(now - word.when)});
+  }
+  if (findings.monitors.empty())
+    findings.troubles.push_back(
+        {"no monitor", Severity::kMaintenanceRequired, "no monitor watches it"});
+  if (findings.monitors.size() > 1)
+    findings.troubles.push_back(
+        {"other monitor", Severity::kMaintenanceRequired,
+         "two monitors watch it: " + idl::name_of(findings.monitors[0].process) + " and " +
+             idl::name_of(findings.monitors[1].process)});
+  // It knows more than the bus shows, of its disk for example. Alarms are what it is there for.
+  for (const MonitorFindings& monitor : findings.monitors)
+    if (monitor.state == "failure" || monitor.state == "out_of_specification" ||
+        (monitor.state == "maintenance_required" && monitor.active_alarms == 0))
+      findings.troubles.push_back(
+          {"monitor says", Severity::kMaintenanceRequired,
+           idl::name_of(monitor.process) + " says " + monitor.state + ": " + monitor.detail});
+  sort_by_severity(findings.troubles);
+  return findings;
+}
+
+Findings Examination::findings() const {
+  const Clock::time_point now = Clock::now();
+  Surroundings around{place_, survey_.endpoints(), strangers_};
+  Findings findings;
+  findings.place = place_;
+  if (around.endpoints.empty())
+    findings.troubles.push_back({"nobody", Severity::kFailure, "nobody else is on " + place_});
+  for (const auto& [name, unit] : units_) findings.units.push_back(findings_of(unit, around, now));
+  for (Trouble& trouble : unheard(around.endpoints)) {
+    // One who should write a silent topic has been named there.
+    const bool told =
+        std::any_of(findings.units.begin(), findings.units.end(), [&](const UnitFindings& unit) {
+          return std::any_of(unit.troubles.begin(), unit.troubles.end(), [](const Trouble& other) {
+            return other.text.find("does not match") != std::string::npos;
+          });
+        });
+    if (!told || trouble.severity != Severity::kFailure)
+      findings.troubles.push_back(std::move(trouble));
+  }
+  sort_by_severity(findings.troubles);
+  if (!strangers_.empty())
+    findings.notes.push_back("samples of other units go by: " +
+                             listed({strangers_.begin(), strangers_.end()}));
+  if (open_ && units_.empty() && !around.endpoints.empty())
+    findings.notes.emplace_back("no unit's samples went by and no monitor spoke");
+  return findings;
+}
+
+}  // namespace mpm::bus

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+namespace mpm::bus {
+
+/// A sample of an input, as far as it tells how the data come.
+struct Arrival {
+  std::uint64_t writer = 0;  ///< as in idl::SampleInfo
+  std::int64_t interval = 0;
+  std::int64_t source_time_ns = 0;
+  std::size_t values = 0;     ///< how many it has
+  std::size_t qualities = 0;  ///< 0 = all good
+};
+
+/// One topic of one unit as it arrives. Remembers a few numbers per writer, whatever comes.
+class InputStream {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// What one writer sent.
+  struct Writer {
+    std::uint64_t handle = 0;
+    Clock::time_point first{}, last{};
+    std::int64_t interval = 0;  ///< the last one
+    std::int64_t source_time_ns = 0;
+    std::uint64_t samples = 0;   ///< 0: nobody is in this place
+    std::uint64_t standing = 0;  ///< samples in a row that did not count on
+    std::uint64_t repeated = 0;  ///< samples of the interval of the one before
+    std::uint64_t skipped = 0;   ///< intervals left out
+  };
+  /// The interval number left out many, or went back.
+  struct Jump {
+    Clock::time_point when;
+    std::int64_t from = 0, to = 0;
+  };
+  /// The source time did not go on with the interval number.
+  struct ClockStep {
+    Clock::time_point when;
+    std::int64_t interval = 0;
+    double size_s = 0.0;
+  };
+
+  /// A jump leaves out at least so many intervals.
+  static constexpr std::int64_t kJump = 10;
+  static constexpr std::size_t kMostWriters = 4;
+
+  void push(const Arrival& arrival, double sample_time_s, Clock::time_point now);
+
+  [[nodiscard]] const std::array<Writer, kMostWriters>& writers() const { return writers_; }
+  [[nodiscard]] bool started() const { return last_.has_value(); }
+  /// Of the last sample; nothing before the first one.
+  [[nodiscard]] std::optional<Clock::time_point> last() const { return last_; }
+  /// The last sample; valid if there was one.
+  [[nodiscard]] const Arrival& newest() const { return newest_; }
+  [[nodiscard]] const std::optional<Jump>& jump() const { return jump_; }
+  [[nodiscard]] const std::optional<ClockStep>& clock_step() const { return clock_step_; }
+  /// Two writers that both sent something while the other did, and within the last `recently`; the
+  /// one that came first is the first. Nulls if there is none.
+  [[nodiscard]] std::pair<const Writer*, const Writer*> rivals(Clock::time_point now,
+                                                               Clock::duration recently) const;
+
+ private:
+  Writer& writer_of(std::uint64_t handle, Clock::time_point now);
+
+  std::array<Writer, kMostWriters> writers_;
+  Arrival newest_;
+  std::optional<Clock::time_point> last_;
+  std::optional<Jump> jump_;
+  std::optional<ClockStep> clock_step_;
+};
+
+}  // namespace mpm::bus

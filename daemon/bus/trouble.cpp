@@ -1,0 +1,33 @@
+#include "daemon/bus/trouble.hpp"
+
+#include <algorithm>
+
+namespace mpm::bus {
+
+const char* to_string(Severity severity) {
+  switch (severity) {
+    case Severity::kMaintenanceRequired:
+      return "maintenance_required";
+    case Severity::kFunctionCheck:
+      return "function_check";
+    case Severity::kOutOfSpecification:
+      return "out_of_specification";
+    default:
+      return "failure";
+  }
+}
+
+void sort_by_severity(std::vector<Trouble>& troubles) {
+  std::stable_sort(troubles.begin(), troubles.end(),
+                   [](const Trouble& a, const Trouble& b) { return a.severity > b.severity; });
+}
+
+std::string joined_text(const std::vector<Trouble>& troubles, std::size_t most) {
+  std::string text;
+  for (std::size_t i = 0; i < troubles.size() && i < most; ++i)
+    text += (text.empty() ? "" : "; ") + troubles[i].text;
+  if (troubles.size() > most) text += "; " + std::to_string(troubles.size() - most) + " more";
+  return text;
+}
+
+}  // namespace mpm::bus

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mpm::bus {
+
+/// What a trouble makes of a unit's health, as in NE 107; the worst last.
+enum class Severity { kMaintenanceRequired, kFunctionCheck, kOutOfSpecification, kFailure };
+
+/// The word of `mpm/health`.
+[[nodiscard]] const char* to_string(Severity severity);
+
+/// One reason why a unit is not watched as it should be.
+struct Trouble {
+  std::string key;  ///< what it is, while the numbers in `text` change
+  Severity severity = Severity::kFailure;
+  std::string text;  ///< for a person
+};
+
+/// Puts the worst first; those of one severity stay in their order.
+void sort_by_severity(std::vector<Trouble>& troubles);
+/// "first; second; third": at most `most` of them, and how many more there are.
+[[nodiscard]] std::string joined_text(const std::vector<Trouble>& troubles, std::size_t most);
+
+}  // namespace mpm::bus

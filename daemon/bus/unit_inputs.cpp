@@ -1,0 +1,263 @@
+#include "daemon/bus/unit_inputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <utility>
+
+#include "idl/topics.hpp"
+
+namespace mpm::bus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A jump or a clock step is over at once; so long it is told.
+constexpr std::chrono::seconds kTold{60};
+// Interval numbers of two topics that are further apart belong to two counters: what is taken in
+// one go is less.
+constexpr double kApart = 200.0;
+// Intervals between two writers from which on they are not taken for the same numbers.
+constexpr double kSameNumbers = 32.0;
+// Only of topics that both came within so many sample times, and a second.
+constexpr double kComing = 2.0;
+// Samples of one interval in a row until its counter stands.
+constexpr std::uint64_t kStanding = 10;
+
+long long whole_seconds(Clock::duration duration) {
+  return std::chrono::duration_cast<std::chrono::seconds>(duration).count();
+}
+
+std::string topic_of(SignalKind kind) { return idl::sample_topic(kind); }
+
+double apart(std::int64_t a, std::int64_t b) {
+  return std::abs(static_cast<double>(a) - static_cast<double>(b));
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+}  // namespace
+
+const idl::Endpoint* find_writer(const Surroundings& around, std::uint64_t handle) {
+  const auto found = std::find_if(
+      around.endpoints.begin(), around.endpoints.end(),
+      [&](const idl::Endpoint& endpoint) { return endpoint.writer && endpoint.handle == handle; });
+  return found == around.endpoints.end() ? nullptr : &*found;
+}
+
+std::string writer_name(const Surroundings& around, std::uint64_t handle) {
+  const idl::Endpoint* endpoint = find_writer(around, handle);
+  return idl::name_of(endpoint == nullptr ? idl::Process() : endpoint->process);
+}
+
+std::string place_text(int domain, const std::string& partition) {
+  return "domain " + std::to_string(domain) +
+         (partition.empty() ? "" : ", partition '" + partition + "'");
+}
+
+void UnitInputs::push(SignalKind kind, const Arrival& arrival, Clock::time_point now) {
+  streams_[static_cast<std::size_t>(kind)].push(arrival, expected_.sample_time_s, now);
+}
+
+bool UnitInputs::needed(SignalKind kind) const {
+  return expected_.needed[static_cast<std::size_t>(kind)];
+}
+
+bool UnitInputs::silent(SignalKind kind, Clock::time_point now) const {
+  return now - stream(kind).last().value_or(start_) >= expected_.silence;
+}
+
+bool UnitInputs::wants_endpoints(Clock::time_point now) const {
+  return std::any_of(idl::kTopicKinds.begin(), idl::kTopicKinds.end(), [&](SignalKind kind) {
+    return (needed(kind) && silent(kind, now)) ||
+           stream(kind).rivals(now, expected_.silence).first != nullptr;
+  });
+}
+
+std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::time_point now) const {
+  std::vector<Trouble> troubles;
+  add_silence(around, now, troubles);
+  add_rivals(around, now, troubles);
+  add_contents(now, troubles);
+  add_events(now, troubles);
+  sort_by_severity(troubles);
+  return troubles;
+}
+
+// What is known of the ones who should write.
+std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around) const {
+  std::vector<std::string> writers, refused;
+  for (const idl::Endpoint& endpoint : around.endpoints) {
+    if (!endpoint.writer || endpoint.topic != topic_of(kind)) continue;
+    const std::string name = idl::name_of(endpoint.process);
+    if (endpoint.mismatch.empty())
+      writers.push_back(name);
+    else
+      refused.push_back(name + " does not match: " + listed(endpoint.mismatch));
+  }
+  if (!refused.empty()) return "its writer " + listed(refused);
+  if (writers.empty()) return "nobody writes it on " + around.place;
+  if (!around.strangers.empty() && !stream(kind).started()) {
+    const std::vector<std::string> names(around.strangers.begin(), around.strangers.end());
+    return "samples come of unit '" + listed(names) + "' only";
+  }
+  return listed(writers) + (writers.size() == 1 ? " writes" : " write") + " it, but nothing of '" +
+         expected_.unit + "'";
+}
+
+void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
+                             std::vector<Trouble>& troubles) const {
+  std::vector<SignalKind> quiet;
+  std::size_t wanted = 0;
+  bool any_started = false;
+  Clock::time_point last = start_;
+  for (const SignalKind kind : idl::kTopicKinds) {
+    if (!needed(kind)) continue;
+    ++wanted;
+    any_started = any_started || stream(kind).started();
+    last = std::max(last, stream(kind).last().value_or(start_));
+    if (silent(kind, now)) quiet.push_back(kind);
+  }
+  if (quiet.empty()) return;
+  if (quiet.size() == wanted) {
+    // One sentence where all have the same reason.
+    std::vector<std::string> reasons;
+    reasons.reserve(quiet.size());
+    for (const SignalKind kind : quiet) reasons.push_back(why_silent(kind, around));
+    std::string text = any_started
+                           ? "no data for " + std::to_string(whole_seconds(now - last)) + " s"
+                           : "no data has come";
+    if (std::all_of(reasons.begin(), reasons.end(),
+                    [&](const std::string& reason) { return reason == reasons.front(); }))
+      text += " (" + topic_of(quiet.front()) + (quiet.size() > 1 ? " ..." : "") + ": " +
+              reasons.front() + ")";
+    else
+      for (std::size_t i = 0; i < quiet.size(); ++i)
+        text += (i == 0 ? " (" : "; ") + topic_of(quiet[i]) + ": " + reasons[i] +
+                (i + 1 == quiet.size() ? ")" : "");
+    troubles.push_back(
+        {"no data", any_started ? Severity::kFailure : Severity::kFunctionCheck, std::move(text)});
+    return;
+  }
+  for (const SignalKind kind : quiet) {
+    const std::string since =
+        stream(kind).started()
+            ? " for " + std::to_string(whole_seconds(now - *stream(kind).last())) + " s"
+            : "";
+    // Frames come all the same, without it; where no prediction ever came it is simulated.
+    const bool simulated = kind == SignalKind::kPrediction && !stream(kind).started();
+    troubles.push_back({"silent " + topic_of(kind), Severity::kOutOfSpecification,
+                        "nothing on " + topic_of(kind) + since + " (" + why_silent(kind, around) +
+                            ")" + (simulated ? ": the unit file's model predicts" : "")});
+  }
+}
+
+void UnitInputs::add_rivals(const Surroundings& around, Clock::time_point now,
+                            std::vector<Trouble>& troubles) const {
+  std::vector<std::string> topics;
+  const InputStream::Writer* first = nullptr;
+  const InputStream::Writer* second = nullptr;
+  bool same = true;
+  for (const SignalKind kind : idl::kTopicKinds) {
+    const auto [a, b] = stream(kind).rivals(now, expected_.silence);
+    if (a == nullptr) continue;
+    topics.push_back(topic_of(kind));
+    first = first == nullptr ? a : first;
+    second = second == nullptr ? b : second;
+    same = same && apart(a->interval, b->interval) <= kSameNumbers;
+  }
+  if (first == nullptr || second == nullptr) return;
+  const std::string who = "two gateways write " + listed(topics) + ": " +
+                          writer_name(around, first->handle) + " and " +
+                          writer_name(around, second->handle);
+  if (same)
+    troubles.push_back({"two gateways", Severity::kMaintenanceRequired,
+                        who + "; of each interval the first sample counts"});
+  else
+    troubles.push_back({"two gateways", Severity::kFailure,
+                        who + ", with other interval numbers (" + std::to_string(first->interval) +
+                            ", " + std::to_string(second->interval) +
+                            "): the monitor cannot tell which one is right"});
+}
+
+void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troubles) const {
+  const Clock::duration coming = std::max<Clock::duration>(
+      std::chrono::seconds(1),
+      std::chrono::duration_cast<Clock::duration>(
+          std::chrono::duration<double>(kComing * expected_.sample_time_s)));
+  std::optional<SignalKind> ahead, behind;
+  for (const SignalKind kind : idl::kTopicKinds) {
+    const InputStream& input = stream(kind);
+    if (!needed(kind) || !input.started() || silent(kind, now)) continue;
+    const auto count = static_cast<std::size_t>(expected_.counts.of(kind));
+    const Arrival& newest = input.newest();
+    if (newest.values != count || (newest.qualities != 0 && newest.qualities != count))
+      troubles.push_back({"length " + topic_of(kind), Severity::kFailure,
+                          topic_of(kind) + " has " + std::to_string(newest.values) +
+                              " values and " + std::to_string(newest.qualities) +
+                              " qualities where the unit file has " + std::to_string(count) +
+                              " signals"});
+    for (const InputStream::Writer& writer : input.writers())
+      if (writer.standing >= kStanding && now - writer.last < expected_.silence)
+        troubles.push_back({"standing " + topic_of(kind), Severity::kFailure,
+                            topic_of(kind) + " repeats interval " +
+                                std::to_string(writer.interval) + ": the counter stands"});
+    if (now - *input.last() > coming) continue;
+    if (!ahead || newest.interval > stream(*ahead).newest().interval) ahead = kind;
+    if (!behind || newest.interval < stream(*behind).newest().interval) behind = kind;
+  }
+  const bool rivals = std::any_of(troubles.begin(), troubles.end(), [](const Trouble& trouble) {
+    return trouble.key == "two gateways";
+  });
+  if (rivals || !ahead ||
+      apart(stream(*ahead).newest().interval, stream(*behind).newest().interval) <= kApart)
+    return;
+  troubles.push_back({"apart", Severity::kFailure,
+                      "interval numbers do not meet: " + topic_of(*ahead) + " is at " +
+                          std::to_string(stream(*ahead).newest().interval) + ", " +
+                          topic_of(*behind) + " at " +
+                          std::to_string(stream(*behind).newest().interval)});
+}
+
+void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& troubles) const {
+  // Two counters jump all the time, and that is said already.
+  const bool rivals = std::any_of(troubles.begin(), troubles.end(), [](const Trouble& trouble) {
+    return trouble.key == "two gateways" && trouble.severity == Severity::kFailure;
+  });
+  if (rivals) return;
+  std::vector<std::string> jumped, stepped;
+  InputStream::Jump jump;
+  InputStream::ClockStep step;
+  for (const SignalKind kind : idl::kTopicKinds) {
+    const InputStream& input = stream(kind);
+    if (input.jump() && now - input.jump()->when < kTold) {
+      jumped.push_back(topic_of(kind));
+      jump = *input.jump();
+    }
+    if (input.clock_step() && now - input.clock_step()->when < kTold) {
+      stepped.push_back(topic_of(kind));
+      step = *input.clock_step();
+    }
+  }
+  if (!jumped.empty())
+    troubles.push_back({"jump", Severity::kOutOfSpecification,
+                        "the interval number went from " + std::to_string(jump.from) + " to " +
+                            std::to_string(jump.to) + " on " + listed(jumped)});
+  if (!stepped.empty()) {
+    char size[32];
+    std::snprintf(size, sizeof size, "%.0f s", std::abs(step.size_s));
+    troubles.push_back({"clock", Severity::kOutOfSpecification,
+                        std::string("the clock of the control system stepped ") +
+                            (step.size_s > 0.0 ? "forward" : "back") + " by " + size +
+                            " at interval " + std::to_string(step.interval) + " on " +
+                            listed(stepped)});
+  }
+}
+
+}  // namespace mpm::bus

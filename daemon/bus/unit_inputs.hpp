@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/signal/frame.hpp"
+#include "daemon/bus/input_stream.hpp"
+#include "daemon/bus/trouble.hpp"
+#include "idl/discovery.hpp"
+
+namespace mpm::bus {
+
+/// What should come of a unit.
+struct ExpectedInputs {
+  std::string unit;
+  double sample_time_s = 1.0;
+  SignalCounts counts;
+  std::array<bool, kSignalKindCount> needed{};
+  /// So long may a topic say nothing.
+  std::chrono::steady_clock::duration silence = std::chrono::seconds(5);
+};
+
+/// What else is known of the domain that a unit is on.
+struct Surroundings {
+  std::string place;                     ///< "domain 3, partition 'a'"
+  std::vector<idl::Endpoint> endpoints;  ///< of others; an outdated list only costs a name
+  std::set<std::string> strangers;       ///< units whose samples come though no unit file has them
+};
+/// Null where it is not known.
+[[nodiscard]] const idl::Endpoint* find_writer(const Surroundings& around, std::uint64_t handle);
+/// Its process, as idl::name_of.
+[[nodiscard]] std::string writer_name(const Surroundings& around, std::uint64_t handle);
+/// "domain 3", "domain 3, partition 'a'"
+[[nodiscard]] std::string place_text(int domain, const std::string& partition);
+
+/// How the samples of one unit come, and everything that is wrong with that. The same judgement
+/// for the daemon, which says it on mpm/health, and for `mpm doctor`.
+class UnitInputs {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  UnitInputs(ExpectedInputs expected, Clock::time_point now)
+      : expected_(std::move(expected)), start_(now) {}
+
+  void push(SignalKind kind, const Arrival& arrival, Clock::time_point now);
+  /// The worst first. What only happens once is told for a minute.
+  [[nodiscard]] std::vector<Trouble> troubles(const Surroundings& around,
+                                              Clock::time_point now) const;
+  /// True while `troubles` could use a fresh list of endpoints.
+  [[nodiscard]] bool wants_endpoints(Clock::time_point now) const;
+
+  [[nodiscard]] const ExpectedInputs& expected() const { return expected_; }
+  void expect(ExpectedInputs expected) { expected_ = std::move(expected); }
+  [[nodiscard]] const InputStream& stream(SignalKind kind) const {
+    return streams_[static_cast<std::size_t>(kind)];
+  }
+
+ private:
+  [[nodiscard]] bool needed(SignalKind kind) const;
+  [[nodiscard]] bool silent(SignalKind kind, Clock::time_point now) const;
+  [[nodiscard]] std::string why_silent(SignalKind kind, const Surroundings& around) const;
+  void add_silence(const Surroundings& around, Clock::time_point now,
+                   std::vector<Trouble>& troubles) const;
+  void add_rivals(const Surroundings& around, Clock::time_point now,
+                  std::vector<Trouble>& troubles) const;
+  void add_contents(Clock::time_point now, std::vector<Trouble>& troubles) const;
+  void add_events(Clock::time_point now, std::vector<Trouble>& troubles) const;
+
+  ExpectedInputs expected_;
+  Clock::time_point start_;
+  std::array<InputStream, kSignalKindCount> streams_;
+};
+
+}  // namespace mpm::bus

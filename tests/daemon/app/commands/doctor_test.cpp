@@ -1,0 +1,43 @@
+#include <catch2/catch.hpp>
+
+#include "tests/system/process.hpp"
+
+namespace mpm::test {
+namespace {
+
+std::string unit_yaml(const std::string& unit, int domain) {
+  return "unit: " + unit +
+         "\nsample_time: 1.0\nsignals: {mv: [{tag: u1}], cv: [{tag: y1}]}\n"
+         "model: {channels: [{cv: y1, mv: u1, gain: 2, time_constants: [5]}]}\n"
+         "dds: {domain: " +
+         std::to_string(domain) + ", partition: doctor-test-nobody}\n";
+}
+
+}  // namespace
+
+TEST_CASE("mpm doctor tells trouble from wrong use by its exit code") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out"), err = folder.file("err");
+  write_file(folder.file("one.yaml"), unit_yaml("one", 7));
+  write_file(folder.file("other.yaml"), unit_yaml("other", 8));
+  write_file(folder.file("bad.yaml"), unit_yaml("bad", 7) + "no_such_key: 1\n");
+
+  CHECK(run({"mpm", "doctor", "--seconds", "no"}, out, err) == 3);
+  CHECK(run({"mpm", "doctor", "--config", folder.file("none.yaml")}, out, err) == 3);
+  CHECK(run({"mpm", "doctor", "--config", folder.file("bad.yaml")}, out, err) == 3);
+  CHECK(read_file(err).find(folder.file("bad.yaml") + ":6:1: error: ") == 0);
+  CHECK(run({"mpm", "doctor", "--config", folder.file("one.yaml"), "--config",
+             folder.file("other.yaml")},
+            out, err) == 3);
+  CHECK(run({"mpm", "doctor", "--interface", "nosuchnic0"}, out, err) == 2);
+  CHECK(run({"mpm", "doctor", "--config", folder.file("one.yaml"), "--seconds", "0.3"}, out, err) ==
+        1);
+  const std::string text = read_file(out);
+  INFO(text);
+  const std::string place = "domain 7, partition 'doctor-test-nobody'";
+  CHECK(text.find("nobody else is on " + place) != std::string::npos);
+  CHECK(text.find("one: no data has come (mpm/mv ...: nobody writes it on " + place + ")") !=
+        std::string::npos);
+}
+
+}  // namespace mpm::test

@@ -1,0 +1,62 @@
+#include "daemon/bus/doctor/findings.hpp"
+
+#include <catch2/catch.hpp>
+
+namespace mpm::bus {
+namespace {
+
+/// A unit whose gateway leaves mpm/dv out, and an HMI that asks for what no monitor offers.
+Findings sick() {
+  Findings findings;
+  findings.place = "domain 3";
+  UnitFindings& unit = findings.units.emplace_back();
+  unit.unit = "toy";
+  unit.monitors = {{{"plant1", "mpmd", "9"}, "failure", "nothing on mpm/dv", 0, 0.5}};
+  unit.topics = {{"mpm/mv", true, {{{"plant2", "gateway", "7"}, {}, 6, 1.0, 0.25, -0.5, 2, 3}}},
+                 {"mpm/dv", true, {}}};
+  unit.troubles = {{"silent mpm/dv", Severity::kFailure, "nothing on mpm/dv (nobody writes it)"}};
+  findings.troubles = {{"mismatch", Severity::kMaintenanceRequired, "hmi reads mpm/alarm"}};
+  findings.notes = {"CYCLONEDDS_URI is set and was not used"};
+  return findings;
+}
+
+}  // namespace
+
+TEST_CASE("the doctor's text has a line per writer and one per trouble, the worst first") {
+  CHECK_FALSE(sick().all_well());
+  CHECK(to_text(sick()) ==
+        "toy: trouble\n"
+        "  monitor        mpmd (process 9 on host plant1): failure (nothing on mpm/dv), 0.5 s ago\n"
+        "  mpm/mv         gateway (process 7 on host plant2): QoS matches, 1/s, last 0.2 s ago, "
+        "clock +0.500 s, 2 skipped, 3 repeated\n"
+        "  mpm/dv         nobody writes it\n"
+        "\n"
+        "1. toy: nothing on mpm/dv (nobody writes it). Let the gateway publish it, or take its "
+        "signals out of the unit file.\n"
+        "2. hmi reads mpm/alarm. Give it the QoS of docs/hmi.md.\n"
+        "note: CYCLONEDDS_URI is set and was not used\n");
+}
+
+TEST_CASE("the doctor's JSON holds the same") {
+  const nlohmann::ordered_json json = to_json(sick());
+  CHECK(json["all_well"] == false);
+  CHECK(json["units"][0]["monitors"][0]["state"] == "failure");
+  const auto& writer = json["units"][0]["topics"][0]["writers"][0];
+  CHECK(writer["program"] == "gateway");
+  CHECK(writer["qos_matches"] == true);
+  CHECK(writer["skipped"] == 2);
+  CHECK(json["troubles"][0]["unit"] == "toy");
+  CHECK(json["troubles"][0]["severity"] == "failure");
+  CHECK(json["troubles"].size() == 2);
+}
+
+TEST_CASE("where nothing is wrong the doctor says so") {
+  Findings findings = sick();
+  findings.troubles.clear();
+  findings.units[0].troubles.clear();
+  CHECK(findings.all_well());
+  CHECK(to_text(findings).find("toy: well\n") == 0);
+  CHECK(to_text(findings).find("all is well on domain 3\n") != std::string::npos);
+}
+
+}  // namespace mpm::bus

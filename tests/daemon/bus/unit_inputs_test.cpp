@@ -1,0 +1,217 @@
+#include "daemon/bus/unit_inputs.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <optional>
+
+namespace mpm::bus {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::uint64_t kGateway = 7, kOtherGateway = 8;
+
+/// A unit with one MV, one DV and two CVs, one sample a second, that a hand-moved clock drives.
+struct Scene {
+  Scene() {
+    ExpectedInputs expected;
+    expected.unit = "toy";
+    expected.counts = {1, 1, 2, 0};
+    for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv})
+      expected.needed[static_cast<std::size_t>(kind)] = true;
+    inputs.emplace(expected, now);
+    around.place = place_text(3, "plant-a");
+    for (const char* topic : {"mpm/mv", "mpm/cv"}) add_writer(topic, kGateway, "gateway");
+  }
+
+  void add_writer(const char* topic, std::uint64_t handle, const char* program,
+                  std::vector<std::string> mismatch = {}) {
+    around.endpoints.push_back(
+        {topic, "mpm::Sample", true, handle, {"plant1", program, "12"}, std::move(mismatch)});
+  }
+  void send(SignalKind kind, std::int64_t interval, std::uint64_t writer = kGateway) {
+    const auto count = static_cast<std::size_t>(inputs->expected().counts.of(kind));
+    inputs->push(kind, {writer, interval, start_ns + interval * kSecond, count, 0}, now);
+  }
+  /// One second of `kinds`.
+  void second(std::initializer_list<SignalKind> kinds, std::int64_t interval) {
+    for (const SignalKind kind : kinds) send(kind, interval);
+    now += seconds(1);
+  }
+  [[nodiscard]] std::vector<Trouble> troubles() const { return inputs->troubles(around, now); }
+  [[nodiscard]] std::string text() const { return joined_text(troubles(), 99); }
+
+  InputStream::Clock::time_point now{seconds(1000)};
+  std::int64_t start_ns = 1'700'000'000 * kSecond;
+  std::optional<UnitInputs> inputs;
+  Surroundings around;
+};
+
+constexpr auto kMv = SignalKind::kMv, kDv = SignalKind::kDv, kCv = SignalKind::kCv;
+
+}  // namespace
+
+TEST_CASE("a unit whose samples all come has no trouble") {
+  Scene scene;
+  for (int k = 0; k < 100; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text().empty());
+  CHECK_FALSE(scene.inputs->wants_endpoints(scene.now));
+}
+
+TEST_CASE("a topic that never comes is named, with who should write it") {
+  Scene scene;
+  for (int k = 0; k < 6; ++k) scene.second({kMv, kCv}, k);
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+  CHECK(scene.text() == "nothing on mpm/dv (nobody writes it on domain 3, partition 'plant-a')");
+  CHECK(scene.inputs->wants_endpoints(scene.now));
+
+  scene.add_writer("mpm/dv", kGateway, "gateway");
+  CHECK(scene.text() ==
+        "nothing on mpm/dv (gateway (process 12 on host plant1) writes it, but nothing of 'toy')");
+  scene.around.endpoints.back().mismatch = {
+      "RELIABILITY (best effort offered, reliable requested)"};
+  CHECK(scene.text() ==
+        "nothing on mpm/dv (its writer gateway (process 12 on host plant1) does not match: "
+        "RELIABILITY (best effort offered, reliable requested))");
+}
+
+TEST_CASE("predictions that never come are simulated") {
+  Scene scene;
+  ExpectedInputs expected = scene.inputs->expected();
+  expected.needed[static_cast<std::size_t>(SignalKind::kPrediction)] = true;
+  scene.inputs->expect(expected);
+  for (int k = 0; k < 6; ++k) scene.second({kMv, kDv, kCv}, k);
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+  CHECK(scene.text() ==
+        "nothing on mpm/prediction (nobody writes it on domain 3, partition 'plant-a'): the unit "
+        "file's model predicts");
+}
+
+TEST_CASE("a topic that stops is told with the time since, and no sooner than its silence") {
+  Scene scene;
+  for (int k = 0; k < 20; ++k) scene.second({kMv, kDv, kCv}, k);
+  for (int k = 20; k < 24; ++k) scene.second({kMv, kCv}, k);
+  CHECK(scene.text().find("mpm/dv for 5 s") != std::string::npos);  // sent at 19, it is 24 now
+  scene.now -= milliseconds(1);
+  CHECK(scene.text().empty());
+}
+
+TEST_CASE("a unit of which nothing comes says where it listens and whose samples come instead") {
+  Scene scene;
+  scene.around.endpoints.clear();
+  scene.now += seconds(5);
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kFunctionCheck);
+  CHECK(scene.text() ==
+        "no data has come (mpm/mv ...: nobody writes it on domain 3, partition 'plant-a')");
+  for (const char* topic : {"mpm/mv", "mpm/dv", "mpm/cv"})
+    scene.add_writer(topic, kGateway, "gateway");
+  scene.around.strangers = {"Toy"};
+  CHECK(scene.text() == "no data has come (mpm/mv ...: samples come of unit 'Toy' only)");
+}
+
+TEST_CASE("a stall of a minute is one failure") {
+  Scene scene;
+  for (int k = 0; k < 20; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.now += seconds(59);
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kFailure);
+  CHECK(scene.text().find("no data for 60 s") == 0);
+}
+
+TEST_CASE("two gateways: with the same numbers a remark, with others a failure") {
+  Scene scene;
+  scene.add_writer("mpm/mv", kOtherGateway, "spare");
+  const bool same = GENERATE(true, false);
+  for (int k = 0; k < 20; ++k) {
+    scene.send(kMv, same ? k : 5000 + k, kOtherGateway);
+    scene.second({kMv, kDv, kCv}, k);
+  }
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity ==
+        (same ? Severity::kMaintenanceRequired : Severity::kFailure));
+  CHECK(
+      scene.text().find("two gateways write mpm/mv: spare (process 12 on host plant1) and gateway "
+                        "(process 12 on host plant1)") == 0);
+  if (!same) CHECK(scene.text().find("(5019, 19)") != std::string::npos);
+}
+
+TEST_CASE("a gateway that takes over from another one is not two") {
+  Scene scene;
+  for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
+  for (int k = 10; k < 20; ++k) {
+    for (const SignalKind kind : {kMv, kDv, kCv}) scene.send(kind, k, kOtherGateway);
+    scene.now += seconds(1);
+    CHECK(scene.text().empty());
+  }
+}
+
+TEST_CASE("a jump of the interval number is told for a minute") {
+  Scene scene;
+  for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.start_ns -= 5000 * kSecond;  // the clock goes on as if nothing had been
+  for (int k = 5010; k < 5012; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text().find("the interval number went from 9 to 5010 on mpm/mv, mpm/dv, mpm/cv") ==
+        0);
+  for (int k = 5012; k < 5069; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK_FALSE(scene.text().empty());
+  for (int k = 5069; k < 5071; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text().empty());
+}
+
+TEST_CASE("a clock that steps by an hour is told, whatever time it shows") {
+  Scene scene;
+  const std::int64_t step_s = GENERATE(3600, -3600);
+  scene.start_ns = GENERATE(std::int64_t{0}, 1'700'000'000 * kSecond);
+  for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.start_ns += step_s * kSecond;
+  scene.second({kMv, kDv, kCv}, 10);
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+  CHECK(scene.text() == std::string("the clock of the control system stepped ") +
+                            (step_s > 0 ? "forward" : "back") +
+                            " by 3600 s at interval 10 on mpm/mv, mpm/dv, mpm/cv");
+}
+
+TEST_CASE("samples that cannot become frames say why") {
+  Scene scene;
+  for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
+  SECTION("another number of values") {
+    scene.inputs->push(kCv, {kGateway, 10, 0, 3, 0}, scene.now);
+    CHECK(scene.text().find("mpm/cv has 3 values and 0 qualities where the unit file has 2 "
+                            "signals") != std::string::npos);
+  }
+  SECTION("a counter that stands") {
+    for (int i = 0; i < 10; ++i) {
+      scene.send(kMv, 9);
+      scene.second({kDv, kCv}, 10 + i);
+    }
+    CHECK(scene.text() == "mpm/mv repeats interval 9: the counter stands");
+  }
+  SECTION("counters of their own") {
+    scene.inputs.emplace(scene.inputs->expected(), scene.now);
+    for (int k = 0; k < 10; ++k) {
+      scene.send(kCv, 1000 + k);
+      scene.second({kMv, kDv}, k);
+    }
+    CHECK(scene.text() == "interval numbers do not meet: mpm/cv is at 1009, mpm/mv at 9");
+  }
+}
+
+TEST_CASE("any numbers from any number of writers are borne") {
+  Scene scene;
+  for (std::uint64_t writer = 0; writer < 1000; ++writer) {
+    scene.inputs->push(kMv, {writer, std::numeric_limits<std::int64_t>::min(), 0, 1, 0}, scene.now);
+    scene.inputs->push(kMv,
+                       {writer, std::numeric_limits<std::int64_t>::max(),
+                        std::numeric_limits<std::int64_t>::min(), 1, 0},
+                       scene.now);
+    scene.now += milliseconds(1);
+  }
+  CHECK(scene.troubles().size() < 10);
+}
+
+}  // namespace mpm::bus

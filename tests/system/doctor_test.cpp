@@ -1,0 +1,173 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "idl/sample_view.hpp"
+#include "tests/system/bench.hpp"
+
+namespace mpm::test {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<std::string> mpm(const char* command, const idl::DomainOptions& options,
+                             const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {
+      "mpm", command, "--domain", std::to_string(options.domain), "--partition", options.partition};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+std::size_t count_of(const std::string& text, const std::string& word) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) ++count;
+  return count;
+}
+
+bool any_text(const Json& troubles, const std::string& word) {
+  return std::any_of(troubles.begin(), troubles.end(), [&](const Json& trouble) {
+    return trouble["text"].get<std::string>().find(word) != std::string::npos;
+  });
+}
+
+}  // namespace
+
+TEST_CASE(
+    "health and doctor name the topic that nobody writes and the writer that does not match") {
+  TemporaryFolder folder;
+  const idl::DomainOptions options = idl::test_domain("doctor-topics");
+  std::string yaml = unit_yaml("toy");
+  yaml.insert(yaml.find("  cv:"), "  dv:\n    - {tag: d1}\n");
+  write_file(folder.file("toy.yaml"), yaml);
+  const Process daemon({"mpmd", "--config", folder.file("toy.yaml"), "--domain",
+                        std::to_string(options.domain), "--partition", options.partition},
+                       folder.file("mpmd.out"), folder.file("mpmd.err"));
+
+  const idl::Participant participant(options);
+  UnitLayout layout;
+  layout.unit = "toy";
+  layout[SignalKind::kMv].tags = {"u1", "u2"};
+  const idl::UnitPublisher gateway(participant, layout, idl::WriterPace::kRealTime);
+  const idl::Writer<mpm_Sample> best_effort(participant, "mpm/cv", idl::foreign_reader_qos());
+  Plant plant(2.0);
+  const auto publish = [&] {
+    const Frame& frame = plant.next();
+    (void)gateway.publish(frame);
+    (void)best_effort.write(idl::sample_of("toy", frame, SignalKind::kCv));
+  };
+
+  idl::OutputReaders readers(participant);
+  std::string detail;
+  REQUIRE(idl::eventually(
+      [&] {
+        publish();
+        for (const idl::Output& output : readers.take())
+          if (const auto* health = std::get_if<HealthRecord>(&output))
+            if (health->detail.find("nothing on") == 0) {
+              CHECK(health->state == "out_of_specification");
+              detail = health->detail;
+            }
+        return !detail.empty();
+      },
+      std::chrono::seconds(20)));
+  INFO(detail);
+  CHECK(detail.find("nothing on mpm/dv (nobody writes it on domain") != std::string::npos);
+  CHECK(detail.find("nothing on mpm/cv (its writer ") != std::string::npos);
+  CHECK(detail.find("RELIABILITY (best effort offered, reliable requested)") != std::string::npos);
+
+  Process doctor(
+      mpm("doctor", options, {"--config", folder.file("toy.yaml"), "--seconds", "2", "--json"}),
+      folder.file("out"), folder.file("err"));
+  std::optional<int> code;
+  REQUIRE(idl::eventually(
+      [&] {
+        publish();
+        code = doctor.wait(std::chrono::milliseconds(0));
+        return code.has_value();
+      },
+      std::chrono::seconds(20)));
+  CHECK(code == 1);
+  const Json said = Json::parse(read_file(folder.file("out")));
+  CHECK(any_text(said["troubles"], "nothing on mpm/dv (nobody writes it on domain"));
+  CHECK(any_text(said["troubles"], "RELIABILITY (best effort offered, reliable requested)"));
+  CHECK(said["units"][0]["monitors"][0]["program"] == "mpmd");
+  CHECK(said["units"][0]["monitors"][0]["pid"] == std::to_string(daemon.pid()));
+  CHECK(said["units"][0]["topics"][0]["writers"][0]["samples"] > 0);
+  // Each was logged once, whatever happened each second.
+  CHECK(count_of(read_file(folder.file("mpmd.err")), "nothing on mpm/dv") == 1);
+}
+
+TEST_CASE("two gateways with counters of their own are named, and do not flood the log") {
+  Bench bench("doctor-gateways");
+  const idl::UnitPublisher one = bench.publisher(idl::WriterPace::kLossless);
+  const idl::UnitPublisher other = bench.publisher(idl::WriterPace::kLossless);
+  REQUIRE(one.wait_for_readers(std::chrono::seconds(20)));
+  REQUIRE(other.wait_for_readers(std::chrono::seconds(20)));
+  Plant plant(2.0), other_plant(2.0);
+  std::string detail;
+  CHECK(bench.observe([&] {
+    for (int i = 0; i < 20; ++i) {
+      REQUIRE(one.publish(plant.next()));
+      Frame frame = other_plant.next();
+      frame.interval += 1'000'000;
+      REQUIRE(other.publish(frame));
+    }
+    detail = bench.health().detail;
+    return detail.find("two gateways") != std::string::npos && bench.health().restarts > 100;
+  }));
+  INFO(detail);
+  CHECK(bench.health().state == "failure");
+  CHECK(detail.find("with other interval numbers") != std::string::npos);
+  CHECK(lines_of(read_file(bench.folder.file("mpmd.err"))).size() < 20);
+}
+
+TEST_CASE("a monitor that stood still itself says so") {
+  Bench bench("doctor-standstill");
+  bench.daemon.send(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(5500));
+  bench.daemon.send(SIGCONT);
+  CHECK(bench.observe([&] {
+    return bench.health().detail.find("the monitor itself stood still for ") != std::string::npos;
+  }));
+  CHECK(bench.health().state == "out_of_specification");
+}
+
+TEST_CASE("two monitors of one unit, and what the disk does not take, are in health and status") {
+  TemporaryFolder folder;
+  Bench bench("doctor-monitors", {"--journal", "/dev/full", "--state-dir", "/proc/none"},
+              {"CYCLONEDDS_URI=file:///none"});
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  bench.publish(publisher, plant, 20);
+  const auto said = [&](const char* word) {
+    for (const auto& health : bench.seen<HealthRecord>())
+      if (health.detail.find(word) != std::string::npos) return true;
+    return false;
+  };
+  CHECK(bench.observe([&] { return said("the journal cannot be written: No space left"); }));
+  CHECK(said("reports of diagnoses cannot be kept: /proc/none"));
+
+  std::optional<Process> second;
+  second.emplace(std::vector<std::string>{"mpmd", "--config", bench.folder.file("toy.yaml"),
+                                          "--domain", std::to_string(bench.options.domain),
+                                          "--partition", bench.options.partition},
+                 folder.file("out2"), folder.file("err2"));
+  CHECK(bench.observe([&] {
+    return said(("mpmd (process " + std::to_string(second->pid())).c_str()) &&
+           said(("mpmd (process " + std::to_string(bench.daemon.pid())).c_str());
+  }));
+  const std::string log = read_file(bench.folder.file("mpmd.err"));
+  CHECK(count_of(log, "another monitor watches this unit as well") == 1);
+  CHECK(count_of(log, "the journal cannot be written") == 1);
+  CHECK(count_of(log, "CYCLONEDDS_URI is set, but") == 1);
+
+  const std::string out = folder.file("out"), err = folder.file("err");
+  CHECK(run(mpm("status", bench.options, {"--unit", "toy"}), out, err) == 1);
+  CHECK(read_file(out).find("MPM WARNING: toy: ") == 0);
+  CHECK(read_file(out).find(" | 'toy alarms'=0;0 'toy age'=") != std::string::npos);
+  CHECK(run(mpm("status", bench.options, {"--unit", "none", "--wait", "1"}), out, err) == 2);
+  CHECK(run(mpm("status", bench.options, {"--no-such-option"}), out, err) == 3);
+}
+
+}  // namespace mpm::test
