@@ -95,9 +95,8 @@ void Report::add(Severity severity, const YAML::Mark& mark, std::string key, std
 }
 
 bool Report::has_error() const {
-  return std::any_of(findings_.begin(), findings_.end(), [](const Finding& finding) {
-    return finding.severity == Severity::kError;
-  });
+  return std::any_of(findings_.begin(), findings_.end(),
+                     [](const Finding& finding) { return finding.severity == Severity::kError; });
 }
 
 std::vector<Finding> Report::take() {

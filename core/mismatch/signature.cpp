@@ -23,8 +23,8 @@ BlockBasis::BlockBasis(int fir_lags, std::vector<double> tail_poles)
       steps(l, t) = 1.0 - std::pow(tail_poles_[static_cast<std::size_t>(t)], l + 1);
   tail_fit_.compute(steps);
   // R^-1 Q', Q's first columns alone.
-  projection_ = (tail_fit_.householderQ() * Eigen::MatrixXd::Identity(beyond_, steps.cols()))
-                    .transpose();
+  projection_ =
+      (tail_fit_.householderQ() * Eigen::MatrixXd::Identity(beyond_, steps.cols())).transpose();
   tail_fit_.matrixQR()
       .topRows(steps.cols())
       .triangularView<Eigen::Upper>()

@@ -36,7 +36,7 @@ class BlockBasis {
   double slowest_ = 1.0;
   int beyond_ = 0;
   Eigen::HouseholderQR<Eigen::MatrixXd> tail_fit_;
-  Eigen::MatrixXd projection_;  // of a step response on the tails' 
+  Eigen::MatrixXd projection_;  // of a step response on the tails'
 };
 
 /// What one kind of model error adds to a CV's innovation: b(q) = A(q) h(q) on a block's basis,
