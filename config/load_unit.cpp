@@ -5,6 +5,7 @@
 #include <map>
 #include <system_error>
 
+#include "config/default_movement.hpp"
 #include "config/load_sections.hpp"
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
@@ -65,7 +66,10 @@ void load_root(const Value& document, Report& report, UnitConfig& config) {
   load_alarms(root.find("alarms"), config);
   load_dds(root.find("dds"), config);
   load_simulation(root.find("simulation"), config);
-  if (!report.has_error()) check_cost(root, config);
+  if (report.has_error()) return;
+  check_cost(root, config);
+  const Value* simulation = root.find("simulation");
+  if (simulation == nullptr || simulation->is_null()) give_default_movement(config);
 }
 
 void load_text(const std::string& text, Report& report, UnitConfig& config) {

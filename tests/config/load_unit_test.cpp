@@ -280,7 +280,7 @@ TEST_CASE("The operating point may stand at the top level") {
 TEST_CASE("Sections may be empty or missing, and defaults have the right length") {
   const UnitConfig config = load_clean(kSmall + "monitor:\nalarms: {}\ndds:\nsimulation:\n");
   CHECK(config.simulation.noise.size() == 1);
-  CHECK(config.simulation.setpoints.at(0).hold_samples == 100);
+  CHECK(config.simulation.setpoints.at(0).hold_samples == 50);
   CHECK(printed(config) == printed(load_clean(kSmall)));
 }
 

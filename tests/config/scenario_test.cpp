@@ -14,7 +14,8 @@ UnitConfig unit() {
              "  channels:\n"
              "    - {cv: y1, mv: u1, gain: 2, dead_time: 3}\n"
              "    - {cv: y2, mv: u2, gain: 2}\n"
-             "    - {cv: y2, mv: d1, gain: 2}\n",
+             "    - {cv: y2, mv: d1, gain: 2}\n"
+             "simulation: {}\n",
              "u.yaml")
       .config;
 }
