@@ -10,16 +10,17 @@ namespace mpm {
 
 enum class Verdict : std::uint8_t { kUndetermined, kMatch, kMismatch };
 
-/// Why a verdict is undetermined.
+/// Why a verdict is undetermined; of a mismatch, what is to be known of it.
 enum class Reason : std::uint8_t {
   kNone,
-  kWarmingUp,      ///< too few effective samples yet
-  kNotExcited,     ///< the input did not move enough to show an error of interest
-  kCollinear,      ///< the input moved only together with another one (`confounder`)
-  kBadData,        ///< too many of the values needed are missing, bad or implausible
-  kControllerOff,  ///< no manipulated variable moves: the controller is off or in manual
-  kConstrained,    ///< the input sits at a limit
-  kIsolating,      ///< something in this CV changed; samples since then are still too few
+  kWarmingUp,       ///< too few effective samples yet
+  kNotExcited,      ///< the input did not move enough to show an error of interest
+  kCollinear,       ///< the input moved only together with another one (`confounder`)
+  kBadData,         ///< too many of the values needed are missing, bad or implausible
+  kControllerOff,   ///< no manipulated variable moves: the controller is off or in manual
+  kConstrained,     ///< the input sits at a limit
+  kIsolating,       ///< something in this CV changed; samples since then are still too few
+  kWeakExcitation,  ///< a mismatch: it shows, though an error of interest need not have shown
 };
 
 [[nodiscard]] constexpr auto words_of(Verdict) {
@@ -27,8 +28,15 @@ enum class Reason : std::uint8_t {
 }
 
 [[nodiscard]] constexpr auto words_of(Reason) {
-  return std::array{"",         "warming_up",     "not_excited", "collinear",
-                    "bad_data", "controller_off", "constrained", "isolating"};
+  return std::array{"",
+                    "warming_up",
+                    "not_excited",
+                    "collinear",
+                    "bad_data",
+                    "controller_off",
+                    "constrained",
+                    "isolating",
+                    "weak_excitation"};
 }
 
 /// The numbers behind a verdict that an alarm repeats.

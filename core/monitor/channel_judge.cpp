@@ -34,7 +34,7 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
                             status.p_value < visibility::kOverwhelming * channel_rate_;
   if (status.excited || ((overwhelming || alarmed(channel)) && exceeding)) {
     status.verdict = exceeding ? Verdict::kMismatch : Verdict::kMatch;
-    status.reason = Reason::kNone;
+    status.reason = status.excited ? Reason::kNone : Reason::kWeakExcitation;
     return;
   }
   status.reason = why_not_excited(channel);

@@ -131,7 +131,8 @@ TEST_CASE("the words of a verdict and its reason go to DDS and back") {
                                      {Reason::kBadData, "bad_data"},
                                      {Reason::kControllerOff, "controller_off"},
                                      {Reason::kConstrained, "constrained"},
-                                     {Reason::kIsolating, "isolating"}}) {
+                                     {Reason::kIsolating, "isolating"},
+                                     {Reason::kWeakExcitation, "weak_excitation"}}) {
     record.reason = reason;
     sample.reason = text(word);
     check_both_ways(record, sample);
