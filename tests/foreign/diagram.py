@@ -5,7 +5,7 @@ from judge import ACCUSES
 from tables import wilson
 
 EDGES = [0.5, 0.9, 0.99, 0.999, 1.01]
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 560, 420, 64, 16, 34, 54
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 600, 440, 64, 56, 58, 54
 TICKS = [0.5, 0.9, 0.99, 0.999]
 KINDS = [("what accuses", True, "#1f5fa8", -5), ("everything else", False, "#b3541e", 5)]
 
