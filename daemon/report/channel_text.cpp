@@ -82,33 +82,25 @@ ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
                          const std::string& cv) {
   ChannelFile file;
   file.sample_time_s = unit.sample_time_s;
-  int input = 0, output = 0;
-  for (const auto* signals : {&unit.mv, &unit.dv})
-    for (const config::InputSignal& signal : *signals) {
-      if (signal.tag == mv) {
-        file.mv_unit = signal.unit;
-        break;
-      }
-      ++input;
-    }
-  for (const config::CvSignal& signal : unit.cv) {
-    if (signal.tag == cv) {
-      file.cv_unit = signal.unit;
-      break;
-    }
-    ++output;
-  }
+  const auto unit_of = [](const auto& signals, const std::string& tag) {
+    for (const auto& signal : signals)
+      if (signal.tag == tag) return signal.unit;
+    return std::string();
+  };
+  file.mv_unit = unit_of(unit.mv, mv) + unit_of(unit.dv, mv);  // one of which is empty
+  file.cv_unit = unit_of(unit.cv, cv);
   const auto& channels = unit.model.channels;
   file.modelled = unit.model.state_space.has_value() ||
                   std::any_of(channels.begin(), channels.end(), [&](const ChannelSpec& channel) {
-                    return channel.input == input && channel.cv == output;
+                    return unit.input_tag(channel.input) == mv &&
+                           unit.cv[static_cast<std::size_t>(channel.cv)].tag == cv;
                   });
   return file;
 }
 
 std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file) {
   std::string text = gain_part(channel, file);
-  if (channel.usual)
+  if (file.modelled && channel.usual)
     text += ", " + time_constant_part(channel) + ", " + dead_time_part(channel, file);
   else if (file.modelled)
     text += ", and not of that alone: the dynamics or the dead time differ by much";

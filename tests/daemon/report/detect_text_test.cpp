@@ -5,7 +5,7 @@
 #include <string>
 
 #include "daemon/report/channel_text.hpp"
-#include "daemon/report/matrix_text.hpp"
+#include "daemon/report/moment_text.hpp"
 
 namespace mpm::report {
 namespace {
@@ -134,7 +134,7 @@ TEST_CASE("no line of a report is wider than the terminal, whatever the tags") {
   March 2026 to 11:59 on 3 March 2026
   (UTC); 2860 used, no bad values
 
-                AREA..01  AREA..02  y3
+                ARE..201  ARE..202  y3
   AREA-..POINT  m         X         m
   u2            m         m         m
 
@@ -145,7 +145,7 @@ TEST_CASE("no line of a report is wider than the terminal, whatever the tags") {
   m match, X mismatch
 
 Mismatch
-  AREA-1...ETPOINT -> AREA-1....AI-202:
+  AREA-1...TPOINT -> AREA-1...AI-202:
     answers, where the model has
     nothing: gain 0.041 (0.031 to 0.051)
 )");
@@ -254,7 +254,7 @@ TEST_CASE("colour is only added where it is wanted") {
   const std::string plain = to_text(march(), column(), {80, false});
   std::string colored = to_text(march(), column(), {80, true});
   CHECK(plain.find('\x1b') == std::string::npos);
-  CHECK(colored.find("\x1b[1;31mX!      \x1b[0m") != std::string::npos);
+  CHECK(colored.find("\x1b[1;31mX!    \x1b[0m") != std::string::npos);
   for (std::size_t at = 0; (at = colored.find('\x1b')) != std::string::npos;)
     colored.erase(at, colored.find('m', at) - at + 1);
   CHECK(colored == plain);
