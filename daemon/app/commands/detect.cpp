@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
+#include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
@@ -22,6 +24,8 @@
 
 namespace mpm::app {
 namespace {
+
+constexpr std::chrono::seconds kPatience{1};  // before the progress is shown
 
 struct DetectOptions {
   std::string config;
@@ -42,7 +46,9 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
   report.unit = unit.unit;
   files::UsedStretches used;
   Frame frame(unit.counts());
+  ProgressBar bar("reading", false, kPatience);
   while (source.next(frame)) {
+    bar.show(source.share_read());
     const bool taken = choice.takes(frame.source_time_ns);
     used.note(frame.source_time_ns, taken);
     if (!taken) continue;
@@ -115,7 +121,7 @@ void add_detect(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DetectOptions>();
   CLI::App* command = app.add_subcommand(
       "detect", "Judge every channel on recorded data, exactly as the daemon would");
-  command->add_option("--config", options->config, "unit file")->required();
+  command->add_option("-c,--config", options->config, "unit file")->required();
   command
       ->add_option("--data", options->data,
                    "data file: CSV in any historian layout, or MCAP recording; several of "

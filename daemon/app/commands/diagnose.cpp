@@ -152,7 +152,7 @@ report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig 
 /// False where the user stopped it.
 bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
                   report::DiagnosisRun& run) {
-  ProgressBar bar(options.quiet);
+  ProgressBar bar("diagnosing", options.quiet);
   DiagnosisSettings settings;
   settings.mv_count = run.unit.counts().mv;
   settings.fit_share = options.fit_share;
