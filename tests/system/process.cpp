@@ -49,7 +49,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 Process::Process(const std::vector<std::string>& arguments, const std::string& output,
                  const std::string& errors, const std::vector<std::string>& environment,
                  const std::string& input) {
-  const std::string program = std::string(MPM_BIN_DIR) + "/" + arguments.at(0);
+  const std::string& name = arguments.at(0);
+  const std::string program = name.rfind('/', 0) == 0 ? name : MPM_BIN_DIR "/" + name;
   std::vector<char*> argv, envp;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

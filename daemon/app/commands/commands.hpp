@@ -31,5 +31,9 @@ void add_echo(CLI::App& app, int& exit_code);
 /// `mpm hz` and `mpm delay`: how often samples come, and how old they are.
 void add_hz(CLI::App& app, int& exit_code);
 void add_delay(CLI::App& app, int& exit_code);
+/// `mpm completion`: what a shell needs to complete command lines. `mpm man`: the manual page. Both
+/// tell of the commands that there are when they run.
+void add_completion(CLI::App& app, int& exit_code);
+void add_man(CLI::App& app, int& exit_code);
 
 }  // namespace mpm::app
