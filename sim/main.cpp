@@ -14,6 +14,7 @@
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
 #include "config/time_text.hpp"
+#include "idl/version.hpp"
 #include "sim/options.hpp"
 #include "sim/output/bad_data.hpp"
 #include "sim/output/csv_writer.hpp"
@@ -167,6 +168,7 @@ int parse_and_run(int argc, char** argv) {
   CLI::App app("Simulates an MPC-controlled plant whose process may differ from the model.");
   Options options;
   declare(app, options);
+  app.set_version_flag("--version", idl::version_text("mpmsim"));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

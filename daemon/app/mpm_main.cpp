@@ -1,10 +1,12 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
+#include <string>
 
 #include "daemon/app/commands/commands.hpp"
+#include "daemon/app/commands/slips.hpp"
 #include "daemon/host/standard_output.hpp"
-#include "daemon/host/version.hpp"
+#include "idl/version.hpp"
 
 namespace mpm::app {
 namespace {
@@ -12,8 +14,8 @@ namespace {
 int run(int argc, char** argv) {
   // Exit codes of all programs of the project: 0 done, 1 found, 2 failed, 3 bad usage or input.
   int exit_code = 0;
-  CLI::App app("The engineer's side of the model-plant-mismatch monitor.");
-  app.set_version_flag("--version", host::version_text("mpm"));
+  CLI::App app("The engineer's side of the model-plant-mismatch monitor.", "mpm");
+  app.set_version_flag("--version", idl::version_text("mpm"));
   app.require_subcommand(1);
   add_detect(app, exit_code);
   add_diagnose(app, exit_code);
@@ -30,10 +32,26 @@ int run(int argc, char** argv) {
   add_delay(app, exit_code);
   add_doctor(app, exit_code);
   add_status(app, exit_code);
+  add_completion(app, exit_code);
+  add_man(app, exit_code);
+  app.footer(
+      "Examples:\n"
+      "  mpm detect --config unit.yaml --data last_month.csv    which models are wrong?\n"
+      "  mpm diagnose --config unit.yaml --data last_month.csv --out report    and how?\n"
+      "  mpm watch    what the monitors say, live\n"
+      "  mpm record --config unit.yaml --output monday.mcap    keep what goes over the bus\n"
+      "  mpm COMMAND --help    the options of a command, with examples\n"
+      "Exit codes: 0 done, 1 found what was to be told so, 2 failed, 3 bad usage or input");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 3;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    const std::string slips = slips_text(app);
+    if (slips.empty())
+      app.exit(error);
+    else
+      std::cerr << slips << "Run with --help for more information.\n";
+    return 3;
   }
   return exit_code;
 }

@@ -12,14 +12,15 @@
 #include "config/load_unit.hpp"
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/app/commands/slips.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/standard_output.hpp"
-#include "daemon/host/version.hpp"
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/make_diagnosis.hpp"
 #include "daemon/live/monitor_service.hpp"
 #include "daemon/live/report_store.hpp"
+#include "idl/version.hpp"
 
 namespace mpm::app {
 namespace {
@@ -65,7 +66,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--log-level", options.log_level, "what to log")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
-  app.set_version_flag("--version", host::version_text("mpmd"));
+  app.set_version_flag("--version", idl::version_text("mpmd"));
   app.footer(
       "Examples:\n"
       "  mpmd --config /etc/mpm/shell.yaml\n"
@@ -109,7 +110,7 @@ int run(const Options& options) {
 
   host::StopSignal stop;  // before any thread
   host::set_up_logging(options.log_level);
-  spdlog::info("{} starts", host::version_text("mpmd"));
+  spdlog::info("{} starts", idl::version_text("mpmd"));
   const live::ReportStore store(options.state_folder);
   live::DiagnosisWorker worker(
       [&store](const live::DiagnosisJob& job, const live::DiagnosisWorker::GoOn& go_on) {
@@ -133,13 +134,20 @@ int run(const Options& options) {
 }
 
 int parse_and_run(int argc, char** argv) {
-  CLI::App app("Monitors MPC units for model-plant mismatch: DDS in, verdicts and alarms out.");
+  CLI::App app("Monitors MPC units for model-plant mismatch: DDS in, verdicts and alarms out.",
+               "mpmd");
   Options options;
   declare(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    const std::string slips = slips_text(app);
+    if (slips.empty())
+      app.exit(error);
+    else
+      std::cerr << slips << "Run with --help for more information.\n";
+    return kBadInput;
   }
   return run(options);
 }

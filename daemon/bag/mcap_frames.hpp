@@ -28,6 +28,7 @@ class McapFrames : public files::FrameSource {
              files::Purpose purpose = files::Purpose::kJudge);
 
   [[nodiscard]] bool next(Frame& frame) override;
+  [[nodiscard]] double share_read() const override { return samples_.share_read(); }
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
 
  private:

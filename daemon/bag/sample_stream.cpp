@@ -1,6 +1,9 @@
 #include "daemon/bag/sample_stream.hpp"
 
+#include <algorithm>
+
 #include "config/finding.hpp"
+#include "core/signal/saturated.hpp"
 #include "core/text/printable.hpp"
 #include "idl/layout_sample.hpp"
 
@@ -48,6 +51,19 @@ SampleStream::Event SampleStream::next() {
     ++others_[channel.topic];
   }
   return Event::kEnd;
+}
+
+double SampleStream::share_read() const {
+  const std::vector<mcap::FileSequence::File>& files = messages_.files();
+  if (files.empty() || message_.log_time_ns < files.front().start_ns) return 0.0;
+  std::int64_t end_ns = files.front().end_ns;
+  for (const mcap::FileSequence::File& file : files) end_ns = std::max(end_ns, file.end_ns);
+  const auto since_start = [&](std::int64_t time_ns) {
+    return static_cast<double>(saturated_difference(time_ns, files.front().start_ns));
+  };
+  return end_ns <= files.front().start_ns
+             ? 1.0
+             : std::min(1.0, since_start(message_.log_time_ns) / since_start(end_ns));
 }
 
 }  // namespace mpm::bag

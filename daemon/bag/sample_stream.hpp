@@ -35,6 +35,8 @@ class SampleStream {
   [[nodiscard]] const mpm_Layout& layout() const { return *layout_; }
   [[nodiscard]] std::int64_t log_time_ns() const { return message_.log_time_ns; }
   [[nodiscard]] const mcap::Message& message() const { return message_; }
+  /// Of the span of its log times, 0..1.
+  [[nodiscard]] double share_read() const;
   /// Messages passed over so far, by topic.
   [[nodiscard]] const std::map<std::string, std::uint64_t>& others() const { return others_; }
 

@@ -17,6 +17,8 @@ class FrameSource {
 
   /// Fills `frame`; false at the end. Throws config::InputError on bad input.
   [[nodiscard]] virtual bool next(Frame& frame) = 0;
+  /// How much of the file has been read, 0..1; stays 0 where that is not known.
+  [[nodiscard]] virtual double share_read() const { return 0.0; }
   /// What the user should know but need not act on, complete after the last frame.
   [[nodiscard]] virtual const std::vector<std::string>& notices() const = 0;
 };

@@ -4,9 +4,9 @@
 
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "daemon/files/read_recording.hpp"
-#include "daemon/host/version.hpp"
 #include "daemon/live/named_cause.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
+#include "idl/version.hpp"
 
 namespace mpm::live {
 namespace {
@@ -15,7 +15,7 @@ report::DiagnosisRun prepare(const DiagnosisJob& job) {
   report::DiagnosisRun run;
   run.unit = *job.unit;
   run.recording = job.samples.recording(job.unit->sample_time_s);
-  run.program = host::version_text("mpmd");
+  run.program = idl::version_text("mpmd");
   run.command_line = "mpmd, because of the alarm of " + time_folder(job.alarm_time_ns);
   run.config_file = job.unit->unit + " as mpmd runs it";
   run.data_file = "the last " + std::to_string(job.samples.rows()) + " samples of " +

@@ -10,6 +10,7 @@
 #include "config/unit_layout.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "daemon/files/aligning.hpp"
+#include "daemon/report/channel_text.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::live {
@@ -48,6 +49,17 @@ std::optional<SignalKind> kind_of(std::string_view word) {
     if (kind != SignalKind::kAux && word == idl::kind_name(kind)) return kind;
   }
   return std::nullopt;
+}
+
+/// Null where the model has no such channel, whose gain an error could be told by.
+const ChannelRecord* modelled_channel(const config::UnitConfig& unit,
+                                      const std::vector<ChannelRecord>& channels,
+                                      const AlarmRecord& alarm) {
+  if (!report::channel_file(unit, alarm.mv, alarm.cv).modelled) return nullptr;
+  const auto it = std::find_if(channels.begin(), channels.end(), [&](const ChannelRecord& channel) {
+    return channel.mv == alarm.mv && channel.cv == alarm.cv;
+  });
+  return it == channels.end() ? nullptr : &*it;
 }
 
 }  // namespace
@@ -136,9 +148,10 @@ void UnitPipeline::on_frame(const Frame& frame) {
     written = outputs_.write(alarm) && written;
     written = outputs_.write(AlarmStateRecord(alarm)) && written;
     spdlog::log(alarm.to == AlarmChange::kActive ? spdlog::level::warn : spdlog::level::info,
-                "{}: {} -> {}: alarm {} at interval {} (p {:.1e}, gain error {:.3g})", alarm.unit,
-                alarm.mv, alarm.cv, to_string(alarm.to), alarm.interval, alarm.p_value,
-                alarm.effect_size);
+                "{}: {} -> {}: alarm {} at interval {} ({}, p {:.1e})", alarm.unit, alarm.mv,
+                alarm.cv, to_string(alarm.to), alarm.interval,
+                report::gain_text(alarm, modelled_channel(config_, monitor_.channels(), alarm)),
+                alarm.p_value);
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);

@@ -14,10 +14,11 @@ namespace mpm::report {
 /// What `mpm detect` found in a file: the verdicts after its last row and every alarm on the way.
 struct DetectReport {
   std::string unit;
-  std::uint64_t samples = 0;       ///< rows read
-  std::uint64_t used_samples = 0;  ///< rows that entered the statistics
-  std::uint64_t missing = 0;       ///< intervals without a row
-  std::uint64_t out_of_order = 0;  ///< rows whose time did not grow
+  std::uint64_t samples = 0;               ///< rows read
+  std::uint64_t used_samples = 0;          ///< rows that entered the statistics
+  std::int64_t first_ns = 0, last_ns = 0;  ///< their times
+  std::uint64_t missing = 0;               ///< intervals without a row
+  std::uint64_t out_of_order = 0;          ///< rows whose time did not grow
   std::uint64_t bad_values = 0;
   std::uint64_t frozen = 0, clipped = 0, spikes = 0;  ///< of these: only by their look
   /// From the first row to the last of each stretch, where a part of the file was chosen.
@@ -30,7 +31,5 @@ struct DetectReport {
 
 /// The object of interfaces, "mpm detect".
 [[nodiscard]] nlohmann::ordered_json to_json(const DetectReport& report);
-/// The same for a person.
-[[nodiscard]] std::string to_text(const DetectReport& report);
 
 }  // namespace mpm::report

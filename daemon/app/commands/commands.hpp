@@ -35,5 +35,9 @@ void add_delay(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 /// `mpm status`: one line for a monitoring system.
 void add_status(CLI::App& app, int& exit_code);
+/// `mpm completion`: what a shell needs to complete command lines. `mpm man`: the manual page. Both
+/// tell of the commands that there are when they run.
+void add_completion(CLI::App& app, int& exit_code);
+void add_man(CLI::App& app, int& exit_code);
 
 }  // namespace mpm::app

@@ -1,5 +1,8 @@
 #include "daemon/app/commands/commands.hpp"
 
+#include <unistd.h>
+
+#include <chrono>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -8,16 +11,21 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
+#include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
+#include "daemon/host/terminal.hpp"
 #include "daemon/live/journal.hpp"
 #include "daemon/mcap/read/file_sequence.hpp"
 #include "daemon/report/detect_report.hpp"
+#include "daemon/report/detect_text.hpp"
 #include "daemon/report/unit_monitor.hpp"
 
 namespace mpm::app {
 namespace {
+
+constexpr std::chrono::seconds kPatience{1};  // before the progress is shown
 
 struct DetectOptions {
   std::string config;
@@ -38,10 +46,14 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
   report.unit = unit.unit;
   files::UsedStretches used;
   Frame frame(unit.counts());
+  ProgressBar bar("reading", false, kPatience);
   while (source.next(frame)) {
+    bar.show(source.share_read());
     const bool taken = choice.takes(frame.source_time_ns);
     used.note(frame.source_time_ns, taken);
     if (!taken) continue;
+    if (monitor.counters().frames == 0) report.first_ns = frame.source_time_ns;
+    report.last_ns = frame.source_time_ns;
     monitor.push(frame);
     report.alarms.insert(report.alarms.end(), monitor.alarms().begin(), monitor.alarms().end());
     if (journal != nullptr && !journal->write(monitor.channels(), monitor.alarms()))
@@ -91,7 +103,11 @@ int detect(const DetectOptions& options) {
       throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",
                                 "holds no control interval of unit '" + loaded.config.unit + "'" +
                                     (choice.all() ? "" : " in the time chosen")});
-    std::cout << (options.json ? to_json(report).dump() + "\n" : to_text(report)) << std::flush;
+    const report::Layout layout{host::terminal_width(STDOUT_FILENO),
+                                host::wants_color(STDOUT_FILENO)};
+    std::cout << (options.json ? to_json(report).dump() + "\n"
+                               : to_text(report, loaded.config, layout, times.zone.get()))
+              << std::flush;
     return options.fail_on_mismatch && report.mismatch() ? 1 : 0;
   } catch (const config::InputError& error) {
     std::cerr << error.what() << '\n';
@@ -105,7 +121,7 @@ void add_detect(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DetectOptions>();
   CLI::App* command = app.add_subcommand(
       "detect", "Judge every channel on recorded data, exactly as the daemon would");
-  command->add_option("--config", options->config, "unit file")->required();
+  command->add_option("-c,--config", options->config, "unit file")->required();
   command
       ->add_option("--data", options->data,
                    "data file: CSV in any historian layout, or MCAP recording; several of "

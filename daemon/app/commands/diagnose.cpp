@@ -20,11 +20,11 @@
 #include "daemon/files/output_folder.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/host/signals.hpp"
-#include "daemon/host/version.hpp"
 #include "daemon/report/closed_loop/compare_loops.hpp"
 #include "daemon/report/closed_loop/run_mpmsim.hpp"
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
 #include "daemon/report/report_files.hpp"
+#include "idl/version.hpp"
 
 namespace mpm::app {
 namespace {
@@ -141,7 +141,7 @@ report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig 
     run.validation_run_files = std::move(unseen.files);
     run.validation_file = std::move(unseen.name);
   }
-  run.program = host::version_text("mpm");
+  run.program = idl::version_text("mpm");
   run.command_line = command_line();
   run.config_file = options.config;
   run.fit_share = run.validation ? 1.0 : options.fit_share;
@@ -152,7 +152,7 @@ report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig 
 /// False where the user stopped it.
 bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
                   report::DiagnosisRun& run) {
-  ProgressBar bar(options.quiet);
+  ProgressBar bar("diagnosing", options.quiet);
   DiagnosisSettings settings;
   settings.mv_count = run.unit.counts().mv;
   settings.fit_share = options.fit_share;

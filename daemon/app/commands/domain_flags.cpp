@@ -1,8 +1,27 @@
 #include "daemon/app/commands/domain_flags.hpp"
 
+#include <iostream>
+#include <string>
+#include <utility>
+
+#include "config/load_unit.hpp"
+#include "daemon/bus/domain_options.hpp"
+
 namespace mpm::app {
 
-void add_domain_flags(CLI::App& command, idl::DomainOptions& domain) {
+CLI::Option* add_domain_flags(CLI::App& command, idl::DomainOptions& domain, OnUnit on_unit) {
+  // The first that is added is the first that takes effect: the others overrule it.
+  const auto take_unit = [&domain, on_unit = std::move(on_unit)](const std::string& file) {
+    const config::LoadResult loaded = config::load_unit(file);
+    for (const config::Finding& finding : loaded.findings)
+      std::cerr << config::format(finding) << '\n';
+    if (!loaded.ok()) throw CLI::ValidationError("--config", file + " is no good unit file");
+    domain = bus::domain_options(loaded.config.dds);
+    if (on_unit) on_unit(loaded.config);
+  };
+  CLI::Option* config = command.add_option_function<std::string>(
+      "-c,--config", take_unit,
+      "unit file whose DDS settings are taken, but for those that are given here");
   command.add_option("--domain", domain.domain, "DDS domain")
       ->capture_default_str()
       ->check(CLI::Range(0, 230));
@@ -13,6 +32,7 @@ void add_domain_flags(CLI::App& command, idl::DomainOptions& domain) {
   command.add_flag("--multicast", domain.multicast, "look for others by multicast");
   command.add_flag("--dds-from-environment", domain.use_environment,
                    "take the DDS settings from CYCLONEDDS_URI");
+  return config;
 }
 
 idl::DomainOptions with_flags(const CLI::App& command, idl::DomainOptions settings,

@@ -1,13 +1,19 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 
+#include "config/unit_config.hpp"
 #include "idl/participant.hpp"
 
 namespace mpm::app {
 
-/// The options of every command that needs no unit file to find the bus.
-void add_domain_flags(CLI::App& command, idl::DomainOptions& domain);
+using OnUnit = std::function<void(const config::UnitConfig&)>;
+
+/// The options of every command that needs no unit file to find the bus; one that is given with
+/// --config says where to, in so far as no other option does, and is passed to `on_unit`. Returns
+/// that option.
+CLI::Option* add_domain_flags(CLI::App& command, idl::DomainOptions& domain, OnUnit on_unit = {});
 
 /// `settings`, but for what of `flags` was given on the command line of `command`, which has
 /// add_domain_flags' options.

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <chrono>
+#include <string>
+
 namespace mpm::app {
 
 /// A line on standard error that shows how far something is; nothing where that is no terminal.
 class ProgressBar {
  public:
-  explicit ProgressBar(bool quiet);
+  using Clock = std::chrono::steady_clock;
+
+  /// `what` is being done. The line appears after `delay`: what is over by then needs none.
+  explicit ProgressBar(std::string what, bool quiet, Clock::duration delay = {});
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar();  ///< wipes the line
@@ -13,7 +19,9 @@ class ProgressBar {
   void show(double share);
 
  private:
+  std::string what_;
   bool shown_;
+  Clock::time_point due_;
   int percent_ = -1;
 };
 

@@ -8,12 +8,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "config/load_unit.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/status_line.hpp"
 #include "daemon/bag/record/recorder.hpp"
-#include "daemon/bus/domain_options.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 
@@ -32,7 +30,6 @@ constexpr std::uint64_t kSmallestQuota = 1'000'000;
 constexpr std::uint64_t kSmallestChunk = 1024, kLargestChunk = std::uint64_t{64} << 20U;
 
 struct RecordOptions {
-  std::string config;
   idl::DomainOptions domain;
   bag::RecorderOptions recorder;
   std::uint64_t chunk_bytes = 1U << 20U;
@@ -125,17 +122,6 @@ int record(const RecordOptions& options, host::StopSignal& stop) {
 }
 
 int record(RecordOptions options) {
-  if (!options.config.empty()) {
-    const config::LoadResult loaded = config::load_unit(options.config);
-    for (const config::Finding& finding : loaded.findings) std::cerr << format(finding) << '\n';
-    if (!loaded.ok()) return 3;
-    const idl::DomainOptions given = options.domain;
-    options.domain = bus::domain_options(loaded.config.dds);
-    if (given.domain != 0) options.domain.domain = given.domain;
-    if (!given.partition.empty()) options.domain.partition = given.partition;
-    options.domain.use_environment = given.use_environment;
-    options.recorder.unit = loaded.config.unit;
-  }
   bag::RecordingOptions& recording = options.recorder.recording;
   if (recording.quota_bytes > 0 && recording.max_size_bytes > recording.quota_bytes / 2) {
     std::cerr << "mpm record: error: --quota must hold two files of --max-size at least: one that "
@@ -162,9 +148,7 @@ void add_record(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("record", "record what goes over the bus (MCAP)");
   const auto options = std::make_shared<RecordOptions>();
   bag::RecorderOptions& recorder = options->recorder;
-  auto* config =
-      command->add_option("-c,--config", options->config, "unit file: this unit, on its domain");
-  command->add_option("--unit", recorder.unit, "only this unit (default: all)")->excludes(config);
+  auto* unit = command->add_option("--unit", recorder.unit, "only this unit (default: all)");
   command->add_option("--topics", recorder.topics, "only these topics (default: all of mpm/*)")
       ->delimiter(',');
   command->add_option("-o,--output", recorder.recording.output, "file.mcap, or a folder")
@@ -197,7 +181,10 @@ void add_record(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"zstd", "none"}));
   command->add_option("--duration", options->duration_s, "end after this time, as 90 or 1.5h")
       ->transform(positive_time_value());
-  add_domain_flags(*command, options->domain);
+  add_domain_flags(*command, options->domain,
+                   [&recorder](const config::UnitConfig& of) { recorder.unit = of.unit; })
+      ->description("unit file: this unit, on its domain")
+      ->excludes(unit);
   command->footer(
       "Examples:\n"
       "  mpm record --config shell.yaml --output monday.mcap\n"

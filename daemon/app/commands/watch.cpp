@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -13,6 +12,7 @@
 #include "daemon/bus/watch/viewer.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "daemon/host/terminal.hpp"
 #include "idl/output_readers.hpp"
 
 namespace mpm::app {
@@ -32,12 +32,13 @@ struct WatchOptions {
 
 bus::ViewMode mode_of(const WatchOptions& options) {
   if (options.json) return bus::ViewMode::kJson;
-  return isatty(STDOUT_FILENO) ? bus::ViewMode::kTable : bus::ViewMode::kLines;
+  return host::is_terminal(STDOUT_FILENO) ? bus::ViewMode::kTable : bus::ViewMode::kLines;
 }
 
-bool wants_color(const WatchOptions& options) {
-  const char* no_color = std::getenv("NO_COLOR");
-  return !options.no_color && (no_color == nullptr || *no_color == '\0');
+bus::RenderOptions render_options(const WatchOptions& options) {
+  return {
+      {host::terminal_width(STDOUT_FILENO), !options.no_color && host::wants_color(STDOUT_FILENO)},
+      options.alarms_only};
 }
 
 // 0, or 2 if the alarm that was waited for did not come.
@@ -54,7 +55,7 @@ int watch(const WatchOptions& options) {
                                               : idl::OutputReaders::Scope::kEverything);
   idl::WaitSet wait_set;
   readers.attach_to(wait_set);
-  bus::Viewer viewer(mode, {wants_color(options), options.alarms_only}, options.unit);
+  bus::Viewer viewer(mode, render_options(options), options.unit);
 
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(options.for_s));

@@ -2,40 +2,26 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "core/record/reason_text.hpp"
 #include "daemon/files/times/time_text.hpp"
+#include "daemon/report/channel_text.hpp"
+#include "daemon/report/matrix_text.hpp"
 
 namespace mpm::bus {
 namespace {
 
-constexpr const char* kReset = "\x1b[0m";
-constexpr const char* kGrey = "\x1b[90m";
-constexpr const char* kGreen = "\x1b[32m";
-constexpr const char* kRed = "\x1b[1;31m";
-constexpr const char* kBold = "\x1b[1m";
-
-struct Painter {
-  bool color;
-  [[nodiscard]] std::string operator()(const char* code, const std::string& text) const {
-    return color ? code + text + kReset : text;
-  }
-};
+using report::Tint;
 
 std::string utc(std::int64_t time_ns) {
   if (time_ns == 0) return "-";  // before the first sample
   return files::formatted_utc(time_ns / 1'000'000'000, "%Y-%m-%dT%H:%M:%SZ");
 }
 
-const char* color_of(Verdict verdict) {
-  if (verdict == Verdict::kMatch) return kGreen;
-  return verdict == Verdict::kMismatch ? kRed : kGrey;
-}
-
-std::string padded(const std::string& text, std::size_t width) {
-  return text.size() >= width ? text : text + std::string(width - text.size(), ' ');
+Tint tint_of(Verdict verdict) {
+  if (verdict == Verdict::kMatch) return Tint::kGreen;
+  return verdict == Verdict::kMismatch ? Tint::kRed : Tint::kGrey;
 }
 
 const ChannelRecord* find(const UnitBoard& board, const std::string& input, const std::string& cv) {
@@ -52,59 +38,45 @@ std::string shout(const ChannelRecord& channel) {
   return channel.alarm == AlarmState::kActive ? word + " !" : word;
 }
 
-std::size_t column_width(const UnitBoard& board, const std::string& input) {
-  std::size_t width = input.size();
-  for (const std::string& cv : board.cvs)
-    if (const ChannelRecord* channel = find(board, input, cv))
-      width = std::max({width, shout(*channel).size(), reason_of(*channel).size()});
-  return width + 2;
-}
-
-std::string matrix(const UnitBoard& board, const Painter& paint) {
-  std::vector<std::size_t> widths;
-  for (const std::string& input : board.inputs) widths.push_back(column_width(board, input));
-  std::size_t first = 2;
-  for (const std::string& cv : board.cvs) first = std::max(first, cv.size() + 2);
-
-  std::string text = "  " + std::string(first, ' ');
-  for (std::size_t i = 0; i < widths.size(); ++i)
-    text += paint(kBold, padded(board.inputs[i], widths[i]));
-  text += '\n';
+// Under the verdicts of a CV a row with the reasons of those that are undetermined.
+std::string matrix(const UnitBoard& board, const report::Layout& layout) {
+  std::vector<report::MatrixRow> rows;
   for (const std::string& cv : board.cvs) {
-    std::string verdicts = "  " + paint(kBold, padded(cv, first));
-    std::string reasons = "  " + std::string(first, ' ');
+    report::MatrixRow verdicts{cv, {}}, reasons;
     bool any_reason = false;
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      const ChannelRecord* channel = find(board, board.inputs[i], cv);
-      verdicts += channel == nullptr
-                      ? padded("", widths[i])
-                      : paint(color_of(channel->verdict), padded(shout(*channel), widths[i]));
-      reasons += padded(channel == nullptr ? "" : reason_of(*channel), widths[i]);
-      any_reason = any_reason || (channel != nullptr && channel->reason != Reason::kNone);
+    for (const std::string& input : board.inputs) {
+      const ChannelRecord* channel = find(board, input, cv);
+      const bool known = channel != nullptr;
+      verdicts.cells.push_back(
+          {known ? shout(*channel) : "", known ? tint_of(channel->verdict) : Tint::kPlain});
+      reasons.cells.push_back({known ? reason_of(*channel) : "", Tint::kGrey});
+      any_reason = any_reason || !reasons.cells.back().text.empty();
     }
-    text += verdicts + '\n';
-    if (any_reason) text += paint(kGrey, reasons) + '\n';
+    rows.push_back(std::move(verdicts));
+    if (any_reason) rows.push_back(std::move(reasons));
   }
-  return text;
+  return matrix_text(board.inputs, rows, layout);
 }
 
-std::string head(const std::string& name, const UnitBoard& board, const Painter& paint) {
+std::string head(const std::string& name, const UnitBoard& board, const report::Layout& layout) {
   const HealthRecord& health = board.health;
-  std::string text = paint(kBold, name) +
-                     fmt::format("  {} samples, {:.1f}/s", board.samples, board.samples_per_s);
+  std::string text =
+      layout.paint(Tint::kBold, name) +
+      fmt::format("  {}, {:.1f}/s", report::counted(board.samples, "sample"), board.samples_per_s);
   if (health.source_time_ns != 0) text += ", data of " + utc(health.source_time_ns);
   text += '\n';
   if (board.gone)
-    text += "  " + paint(kRed, "monitor gone: what follows is its last word") + '\n';
+    text += "  " + layout.paint(Tint::kRed, "monitor gone: what follows is its last word") + '\n';
   else if (!health.state.empty())
     text += "  health: " + health.state +
             (health.detail.empty() ? "" : " (" + health.detail + ")") + '\n';
   return text;
 }
 
-std::string alarm_text(const AlarmRecord& alarm) {
-  return fmt::format("{} -> {}  since {}  p {:.1e}  gain error {:.3g}", alarm.mv, alarm.cv,
-                     utc(alarm.source_time_ns), alarm.p_value, alarm.effect_size);
+std::string alarm_text(const UnitBoard& board, const AlarmRecord& alarm) {
+  return fmt::format("{} -> {}  since {}  {}  p {:.1e}", alarm.mv, alarm.cv,
+                     utc(alarm.source_time_ns),
+                     report::gain_text(alarm, find(board, alarm.mv, alarm.cv)), alarm.p_value);
 }
 
 /// "gain_ratio 0.7 (0.68 to 0.72)", all of them.
@@ -125,15 +97,14 @@ std::string cause_text(const NamedCause& named) {
 }  // namespace
 
 std::string render(const Board& board, const RenderOptions& options) {
-  const Painter paint{options.color};
   std::string text;
   for (const auto& [name, unit] : board.units()) {
     if (unit.channels.empty() && unit.health.unit.empty()) continue;  // nobody watches it
-    text += head(name, unit, paint);
-    if (!options.alarms_only && !unit.channels.empty()) text += matrix(unit, paint);
+    text += head(name, unit, options.layout);
+    if (!options.alarms_only && !unit.channels.empty()) text += matrix(unit, options.layout);
     text += unit.alarms.empty() ? "  no active alarms\n" : "  active alarms:\n";
     for (const auto& [channel, alarm] : unit.alarms) {
-      text += "  " + paint(kRed, "! " + alarm_text(alarm)) + '\n';
+      text += "  " + options.layout.paint(Tint::kRed, "! " + alarm_text(unit, alarm)) + '\n';
       if (!alarm.named.text.empty()) text += "      " + cause_text(alarm.named) + '\n';
     }
     text += '\n';
@@ -150,13 +121,13 @@ std::string change_line(const ChannelRecord* before, const ChannelRecord& after)
                      reason.empty() ? fmt::format("p {:.1e}", after.p_value) : reason);
 }
 
-std::string change_line(const AlarmRecord& change) {
+std::string change_line(const AlarmRecord& change, const ChannelRecord* channel) {
   if (change.to == AlarmChange::kDiagnosed)
     return fmt::format("{} {} {} -> {}: {}. {}", utc(change.source_time_ns), change.unit, change.mv,
                        change.cv, cause_text(change.named), change.named.text);
-  return fmt::format("{} {} {} -> {}: alarm {} (p {:.1e}, gain error {:.3g})",
-                     utc(change.source_time_ns), change.unit, change.mv, change.cv,
-                     to_string(change.to), change.p_value, change.effect_size);
+  return fmt::format("{} {} {} -> {}: alarm {} ({}, p {:.1e})", utc(change.source_time_ns),
+                     change.unit, change.mv, change.cv, to_string(change.to),
+                     report::gain_text(change, channel), change.p_value);
 }
 
 std::string change_line(const HealthRecord& before, const HealthRecord& after) {

@@ -67,19 +67,20 @@ void Viewer::print_change(const idl::Output& output) {
     const auto it = board_.units().find(unit);
     return it == board_.units().end() ? nullptr : &it->second;
   };
+  const auto known_channel = [&](const auto& record) -> const ChannelRecord* {
+    const UnitBoard* board = board_of(record.unit);
+    if (board == nullptr) return nullptr;
+    const auto it = board->channels.find({record.mv, record.cv});
+    return it == board->channels.end() ? nullptr : &it->second;
+  };
   if (const auto* alarm = std::get_if<AlarmRecord>(&output)) {
-    if (board_.wanted(alarm->unit)) print_line(change_line(*alarm));
+    if (board_.wanted(alarm->unit)) print_line(change_line(*alarm, known_channel(*alarm)));
     return;
   }
   if (options_.alarms_only) return;
   if (const auto* channel = std::get_if<ChannelRecord>(&output)) {
     if (!board_.wanted(channel->unit)) return;
-    const ChannelRecord* before = nullptr;
-    if (const UnitBoard* board = board_of(channel->unit))
-      if (const auto it = board->channels.find({channel->mv, channel->cv});
-          it != board->channels.end())
-        before = &it->second;
-    print_line(change_line(before, *channel));
+    print_line(change_line(known_channel(*channel), *channel));
   } else if (const auto* health = std::get_if<HealthRecord>(&output)) {
     if (!board_.wanted(health->unit)) return;
     const UnitBoard* board = board_of(health->unit);

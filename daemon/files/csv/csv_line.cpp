@@ -42,6 +42,7 @@ bool LineReader::read_line() {
     input_->getline(piece_.data(), piece_.size());
     const auto count = static_cast<std::size_t>(input_->gcount());
     complete_ = !input_->eof();
+    bytes_read_ += count;
     const bool goes_on = complete_ && input_->fail() && count + 1 == piece_.size();
     line_.append(piece_.data(), complete_ && !goes_on && count > 0 ? count - 1 : count);
     if (!goes_on) return complete_ ? !input_->fail() : !line_.empty();
@@ -111,6 +112,7 @@ void LineReader::rewind() {
   input_->clear();
   input_->seekg(0);
   number_ = 0;
+  bytes_read_ = 0;
   too_long_ = false;
 }
 

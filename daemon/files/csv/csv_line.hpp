@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <istream>
 #include <memory>
 #include <optional>
@@ -38,6 +39,8 @@ class LineReader {
   /// True if the line ended with a newline, as all but the last one of a cut-off file do.
   [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] int number() const { return number_; }
+  /// Up to here, newlines included.
+  [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[noreturn]] void fail(int column, const std::string& message) const;
   [[noreturn]] void fail(int line, int column, const std::string& message) const;
@@ -51,6 +54,7 @@ class LineReader {
   std::array<char, 4096> piece_{};  // as it comes from the input
   std::string line_;
   int number_ = 0;
+  std::uint64_t bytes_read_ = 0;
   bool complete_ = true;
   bool too_long_ = false;  // the rest of the line is still to come
   bool latin1_ = false;

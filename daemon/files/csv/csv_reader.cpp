@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "config/finding.hpp"
@@ -32,7 +34,11 @@ std::string seconds(double value) {
 
 CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit,
                      const TimeStyle& times, Purpose purpose)
-    : CsvReader(open_file(path), path, unit, times, purpose) {}
+    : CsvReader(open_file(path), path, unit, times, purpose) {
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  if (!unknown) file_bytes_ = size;
+}
 
 CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
                      const config::UnitConfig& unit, const TimeStyle& times, Purpose purpose)
@@ -95,6 +101,11 @@ bool CsvReader::next(Frame& frame) {
   }
   number(frame);
   return true;
+}
+
+double CsvReader::share_read() const {
+  if (file_bytes_ == 0) return 0.0;
+  return static_cast<double>(lines_.bytes_read()) / static_cast<double>(file_bytes_);
 }
 
 double CsvReader::elapsed(const Frame& frame) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <istream>
 #include <memory>
@@ -32,6 +33,7 @@ class CsvReader : public FrameSource {
             Purpose purpose = Purpose::kJudge);
 
   [[nodiscard]] bool next(Frame& frame) override;
+  [[nodiscard]] double share_read() const override;
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
   /// True if the file has the tag.
   [[nodiscard]] bool holds(const std::string& tag) const { return tags_.seen(tag); }
@@ -46,6 +48,7 @@ class CsvReader : public FrameSource {
   [[nodiscard]] bool clock_stays_back(double at);
 
   double sample_time_s_;
+  std::uintmax_t file_bytes_ = 0;  // 0 = not known
   LineReader lines_;
   TagTable tags_;
   std::vector<std::string> row_notices_;

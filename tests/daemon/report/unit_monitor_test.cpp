@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/model/linear_model.hpp"
-#include "daemon/report/detect_report.hpp"
 #include "daemon/report/record_json.hpp"
 #include "tests/core/counter_noise.hpp"
 
@@ -73,23 +72,6 @@ TEST_CASE("no number is wild: what the data do not resolve is left out") {
       }
     }
   }
-}
-
-TEST_CASE("a number that is not resolved is said to be none") {
-  DetectReport report;
-  ChannelRecord channel;
-  channel.mv = "u";
-  channel.cv = "y";
-  channel.verdict = Verdict::kMismatch;
-  channel.reason = Reason::kNone;
-  channel.usual = channel.material = true;
-  channel.model_gain = 2.0;
-  channel.effect_size = 4000.0;
-  channel.effect_low = -4000.0;
-  channel.effect_high = 12000.0;
-  channel.time_constant_ratio = channel.dead_time_error_s = std::nan("");
-  report.channels = {channel};
-  CHECK(to_text(report).find("gain --, time constant --, dead time --") != std::string::npos);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "config/load_unit.hpp"
+#include "daemon/bag/open_recording.hpp"
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
@@ -44,6 +46,25 @@ TEST_CASE("mpm detect says the same of a few rows, whatever file holds them") {
     CHECK(channel["verdict"] == "undetermined");
     CHECK(channel["reason"] == "warming_up");
   }
+}
+
+TEST_CASE("how much of a file has been read grows to all of it") {
+  Bench bench;
+  write_file(bench.folder.file("a.csv"), rows(500));
+  static_cast<void>(bench.convert("a.csv", "a.mcap", bench.with_unit()));
+  const std::string name = GENERATE("a.csv", "a.mcap");
+  const config::LoadResult unit = config::load_unit(bench.folder.file("small.yaml"));
+  const auto frames = bag::open_recording(bench.folder.file(name), unit.config);
+  Frame frame(unit.config.counts());
+  double share = 0.0;
+  int parts = 0;
+  while (frames->next(frame)) {
+    CHECK(frames->share_read() >= share);
+    if (frames->share_read() > share) ++parts;
+    share = frames->share_read();
+  }
+  CHECK(share == 1.0);
+  CHECK(parts > 100);
 }
 
 TEST_CASE("mpm detect takes a recording without one control interval for bad input") {

@@ -74,22 +74,24 @@ TEST_CASE("the picture says every verdict in words, why it is undetermined, and 
   ChannelRecord bad = channel("u1", "y2", Verdict::kMismatch);
   bad.alarm = AlarmState::kActive;
   board.update(bad);
-  board.update(alarm("u1", "y2", AlarmChange::kActive));
+  AlarmStateRecord raised = alarm("u1", "y2", AlarmChange::kActive);
+  raised.effect_size = 0.3;
+  board.update(raised);
   CHECK(board.any_alarm());
 
-  const std::string plain = render(board, {false, false});
+  const std::string plain = render(board, {{80, false}, false});
   CHECK(plain.find('\x1b') == std::string::npos);
   CHECK(plain.find("  y1  match       undetermined") != std::string::npos);
   CHECK(plain.find("              not_excited") != std::string::npos);
   CHECK(plain.find("  y2  mismatch !") != std::string::npos);
-  CHECK(plain.find("! u1 -> y2") != std::string::npos);
-  CHECK(render(board, {true, false}).find("\x1b[90mundetermined") != std::string::npos);
-  CHECK(render(board, {false, true}).find("undetermined") == std::string::npos);
+  CHECK(plain.find("! u1 -> y2  since -  gain off by 0.3  p 1.0e+00") != std::string::npos);
+  CHECK(render(board, {{80, true}, false}).find("\x1b[90mundetermined") != std::string::npos);
+  CHECK(render(board, {{80, false}, true}).find("undetermined") == std::string::npos);
 
   board.update(alarm("u1", "y2", AlarmChange::kCleared));
   CHECK_FALSE(board.any_alarm());
   board.update(idl::MonitorGone{"shell"});
-  CHECK(render(board, {false, false}).find("monitor gone") != std::string::npos);
+  CHECK(render(board, {{80, false}, false}).find("monitor gone") != std::string::npos);
 }
 
 TEST_CASE("only the unit asked for is shown, and samples are counted by interval") {
@@ -115,6 +117,40 @@ TEST_CASE("a line is due when a verdict or its reason changes, not before") {
   CHECK(change_line(&warming, warming).empty());
   const ChannelRecord match = channel("u1", "y1", Verdict::kMatch);
   CHECK(change_line(&warming, match).find("match") != std::string::npos);
+}
+
+TEST_CASE("the table is no wider than the terminal") {
+  Board board("");
+  for (const std::string input : {"u1", "u2", "u3"})
+    board.update(channel(input, "y1", Verdict::kUndetermined, Reason::kNotExcited));
+  CHECK(render(board, {{36, false}, false}) ==
+        "shell  1 sample, 0.0/s\n"
+        "      u1            u2\n"
+        "  y1  undetermined  undetermined\n"
+        "      not_excited   not_excited\n"
+        "\n"
+        "      u3\n"
+        "  y1  undetermined\n"
+        "      not_excited\n"
+        "  no active alarms\n\n");
+}
+
+TEST_CASE("an alarm tells its error in per cent of the model's gain where that is known") {
+  AlarmStateRecord raised = alarm("u1", "y2", AlarmChange::kActive);
+  raised.effect_size = -0.8;
+  raised.p_value = 1e-9;
+  ChannelRecord known = channel("u1", "y2", Verdict::kMismatch);
+  known.model_gain = -2.0;
+  known.effect_low = -1.0;
+  known.effect_high = -0.6;
+  CHECK(change_line(raised, &known) == "- shell u1 -> y2: alarm active (gain +40 %, p 1.0e-09)");
+  CHECK(change_line(raised, nullptr) ==
+        "- shell u1 -> y2: alarm active (gain off by -0.8, p 1.0e-09)");
+  Board board("");
+  board.update(known);
+  board.update(raised);
+  CHECK(render(board, {{80, false}, true}).find("! u1 -> y2  since -  gain +40 %  p 1.0e-09\n") !=
+        std::string::npos);
 }
 
 }  // namespace mpm::bus

@@ -1,0 +1,145 @@
+#include "daemon/report/channel_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text/number_text.hpp"
+#include "core/text/printable.hpp"
+
+namespace mpm::report {
+namespace {
+
+// What an interval that is said to be `ok` may reach: of the gain, of the time constants either
+// way, samples of dead time.
+constexpr double kOkPercent = 25.0, kOkTimeRatio = 1.5, kOkDeadTimeSamples = 2.0;
+
+std::string signed_text(double value, int digits = 2) {
+  return (value > 0.0 ? "+" : "") + number_text(value, digits);
+}
+
+struct Interval {
+  double low, high;
+  [[nodiscard]] bool holds(double value) const { return low <= value && value <= high; }
+  [[nodiscard]] bool within(double least, double most) const {
+    return low >= least && high <= most;
+  }
+  [[nodiscard]] std::string text() const { return interval_text(low, high, 2); }
+};
+
+// "0.0404 t/h per %"; empty where the units are not known.
+std::string with_units(const std::string& effect, const ChannelFile& file) {
+  if (file.mv_unit.empty() || file.cv_unit.empty()) return "";
+  return effect + " " + printable(file.cv_unit) + " per " + printable(file.mv_unit);
+}
+
+std::string gain_part(const ChannelRecord& channel, const ChannelFile& file) {
+  if (!file.modelled) {
+    const std::string effect = number_text(channel.effect_size);
+    const std::string in_units = with_units(effect, file);
+    return "answers, where the model has nothing: gain " + (in_units.empty() ? effect : in_units) +
+           " (" + interval_text(channel.effect_low, channel.effect_high) + ")";
+  }
+  if (!channel.gain_resolved()) return "gain --";
+  const double a = channel.percent_of_gain(channel.effect_low);
+  const double b = channel.percent_of_gain(channel.effect_high);
+  const Interval percent{std::min(a, b), std::max(a, b)};
+  if (percent.holds(0.0) && percent.within(-kOkPercent, kOkPercent)) return "gain ok";
+  const std::string in_units = with_units(signed_text(channel.effect_size, 3), file);
+  return "gain " + signed_text(channel.percent_of_gain(channel.effect_size)) + " % (" +
+         percent.text() + (in_units.empty() ? "" : "; " + in_units) + ")";
+}
+
+std::string time_constant_part(const ChannelRecord& channel) {
+  if (!channel.time_constant_resolved()) return "time constant --";
+  const Interval ratio{channel.time_constant_low, channel.time_constant_high};
+  if (ratio.holds(1.0) && ratio.within(1.0 / kOkTimeRatio, kOkTimeRatio)) return "time constant ok";
+  const auto percent = [](double of) { return 100.0 * (of - 1.0); };
+  return "time constant " + signed_text(percent(channel.time_constant_ratio)) + " % (" +
+         Interval{percent(ratio.low), percent(ratio.high)}.text() + ")";
+}
+
+std::string dead_time_part(const ChannelRecord& channel, const ChannelFile& file) {
+  if (!channel.dead_time_resolved()) return "dead time --";
+  const Interval seconds{channel.dead_time_low_s, channel.dead_time_high_s};
+  const double most = kOkDeadTimeSamples * file.sample_time_s;
+  if (seconds.holds(0.0) && seconds.within(-most, most)) return "dead time ok";
+  return "dead time " + signed_text(channel.dead_time_error_s) + " s (" + seconds.text() + ")";
+}
+
+std::string not_excited_text(const ChannelRecord& channel, const ChannelFile& file) {
+  if (!file.modelled)
+    return "moved too little to show whether " + printable(channel.cv) + " answers it; move " +
+           printable(channel.mv);
+  if (channel.smallest_error <= 0.0 || channel.smallest_error > 1.0)
+    return "moved too little to tell anything; move " + printable(channel.mv);
+  return "needs a gain error of " + percent_text(channel.smallest_error) + " to show; move " +
+         printable(channel.mv);
+}
+
+}  // namespace
+
+ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
+                         const std::string& cv) {
+  ChannelFile file;
+  file.sample_time_s = unit.sample_time_s;
+  const auto unit_of = [](const auto& signals, const std::string& tag) {
+    for (const auto& signal : signals)
+      if (signal.tag == tag) return signal.unit;
+    return std::string();
+  };
+  file.mv_unit = unit_of(unit.mv, mv) + unit_of(unit.dv, mv);  // one of which is empty
+  file.cv_unit = unit_of(unit.cv, cv);
+  const auto& channels = unit.model.channels;
+  file.modelled = unit.model.state_space.has_value() ||
+                  std::any_of(channels.begin(), channels.end(), [&](const ChannelSpec& channel) {
+                    return unit.input_tag(channel.input) == mv &&
+                           unit.cv[static_cast<std::size_t>(channel.cv)].tag == cv;
+                  });
+  return file;
+}
+
+std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file) {
+  std::string text = gain_part(channel, file);
+  if (file.modelled && channel.usual)
+    text += ", " + time_constant_part(channel) + ", " + dead_time_part(channel, file);
+  else if (file.modelled)
+    text += ", and not of that alone: the dynamics or the dead time differ by much";
+  if (channel.reason == Reason::kWeakExcitation)
+    text += "; seen though " + printable(channel.mv) + " moved little";
+  if (!channel.material) text += "; too small to matter";
+  return text;
+}
+
+std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& file) {
+  switch (channel.reason) {
+    case Reason::kWarmingUp:
+      return "too few samples yet";
+    case Reason::kNotExcited:
+      return not_excited_text(channel, file);
+    case Reason::kCollinear:
+      return "moved only together with " + printable(channel.confounder) +
+             "; move one without the other";
+    case Reason::kBadData:
+      return "too much of what it needs is missing or bad";
+    case Reason::kControllerOff:
+      return "no manipulated variable moves: the controller is off or in manual";
+    case Reason::kConstrained:
+      return printable(channel.mv) + " rests at a limit; move it away from there";
+    case Reason::kIsolating:
+      return "something changed in " + printable(channel.cv) +
+             "; too few samples since then to tell which channel";
+    case Reason::kNone:
+    case Reason::kWeakExcitation:
+      break;
+  }
+  return "not known";
+}
+
+std::string gain_text(const AlarmRecord& alarm, const ChannelRecord* channel) {
+  if (channel == nullptr || channel->model_gain == 0.0)
+    return "gain off by " + number_text(alarm.effect_size);
+  if (!channel->gain_resolved()) return "gain --";
+  return "gain " + signed_text(channel->percent_of_gain(alarm.effect_size)) + " %";
+}
+
+}  // namespace mpm::report

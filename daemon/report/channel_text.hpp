@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "config/unit_config.hpp"
+#include "core/record/alarm_record.hpp"
+#include "core/record/channel_record.hpp"
+
+/// What is said of a channel in words, the same wherever people read it.
+namespace mpm::report {
+
+/// What a unit file knows of a channel besides.
+struct ChannelFile {
+  bool modelled = true;  ///< the model has it: a gain error in per cent of it means something
+  std::string mv_unit, cv_unit;
+  double sample_time_s = 0.0;  ///< 0 = not known
+};
+[[nodiscard]] ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
+                                       const std::string& cv);
+
+/// Of a mismatch: "gain +41 % (31 to 51; +0.0404 t/h per %), time constant ok, dead time --". What
+/// the data do not resolve is `--`; `ok` is what its 95 % interval holds to be as modelled, and
+/// nothing much else.
+[[nodiscard]] std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file);
+
+/// Of what is undetermined: why, and what would help.
+[[nodiscard]] std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& file);
+
+/// Of an alarm, in per cent of the gain of its channel: "gain +41 %". `channel`: null where it is
+/// not known, or the model lacks it.
+[[nodiscard]] std::string gain_text(const AlarmRecord& alarm, const ChannelRecord* channel);
+
+}  // namespace mpm::report

@@ -1,0 +1,176 @@
+#include "daemon/report/detect_text.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "core/text/printable.hpp"
+#include "daemon/report/channel_text.hpp"
+#include "daemon/report/matrix_text.hpp"
+#include "daemon/report/moment_text.hpp"
+
+namespace mpm::report {
+namespace {
+
+void add_once(std::vector<std::string>& tags, const std::string& tag) {
+  if (std::find(tags.begin(), tags.end(), tag) == tags.end()) tags.push_back(tag);
+}
+
+std::string head(const DetectReport& report, const MomentText& moment) {
+  std::string text = printable(report.unit) + ": " + counted(report.samples, "sample");
+  if (report.first_ns == report.last_ns)
+    text += " at " + moment.with_year(report.last_ns) + moment.zone();
+  else
+    text += " from " + moment.with_year(report.first_ns) + " to " +
+            moment.with_year(report.last_ns) + moment.zone();
+  if (report.used.size() > 1) text += ", in " + std::to_string(report.used.size()) + " stretches";
+  text += "; " + std::to_string(report.used_samples) + " used";
+  if (report.missing > 0) text += ", " + std::to_string(report.missing) + " missing";
+  if (report.out_of_order > 0) text += ", " + std::to_string(report.out_of_order) + " out of order";
+  text +=
+      report.bad_values == 0 ? ", no bad values" : ", " + counted(report.bad_values, "bad value");
+  std::string looks;
+  const auto look = [&](std::uint64_t count, const std::string& what) {
+    if (count > 0) looks += (looks.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  };
+  look(report.frozen, "frozen");
+  look(report.clipped, "clipped");
+  look(report.spikes, report.spikes == 1 ? "spike" : "spikes");
+  return looks.empty() ? text : text + " (" + looks + ")";
+}
+
+MatrixCell cell_of(const ChannelRecord& channel) {
+  MatrixCell cell{"u", Tint::kGrey};
+  if (channel.verdict == Verdict::kMatch) cell = {"m", Tint::kGreen};
+  if (channel.verdict == Verdict::kMismatch)
+    cell = channel.material ? MatrixCell{"X", Tint::kRed} : MatrixCell{"x", Tint::kPlain};
+  if (channel.alarm == AlarmState::kActive) cell = {cell.text + "!", Tint::kRed};
+  return cell;
+}
+
+std::string legend(const std::vector<MatrixRow>& rows) {
+  std::string text;
+  const auto explain = [&](char mark, const char* meaning) {
+    for (const MatrixRow& row : rows)
+      for (const MatrixCell& cell : row.cells)
+        if (cell.text.find(mark) != std::string::npos) {
+          text += (text.empty() ? "" : ", ") + std::string(1, mark) + " " + meaning;
+          return;
+        }
+  };
+  explain('m', "match");
+  explain('X', "mismatch");
+  explain('x', "mismatch too small to matter");
+  explain('u', "undetermined");
+  explain('!', "in alarm");
+  return text;
+}
+
+std::string matrix(const std::vector<ChannelRecord>& channels, const Layout& layout) {
+  std::vector<std::string> inputs, cvs;
+  for (const ChannelRecord& channel : channels) {
+    add_once(inputs, channel.mv);
+    add_once(cvs, channel.cv);
+  }
+  std::vector<MatrixRow> rows;
+  for (const std::string& input : inputs)
+    rows.push_back({printable(input), std::vector<MatrixCell>(cvs.size())});
+  for (const ChannelRecord& channel : channels) {
+    const auto row = std::find(inputs.begin(), inputs.end(), channel.mv) - inputs.begin();
+    const auto column = std::find(cvs.begin(), cvs.end(), channel.cv) - cvs.begin();
+    rows[static_cast<std::size_t>(row)].cells[static_cast<std::size_t>(column)] = cell_of(channel);
+  }
+  std::vector<std::string> columns;
+  for (const std::string& cv : cvs) columns.push_back(printable(cv));
+  return matrix_text(columns, rows, layout) + '\n' + wrapped(legend(rows), 2, layout.width);
+}
+
+/// The lines of a report.
+class Teller {
+ public:
+  Teller(const DetectReport& report, const config::UnitConfig& unit, const Layout& layout,
+         const MomentText& moment)
+      : report_(report), unit_(unit), layout_(layout), moment_(moment) {}
+
+  using Say = std::function<std::string(const ChannelRecord&)>;
+  /// A line for each channel of which there is something to say.
+  void section(const char* title, const Say& say) {
+    bool begun = false;
+    for (std::size_t i = 0; i < report_.channels.size(); ++i) {
+      const std::string text = say(report_.channels[i]);
+      if (text.empty()) continue;
+      if (!begun) text_ += '\n' + layout_.paint(Tint::kBold, title) + '\n';
+      begun = true;
+      text_ += wrapped(name_of(report_.channels[i]) + ": " + text, 2, layout_.width);
+    }
+  }
+
+  [[nodiscard]] std::string problem(const ChannelRecord& channel) const {
+    const bool alarm = channel.alarm == AlarmState::kActive;
+    if (channel.verdict == Verdict::kMismatch)
+      return mismatch_text(channel, channel_file(unit_, channel.mv, channel.cv)) + since(channel);
+    return alarm && channel.verdict == Verdict::kMatch
+               ? "matches by now, still in alarm" + since(channel)
+               : "";
+  }
+
+  [[nodiscard]] std::string open(const ChannelRecord& channel) const {
+    if (channel.verdict != Verdict::kUndetermined) return "";
+    const std::string text =
+        undetermined_text(channel, channel_file(unit_, channel.mv, channel.cv));
+    return channel.alarm == AlarmState::kActive ? text + "; in alarm" + since(channel) : text;
+  }
+
+  [[nodiscard]] std::string past(const ChannelRecord& channel) const {
+    std::string text;
+    const AlarmRecord* raised = nullptr;
+    for (const AlarmRecord& alarm : report_.alarms) {
+      if (alarm.mv != channel.mv || alarm.cv != channel.cv) continue;
+      if (alarm.to == AlarmChange::kActive) raised = &alarm;
+      if (alarm.to != AlarmChange::kCleared || raised == nullptr) continue;
+      text += (text.empty() ? "from " : ", from ") + moment_(raised->source_time_ns) + " to " +
+              moment_(alarm.source_time_ns);
+      raised = nullptr;
+    }
+    return text;
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  // ", since 14:20 on 3 March" of an alarm that stands.
+  [[nodiscard]] std::string since(const ChannelRecord& channel) const {
+    if (channel.alarm != AlarmState::kActive) return "";
+    for (auto alarm = report_.alarms.rbegin(); alarm != report_.alarms.rend(); ++alarm)
+      if (alarm->mv == channel.mv && alarm->cv == channel.cv && alarm->to == AlarmChange::kActive)
+        return ", since " + moment_(alarm->source_time_ns);
+    return "";
+  }
+
+  // Both tags and what stands around them in one line.
+  [[nodiscard]] std::string name_of(const ChannelRecord& channel) const {
+    const std::size_t longest = std::max<std::size_t>(layout_.width / 2, 8) - 5;
+    return shortened(printable(channel.mv), longest) + " -> " +
+           shortened(printable(channel.cv), longest);
+  }
+
+  const DetectReport& report_;
+  const config::UnitConfig& unit_;
+  const Layout& layout_;
+  const MomentText& moment_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string to_text(const DetectReport& report, const config::UnitConfig& unit,
+                    const Layout& layout, const files::TimeZone* zone) {
+  const MomentText moment(report.last_ns, unit.sample_time_s, zone);
+  Teller teller(report, unit, layout, moment);
+  teller.section("Mismatch", [&](const auto& channel) { return teller.problem(channel); });
+  teller.section("Undetermined", [&](const auto& channel) { return teller.open(channel); });
+  teller.section("Alarms that are over", [&](const auto& channel) { return teller.past(channel); });
+  return wrapped(head(report, moment), 0, layout.width) + '\n' + matrix(report.channels, layout) +
+         teller.text();
+}
+
+}  // namespace mpm::report
