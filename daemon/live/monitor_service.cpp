@@ -4,7 +4,6 @@
 
 #include <map>
 
-#include "core/text/number_text.hpp"
 #include "daemon/bus/domain_options.hpp"
 
 namespace mpm::live {
@@ -33,10 +32,9 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       domain->attach_to(wait_set_);
     }
     domain->add_unit(unit, journal_ ? &*journal_ : nullptr, now).diagnose_with(worker, asker++);
-    spdlog::info(
-        "{}: watching {} on domain {}{}", unit.unit,
-        counted(static_cast<std::uint64_t>(unit.counts().inputs() * unit.counts().cv), "channel"),
-        unit.dds.domain, unit.dds.partition.empty() ? "" : ", partition " + unit.dds.partition);
+    spdlog::info("{}: watching {} channels on domain {}{}", unit.unit,
+                 unit.counts().inputs() * unit.counts().cv, unit.dds.domain,
+                 unit.dds.partition.empty() ? "" : ", partition " + unit.dds.partition);
   }
 }
 
@@ -70,9 +68,8 @@ std::string MonitorService::status() const {
       alarms += health.active_alarms;
     }
   }
-  return fmt::format("{}; channels: {} match, {} mismatch, {} undetermined; {}",
-                     counted(units, "unit"), matching, mismatching, undetermined,
-                     counted(alarms, "alarm"));
+  return fmt::format("{} units; channels: {} match, {} mismatch, {} undetermined; {} alarms", units,
+                     matching, mismatching, undetermined, alarms);
 }
 
 }  // namespace mpm::live

@@ -10,7 +10,6 @@
 
 #include "config/unit_layout.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
-#include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "idl/topics.hpp"
@@ -238,7 +237,7 @@ void UnitPipeline::judge_health() {
   else if (health_.incomplete != incomplete_before_)
     set("out_of_specification", "data incomplete");
   else if (health_.active_alarms > 0)
-    set("maintenance_required", counted(health_.active_alarms, "alarm"));
+    set("maintenance_required", std::to_string(health_.active_alarms) + " alarms");
   else if (health_.matching + health_.mismatching == 0)
     set("function_check", "nothing determined yet");
   else

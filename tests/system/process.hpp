@@ -30,8 +30,8 @@ void write_file(const std::string& path, const std::string& text);
 /// One of our programs, running; killed if the test leaves it behind.
 class Process {
  public:
-  /// `arguments[0]`: mpmd, mpm ..., or a path. Output goes to `output` and `errors`. `environment`:
-  /// additional "NAME=value". `input`: file for standard input.
+  /// `arguments[0]`: mpmd, mpm ... Output goes to `output` and `errors`. `environment`: additional
+  /// "NAME=value". `input`: file for standard input.
   Process(const std::vector<std::string>& arguments, const std::string& output,
           const std::string& errors, const std::vector<std::string>& environment = {},
           const std::string& input = "/dev/null");

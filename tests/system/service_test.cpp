@@ -50,7 +50,7 @@ TEST_CASE("systemd is told when the daemon is ready, alive, well and stopping") 
   NotifySocket socket(folder.file("notify"));
   Bench bench("notify", {}, {"NOTIFY_SOCKET=" + folder.file("notify"), "WATCHDOG_USEC=300000"});
   CHECK(socket.hears("READY=1"));
-  CHECK(socket.hears("STATUS=1 unit; channels: 0 match, 0 mismatch, 2 undetermined; 0 alarms"));
+  CHECK(socket.hears("STATUS=1 units; channels: 0 match, 0 mismatch, 2 undetermined; 0 alarms"));
   CHECK(socket.hears("WATCHDOG=1"));
   CHECK(socket.heard().find("STOPPING=1") == std::string::npos);
   bench.daemon.send(SIGINT);
