@@ -37,8 +37,8 @@ void check_cost(const Map& root, const UnitConfig& config) {
   const Value* cause = monitor != nullptr ? monitor : root.find("model");
   if (cause == nullptr) cause = root.find("signals");
   const std::string size = number_text(cost.columns) + " regression columns for each of " +
-                           std::to_string(config.cv.size()) + " CVs, " +
-                           number_text(cost.remembered) + " samples remembered";
+                           counted(config.cv.size(), "CV") + ", " + number_text(cost.remembered) +
+                           " samples remembered";
   if (cost.bytes > kMostBytes)
     cause->error("the monitor of this unit would need " + number_text(1e-9 * cost.bytes) +
                  " GB of memory (" + size + "); split the unit, or shorten its memory");

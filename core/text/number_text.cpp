@@ -34,4 +34,10 @@ std::string percent_text(double share, int digits) {
   return number_text(100.0 * share, digits) + " %";
 }
 
+std::string counted(std::uint64_t count, std::string_view what) {
+  std::string text = std::to_string(count) + " ";
+  text.append(what);
+  return count == 1 ? text : text + "s";
+}
+
 }  // namespace mpm

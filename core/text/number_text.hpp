@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 /// Numbers as people read them.
 namespace mpm {
@@ -11,5 +13,7 @@ namespace mpm {
 [[nodiscard]] std::string interval_text(double low, double high, int digits = 3);
 /// "25 %" of 0.25
 [[nodiscard]] std::string percent_text(double share, int digits = 2);
+/// "1 sample", "2 samples" of "sample"
+[[nodiscard]] std::string counted(std::uint64_t count, std::string_view what);
 
 }  // namespace mpm

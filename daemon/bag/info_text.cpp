@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/signal/saturated.hpp"
+#include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/bag/sample_stream.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -121,15 +122,14 @@ std::string span_text(const TimeTally& times) {
 
 std::string gaps_text(const TimeTally& times) {
   if (times.gaps == 0) return "no gaps";
-  return std::to_string(times.gaps) + (times.gaps == 1 ? " gap, " : " gaps, ") +
-         std::to_string(times.missing) + " missing, the longest " +
-         duration_text(seconds(times.longest_gap_ns)) + " at " +
+  return counted(times.gaps, "gap") + ", " + std::to_string(times.missing) +
+         " missing, the longest " + duration_text(seconds(times.longest_gap_ns)) + " at " +
          files::utc_text(times.longest_gap_at_ns);
 }
 
 std::string order_text(const TimeTally& times) {
   if (times.out_of_order == 0) return {};
-  return "; " + std::to_string(times.out_of_order) + (times.out_of_order == 1 ? " row" : " rows") +
+  return "; " + counted(times.out_of_order, "row") +
          " not later than the one before, the farthest back by " +
          duration_text(seconds(times.farthest_back_ns)) + " after " +
          files::utc_text(times.farthest_back_at_ns);
@@ -172,8 +172,8 @@ std::string mcap_text(const FileInfo& info) {
     if (unit.sample_time_s > 0.0) text += line(", every %.6g s", unit.sample_time_s);
     text += "\n";
     for (const auto& [kind, samples] : unit.samples) {
-      text += std::string("   ") + topic_of(kind) + ": " + std::to_string(samples.times.count) +
-              " samples, " + gaps_text(samples.times) + "\n";
+      text += std::string("   ") + topic_of(kind) + ": " + counted(samples.times.count, "sample") +
+              ", " + gaps_text(samples.times) + "\n";
       for (const SignalTally& signal : samples.signals) text += signal_text(signal);
     }
   }
@@ -218,7 +218,7 @@ std::string to_text(const FileInfo& info) {
       info.path + ": " + (info.is_mcap ? "MCAP" : "CSV") + ", " + bytes_text(info.bytes);
   if (info.files.size() > 1) text += ", " + std::to_string(info.files.size()) + " files";
   if (!info.library.empty()) text += ", written by " + printable(info.library);
-  text += "\n  " + std::to_string(info.times.count) + (info.is_mcap ? " messages, " : " rows, ") +
+  text += "\n  " + counted(info.times.count, info.is_mcap ? "message" : "row") + ", " +
           span_text(info.times) + "\n";
   if (!info.problem.empty()) text += "  NOT WHOLE: " + info.problem + "\n";
   return text + (info.is_mcap ? mcap_text(info) : csv_text(info));

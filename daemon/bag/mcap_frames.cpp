@@ -4,6 +4,7 @@
 
 #include "config/finding.hpp"
 #include "config/unit_layout.hpp"
+#include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/bag/contents.hpp"
 #include "daemon/bag/kind_name.hpp"
@@ -131,21 +132,21 @@ bool McapFrames::next(Frame& frame) {
 }
 
 void McapFrames::tell_counters() {
-  const auto tell = [this](std::uint64_t count, const char* what) {
-    if (count > 0) notices_.push_back(std::to_string(count) + what);
+  const auto tell = [this](std::uint64_t count, const char* what, const char* rest) {
+    if (count > 0) notices_.push_back(counted(count, what) + rest);
   };
   const AlignerCounters& counters = aligner_.counters();
-  tell(counters.incomplete, " control intervals of which a needed topic is missing");
-  tell(counters.late, " samples left out that came too late for their control interval");
-  tell(counters.repeated, " samples left out that repeat a control interval");
-  tell(counters.wrong_length, " samples left out that have the wrong number of values");
-  tell(counters.infinite, " values taken as missing: they are not finite");
-  tell(counters.restarts, " restarts of the controller's count of intervals");
+  tell(counters.incomplete, "control interval", " of which a needed topic is missing");
+  tell(counters.late, "sample", " left out that came too late for their control interval");
+  tell(counters.repeated, "sample", " left out for repeating a control interval");
+  tell(counters.wrong_length, "sample", " left out for a wrong number of values");
+  tell(counters.infinite, "value", " taken as missing: not finite");
+  tell(counters.restarts, "restart", " of the controller's count of intervals");
   if (purpose_ != files::Purpose::kKeep) return;
-  tell(of_other_units_, " samples of other units left out");
+  tell(of_other_units_, "sample", " of other units left out");
   for (const auto& [topic, count] : samples_.others())
-    notices_.push_back(std::to_string(count) + " messages on " + printable(topic) +
-                       " left out: they hold no signals");
+    notices_.push_back(counted(count, "message") + " on " + printable(topic) +
+                       " left out: no signals in it");
 }
 
 }  // namespace mpm::bag

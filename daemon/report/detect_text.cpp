@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/matrix_text.hpp"

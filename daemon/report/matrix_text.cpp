@@ -25,6 +25,9 @@ std::string table(const std::vector<std::string>& columns, const std::vector<Mat
   }
   text = line_of(text);
   for (const MatrixRow& row : rows) {
+    std::size_t told = first;
+    while (told < end && row.cells[told].text.empty()) ++told;
+    if (row.tag.empty() && told == end) continue;
     std::string line =
         std::string(kIndent, ' ') + layout.paint(row.tag.empty() ? Tint::kPlain : Tint::kBold,
                                                  padded(shortened(row.tag, tag_width), tag_width));

@@ -75,10 +75,4 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t wid
   return lines + line + '\n';
 }
 
-std::string counted(std::size_t count, std::string_view what) {
-  std::string text = std::to_string(count) + " ";
-  text.append(what);
-  return count == 1 ? text : text + "s";
-}
-
 }  // namespace mpm::report

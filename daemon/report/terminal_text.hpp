@@ -29,7 +29,4 @@ struct Layout {
 /// `indent` blanks, those after it two further. A number and its % stay together.
 [[nodiscard]] std::string wrapped(const std::string& text, std::size_t indent, std::size_t width);
 
-/// "1 sample", "2 samples"
-[[nodiscard]] std::string counted(std::size_t count, std::string_view what);
-
 }  // namespace mpm::report

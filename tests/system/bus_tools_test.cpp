@@ -353,7 +353,7 @@ TEST_CASE("no line of JSON ends mpm publish --on-error skip, and each is told wi
   CHECK(said[3] == "stdin:4:16: error: 'u1': [...] is no number");
   CHECK(said[4].find("stdin:5:16: error: \"time\": 'now'") == 0);
   CHECK(said[5] == "stdin:6:22: error: \"interval\": 1.5 is no interval number");
-  CHECK(said[6] == "mpm publish: 1 lines published, 6 skipped");
+  CHECK(said[6] == "mpm publish: 1 line published, 6 skipped");
 }
 
 TEST_CASE("mpm publish that is stopped before its first line has done nothing wrong") {
@@ -386,7 +386,7 @@ TEST_CASE("mpm publish takes a CSV without predictions and says what becomes of 
   CHECK(corner.mpm({"publish", "--config", unit, "--wait-readers", "0"},
                    corner.folder.file("lines")) == 0);
   CHECK(corner.err().find("model simulates instead") != std::string::npos);
-  CHECK(lines_of(corner.err()).back() == "mpm publish: 1 lines published");
+  CHECK(lines_of(corner.err()).back() == "mpm publish: 1 line published");
 }
 
 TEST_CASE(
@@ -475,7 +475,7 @@ TEST_CASE("keys steer a replay on a terminal") {
       {"mpm", "replay", file, "--wait-readers", "0", "--rate", "0.0001", "--start-paused"}));
   CHECK(replay.shows(" 0 samples  0.0001 x  paused"));
   replay.press("s");
-  CHECK(replay.shows(" 1 samples"));
+  CHECK(replay.shows(" 1 sample "));
   replay.press("\x1b[C\x1b[C");
   CHECK(replay.shows(" 3 samples  0.0001 x  paused"));
   replay.press(" ");

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "config/load_unit.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/convert.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -25,10 +26,11 @@ struct Options {
 
 void tell(const Options& options, const bag::ConvertReport& report) {
   std::ostream& out = options.output == files::kStandardOutput ? std::cerr : std::cout;
-  out << options.output << ": " << report.rows << " rows of " << report.signals << " signals from "
-      << files::utc_text(report.first_ns) << " to " << files::utc_text(report.last_ns) << "\n  "
-      << report.values << " values (" << report.uncertain << " uncertain, " << report.bad
-      << " bad), " << report.missing << " missing; " << report.bytes << " bytes\n"
+  out << options.output << ": " << counted(report.rows, "row") << " of "
+      << counted(report.signals, "signal") << " from " << files::utc_text(report.first_ns) << " to "
+      << files::utc_text(report.last_ns) << "\n  " << counted(report.values, "value") << " ("
+      << report.uncertain << " uncertain, " << report.bad << " bad), " << report.missing
+      << " missing; " << report.bytes << " bytes\n"
       << std::flush;
   for (const std::string& notice : report.notices)
     std::cerr << options.input << ": " << notice << '\n';

@@ -90,15 +90,17 @@ Recording read(const std::string& file, const config::UnitConfig& unit,
   files::RecordingFile data = files::read_recording(*frames, unit, file, choice);
   const std::string prefix = file + ": ";
   for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
-  const auto count = [&](std::int64_t number, const std::string& what) {
-    if (number > 0) notices.push_back(prefix + std::to_string(number) + what);
+  const auto count = [&](std::int64_t number, const char* what, const std::string& rest) {
+    if (number > 0)
+      notices.push_back(prefix + counted(static_cast<std::uint64_t>(number), what) + rest);
   };
-  count(data.missing, " intervals without a row");
-  count(data.long_gaps, " gaps of more than " + std::to_string(data.longest_gap) +
-                            " intervals; a new run begins after each");
-  count(data.scraps, " rows left out, of runs too short to tell anything");
-  count(data.out_of_order, " rows left out, for their time does not grow");
-  count(data.bad_values, " values of inputs and CVs missing or bad");
+  count(data.missing, "interval", " without a row");
+  count(data.long_gaps, "gap",
+        " of more than " + std::to_string(data.longest_gap) +
+            " intervals; a new run begins after each");
+  count(data.scraps, "row", " left out, of runs too short to tell anything");
+  count(data.out_of_order, "row", " left out, for the time does not grow");
+  count(data.bad_values, "value", " of inputs and CVs missing or bad");
   return std::move(data.recording);
 }
 

@@ -9,6 +9,7 @@
 
 #include "config/load_unit.hpp"
 #include "config/unit_layout.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bus/domain_options.hpp"
@@ -116,7 +117,7 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
   }
   tell_notices(lines);
   if (!publisher.flush(kFlushTime)) std::cerr << "some readers do not have all samples\n";
-  std::cerr << "mpm publish: " << published << " lines published";
+  std::cerr << "mpm publish: " << counted(published, "line") << " published";
   if (skipped > 0) std::cerr << ", " << skipped << " skipped";
   std::cerr << '\n';
   return 0;

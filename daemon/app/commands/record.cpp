@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/text/number_text.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/status_line.hpp"
@@ -66,7 +67,7 @@ class Rates {
   [[nodiscard]] std::string summary(const bag::RecorderState& state) const {
     const bag::RecordingTotals& totals = state.totals;
     std::string text = seconds_text(std::chrono::duration<double>(Clock::now() - start_).count());
-    text += "  " + std::to_string(totals.samples) + " samples  " +
+    text += "  " + counted(totals.samples, "sample") + "  " +
             bytes_text(static_cast<double>(totals.bytes)) + "  " + std::to_string(state.dropped) +
             " dropped";
     if (state.lost > 0) text += "  " + std::to_string(state.lost) + " lost by DDS";

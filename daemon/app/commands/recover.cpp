@@ -5,6 +5,7 @@
 #include <string>
 
 #include "config/finding.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/files/replacement_file.hpp"
 #include "daemon/mcap/recover.hpp"
 
@@ -30,8 +31,8 @@ int run_recover(const std::string& input, const std::string& output) {
     for (const std::string& problem : report.problems)
       std::cerr << input << ": " << problem << '\n';
     if (report.whole) std::cout << input << ": was whole; its index is new\n";
-    std::cout << output << ": " << report.messages << " messages of " << report.channels
-              << " channels in " << report.chunks << " chunks";
+    std::cout << output << ": " << counted(report.messages, "message") << " of "
+              << counted(report.channels, "channel") << " in " << counted(report.chunks, "chunk");
     if (report.torn_messages > 0)
       std::cout << ", " << report.torn_messages << " of them from the chunk that was cut off";
     std::cout << "; " << report.lost_bytes << " bytes of the old file are lost\n" << std::flush;

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "config/finding.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/status_line.hpp"
@@ -115,7 +116,7 @@ std::string progress_text(const bag::PlayerState& state, std::int64_t length_ns)
                   static_cast<double>(length_ns) / kNsPerSecond);
     line += text.data();
   }
-  line += " s  " + std::to_string(state.samples) + " samples  ";
+  line += " s  " + counted(state.samples, "sample") + "  ";
   if (state.rate == 0.0) {
     line += "as fast as readers keep up";
   } else {
@@ -179,7 +180,7 @@ int replay(const ReplayOptions& options, host::StopSignal& stop) {
   const bool sent = player.play();
   bool taken = sent;
   for (const auto& [topic, writer] : writers) taken = taken && writer.flush(kFlushTime);
-  status.say("mpm replay: " + std::to_string(player.state().samples) + " samples published");
+  status.say("mpm replay: " + counted(player.state().samples, "sample") + " published");
   if (!sent) throw std::runtime_error("a reader does not take samples");
   if (!taken) status.say("mpm replay: some readers do not have all samples");
   return 0;

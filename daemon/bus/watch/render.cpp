@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/record/reason_text.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/files/times/time_text.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/matrix_text.hpp"
@@ -62,7 +63,7 @@ std::string head(const std::string& name, const UnitBoard& board, const report::
   const HealthRecord& health = board.health;
   std::string text =
       layout.paint(Tint::kBold, name) +
-      fmt::format("  {}, {:.1f}/s", report::counted(board.samples, "sample"), board.samples_per_s);
+      fmt::format("  {}, {:.1f}/s", counted(board.samples, "sample"), board.samples_per_s);
   if (health.source_time_ns != 0) text += ", data of " + utc(health.source_time_ns);
   text += '\n';
   if (board.gone)

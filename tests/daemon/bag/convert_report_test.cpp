@@ -57,7 +57,7 @@ TEST_CASE("Infinite values of a recording are counted, missing ones are not") {
   }
   const bag::ConvertReport report = bench.convert("a.mcap", "a.csv");
   CHECK(report.missing == 2);
-  CHECK(told(report, "1 values taken as missing: they are not finite"));
+  CHECK(told(report, "1 value taken as missing: not finite"));
 }
 
 TEST_CASE("Columns and rows that are no signals are named") {
@@ -103,7 +103,7 @@ TEST_CASE("Tags and topics that the unit does not have are named") {
   writer.finish();
   const bag::ConvertReport report = bench.convert("more.mcap", "more.csv", bench.with_unit());
   CHECK(told(report, "2 samples of other units left out"));
-  CHECK(told(report, "3 messages on mpm/alarm left out: they hold no signals"));
+  CHECK(told(report, "3 messages on mpm/alarm left out: no signals in it"));
 }
 
 }  // namespace

@@ -1,0 +1,72 @@
+#include "daemon/report/channel_text.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "tests/daemon/report/sample_channels.hpp"
+
+namespace mpm::report {
+
+TEST_CASE("what the data do not resolve is no number") {
+  ChannelRecord channel = mismatch("FIC-101", "AI-201");
+  const ChannelFile file = channel_file(column(), "FIC-101", "AI-201");
+  channel.effect_size = 40.0;  // 400 times the model's gain
+  channel.effect_low = -40.0;
+  channel.effect_high = 120.0;
+  channel.time_constant_ratio = channel.dead_time_error_s = std::nan("");
+  CHECK(mismatch_text(channel, file) == "gain --, time constant --, dead time --");
+
+  channel = mismatch("FIC-101", "AI-201");
+  channel.time_constant_ratio = 2.0;
+  channel.time_constant_low = 1.5;
+  channel.time_constant_high = 2.5;
+  channel.dead_time_error_s = 240.0;
+  channel.dead_time_low_s = -30.0;
+  channel.dead_time_high_s = 510.0;  // holds 0, but much else
+  channel.effect_low = -0.01;
+  channel.effect_high = 0.02;
+  channel.material = false;
+  CHECK(mismatch_text(channel, file) ==
+        "gain ok, time constant +100 % (50 to 150), dead time +240 s (-30 to 510); too small to "
+        "matter");
+  channel.usual = false;
+  channel.material = true;
+  CHECK(mismatch_text(channel, file) ==
+        "gain ok, and not of that alone: the dynamics or the dead time differ by much");
+}
+
+TEST_CASE("of a model whose gain is negative, more gain is more in its direction") {
+  ChannelRecord channel = mismatch("FIC-101", "AI-202");
+  channel.model_gain = -0.1;
+  const ChannelFile file = channel_file(column(), "FIC-101", "AI-202");
+  CHECK(mismatch_text(channel, file) ==
+        "gain -41 % (-51 to -31; +0.041 bar per %), time constant ok, dead time ok");
+  AlarmRecord raised = alarm(channel, AlarmChange::kActive, 0);
+  raised.effect_size = -0.037;
+  CHECK(gain_text(raised, &channel) == "gain +37 %");
+  CHECK(gain_text(raised, nullptr) == "gain off by -0.037");
+  channel.effect_high = 1.0;
+  CHECK(gain_text(raised, &channel) == "gain --");
+}
+
+TEST_CASE("every reason has its words") {
+  const ChannelFile file = channel_file(column(), "FIC-101", "AI-201");
+  const auto text = [&](Reason reason, const std::string& confounder = "") {
+    ChannelRecord channel = undetermined("FIC-101", "AI-201", reason, 0.5);
+    channel.confounder = confounder;
+    return undetermined_text(channel, file);
+  };
+  CHECK(text(Reason::kWarmingUp) == "too few samples yet");
+  CHECK(text(Reason::kNotExcited) == "needs a gain error of 50 % to show; move FIC-101");
+  CHECK(text(Reason::kCollinear, "FIC-102") ==
+        "moved only together with FIC-102; move one without the other");
+  CHECK(text(Reason::kBadData) == "too much of what it needs is missing or bad");
+  CHECK(text(Reason::kControllerOff) ==
+        "no manipulated variable moves: the controller is off or in manual");
+  CHECK(text(Reason::kConstrained) == "FIC-101 rests at a limit; move it away from there");
+  CHECK(text(Reason::kIsolating) ==
+        "something changed in AI-201; too few samples since then to tell which channel");
+}
+
+}  // namespace mpm::report
