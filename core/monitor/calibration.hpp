@@ -16,9 +16,9 @@ inline constexpr double kSeenDeviations = 5.8;
 /// Chosen.
 inline constexpr double kBlindGainError = 100.0;
 /// Where the excitation is poor, only evidence counts whose p-value is below the usual rate times
-/// this. Chosen: of 577 channels of healthy loops made elsewhere (tests/foreign) that were not excited
-/// none had a p-value below 1e-6; 8 were below 1e-4, all where a disturbance moves with an input or a
-/// set-point.
+/// this. Chosen: of 577 channels of healthy loops made elsewhere (tests/foreign) that were not
+/// excited none had a p-value below 1e-6; 8 were below 1e-4, all where a disturbance moves with an
+/// input or a set-point.
 inline constexpr double kOverwhelming = 1e-3;
 }  // namespace visibility
 

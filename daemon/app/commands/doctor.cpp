@@ -119,7 +119,7 @@ void add_doctor(CLI::App& app, int& exit_code) {
   command->add_option("-c,--config", options->config,
                       "unit file, or folder of unit files: what should be there, and where; "
                       "without it, whatever is on the domain");
-  add_domain_flags(*command, options->domain);
+  add_bus_flags(*command, options->domain);
   command
       ->add_option("--seconds", options->seconds,
                    "how long to look, as 90 or 1.5h (default: three sample times, 5 s to 180 s)")

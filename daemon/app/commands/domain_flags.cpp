@@ -22,6 +22,11 @@ CLI::Option* add_domain_flags(CLI::App& command, idl::DomainOptions& domain, OnU
   CLI::Option* config = command.add_option_function<std::string>(
       "-c,--config", take_unit,
       "unit file whose DDS settings are taken, but for those that are given here");
+  add_bus_flags(command, domain);
+  return config;
+}
+
+void add_bus_flags(CLI::App& command, idl::DomainOptions& domain) {
   command.add_option("--domain", domain.domain, "DDS domain")
       ->capture_default_str()
       ->check(CLI::Range(0, 230));
@@ -32,7 +37,6 @@ CLI::Option* add_domain_flags(CLI::App& command, idl::DomainOptions& domain, OnU
   command.add_flag("--multicast", domain.multicast, "look for others by multicast");
   command.add_flag("--dds-from-environment", domain.use_environment,
                    "take the DDS settings from CYCLONEDDS_URI");
-  return config;
 }
 
 idl::DomainOptions with_flags(const CLI::App& command, idl::DomainOptions settings,

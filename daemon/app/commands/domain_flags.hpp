@@ -15,8 +15,11 @@ using OnUnit = std::function<void(const config::UnitConfig&)>;
 /// that option.
 CLI::Option* add_domain_flags(CLI::App& command, idl::DomainOptions& domain, OnUnit on_unit = {});
 
-/// `settings`, but for what of `flags` was given on the command line of `command`, which has
-/// add_domain_flags' options.
+/// The same without --config, for commands that have one of their own.
+void add_bus_flags(CLI::App& command, idl::DomainOptions& domain);
+
+/// `settings`, but for what of `flags` was given on the command line of `command`, which has these
+/// options.
 [[nodiscard]] idl::DomainOptions with_flags(const CLI::App& command, idl::DomainOptions settings,
                                             const idl::DomainOptions& flags);
 

@@ -142,7 +142,7 @@ void add_status(CLI::App& app, int& exit_code) {
                       "unit file, or folder of unit files of one domain: who must be there");
   command->add_option("--unit", options->units, "only this unit, which must be there; repeatable")
       ->allow_extra_args(false);
-  add_domain_flags(*command, options->domain);
+  add_bus_flags(*command, options->domain);
   command
       ->add_option("--warning", options->limits.warning_s, "age of the last health, as 90 or 5min")
       ->capture_default_str()
