@@ -66,15 +66,18 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
   scaled_error(channel.shifts[1], input, directions_.col(error_column::kEarlier));
   covariance_.whiten(directions_.col(error_column::kLater));
   covariance_.whiten(directions_.col(error_column::kEarlier));
-  double left = materiality_.fit(estimate_, directions_, noise, evidence);
+  const double left = materiality_.fit(estimate_, directions_, noise, evidence);
+  materiality_.judge(left, estimate_, directions_, usual_, limits_[index(cv, input)], noise,
+                     evidence);
+  // What matters is judged of small errors, as it was calibrated; how large they are is said of
+  // any.
   if (evidence.p_value < calibration::error_sizes::kRefinedBelow) {
     const auto block = static_cast<double>(estimate_.size());
     const double enough = noise.variance * (block + 2.0 * std::sqrt(2.0 * block));  // two s.d.
-    left = sizes_.refine({cv, input, estimates_, covariance_, estimate_, noise.variance}, left,
-                         enough, evidence);
+    const double refined = sizes_.refine(
+        {cv, input, estimates_, covariance_, estimate_, noise.variance}, left, enough, evidence);
+    evidence.usual = Materiality::explained(refined, estimate_.size(), noise);
   }
-  materiality_.judge(left, estimate_, directions_, usual_, limits_[index(cv, input)], noise,
-                     evidence);
   if (!evidence.usual) estimate_free_gain(channel.gain, input, noise, evidence);
 }
 

@@ -312,9 +312,9 @@ TEST_CASE("mpm publish names the line that is wrong, and stops or goes on") {
     return corner.mpm({"publish", "--config", unit, "--wait-readers", "0", "--on-error", on_error},
                       input);
   };
-  const std::string bad_csv = "time,u1,u2,y1\n0,1,2,3\n1,1,x,3\n2,1,2,3\n";
+  const std::string bad_csv = "time,u1,u2,y1\n0,1,2,3\n1,1,2x,3\n2,1,2,3\n";
   CHECK(publish(bad_csv, "stop") == 3);
-  CHECK(corner.err() == "stdin:3:5: error: 'x' is no number; leave empty what is missing\n");
+  CHECK(corner.err() == "stdin:3:5: error: '2x' is no number; leave empty what is missing\n");
   CHECK(publish(bad_csv, "skip") == 0);
   CHECK(lines_of(corner.err()).back() == "mpm publish: 2 lines published, 1 skipped");
   CHECK(publish("{\"time\":0,\"u1\":1}\n{\"time\":1,\"u1\":}\n", "stop") == 3);
