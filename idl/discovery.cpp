@@ -63,7 +63,7 @@ std::vector<std::string> mismatch_of(const dds_builtintopic_endpoint_t& endpoint
   const KnownTopic* topic = find_known_topic(endpoint.topic_name);
   if (topic == nullptr) return {};
   if (std::strcmp(endpoint.type_name, topic->type->m_typename) != 0)
-    return {"type " + std::string(endpoint.type_name) + " where the topic has " +
+    return {"type " + printable(endpoint.type_name) + " where the topic has " +
             topic->type->m_typename};
   if (writer) return incompatible_policies(endpoint.qos, topic->reader_qos().get());
   // Nobody knows what the writer of an input offers.

@@ -58,7 +58,7 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
   if (channel.gain == 0.0) error_ *= evidence.reference_gain;
   error_.array() *= estimates_.norms(input).array();
   excitation_.measure(input, error_, estimate_, estimates_, covariance_, noise, evidence);
-  evidence.dead_time = channel.dead_time;
+  evidence.dead_time = sizes_.dead_time(cv, input);
   if (channel.gain == 0.0) return;  // of a channel that the model lacks no error is usual
 
   test_usual_errors(channel, input, noise, evidence);

@@ -29,9 +29,6 @@ std::vector<ChannelSignatures> channel_signatures(const RegressionShape& shape,
         channel.gain = gains(j, i) * (integrating(j, i) ? basis.slowest() : 1.0);
         for (const Eigen::VectorXd& error : usual_errors(pulse))
           channel.errors.emplace_back(basis, error, shape.residual_order);
-        while (channel.dead_time < static_cast<double>(pulse.size() - 2) &&
-               pulse(1 + static_cast<Eigen::Index>(channel.dead_time)) == 0.0)
-          channel.dead_time += 1.0;
         for (const int shift : {1, -1})
           channel.shifts.emplace_back(basis, shifted(pulse, shift) - pulse, shape.residual_order);
       } else {

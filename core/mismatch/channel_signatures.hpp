@@ -17,7 +17,6 @@ struct ChannelSignatures {
   std::vector<Signature> shifts;  ///< one sample later, one earlier, minus the response itself
   /// Steady gain (integrating: rise in the slowest tail's time constant); 0 = no channel.
   double gain = 0.0;
-  double dead_time = 0.0;  ///< samples: what the answer could come earlier by
 };
 
 /// Of all channels of the model, input-major.

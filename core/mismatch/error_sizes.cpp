@@ -37,7 +37,7 @@ ErrorSizes::ErrorSizes(const RegressionShape& shape, const LinearModel& model)
 
 double ErrorSizes::refine(const Channel& channel, double left, double enough,
                           ChannelEvidence& evidence) {
-  if (response(channel).pulse.size() == 0) return left;
+  if (response(channel.cv, channel.input).pulse.size() == 0) return left;
   const Eigen::Vector3d linear(evidence.gain_error.value, evidence.log_time_error.value,
                                evidence.dead_time_error.value);
   Errors best;
@@ -95,15 +95,15 @@ ErrorSizes::Errors ErrorSizes::descend(const Channel& channel, Eigen::Vector3d s
 }
 
 Eigen::Vector3d ErrorSizes::within(const Channel& channel, const Eigen::Vector3d& value) const {
-  return {
-      std::clamp(value(0), -sizes::kMostGain, sizes::kMostGain),
-      std::clamp(value(1), -sizes::kMostLogTime, sizes::kMostLogTime),
-      std::clamp(value(2), -response(channel).dead_time, static_cast<double>(basis_.fir_lags()))};
+  return {std::clamp(value(0), -sizes::kMostGain, sizes::kMostGain),
+          std::clamp(value(1), -sizes::kMostLogTime, sizes::kMostLogTime),
+          std::clamp(value(2), -response(channel.cv, channel.input).dead_time,
+                     static_cast<double>(basis_.fir_lags()))};
 }
 
 double ErrorSizes::leave(const Channel& channel, const Eigen::Vector3d& value,
                          Eigen::Ref<Eigen::VectorXd> out) {
-  const Response& model = response(channel);
+  const Response& model = response(channel.cv, channel.input);
   const double dead = model.dead_time, slower = std::exp(-value(1));
   const auto last = model.step.size() - 1;
   const auto step_at = [&](double lag) {

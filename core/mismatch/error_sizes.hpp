@@ -20,6 +20,9 @@ class ErrorSizes {
  public:
   ErrorSizes(const RegressionShape& shape, const LinearModel& model);
 
+  /// Samples by which a channel could answer earlier; 0 where the model has none.
+  [[nodiscard]] double dead_time(int cv, int input) const { return response(cv, input).dead_time; }
+
   /// A channel of the CV that `estimates` was read for.
   struct Channel {
     int cv = 0, input = 0;
@@ -44,8 +47,8 @@ class ErrorSizes {
     double left = 0.0;
   };
 
-  [[nodiscard]] const Response& response(const Channel& channel) const {
-    return responses_[static_cast<std::size_t>(channel.input * cvs_ + channel.cv)];
+  [[nodiscard]] const Response& response(int cv, int input) const {
+    return responses_[static_cast<std::size_t>(input * cvs_ + cv)];
   }
   [[nodiscard]] Errors descend(const Channel& channel, Eigen::Vector3d start);
   [[nodiscard]] Eigen::Vector3d within(const Channel& channel, const Eigen::Vector3d& value) const;

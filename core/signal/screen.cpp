@@ -246,7 +246,7 @@ void Screen::learn_range(SignalKind kind) {
   }
 }
 
-bool Screen::soon_back(SignalKind kind, int index, Range& range) {
+bool Screen::soon_back(SignalKind kind, int index, const Range& range) {
   if (!range.extent.known()) return false;
   const double width = range.extent.width();
   const double away = range.extent.beyond(ago(kDelay - 1)[kind].values(index));

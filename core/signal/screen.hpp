@@ -95,7 +95,7 @@ class Screen {
   void screen_spikes(int cv);
   void screen_far(SignalKind kind);
   void learn_range(SignalKind kind);
-  [[nodiscard]] bool soon_back(SignalKind kind, int index, Range& range);
+  [[nodiscard]] bool soon_back(SignalKind kind, int index, const Range& range);
   [[nodiscard]] bool level(int cv, int frames, double& value);
 
   SignalCounts counts_;

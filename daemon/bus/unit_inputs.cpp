@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "config/suggest.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::bus {
@@ -36,13 +37,17 @@ double apart(std::int64_t a, std::int64_t b) {
   return std::abs(static_cast<double>(a) - static_cast<double>(b));
 }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 }  // namespace
+
+ExpectedInputs expected_inputs(const config::UnitConfig& unit,
+                               const std::array<bool, kSignalKindCount>& needed) {
+  ExpectedInputs expected;
+  expected.unit = unit.unit;
+  expected.sample_time_s = unit.sample_time_s;
+  expected.counts = unit.counts();
+  expected.needed = needed;
+  return expected;
+}
 
 const idl::Endpoint* find_writer(const Surroundings& around, std::uint64_t handle) {
   const auto found = std::find_if(
@@ -99,16 +104,16 @@ std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around) 
     if (endpoint.mismatch.empty())
       writers.push_back(name);
     else
-      refused.push_back(name + " does not match: " + listed(endpoint.mismatch));
+      refused.push_back(name + " does not match: " + config::join(endpoint.mismatch));
   }
-  if (!refused.empty()) return "its writer " + listed(refused);
+  if (!refused.empty()) return "its writer " + config::join(refused);
   if (writers.empty()) return "nobody writes it on " + around.place;
   if (!around.strangers.empty() && !stream(kind).started()) {
     const std::vector<std::string> names(around.strangers.begin(), around.strangers.end());
-    return "samples come of unit '" + listed(names) + "' only";
+    return "samples come of unit '" + config::join(names) + "' only";
   }
-  return listed(writers) + (writers.size() == 1 ? " writes" : " write") + " it, but nothing of '" +
-         expected_.unit + "'";
+  return config::join(writers) + (writers.size() == 1 ? " writes" : " write") +
+         " it, but nothing of '" + expected_.unit + "'";
 }
 
 void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
@@ -173,7 +178,7 @@ void UnitInputs::add_rivals(const Surroundings& around, Clock::time_point now,
     same = same && apart(a->interval, b->interval) <= kSameNumbers;
   }
   if (first == nullptr || second == nullptr) return;
-  const std::string who = "two gateways write " + listed(topics) + ": " +
+  const std::string who = "two gateways write " + config::join(topics) + ": " +
                           writer_name(around, first->handle) + " and " +
                           writer_name(around, second->handle);
   if (same)
@@ -248,7 +253,7 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
   if (!jumped.empty())
     troubles.push_back({"jump", Severity::kOutOfSpecification,
                         "the interval number went from " + std::to_string(jump.from) + " to " +
-                            std::to_string(jump.to) + " on " + listed(jumped)});
+                            std::to_string(jump.to) + " on " + config::join(jumped)});
   if (!stepped.empty()) {
     char size[32];
     std::snprintf(size, sizeof size, "%.0f s", std::abs(step.size_s));
@@ -256,7 +261,7 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
                         std::string("the clock of the control system stepped ") +
                             (step.size_s > 0.0 ? "forward" : "back") + " by " + size +
                             " at interval " + std::to_string(step.interval) + " on " +
-                            listed(stepped)});
+                            config::join(stepped)});
   }
 }
 

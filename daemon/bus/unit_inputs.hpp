@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "config/unit_config.hpp"
 #include "core/signal/frame.hpp"
 #include "daemon/bus/input_stream.hpp"
 #include "daemon/bus/trouble.hpp"
@@ -21,6 +22,10 @@ struct ExpectedInputs {
   /// So long may a topic say nothing.
   std::chrono::steady_clock::duration silence = std::chrono::seconds(5);
 };
+
+/// By a unit file; `needed`: files::needed_kinds of it.
+[[nodiscard]] ExpectedInputs expected_inputs(const config::UnitConfig& unit,
+                                             const std::array<bool, kSignalKindCount>& needed);
 
 /// What else is known of the domain that a unit is on.
 struct Surroundings {

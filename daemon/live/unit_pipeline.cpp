@@ -33,11 +33,7 @@ host::RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
 }
 
 bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
-  bus::ExpectedInputs expected;
-  expected.unit = unit.unit;
-  expected.sample_time_s = unit.sample_time_s;
-  expected.counts = unit.counts();
-  expected.needed = files::needed_kinds(unit);
+  bus::ExpectedInputs expected = bus::expected_inputs(unit, files::needed_kinds(unit));
   expected.silence = samples_or(unit.sample_time_s, kSilentSamples, std::chrono::seconds(5));
   return expected;
 }

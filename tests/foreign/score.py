@@ -63,6 +63,7 @@ from plants import PLANTS
 from regimes import REGIMES
 from tables import FARTHER, beyond, reliability, summary, tables
 
+UNEXCITED = ("not_excited", "collinear", "constrained", "controller_off")
 TIME_LIMIT = 60  # s of CPU time, and ten times that on the clock
 # Turns of 13, so that every plant meets every effect; gain and dead time twice.
 TURNS = ["gain", "dead_time", "output_scale", "time_constant", "input_scale", "stiction", "gain",
@@ -132,7 +133,7 @@ def detected(mpm, unit, data, truth):
     code, output, _ = run(mpm, ["detect", "--config", unit, "--data", data, "--json"])
     if code not in (0, 1):
         return None
-    false, found, healthy = [], False, 0
+    false, found, healthy, unexcited = [], False, 0, []
     for channel in json.loads(output)["channels"]:
         mine = {**truth, "others": []}
         finding = {"cause": "gain", "cv": channel["cv"], "mv": channel["mv"], "parameters": {}}
@@ -142,7 +143,9 @@ def detected(mpm, unit, data, truth):
             found = found or guilty
             if not guilty:
                 false.append([channel["mv"], channel["cv"], channel["p_value"]])
-    return {"healthy_channels": healthy, "false": false, "found": found}
+        elif not guilty and channel.get("reason", "").split(" ")[0] in UNEXCITED:
+            unexcited.append(channel["p_value"])
+    return {"healthy_channels": healthy, "false": false, "found": found, "unexcited": unexcited}
 
 
 def score_case(case, mpm, keep, detect):

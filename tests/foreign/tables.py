@@ -11,6 +11,7 @@ FARTHER, FAR = 0.05, 0.25
 # What is claimed: shares of runs at most. A true share at its bound breaks it in one of 1000 scores.
 BOUNDS = {"healthy accused": 0.02, "strong: wrong": 0.01, "repaired model farther": 0.01,
           "strong: neither named nor said to be unclear": 0.10, "failed": 0.0}
+UNEXCITED_LIMITS = (1e-3, 1e-4, 1e-6)
 CONFIDENCE = [(0.9, 0.99), (0.99, 0.999), (0.999, 1.01)]
 
 
@@ -118,7 +119,9 @@ def detect_row(results):
               and r["noncentrality"] > SEEN]
     false = sum(bool(r["detect"]["false"]) for r in seen)
     found = sum(r["detect"]["found"] for r in strong)
-    return f"{share(false, len(seen))} | {share(found, len(strong))}"
+    values = [p for r in seen for p in r["detect"].get("unexcited", [])]
+    low = ", ".join(str(sum(p < limit for p in values)) for limit in UNEXCITED_LIMITS)
+    return f"{share(false, len(seen))} | {share(found, len(strong))} | {len(values)} | {low}"
 
 
 def tables(results, detect):
@@ -147,7 +150,8 @@ def tables(results, detect):
         lines.append(f"| {row['confidence']} | {share(a['right'], a['of'])} | "
                      f"{share(a['right'] + a['place'], a['of'])} | {share(b['right'], b['of'])} |")
     if detect:
-        lines += ["", "| detect | runs with a healthy channel called wrong | strong effects seen |",
-                  "|---" * 3 + "|"]
+        limits = ", ".join(f"{limit:g}" for limit in UNEXCITED_LIMITS)
+        lines += ["", "| detect | runs with a healthy channel called wrong | strong effects seen | "
+                  f"healthy channels not excited | of these p < {limits} |", "|---" * 5 + "|"]
         lines += [f"| {name} | {detect_row(group)} |" for name, group in groups]
     return "\n".join(lines) + "\n"

@@ -38,15 +38,6 @@ Clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
-  bus::ExpectedInputs expected;
-  expected.unit = unit.unit;
-  expected.sample_time_s = unit.sample_time_s;
-  expected.counts = unit.counts();
-  expected.needed = files::needed_kinds(unit);
-  return expected;
-}
-
 bool same_place(const idl::DomainOptions& a, const idl::DomainOptions& b) {
   return idl::domain_xml(a) == idl::domain_xml(b);
 }
@@ -102,7 +93,7 @@ int doctor(DoctorOptions options) {
         return 3;
       }
       place = here;
-      units.push_back(expected_of(unit));
+      units.push_back(bus::expected_inputs(unit, files::needed_kinds(unit)));
     }
     options.domain = *place;
   }

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 
+#include "config/suggest.hpp"
 #include "core/text/printable.hpp"
 #include "idl/topic_catalog.hpp"
 
@@ -34,12 +35,6 @@ double clock_offset_s(std::int64_t source_time_ns) {
   return 1e-9 * (static_cast<double>(wall.count()) - static_cast<double>(source_time_ns));
 }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + printable(word);
-  return text;
-}
-
 // Whom nobody hears.
 std::vector<Trouble> unheard(const std::vector<idl::Endpoint>& endpoints) {
   std::vector<Trouble> troubles;
@@ -51,7 +46,7 @@ std::vector<Trouble> unheard(const std::vector<idl::Endpoint>& endpoints) {
                             (endpoint.writer ? " writes " : " reads ") + endpoint.topic +
                             (endpoint.writer ? ", and nobody of ours hears it: "
                                              : ", and gets nothing of ours: ") +
-                            listed(endpoint.mismatch)});
+                            config::join(endpoint.mismatch)});
   }
   return troubles;
 }
@@ -241,7 +236,7 @@ Findings Examination::findings() const {
   sort_by_severity(findings.troubles);
   if (!strangers_.empty())
     findings.notes.push_back("samples of other units go by: " +
-                             listed({strangers_.begin(), strangers_.end()}));
+                             config::join({strangers_.begin(), strangers_.end()}));
   if (open_ && units_.empty() && !around.endpoints.empty())
     findings.notes.emplace_back("no unit's samples went by and no monitor spoke");
   return findings;

@@ -5,14 +5,13 @@
 #include <cstdint>
 #include <ostream>
 
-#include "core/model/linear_model.hpp"
 #include "core/monitor/monitor.hpp"
-#include "tests/core/counter_noise.hpp"
+#include "tests/core/open_loop_unit.hpp"
 
 namespace mpm {
 namespace {
 
-/// What is wrong with channel (CV 0, input 1) of a 2 x 2 plant in open loop.
+/// What is wrong with the channel.
 struct Hidden {
   double gain_ratio = 1.0, time_constant_ratio = 1.0, dead_time = 0.0;  ///< the latter in samples
 };
@@ -23,42 +22,14 @@ std::ostream& operator<<(std::ostream& out, const Hidden& hidden) {
 }
 
 ChannelStatus monitored(const Hidden& hidden, std::uint64_t seed) {
-  ModelSpec model;
-  model.sample_time_s = 1.0;
-  model.input_count = model.cv_count = 2;
-  model.input_blocks.resize(2);
-  model.output_blocks.resize(2);
-  model.input_origin = model.output_origin = Eigen::Vector2d::Zero();
-  model.channels = {{0, 0, TransferFunction{2.0, {12}, 0, 2, false}},
-                    {0, 1, TransferFunction{-1.0, {8}, 0, 4, false}},
-                    {1, 0, TransferFunction{0.5, {6}, 0, 0, false}},
-                    {1, 1, TransferFunction{1.5, {15}, 0, 3, false}}};
-  ModelSpec changed = model;
-  auto& channel = std::get<TransferFunction>(changed.channels[1].dynamics);
-  channel.gain *= hidden.gain_ratio;
-  channel.time_constants_s[0] *= hidden.time_constant_ratio;
-  channel.dead_time_s += hidden.dead_time;
-  LinearModel plant(changed), controller(model);
-  const SignalCounts counts{2, 0, 2, 0};
-  Monitor monitor(model, counts, {true, true}, {}, {});
-  Frame frame(counts);
-  for (SignalBlock& block : frame.blocks)
-    std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
-  Eigen::Vector2d u, noise(0.0, 0.0);
-  for (int k = 0; k < 1300; ++k) {
-    for (int i = 0; i < 2; ++i) {
-      const auto s = static_cast<std::uint64_t>(i);
-      u(i) = test::uniform(700 + 10 * seed + s, k / 20) > 0 ? 1.0 : -1.0;
-      noise(i) = 0.7 * noise(i) + 0.1 * test::uniform(800 + 10 * seed + s, k);
-    }
-    frame.interval = k;
-    frame[SignalKind::kMv].values = u;
-    frame[SignalKind::kCv].values = plant.output() + noise;
-    frame[SignalKind::kPrediction].values = controller.output();
-    monitor.push(frame);
-    plant.advance(u);
-    controller.advance(u);
-  }
+  test::OpenLoopUnit unit;
+  unit.channel().dead_time_s = 4.0;  // so that there is something to take off
+  unit.gain_ratio = hidden.gain_ratio;
+  unit.time_constant_ratio = hidden.time_constant_ratio;
+  unit.later = hidden.dead_time;
+  unit.seed = seed;
+  Monitor monitor(unit.model, unit.counts, {true, true}, {}, {});
+  unit.run(1300, [&](const Frame& frame) { monitor.push(frame); });
   return monitor.channel(0, 1);
 }
 

@@ -6,68 +6,16 @@
 
 #include "core/model/linear_model.hpp"
 #include "tests/allocation_counter.hpp"
-#include "tests/core/counter_noise.hpp"
+#include "tests/core/open_loop_unit.hpp"
 
 namespace mpm {
 namespace {
 
-// A 2 x 2 plant in open loop, of which the model is right but for what `hidden` says.
-struct Experiment {
-  Experiment() {
-    model.sample_time_s = 1.0;
-    model.input_count = 2;
-    model.cv_count = 2;
-    model.input_blocks.resize(2);
-    model.output_blocks.resize(2);
-    model.input_origin = Eigen::Vector2d(10.0, -3.0);
-    model.output_origin = Eigen::Vector2d(50.0, 2.0);
-    model.channels = {{0, 0, TransferFunction{2.0, {12}, 0, 2, false}},
-                      {0, 1, TransferFunction{-1.0, {8}, 0, 1, false}},
-                      {1, 0, TransferFunction{0.5, {6}, 0, 0, false}},
-                      {1, 1, TransferFunction{1.5, {15}, 0, 3, false}}};
-  }
-
-  ModelSpec model;
-  double gain_ratio = 1.0;  // of channel (CV 0, input 1) in the plant
-  int from = 0;             // samples between which it holds
-  int until = 1000000;
-  std::uint64_t seed = 0;
+struct Experiment : test::OpenLoopUnit {
   bool predictions = true;
-  SignalCounts counts{2, 0, 2, 0};
 
   [[nodiscard]] Monitor monitor() const {
     return Monitor(model, counts, {predictions, predictions}, {}, {});
-  }
-
-  // Calls each(frame) for k = 0 .. samples - 1.
-  template <class Each>
-  void run(int samples, Each each) const {
-    ModelSpec plant_spec = model;
-    std::get<TransferFunction>(plant_spec.channels[1].dynamics).gain *= gain_ratio;
-    LinearModel changed_plant(plant_spec);
-    LinearModel controller_model(model);
-    Eigen::Vector2d u, noise(0.0, 0.0);
-    for (int k = 0; k < samples; ++k) {
-      for (int i = 0; i < 2; ++i) {
-        const auto s = static_cast<std::uint64_t>(i);
-        u(i) =
-            model.input_origin(i) + (test::uniform(700 + 10 * seed + s, k / 20) > 0 ? 1.0 : -1.0);
-        noise(i) = 0.7 * noise(i) + 0.1 * test::uniform(800 + 10 * seed + s, k);
-      }
-      Frame frame(counts);
-      for (SignalBlock& block : frame.blocks)
-        std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
-      frame.interval = k;
-      frame.source_time_ns = k * std::int64_t{1'000'000'000};
-      frame[SignalKind::kMv].values = u;
-      const bool changed = k >= from && k < until;
-      frame[SignalKind::kCv].values =
-          (changed ? changed_plant.output() : controller_model.output()) + noise;
-      frame[SignalKind::kPrediction].values = controller_model.output();
-      each(frame);
-      changed_plant.advance(u);
-      controller_model.advance(u);
-    }
   }
 };
 

@@ -1,65 +1,15 @@
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "core/model/linear_model.hpp"
 #include "core/monitor/monitor.hpp"
-#include "tests/core/counter_noise.hpp"
+#include "tests/core/open_loop_unit.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr int kMemory = 2000;  // samples: the default
-
-/// A 2 x 2 plant in open loop; the gain of channel (CV 0, input 1) is `gain_ratio` times the
-/// model's.
-struct Unit {
-  ModelSpec model;
-  double gain_ratio = 1.0;
-  SignalCounts counts{2, 0, 2, 0};
-
-  explicit Unit(double ratio) : gain_ratio(ratio) {
-    model.sample_time_s = 1.0;
-    model.input_count = model.cv_count = 2;
-    model.input_blocks.resize(2);
-    model.output_blocks.resize(2);
-    model.input_origin = Eigen::Vector2d(10.0, -3.0);
-    model.output_origin = Eigen::Vector2d(50.0, 2.0);
-    model.channels = {{0, 0, TransferFunction{2.0, {12}, 0, 2, false}},
-                      {0, 1, TransferFunction{-1.0, {8}, 0, 1, false}},
-                      {1, 0, TransferFunction{0.5, {6}, 0, 0, false}},
-                      {1, 1, TransferFunction{1.5, {15}, 0, 3, false}}};
-  }
-
-  /// Calls each(frame), all qualities good.
-  template <class Each>
-  void run(int samples, Each each) const {
-    ModelSpec changed = model;
-    std::get<TransferFunction>(changed.channels[1].dynamics).gain *= gain_ratio;
-    LinearModel plant(changed), controller(model);
-    Eigen::Vector2d u, noise(0.0, 0.0);
-    for (int k = 0; k < samples; ++k) {
-      for (int i = 0; i < 2; ++i) {
-        const auto s = static_cast<std::uint64_t>(i);
-        u(i) = model.input_origin(i) + (test::uniform(700 + s, k / 20) > 0 ? 1.0 : -1.0);
-        noise(i) = 0.7 * noise(i) + 0.1 * test::uniform(800 + s, k);
-      }
-      Frame frame(counts);
-      for (SignalBlock& block : frame.blocks)
-        std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
-      frame.interval = k;
-      frame.source_time_ns = k * std::int64_t{1'000'000'000};
-      frame[SignalKind::kMv].values = u;
-      frame[SignalKind::kCv].values = plant.output() + noise;
-      frame[SignalKind::kPrediction].values = controller.output();
-      each(frame);
-      plant.advance(u);
-      controller.advance(u);
-    }
-  }
-};
 
 struct Injury {
   SignalKind kind = SignalKind::kMv;
@@ -73,7 +23,8 @@ struct Outcome {
   std::uint64_t bad_values = 0;
 };
 
-Outcome outcome(const Unit& unit, bool predictions, const Injury& injury, int samples) {
+Outcome outcome(const test::OpenLoopUnit& unit, bool predictions, const Injury& injury,
+                int samples) {
   Monitor monitor(unit.model, unit.counts, {predictions, predictions}, {}, {});
   Outcome result;
   unit.run(samples, [&](Frame frame) {
@@ -94,7 +45,8 @@ Outcome outcome(const Unit& unit, bool predictions, const Injury& injury, int sa
 void check_healed(double gain_ratio, bool predictions, const Injury& injury) {
   CAPTURE(gain_ratio, predictions, static_cast<int>(injury.kind), injury.value, injury.from,
           injury.samples);
-  const Unit unit(gain_ratio);
+  test::OpenLoopUnit unit;
+  unit.gain_ratio = gain_ratio;
   const int samples = injury.from + injury.samples + 2 * kMemory;
   const Outcome healthy = outcome(unit, predictions, {}, samples);
   const Outcome injured = outcome(unit, predictions, injury, samples);
@@ -134,8 +86,7 @@ TEST_CASE("a wild value among the first is forgotten too") {
 }
 
 TEST_CASE("values that no instrument gives count as bad") {
-  const Unit unit(1.0);
-  CHECK(outcome(unit, true, {SignalKind::kMv, 1e153, 500, 3}, 600).bad_values == 3);
+  CHECK(outcome({}, true, {SignalKind::kMv, 1e153, 500, 3}, 600).bad_values == 3);
 }
 
 }  // namespace
