@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/regression/rotation.hpp"
 
 namespace mpm {
@@ -30,6 +31,16 @@ void BlockCovariance::read(const InputEstimates& estimates, int input) {
   }
   // Last row first: the rows above have nothing in the triangle's columns that are done.
   for (int r = block_ - 1; r >= 0; --r) reflect(r, stride);
+}
+
+void BlockCovariance::read(const GivensQr& factor, int first) {
+  factor_.setZero();
+  for (int i = block_ - 1; i >= 0; --i) {
+    for (int c = i + 1; c < block_; ++c)
+      factor_.row(i) -= factor.r(first + i, first + c) * factor_.row(c);
+    factor_(i, i) = 1.0;
+    factor_.row(i) /= std::max(factor.r(first + i, first + i), calibration::rounding::kOwnShare);
+  }
 }
 
 void BlockCovariance::reflect(int row, std::size_t stride) {

@@ -18,6 +18,9 @@ class BlockCovariance {
   explicit BlockCovariance(const InputEstimates& estimates);
 
   void read(const InputEstimates& estimates, int input);
+  /// From a factor whose columns from `first` on are the block's, all others before them: S is the
+  /// inverse of its last triangle.
+  void read(const GivensQr& factor, int first);
 
   /// x <- S^-1 x: noise of the estimates becomes white.
   void whiten(Eigen::Ref<Eigen::VectorXd> x) const;

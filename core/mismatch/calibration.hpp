@@ -75,6 +75,12 @@ namespace gaps {
 inline constexpr int kInterpolated = 2;  ///< samples
 }
 
+/// What a simulation's wrong start leaves behind is of no more interest below this share of it.
+/// Derived: five of the slowest time constants.
+namespace start {
+inline constexpr double kForgotten = 0.0067;
+}
+
 /// A sliding window is rebuilt each time it has grown by one of so many parts. Chosen: a compromise
 /// of cost against how sharp its edge is.
 namespace sliding_window {
@@ -97,6 +103,23 @@ inline constexpr double kTailFitTimeConstants = 8.0;
 inline constexpr int kTailFitFewest = 50;
 inline constexpr int kTailFitMost = 20000;
 }  // namespace usual_errors
+
+/// When a CV's channels are judged among usual errors alone (`JointErrors`). Chosen: what else may
+/// be wrong is looked for with this much false doubt, which costs power only.
+namespace joint_errors {
+inline constexpr double kAdequatePValue = 0.05;
+/// An input that moves so little by itself that a gain error would have this s.d. were the other
+/// inputs' blocks free moves with them: that its error would show is not said, however well its
+/// shape could be told from theirs. Chosen.
+inline constexpr double kMovesWithOthers = 20.0;
+/// On fewer degrees of freedom per column the CV's own lags are too uncertain, and a large error of
+/// one channel leaks into those of others. Chosen.
+inline constexpr double kFreedomPerColumn = 6.0;
+/// A CV's own lags and its channels' errors are learnt by turns, while one takes off more than this
+/// many variances. Chosen.
+inline constexpr int kTurns = 4;
+inline constexpr double kWorthAnotherTurn = 0.5;
+}  // namespace joint_errors
 
 /// The sizes of errors that are not small (`ErrorSizes`). Chosen: from these starts a gain, a time
 /// constant or a dead time that is off by up to a factor of 3 or 10 samples is found

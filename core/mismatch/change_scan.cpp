@@ -37,16 +37,15 @@ ChangeScan::ChangeScan(const RegressionShape& shape)
 
 std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, int cv) {
   const Rows rows{detector.history(), detector.regression(cv), cv};
-  const int span = rows.regression.span();
-  if (span < 2 * kMoments) return std::nullopt;
+  if (rows.span() < 2 * kMoments) return std::nullopt;
   moments_.clear();  // ages at which a part ends, newest first
-  for (int m = 1; m < kMoments; ++m) moments_.push_back(m * span / kMoments);
+  for (int m = 1; m < kMoments; ++m) moments_.push_back(m * rows.span() / kMoments);
   pass(rows, true, true, after_with_);
   pass(rows, true, false, after_without_);
   pass(rows, false, true, before_with_);
   pass(rows, false, false, before_without_);
   constant_ = whole_.residual_square(0);
-  const double freedom = rows.regression.memory(0).rows - shape_.columns();
+  const double freedom = std::min(rows.regression.memory(0).rows, rows.span()) - shape_.columns();
   if (!(constant_ > 0.0) || freedom <= 0.0) return std::nullopt;
   per_square_ = freedom / constant_;
 
@@ -147,7 +146,7 @@ void ChangeScan::pass(const Rows& rows, bool newest_first, bool with_inputs,
   GivensQr& factor = with_inputs ? whole_ : lead_in_;
   factor.clear();
   const int first = with_inputs ? shape_.inputs * shape_.block() : 0;
-  const int span = rows.regression.span();
+  const int span = rows.span();
   int count = 0;
   const auto store_at = [&](int age) {
     const auto found = std::find(moments_.begin(), moments_.end(), age);

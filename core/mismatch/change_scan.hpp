@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -42,6 +43,8 @@ class ChangeScan {
     const RegressionHistory& history;
     const ResidualRegression& regression;
     int cv;
+    /// Decays since the start could stand for a change, so that nothing is said of the time.
+    [[nodiscard]] int span() const { return std::min(regression.span(), history.settled()); }
   };
   /// What a part of the rows leaves once the inputs' blocks are eliminated (or, where the inputs
   /// take no part, were never there): the triangle of the lead-in columns and the residual square.

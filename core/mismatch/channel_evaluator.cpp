@@ -19,11 +19,14 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
       covariance_(estimates_),
       excitation_(estimates_),
       usual_(shape.block()),
+      joint_(shape),
+      joint_usual_(kUsualErrors),
       materiality_(shape.block()),
       sizes_(shape, model),
       estimate_(Eigen::VectorXd::Zero(shape.block())),
       directions_(Eigen::MatrixXd::Zero(shape.block(), error_column::kCount)),
-      error_(Eigen::VectorXd::Zero(shape.block())) {
+      error_(Eigen::VectorXd::Zero(shape.block())),
+      joint_error_(Eigen::VectorXd::Zero(kUsualErrors)) {
   if (limits_.size() == 1) limits_.resize(signatures_.size(), limits_.front());
   if (limits_.size() != signatures_.size())
     throw std::invalid_argument("materiality limits: one per channel, or one for all");
@@ -32,6 +35,7 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
 void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence) {
   estimates_.read(cv, memory.factor);
   const EstimateNoise noise = estimate_noise(memory);
+  joint_.read(cv, memory.factor, signatures_, noise, estimates_);
   for (int i = 0; i < shape_.inputs; ++i) {
     evidence[i] = ChannelEvidence{};
     if (estimates_.moved(i) && noise.variance > 0.0)
@@ -59,9 +63,24 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
   error_.array() *= estimates_.norms(input).array();
   excitation_.measure(input, error_, estimate_, estimates_, covariance_, noise, evidence);
   evidence.dead_time = sizes_.dead_time(cv, input);
-  if (channel.gain == 0.0) return;  // of a channel that the model lacks no error is usual
+  if (joint_.adequate())
+    judge_jointly(cv, input, noise, evidence);
+  else if (channel.gain != 0.0)  // of a channel that the model lacks no error is usual
+    judge_alone(cv, input, noise, evidence);
+}
 
-  test_usual_errors(channel, input, noise, evidence);
+void ChannelEvaluator::judge_alone(int cv, int input, const EstimateNoise& noise,
+                                   ChannelEvidence& evidence) {
+  const ChannelSignatures& channel = signatures_[index(cv, input)];
+  usual_.clear();
+  for (std::size_t e = 0; e < channel.errors.size(); ++e) {
+    scaled_error(channel.errors[e], input, error_);
+    covariance_.whiten(error_);
+    if (e == error_column::kGain || e == error_column::kTime)
+      directions_.col(static_cast<Eigen::Index>(e)) = error_;
+    usual_.add(error_);
+  }
+  test_usual_errors(usual_, estimate_, noise, evidence);
   scaled_error(channel.shifts[0], input, directions_.col(error_column::kLater));
   scaled_error(channel.shifts[1], input, directions_.col(error_column::kEarlier));
   covariance_.whiten(directions_.col(error_column::kLater));
@@ -71,14 +90,40 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
                      evidence);
   // What matters is judged of small errors, as it was calibrated; how large they are is said of
   // any.
-  if (evidence.p_value < calibration::error_sizes::kRefinedBelow) {
-    const auto block = static_cast<double>(estimate_.size());
-    const double enough = noise.variance * (block + 2.0 * std::sqrt(2.0 * block));  // two s.d.
-    const double refined = sizes_.refine(
-        {cv, input, estimates_, covariance_, estimate_, noise.variance}, left, enough, evidence);
-    evidence.usual = Materiality::explained(refined, estimate_.size(), noise);
+  if (evidence.p_value < calibration::error_sizes::kRefinedBelow)
+    size_error(cv, input, left, noise, evidence);
+  else if (!evidence.usual)
+    estimate_free_gain(channel.gain, input, noise, evidence);
+}
+
+void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noise,
+                                     ChannelEvidence& evidence) {
+  const ChannelSignatures& signatures = signatures_[index(cv, input)];
+  const JointErrors::Channel& channel = joint_.channel(input);
+  joint_usual_.clear();
+  for (int e = 0; e < kUsualErrors; ++e) {
+    joint_error_ = channel.usual.col(e);
+    joint_usual_.add(joint_error_);
   }
-  if (!evidence.usual) estimate_free_gain(channel.gain, input, noise, evidence);
+  const double scale = signatures.gain == 0.0 ? evidence.reference_gain : 1.0;
+  const double information = scale * scale * channel.usual.col(0).squaredNorm();
+  const double deviation = std::sqrt(noise.variance / information);
+  if (deviation < evidence.excitation_index &&
+      evidence.excitation_index < calibration::joint_errors::kMovesWithOthers) {
+    evidence.excitation_index = deviation;
+    evidence.gain_error_ratio = scale * channel.usual.col(0).dot(channel.estimate) / information;
+    evidence.gain_error = {evidence.gain_error_ratio, deviation};
+  }
+  test_usual_errors(joint_usual_, channel.estimate, noise, evidence);
+  if (signatures.gain == 0.0) return;
+  const double left = materiality_.fit(channel.estimate, channel.directions, noise, evidence);
+  materiality_.judge(left, channel.estimate, channel.directions, joint_usual_,
+                     limits_[index(cv, input)], noise, evidence);
+  if (evidence.p_value >= calibration::error_sizes::kRefinedBelow) return;
+  const JointErrors::Freed freed = joint_.freed(input, estimates_);
+  covariance_.read(freed.factor, freed.first);
+  for (int r = 0; r < shape_.block(); ++r) estimate_(r) = freed.factor.z(freed.first + r, 0);
+  size_error(cv, input, estimate_.squaredNorm(), noise, evidence);
 }
 
 void ChannelEvaluator::scaled_error(const Signature& error, int input,
@@ -96,28 +141,37 @@ void ChannelEvaluator::test_block(const EstimateNoise& noise, ChannelEvidence& e
   evidence.p_value_material = evidence.p_value;
 }
 
-void ChannelEvaluator::test_usual_errors(const ChannelSignatures& channel, int input,
-                                         const EstimateNoise& noise, ChannelEvidence& evidence) {
-  usual_.clear();
-  for (std::size_t e = 0; e < channel.errors.size(); ++e) {
-    scaled_error(channel.errors[e], input, error_);
-    covariance_.whiten(error_);
-    if (e == error_column::kGain || e == error_column::kTime)
-      directions_.col(static_cast<Eigen::Index>(e)) = error_;
-    usual_.add(error_);
-  }
-  if (usual_.rank() == 0) return;
-  const double statistic = usual_.explained(estimate_) / (usual_.rank() * noise.variance);
-  const double p_value = f_upper_tail(statistic, usual_.rank(), noise.freedom);
-  evidence.directed_statistic = statistic;
-  evidence.directed_freedom = usual_.rank();
-  if (p_value < evidence.p_value) {
+void ChannelEvaluator::test_usual_errors(const UsualErrorSpace& usual,
+                                         const Eigen::VectorXd& estimate,
+                                         const EstimateNoise& noise,
+                                         ChannelEvidence& evidence) const {
+  if (usual.rank() == 0) return;
+  const auto test = [&](double explained, int freedom) {
+    const double statistic = explained / (freedom * noise.variance);
+    const double p_value = f_upper_tail(statistic, freedom, noise.freedom);
+    ++evidence.tests;
+    if (!(p_value < evidence.p_value)) return;
     evidence.p_value = p_value;
     evidence.statistic = statistic;
-    evidence.numerator_freedom = usual_.rank();
-  }
-  evidence.tests = 2;
+    evidence.numerator_freedom = freedom;
+  };
+  evidence.directed_statistic = usual.explained(estimate) / (usual.rank() * noise.variance);
+  evidence.directed_freedom = usual.rank();
+  test(usual.explained(estimate), usual.rank());
+  if (usual.rank() > 1) test(usual.explained_by_first(estimate), 1);
   evidence.p_value = std::min(1.0, evidence.tests * evidence.p_value);
+}
+
+// With `covariance_` and `estimate_` of the input's block.
+void ChannelEvaluator::size_error(int cv, int input, double left, const EstimateNoise& noise,
+                                  ChannelEvidence& evidence) {
+  const auto block = static_cast<double>(estimate_.size());
+  const double enough = noise.variance * (block + 2.0 * std::sqrt(2.0 * block));  // two s.d.
+  const double refined = sizes_.refine(
+      {cv, input, estimates_, covariance_, estimate_, noise.variance}, left, enough, evidence);
+  evidence.usual = Materiality::explained(refined, estimate_.size(), noise);
+  if (!evidence.usual)
+    estimate_free_gain(signatures_[index(cv, input)].gain, input, noise, evidence);
 }
 
 // The gain as the sum of the block's coefficients over A_j(1): free of the model's shape.

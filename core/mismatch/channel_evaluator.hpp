@@ -12,6 +12,7 @@
 #include "core/mismatch/estimate_noise.hpp"
 #include "core/mismatch/gain_excitation.hpp"
 #include "core/mismatch/input_estimates.hpp"
+#include "core/mismatch/joint_errors.hpp"
 #include "core/mismatch/materiality.hpp"
 #include "core/mismatch/regression_memory.hpp"
 #include "core/mismatch/usual_error_space.hpp"
@@ -22,10 +23,12 @@ namespace mpm {
 ///
 /// Two tests are made and the smaller p counts, doubled: F over an input's whole block, which sees
 /// any error, and F over the few directions in it that errors of gain, time constant and dead time
-/// of the model's own channel would take (`usual_errors`), which sees those sooner. Either way the
-/// other inputs' blocks are free, so that no error of theirs leaks in. F's denominator is that of
-/// `EstimateNoise`. Then the error is sized and held against its limits (`Materiality`), and its
-/// s.d. says whether one would show (`GainExcitation`). No allocation after construction.
+/// of the model's own channel would take (`usual_errors`), which sees those sooner. The other
+/// inputs' blocks are free, so that no error of theirs leaks in; in the second test only as far as
+/// usual errors go, where these explain all that is seen of any input (`JointErrors`). F's
+/// denominator is that of `EstimateNoise`. Then the error is sized and held against its limits
+/// (`Materiality`), and its s.d. says whether one would show (`GainExcitation`). No allocation
+/// after construction.
 class ChannelEvaluator {
  public:
   /// `model` says what a gain error of 100 % in a channel looks like. Where it has no channel,
@@ -44,8 +47,13 @@ class ChannelEvaluator {
   }
   void judge(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
   void test_block(const EstimateNoise& noise, ChannelEvidence& evidence) const;
-  void test_usual_errors(const ChannelSignatures& channel, int input, const EstimateNoise& noise,
-                         ChannelEvidence& evidence);
+  /// The usual errors with the other inputs' blocks free, and with their usual errors free.
+  void judge_alone(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
+  void judge_jointly(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
+  void test_usual_errors(const UsualErrorSpace& usual, const Eigen::VectorXd& estimate,
+                         const EstimateNoise& noise, ChannelEvidence& evidence) const;
+  void size_error(int cv, int input, double left, const EstimateNoise& noise,
+                  ChannelEvidence& evidence);
   void estimate_free_gain(double model_gain, int input, const EstimateNoise& noise,
                           ChannelEvidence& evidence);
   /// The error's coefficients on the input's block, scaled.
@@ -60,11 +68,14 @@ class ChannelEvaluator {
   BlockCovariance covariance_;  // of the input at hand
   GainExcitation excitation_;
   UsualErrorSpace usual_;
+  JointErrors joint_;
+  UsualErrorSpace joint_usual_;
   Materiality materiality_;
   ErrorSizes sizes_;
   Eigen::VectorXd estimate_;    // of the input's coefficients, whitened
   Eigen::MatrixXd directions_;  // block x error_column::kCount, whitened
   Eigen::VectorXd error_;
+  Eigen::VectorXd joint_error_;  // kUsualErrors
 };
 
 }  // namespace mpm

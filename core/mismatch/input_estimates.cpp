@@ -1,6 +1,5 @@
 #include "core/mismatch/input_estimates.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "core/mismatch/calibration.hpp"
@@ -46,17 +45,21 @@ void InputEstimates::read(int cv, const GivensQr& factor) {
 void InputEstimates::read_own_lags(int cv, const GivensQr& factor) {
   double least_share = 1.0;
   for (int c = 0; c < columns(); ++c) least_share = std::min(least_share, triangle_(c, c));
-  factor.solve(0,
-               least_share > calibration::rounding::kSeparableShare ? shape_.columns() : lead_in_,
-               coefficients_);
+  separable_ = least_share > calibration::rounding::kSeparableShare;
+  factor.solve(0, separable_ ? shape_.columns() : lead_in_, coefficients_);
   own_lags_at_ = 1 + cv * shape_.residual_order;
   residual_norm_ = factor.centred_norm(1 + cv * shape_.residual_order);
 }
 
-double InputEstimates::movement(int input, const Eigen::VectorXd& x, Eigen::VectorXd& work) const {
+void InputEstimates::move(int input, const Eigen::VectorXd& x,
+                          Eigen::Ref<Eigen::VectorXd> out) const {
   const int at = input * block_;
-  work.head(at + block_).noalias() = triangle_.block(0, at, at + block_, block_) * x;
-  return work.head(at + block_).squaredNorm();
+  out.head(at + block_).noalias() = triangle_.block(0, at, at + block_, block_) * x;
+}
+
+double InputEstimates::movement(int input, const Eigen::VectorXd& x, Eigen::VectorXd& work) const {
+  move(input, x, work);
+  return work.head((input + 1) * block_).squaredNorm();
 }
 
 // A granule of rows at a time, the last ones first; what is behind them is subtracted from all of

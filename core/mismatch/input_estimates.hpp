@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 
 #include "core/mismatch/regression_history.hpp"
@@ -37,18 +38,33 @@ class InputEstimates {
   [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> estimate(int input) const {
     return estimate_.segment(input * block_, block_);
   }
+  /// z, of all columns.
+  [[nodiscard]] const Eigen::VectorXd& rotated() const { return rotated_; }
+  /// Row i of R_t, of an input's columns: `block` values.
+  void triangle_row(int i, int input, double* out) const {
+    Eigen::Map<Eigen::RowVectorXd>(out, block_) = triangle_.row(i).segment(input * block_, block_);
+  }
   /// Row i of T from column 0 on, `padded` values; zero before column i.
   [[nodiscard]] const double* inverse_row(int i) const {
     return inverse_.get() + static_cast<std::size_t>(i) * static_cast<std::size_t>(padded_);
   }
-  /// |R_t x|^2 for scaled coefficients x of one input: what they would move, were the other inputs
-  /// known not to matter. `work`: `columns` values.
+  /// R_t x for scaled coefficients x of one input, into the first `columns` values of `out` up to
+  /// the end of its block; behind it all is zero.
+  void move(int input, const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> out) const;
+  /// |R_t x|^2: what they would move, were the other inputs known not to matter. `work`: `columns`
+  /// values.
   [[nodiscard]] double movement(int input, const Eigen::VectorXd& x, Eigen::VectorXd& work) const;
 
   /// a_1..a_p of the CV's own residual, of the regression on everything where everything can be
   /// told apart, otherwise of the one on the residual lags alone: a loop without excitation makes
   /// inputs a function of residuals.
   [[nodiscard]] const double* own_lags() const { return coefficients_.data() + own_lags_at_; }
+  /// Whether they are of the regression on everything.
+  [[nodiscard]] bool separable() const { return separable_; }
+  /// Until the next `read`.
+  void set_own_lags(const double* lags) {
+    std::copy_n(lags, shape_.residual_order, coefficients_.data() + own_lags_at_);
+  }
   /// Of the CV's own last residual.
   [[nodiscard]] double residual_norm() const { return residual_norm_; }
 
@@ -74,6 +90,7 @@ class InputEstimates {
   Eigen::VectorXd estimate_;      // T z
   Eigen::VectorXd coefficients_;  // of the whole regression
   Eigen::Index own_lags_at_ = 0;  // in coefficients_
+  bool separable_ = false;
   double residual_norm_ = 0.0;
 };
 

@@ -31,6 +31,10 @@ RegressionHistory::RegressionHistory(const RegressionShape& shape, int depth)
     for (std::size_t t = 0; t < shape.tail_poles.size(); ++t) tail_windows_.emplace_back(length);
   }
   for (int j = 0; j < shape.cvs; ++j) residual_windows_.emplace_back(length);
+  for (std::size_t s = 0; s < shape.start_poles.size(); ++s) {
+    start_windows_.emplace_back(length);
+    start_windows_.back().push(1.0);
+  }
 }
 
 void RegressionHistory::push(const Eigen::Ref<const Eigen::VectorXd>& inputs,
@@ -43,6 +47,7 @@ void RegressionHistory::push(const Eigen::Ref<const Eigen::VectorXd>& inputs,
     push_residual(j, residuals(j));
   }
   push_inputs(inputs);
+  push_starts();
   if (!full) ++filled_;
 }
 
@@ -63,6 +68,16 @@ void RegressionHistory::push_residual(int cv, double residual) {
   unknown_run_[s] = 0;
   ++since_gap_[s];
   if (since_gap_[s] > shape_.residual_order) since_gap_[s] = shape_.residual_order + 1;
+}
+
+void RegressionHistory::push_starts() {
+  double largest = 0.0;
+  for (std::size_t s = 0; s < start_windows_.size(); ++s)
+    largest = std::max(largest, start_windows_[s].window()[0] * shape_.start_poles[s]);
+  const bool forgotten = largest < calibration::start::kForgotten;
+  for (std::size_t s = 0; s < start_windows_.size(); ++s)
+    start_windows_[s].push(forgotten ? 0.0 : start_windows_[s].window()[0] * shape_.start_poles[s]);
+  if (forgotten) settled_ = std::min(settled_ + 1, depth_);
 }
 
 void RegressionHistory::push_inputs(const Eigen::Ref<const Eigen::VectorXd>& inputs) {
@@ -99,6 +114,7 @@ void RegressionHistory::fill_lead_in(int age, double* row) const {
   *row++ = 1.0;
   for (const LagWindow& residual : residual_windows_)
     row = std::copy_n(residual.window() + age + 1, shape_.residual_order, row);
+  for (const LagWindow& start : start_windows_) *row++ = start.window()[age];
 }
 
 void RegressionHistory::fill_inputs(int age, double* row) const {

@@ -9,23 +9,27 @@
 namespace mpm {
 
 /// What the residual of every CV is regressed on: a constant, the last `residual_order` residuals
-/// of all CVs, and per input a block: its last `fir_lags` values and, beyond them, one
-/// exponentially weighted mean per tail pole.
+/// of all CVs, what a wrong start may leave behind (a decay per start pole), and per input a block:
+/// its last `fir_lags` values and, beyond them, one exponentially weighted mean per tail pole.
 struct RegressionShape {
   int inputs = 1;
   int cvs = 1;
   int fir_lags = 1;                ///< L >= 1
   int residual_order = 1;          ///< p >= 1
   std::vector<double> tail_poles;  ///< r_t in (0, 1); at least one
+  std::vector<double> start_poles = {};
 
   [[nodiscard]] int block() const { return fir_lags + static_cast<int>(tail_poles.size()); }
-  [[nodiscard]] int lead_in() const { return 1 + cvs * residual_order; }
+  [[nodiscard]] int lead_in() const {
+    return 1 + cvs * residual_order + static_cast<int>(start_poles.size());
+  }
   [[nodiscard]] int columns() const { return lead_in() + inputs * block(); }
 };
 
 /// The last samples of a unit and the regression rows that they make:
 ///
-///     1,  e_1..e_n (k-1 .. k-p),  and per input i:  u_i(k-1 .. k-L), s_it(k-L-1), t = 1..tails,
+///     1,  e_1..e_n (k-1 .. k-p),  r_s^k, s = 1..starts, until all is forgotten,
+///     and per input i:  u_i(k-1 .. k-L), s_it(k-L-1), t = 1..tails,
 ///     s_it(k) = r_t s_it(k-1) + (1 - r_t) u_i(k).
 ///
 /// Unknown values (NaN) do not break the window. An unknown input counts as unchanged: where the
@@ -48,6 +52,8 @@ class RegressionHistory {
   void skip(std::int64_t missing);
 
   [[nodiscard]] int depth() const { return depth_; }
+  /// Rows, at most `depth`, in which nothing is left of what the start left behind.
+  [[nodiscard]] int settled() const { return settled_; }
   /// Whether the newest row serves this CV.
   [[nodiscard]] bool usable(int cv) const { return usable_[static_cast<std::size_t>(cv)]; }
   /// The row whose response is `age` samples old, 0 <= age < depth: columns() values.
@@ -61,10 +67,12 @@ class RegressionHistory {
 
  private:
   void push_inputs(const Eigen::Ref<const Eigen::VectorXd>& inputs);
+  void push_starts();
   void push_residual(int cv, double residual);
 
   RegressionShape shape_;
   int depth_;
+  int settled_ = 0;
   int filled_ = 0;                // intervals so far, until a row has all its lags
   std::vector<bool> has_origin_;  // per input
   Eigen::VectorXd origin_;        // first known value: keeps the windows' values small
@@ -73,6 +81,7 @@ class RegressionHistory {
   std::vector<LagWindow> input_windows_;
   std::vector<LagWindow> tail_windows_;  // input-major
   std::vector<LagWindow> residual_windows_;
+  std::vector<LagWindow> start_windows_;
   std::vector<int> unknown_run_;  // per CV, unknown residuals up to now
   std::vector<int> since_gap_;    // per CV, samples since the last long gap
   std::vector<bool> usable_;

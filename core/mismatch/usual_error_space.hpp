@@ -19,6 +19,11 @@ class UsualErrorSpace {
   [[nodiscard]] int rank() const { return rank_; }
   /// |Q' x|^2
   [[nodiscard]] double explained(const Eigen::VectorXd& x) const;
+  /// The same of the first error alone.
+  [[nodiscard]] double explained_by_first(const Eigen::VectorXd& x) const {
+    const double part = basis_.col(0).dot(x);
+    return part * part;
+  }
   /// Q' x into the first `rank` values of `out`.
   void coordinates(const Eigen::Ref<const Eigen::VectorXd>& x,
                    Eigen::Ref<Eigen::VectorXd> out) const;

@@ -30,9 +30,9 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
   if (!has_evidence(channel, status)) return;
   read_evidence(channel, status);
   const bool exceeding = exceeds(channel, status);
-  const bool overwhelming = status.smallest_error < visibility::kBlindGainError &&
-                            status.p_value < visibility::kOverwhelming * channel_rate_;
-  if (status.excited || ((overwhelming || alarmed(channel)) && exceeding)) {
+  const bool convincing = status.smallest_error < visibility::kBlindGainError &&
+                          status.p_value < visibility::kConvincing * channel_rate_;
+  if (status.excited || ((convincing || alarmed(channel)) && exceeding)) {
     status.verdict = exceeding ? Verdict::kMismatch : Verdict::kMatch;
     status.reason = status.excited ? Reason::kNone : Reason::kWeakExcitation;
     return;

@@ -97,6 +97,10 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
   derive_materiality(spec, monitor, derived);
   derived.settling_samples =
       whole(std::ceil(calibration::simulation::kSettlingTimeConstants * slowest + dead_time));
+  derived.starting_samples =
+      whole(std::ceil(calibration::simulation::kStartingTimeConstants * slowest + dead_time));
+  for (const double share : calibration::simulation::kStartPoles)
+    derived.start_poles.push_back(std::exp(-1.0 / (share * slowest)));
   derived.alarm.raise_below = alarms.raise_p_value;
   derived.alarm.clear_above = alarms.clear_p_value;
   derived.alarm.on_delay =

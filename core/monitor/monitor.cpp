@@ -32,8 +32,9 @@ struct Monitor::State {
     explicit Cv(int input_count) : alarms(input_count) {}
     CvAlarms alarms;
     CvQuality quality;
-    bool evaluated = false;  // in this sample
-    bool judged = false;     // there is evidence from the present memory
+    bool evaluated = false;    // in this sample
+    bool judged = false;       // there is evidence from the present memory
+    std::int64_t settled = 0;  // samples
   };
 
   [[nodiscard]] std::size_t index(int cv, int input) const {
@@ -81,6 +82,11 @@ int answering_samples(const LinearModel& model, const DerivedSettings& derived) 
                                    dead_time + calibration::simulation::kBeginsToAnswer));
 }
 
+// Some CV, from the first sample on and for good.
+bool simulates(const std::vector<bool>& may_predict) {
+  return std::find(may_predict.begin(), may_predict.end(), false) != may_predict.end();
+}
+
 }  // namespace
 
 Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_counts,
@@ -93,11 +99,14 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
       screen(counts, may_predict, acts,
              static_cast<int>(std::ceil(model.longest_dead_time_samples()))),
       inputs(counts, settings.remembered * calibration::input_motion::kMemoryShare),
-      predictions(model, may_predict, acts, settings.settling_samples),
+      predictions(model, may_predict, acts,
+                  simulates(may_predict) ? settings.starting_samples : settings.settling_samples,
+                  settings.settling_samples),
       residuals(counts.cv),
       correlation(counts, settings),
       detector({counts.inputs(), counts.cv, settings.fir_lags, settings.residual_order,
-                settings.tail_poles},
+                settings.tail_poles,
+                simulates(may_predict) ? settings.start_poles : std::vector<double>{}},
                settings.memories, settings.remembered, settings.evaluation_stride, model,
                settings.materiality),
       scan(detector.shape()),
@@ -158,8 +167,11 @@ void Monitor::State::take_sample(const Frame& frame) {
     const bool implausible = frame[SignalKind::kCv].quality[at] == Quality::kImplausible ||
                              (predictions.given(j) &&
                               frame[SignalKind::kPrediction].quality[at] == Quality::kImplausible);
+    const bool settling = predictions.settling(j);
+    of(j).settled += settling ? 0 : 1;
     of(j).quality.take(
-        {std::isfinite(residuals.values()(j)), implausible, took_row, screen.spikes(j)}, samples);
+        {settling || std::isfinite(residuals.values()(j)), implausible, took_row, screen.spikes(j)},
+        samples);
     used = used || took_row;
   }
   if (used) ++counters.used;
@@ -202,8 +214,8 @@ void Monitor::State::judge_channels() {
   for (int i = 0; i < counts.inputs(); ++i) {
     for (int j = 0; j < counts.cv; ++j) {
       const RegressionMemory& memory = detector.memory(j);
-      const bool overdue =
-          static_cast<double>(samples) >= calibration::bad_data::kWarmUps * memory.needed_rows();
+      const bool overdue = static_cast<double>(of(j).settled) >=
+                           calibration::bad_data::kWarmUps * memory.needed_rows();
       judge.judge({.input = i,
                    .bad_data = bad_data(j, i),
                    .overdue = overdue,

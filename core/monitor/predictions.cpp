@@ -18,11 +18,12 @@ std::vector<bool> channels_of(const LinearModel& model, int length) {
 }
 
 Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_predict,
-                         const std::vector<bool>& acts, int settling_samples)
+                         const std::vector<bool>& acts, int starting_samples, int settling_samples)
     : model_(model),
       may_predict_(may_predict),
       acts_(acts),
       has_model_(std::find(acts.begin(), acts.end(), true) != acts.end()),
+      starting_samples_(starting_samples),
       settling_samples_(settling_samples),
       given_(may_predict.size(), false),
       settling_(may_predict.size(), 0) {}
@@ -58,12 +59,12 @@ void Predictions::advance(const UnitInputs& inputs) {
     if (samples > 0) --samples;
   if (!simulates_) return;
   // Where the plant stood before the first sample is unknown: at rest with the first inputs is the
-  // least wrong, and what is wrong about it has died out once the model has settled.
+  // least wrong; what is wrong about it decays.
   if (!started_) {
     if (!inputs.values().allFinite()) return;
     model_.reset_steady(inputs.values());
     started_ = true;
-    std::fill(settling_.begin(), settling_.end(), settling_samples_);
+    std::fill(settling_.begin(), settling_.end(), starting_samples_);
   }
   model_.advance(inputs.held());
 }

@@ -22,9 +22,10 @@ namespace mpm {
 class Predictions {
  public:
   /// `may_predict[j]`: CV j's may come with the frames; `acts`: see `channels_of`;
-  /// `settling_samples`: until the model has forgotten where it started.
+  /// Samples until the model can be trusted: `starting_samples` after the first one,
+  /// `settling_samples` after an input has moved unseen.
   Predictions(const LinearModel& model, const std::vector<bool>& may_predict,
-              const std::vector<bool>& acts, int settling_samples);
+              const std::vector<bool>& acts, int starting_samples, int settling_samples);
 
   /// Some CV's is simulated.
   [[nodiscard]] bool simulates() const { return simulates_; }
@@ -54,7 +55,7 @@ class Predictions {
   std::vector<bool> may_predict_;
   std::vector<bool> acts_;
   bool has_model_;
-  int settling_samples_;
+  int starting_samples_, settling_samples_;
   bool simulates_ = true;
   bool started_ = false;
   std::vector<bool> given_;

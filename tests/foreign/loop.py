@@ -175,7 +175,7 @@ def tags(plant, item):
     return named
 
 
-def make(regime, name, effect, seed, samples):
+def make(regime, name, effect, seed, samples, model_error):
     plant = PLANTS[name]()
     key = [seed, regimes.REGIMES.index(regime), list(PLANTS).index(name),
            effects.EFFECTS.index(effect)]
@@ -183,8 +183,8 @@ def make(regime, name, effect, seed, samples):
         rng = np.random.default_rng(key + [attempt])
         outside = regimes.draw(regime, plant, samples, rng)
         healthy = tuple(
-            c.with_gain(1 + rng.uniform(-GAIN_ERROR, GAIN_ERROR)).with_time(
-                1 + rng.uniform(-TIME_ERROR, TIME_ERROR)) for c in plant.channels)
+            c.with_gain(1 + model_error * rng.uniform(-GAIN_ERROR, GAIN_ERROR)).with_time(
+                1 + model_error * rng.uniform(-TIME_ERROR, TIME_ERROR)) for c in plant.channels)
         nothing, _ = effects.draw("none", plant, healthy, None, None, samples, rng)
         pilot = simulate(plant, outside, nothing, samples)
         if not stays_put(plant, pilot[0], pilot[1], None):
@@ -225,9 +225,10 @@ def make(regime, name, effect, seed, samples):
     return plant, outside, cvs, mvs, truth, rng
 
 
-def write(regime, name, effect, seed, samples, out):
-    """Writes the three files and returns the truth."""
-    plant, outside, cvs, mvs, truth, rng = make(regime, name, effect, seed, samples)
+def write(regime, name, effect, seed, samples, out, model_error=1.0):
+    """Writes the three files and returns the truth. `model_error` scales what every model is off
+    by."""
+    plant, outside, cvs, mvs, truth, rng = make(regime, name, effect, seed, samples, model_error)
     cvs, mvs = regimes.logged(regime, plant, outside.noise_models, cvs, mvs, rng)
     header = (["time"] + [f"u{j + 1}" for j in range(plant.mv_count)] + ["d1"] +
               [f"y{i + 1}" for i in range(plant.cv_count)] +

@@ -86,10 +86,10 @@ TEST_CASE("an error that would not show is not ruled out, and the reason is told
   bench.mvs_still = true;
   CHECK(bench.judge(0).reason == Reason::kControllerOff);
   CHECK(bench.judge(1).reason == Reason::kConstrained);  // a DV stands for itself
-  // But for overwhelming evidence: a thousandth of the channel's rate of 0.005.
-  bench.evidence.p_value = 6e-6;
+  // But for strong evidence: a tenth of the channel's rate of 0.005.
+  bench.evidence.p_value = 6e-4;
   CHECK(bench.judge().verdict == Verdict::kUndetermined);
-  bench.evidence.p_value = 4e-6;
+  bench.evidence.p_value = 4e-4;
   CHECK(bench.judge().verdict == Verdict::kMismatch);
   CHECK(bench.judge().reason == Reason::kWeakExcitation);
 }

@@ -27,7 +27,7 @@ struct Unit {
         plant(first_order()),
         screen(counts, {true}, {true}, 0),
         inputs(counts, 100.0),
-        predictions(model, {true}, {true}, kSettling),
+        predictions(model, {true}, {true}, kSettling, kSettling),
         residuals(1) {}
 
   // Measured: the model's own output plus 1. NaN: unknown.

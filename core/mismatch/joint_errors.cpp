@@ -1,0 +1,169 @@
+#include "core/mismatch/joint_errors.hpp"
+
+#include <algorithm>
+
+#include "core/mismatch/calibration.hpp"
+#include "core/statistics/f_distribution.hpp"
+
+namespace mpm {
+namespace {
+
+// Rows that a factor takes together: speed only.
+constexpr int kBatchRows = 32;
+// By one sample: later, earlier.
+constexpr int kShifts = 2;
+
+}  // namespace
+
+JointErrors::JointErrors(const RegressionShape& shape)
+    : shape_(shape),
+      moved_(Eigen::MatrixXd::Zero(shape.inputs * shape.block(), shape.inputs * kUsualErrors)),
+      shifts_(Eigen::MatrixXd::Zero(moved_.rows(), shape.inputs * kShifts)),
+      errors_(Eigen::MatrixXd::Zero(shape.block(), shape.inputs * kUsualErrors)),
+      error_(Eigen::VectorXd::Zero(shape.block())),
+      sizes_(Eigen::VectorXd::Zero(shape.inputs * kUsualErrors)),
+      lead_in_(Eigen::VectorXd::Zero(shape.lead_in())),
+      own_lags_(Eigen::VectorXd::Zero(shape.residual_order)),
+      batch_(shape.inputs * (kUsualErrors + kShifts) + shape.block() + 1, kBatchRows),
+      all_(shape.inputs * kUsualErrors, 1 + shape.inputs * kShifts),
+      last_(shape.inputs * kUsualErrors, 1 + kShifts),
+      freed_((shape.inputs - 1) * kUsualErrors + shape.block(), 1),
+      channel_{Eigen::VectorXd::Zero(kUsualErrors),
+               Eigen::MatrixXd::Zero(kUsualErrors, kUsualErrors),
+               Eigen::MatrixXd::Zero(kUsualErrors, error_column::kCount)} {}
+
+void JointErrors::read(int cv, const GivensQr& factor,
+                       const std::vector<ChannelSignatures>& signatures, const EstimateNoise& noise,
+                       InputEstimates& estimates) {
+  adequate_ = false;
+  if (noise.freedom < calibration::joint_errors::kFreedomPerColumn * shape_.columns()) return;
+  own_lags_ = Eigen::Map<const Eigen::VectorXd>(estimates.own_lags(), shape_.residual_order);
+  fit(cv, signatures, noise, estimates);
+  for (int turn = 0; turn < calibration::joint_errors::kTurns; ++turn) {
+    const double before = all_.residual_square(0);
+    learn_own_lags(factor);
+    estimates.set_own_lags(lead_in_.data() + 1 + cv * shape_.residual_order);
+    fit(cv, signatures, noise, estimates);
+    if (before - all_.residual_square(0) <
+        calibration::joint_errors::kWorthAnotherTurn * noise.variance)
+      break;
+  }
+  if (!adequate_) estimates.set_own_lags(own_lags_.data());
+}
+
+// The lead-in's coefficients where the inputs' are those of the fit: R_l^-1 (z_l - R_li X x).
+void JointErrors::learn_own_lags(const GivensQr& factor) {
+  all_.solve(0, all_.columns(), sizes_);
+  const int lead_in = shape_.lead_in();
+  for (int r = lead_in - 1; r >= 0; --r) {
+    double left = factor.z(r, 0);
+    for (int c = r + 1; c < lead_in; ++c) left -= factor.r(r, c) * lead_in_(c);
+    for (int i = 0; i < shape_.inputs; ++i) {
+      const auto own = errors_.middleCols(i * kUsualErrors, kUsualErrors);
+      for (int l = 0; l < shape_.block(); ++l)
+        left -= factor.r(r, lead_in + i * shape_.block() + l) *
+                own.row(l).dot(sizes_.segment(i * kUsualErrors, kUsualErrors));
+    }
+    const double own = factor.r(r, r);
+    lead_in_(r) = own > 0.0 ? left / own : 0.0;
+  }
+}
+
+void JointErrors::fit(int cv, const std::vector<ChannelSignatures>& signatures,
+                      const EstimateNoise& noise, const InputEstimates& estimates) {
+  move(cv, estimates, signatures);
+  all_.clear();
+  const int columns = all_.columns();
+  for (Eigen::Index r = 0; r < moved_.rows(); ++r) {
+    double* row = next_row(all_);
+    for (int c = 0; c < columns; ++c) row[c] = moved_(r, c);
+    row[columns] = estimates.rotated()(r);
+    for (int c = 0; c < all_.responses() - 1; ++c) row[columns + 1 + c] = shifts_(r, c);
+  }
+  flush(all_);
+  int moving = 0;
+  for (int i = 0; i < shape_.inputs; ++i) moving += estimates.moved(i) ? shape_.block() : 0;
+  int rank = 0;
+  for (int c = 0; c < columns; ++c) rank += all_.root(c) > 0.0 ? 1 : 0;
+  const double left = moving - rank;
+  adequate_ = rank > 0 && noise.variance > 0.0 && left > 0.0 &&
+              f_upper_tail(all_.residual_square(0) / (left * noise.block_variance), left,
+                           noise.freedom) > calibration::joint_errors::kAdequatePValue;
+}
+
+// R_t X and R_t s, column by column; errors that a channel lacks are zero.
+void JointErrors::move(int cv, const InputEstimates& estimates,
+                       const std::vector<ChannelSignatures>& signatures) {
+  moved_.setZero();
+  shifts_.setZero();
+  errors_.setZero();
+  for (int i = 0; i < shape_.inputs; ++i) {
+    if (!estimates.moved(i)) continue;
+    const ChannelSignatures& channel = signatures[static_cast<std::size_t>(i * shape_.cvs + cv)];
+    const auto move_all = [&](const std::vector<Signature>& errors, Eigen::MatrixXd& out, int at) {
+      for (const Signature& error : errors) {
+        error.filter(estimates.own_lags(), error_);
+        if (&out == &moved_) errors_.col(at) = error_;
+        error_.array() *= estimates.norms(i).array();
+        estimates.move(i, error_, out.col(at++));
+      }
+    };
+    move_all(channel.errors, moved_, i * kUsualErrors);
+    move_all(channel.shifts, shifts_, i * kShifts);
+  }
+}
+
+const JointErrors::Channel& JointErrors::channel(int input) {
+  last_.clear();
+  const int columns = all_.columns();
+  const int own = input * kUsualErrors;
+  for (int r = 0; r < columns; ++r) {
+    double* row = next_row(last_);
+    std::fill(row, row + columns, 0.0);
+    for (int c = r; c < columns; ++c) {
+      const bool mine = c >= own && c < own + kUsualErrors;
+      const int to = mine ? columns - kUsualErrors + c - own : c < own ? c : c - kUsualErrors;
+      row[to] = all_.r(r, c);
+    }
+    row[columns] = all_.z(r, 0);
+    for (int s = 0; s < kShifts; ++s) row[columns + 1 + s] = all_.z(r, 1 + input * kShifts + s);
+  }
+  flush(last_);
+  const int first = columns - kUsualErrors;
+  for (int r = 0; r < kUsualErrors; ++r) {
+    channel_.estimate(r) = last_.z(first + r, 0);
+    for (int c = 0; c < kUsualErrors; ++c)
+      channel_.usual(r, c) = c < r ? 0.0 : last_.r(first + r, first + c);
+    channel_.directions(r, error_column::kLater) = last_.z(first + r, 1);
+    channel_.directions(r, error_column::kEarlier) = last_.z(first + r, 2);
+  }
+  channel_.directions.col(error_column::kGain) = channel_.usual.col(0);
+  channel_.directions.col(error_column::kTime) = channel_.usual.col(1);
+  return channel_;
+}
+
+JointErrors::Freed JointErrors::freed(int input, const InputEstimates& estimates) {
+  freed_.clear();
+  const int others = (shape_.inputs - 1) * kUsualErrors;
+  const int own = input * kUsualErrors;
+  for (Eigen::Index r = 0; r < moved_.rows(); ++r) {
+    double* row = next_row(freed_);
+    for (int c = 0; c < others; ++c) row[c] = moved_(r, c < own ? c : c + kUsualErrors);
+    estimates.triangle_row(static_cast<int>(r), input, row + others);
+    row[others + shape_.block()] = estimates.rotated()(r);
+  }
+  flush(freed_);
+  return {freed_, others};
+}
+
+double* JointErrors::next_row(GivensQr& factor) {
+  if (waiting_ == kBatchRows) flush(factor);
+  return batch_.row(waiting_++);
+}
+
+void JointErrors::flush(GivensQr& factor) {
+  if (waiting_ > 0) factor.update_batch(batch_, waiting_, 1.0);
+  waiting_ = 0;
+}
+
+}  // namespace mpm
