@@ -56,7 +56,7 @@ struct Rotated : Bench {
     std::filesystem::remove(folder.file("journal"));
     std::vector<std::string> arguments = {"detect", "--config", kShell, "--data"};
     arguments.insert(arguments.end(), data.begin(), data.end());
-    arguments.insert(arguments.end(), {"--json", "--journal", folder.file("journal")});
+    arguments.insert(arguments.end(), {"--json", "--journal-every-sample", folder.file("journal")});
     const std::string said = mpm(arguments);
     return said + text("journal");
   }
