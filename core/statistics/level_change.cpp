@@ -96,17 +96,21 @@ std::optional<LevelChange> find_level_change(std::span<const LevelPoint> points)
   const double counted = (1.0 - correlation) / (1.0 + correlation);
   const double freedom = static_cast<double>(count - 2);
   const double scatter = best.square / freedom / counted;
-  const double explained = best.slope * best.slope * best.spread;
-  const double of_scatter =
-      scatter > 0.0 ? f_upper_tail(explained / scatter, 1.0, std::max(1.0, freedom * counted))
-                    : (explained > 0.0 ? 0.0 : 1.0);
   const bool known = std::all_of(points.begin(), points.end(),
                                  [](const LevelPoint& point) { return point.deviation > 0.0; });
-  const double of_deviations = known ? f_upper_tail(explained, 1.0, level_change::kKnown) : 0.0;
-  change.p_value = std::min(1.0, tried * std::max(of_scatter, of_deviations));
+  // Of the two the larger one; where that is the scatter, which few points tell badly, with their
+  // freedom.
+  const double variance = std::max(known ? 1.0 : 0.0, scatter);
+  const double certain = known && scatter <= 1.0 ? level_change::kKnown
+                         : known                 ? freedom
+                                                 : std::max(1.0, freedom * counted);
+  const double explained = best.slope * best.slope * best.spread;
+  const double of_one = variance > 0.0 ? f_upper_tail(explained / variance, 1.0, certain)
+                                       : (explained > 0.0 ? 0.0 : 1.0);
+  change.p_value = std::min(1.0, tried * of_one);
   change.before = best.level;
   change.after = best.level + best.slope;
-  change.deviation = std::sqrt(std::max(scatter, known ? 1.0 : 0.0) / best.spread);
+  change.deviation = std::sqrt(variance / best.spread);
   return change;
 }
 

@@ -25,8 +25,9 @@ struct Series {
 Series errors_of(const Trend& trend, std::size_t cv) {
   Series series;
   for (std::size_t k = 0; k < trend.periods.size(); ++k) {
-    const double error = trend.periods[k].cvs[cv].prediction_rms;
-    if (known(error) && error > 0.0) series.add(trend, k, std::log(error), 0.0);
+    const CvPeriod& period = trend.periods[k].cvs[cv];
+    if (known(period.deviation))
+      series.add(trend, k, std::log(period.prediction_rms), period.deviation);
   }
   return series;
 }
@@ -38,6 +39,11 @@ Series gains_of(const Trend& trend, std::size_t channel) {
     if (known(period.gain_error)) series.add(trend, k, period.gain_error, period.deviation);
   }
   return series;
+}
+
+// The first period that differs.
+std::size_t first_of(const Series& series, const LevelChange& change) {
+  return series.periods[change.first + (change.gradual ? 1 : 0)];
 }
 
 // Root mean square of the movement in periods from `first` to before `end`.
@@ -58,13 +64,13 @@ std::optional<Change> change_of_errors(const Trend& trend, std::size_t cv, const
   Change change;
   change.cv = trend.head.cvs[cv].cv;
   change.gradual = found->gradual;
-  change.first = series.periods[found->first];
+  change.first = first_of(series, *found);
   change.before = 1.0;
   change.now = std::exp(step);
   change.low = std::exp(step - kNormalTwoSided95 * found->deviation);
   change.high = std::exp(step + kNormalTwoSided95 * found->deviation);
   change.p_value = found->p_value;
-  const std::size_t begun = std::max<std::size_t>(1, found->first);
+  const std::size_t begun = found->first + (found->gradual ? 1 : 0);
   change.movement_ratio = movement(trend, series, cv, begun, series.points.size()) /
                           movement(trend, series, cv, 0, begun);
   return change;

@@ -67,6 +67,7 @@ void TrendMaker::CvSums::add(const CvSums& other) {
   residual += other.residual;
   prediction += other.prediction;
   movement += other.movement;
+  fourth += other.fourth;
 }
 
 void TrendMaker::ChannelSums::add(const ChannelSums& other) {
@@ -98,8 +99,12 @@ void TrendMaker::add(const Digest& digest) {
     const auto square = [](double root, std::int64_t count) {
       return count > 0 ? root * root * static_cast<double>(count) : 0.0;
     };
-    of = {cv.samples, cv.pairs, square(cv.residual_rms, cv.samples),
-          square(cv.prediction_rms, cv.pairs), square(cv.movement_rms, cv.pairs)};
+    of.samples = cv.samples;
+    of.pairs = cv.pairs;
+    of.residual = square(cv.residual_rms, cv.samples);
+    of.prediction = square(cv.prediction_rms, cv.pairs);
+    of.movement = square(cv.movement_rms, cv.pairs);
+    if (cv.pairs > 0) of.fourth = of.prediction * cv.prediction_rms * cv.prediction_rms;
   }
   for (const ChannelDigest& channel : digest.channels) {
     ChannelSums& of = sums.channels[{channel.mv, channel.cv}];
@@ -134,6 +139,13 @@ Period TrendMaker::period_of(std::int64_t index, const Sums& sums, Step step) co
     of.residual_rms = rms(sum.residual, sum.samples);
     of.prediction_rms = rms(sum.prediction, sum.pairs);
     of.movement_rms = rms(sum.movement, sum.pairs);
+    // Errors that overlap in time are one.
+    const auto pairs = static_cast<double>(sum.pairs);
+    const double apart =
+        2.0 * static_cast<double>(head_.horizon_samples) + head_.digest_s / head_.sample_time_s;
+    const double mean = sum.prediction / pairs;
+    const double variance = std::max(0.0, sum.fourth / pairs - mean * mean);
+    if (mean > 0.0) of.deviation = 0.5 * std::sqrt(variance * apart / pairs) / mean;
   }
   for (const ChannelHead& channel : head_.channels) {
     ChannelPeriod& of = period.channels.emplace_back();
@@ -147,10 +159,9 @@ Period TrendMaker::period_of(std::int64_t index, const Sums& sums, Step step) co
     of.gain_error = sum.error / sum.weight;
     of.low = sum.low / sum.weight;
     of.high = sum.high / sum.weight;
-    // Estimates of one memory are one; further ones come with as many samples as it has.
+    // Estimates within one memory are one.
     const double memories = sum.weight / (sum.effective / sum.weight);
-    of.deviation =
-        (of.high - of.low) / (2.0 * kNormalTwoSided95) / std::sqrt(std::max(1.0, memories));
+    of.deviation = (of.high - of.low) / (2.0 * kNormalTwoSided95) / std::sqrt(memories);
   }
   return period;
 }

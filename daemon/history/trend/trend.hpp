@@ -22,6 +22,7 @@ enum class Step : std::uint8_t { kHour, kDay, kWeek };
 struct CvPeriod {
   double known = 0.0;  ///< share of the samples with a residual, 0..1
   double residual_rms = kUnknown, prediction_rms = kUnknown, movement_rms = kUnknown;
+  double deviation = kUnknown;  ///< s.d. of ln prediction_rms, from how the digests scatter
 
   /// Of the movement over the horizon, how much the predictions get right, in %: 100 is all of it,
   /// 0 no more than a prediction that nothing moves.
@@ -35,7 +36,9 @@ struct ChannelPeriod {
   /// Means over the time in which they were determined, units as in ChannelDigest; NaN where that
   /// was too short.
   double gain_error = kUnknown, low = kUnknown, high = kUnknown;
-  double deviation = kUnknown;  ///< s.d. of the mean, from the time that it is over
+  /// S.d. of the mean, as of values that tell nothing of each other: those of neighbouring periods
+  /// that one memory spans do, and it is larger by as much.
+  double deviation = kUnknown;
 };
 
 struct Period {
@@ -76,7 +79,8 @@ class TrendMaker {
   /// Sums, which are added up for longer periods.
   struct CvSums {
     std::int64_t samples = 0, pairs = 0;
-    double residual = 0.0, prediction = 0.0, movement = 0.0;
+    double residual = 0.0, prediction = 0.0, movement = 0.0;  // squares
+    double fourth = 0.0;  // of each digest its prediction error to the fourth, times its pairs
     void add(const CvSums& other);
   };
   struct ChannelSums {
