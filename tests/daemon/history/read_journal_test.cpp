@@ -64,7 +64,7 @@ TEST_CASE("what is no journal is refused at its line") {
   const std::string path = folder.file("a-000001.jsonl");
   const std::string head = head_line("sample", 0);
   test::write_file(path, head + "{\"record\": \"digest\", x}\n");
-  CHECK(error_of(path) == path + ":2:23: error: is no JSON");
+  CHECK(error_of(path) == path + ":2:22: error: is no JSON");
   test::write_file(path, head + "[1, 2]\n");
   CHECK(error_of(path) == path + ":2:1: error: is no line of a journal");
   test::write_file(path, head + "{\"record\":\"digest\"}\n");
