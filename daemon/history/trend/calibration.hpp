@@ -1,7 +1,8 @@
 #pragma once
 
 /// The numbers that decide what a trend shows and says.
-namespace mpm::history::calibration {
+namespace mpm::history {
+namespace calibration {
 
 /// Of a period's intervals at least this share must be known, or nothing is shown of it. Chosen.
 inline constexpr double kLeastShare = 0.1;
@@ -16,4 +17,5 @@ inline constexpr double kLeastRatio = 1.25;
 inline constexpr double kHoursUpToDays = 2.5;
 inline constexpr double kDaysUpToDays = 60.0;
 
-}  // namespace mpm::history::calibration
+}  // namespace calibration
+}  // namespace mpm::history

@@ -114,6 +114,19 @@ TEST_CASE("of healthy histories nothing is told beyond chance") {
   CHECK(told <= 0.01 * count + 2.0 * std::sqrt(0.01 * count));
 }
 
+// The negative control: what is larger is the noise, and no gain is blamed for it.
+TEST_CASE("noise that grows is told of the prediction errors, with its day and size") {
+  const History history;
+  history.simulate("noise_x3", 4 * kWeek, 1, "noise.csv");  // from the middle of the run on
+  const Json trend = history.of_data("noise.csv", "day");
+  REQUIRE(trend["changes"].size() == 2);
+  for (const Json& change : trend["changes"]) {
+    CHECK(change["what"] == "prediction_error");
+    CHECK(weeks(change["since"]) == Approx(2.0).margin(1.01 / 7.0));
+    CHECK(change["now"].get<double>() == Approx(3.0).margin(0.4));
+  }
+}
+
 TEST_CASE("the trend of data and that of the journal of the same data agree") {
   const History history;
   write_file(history.file("jump.yaml"),
