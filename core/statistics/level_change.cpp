@@ -94,7 +94,7 @@ std::optional<LevelChange> find_level_change(std::span<const LevelPoint> points)
 
   const double correlation = resemblance(points, change, best);
   const double counted = (1.0 - correlation) / (1.0 + correlation);
-  const double freedom = static_cast<double>(count - 2);
+  const auto freedom = static_cast<double>(count - 2);
   const double scatter = best.square / freedom / counted;
   const bool known = std::all_of(points.begin(), points.end(),
                                  [](const LevelPoint& point) { return point.deviation > 0.0; });

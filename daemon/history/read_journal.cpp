@@ -35,7 +35,7 @@ std::ifstream open_text(const std::string& path) {
 Json parse(const std::string& path, int line, const std::string& text) {
   try {
     Json json = Json::parse(text);
-    if (json.is_object() && json.value("record", "") != "") return json;
+    if (json.is_object() && !json.value("record", std::string()).empty()) return json;
   } catch (const Json::parse_error& error) {
     fail(path, "is no JSON", line, static_cast<int>(error.byte));
   } catch (const Json::exception&) {
@@ -116,6 +116,7 @@ std::vector<std::string> journal_of(const std::vector<std::string>& paths,
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> files;
+  files.reserve(found.size());
   for (auto& [time_ns, file] : found) files.push_back(std::move(file));
   return files;
 }

@@ -61,7 +61,7 @@ std::optional<Change> change_of_errors(const Trend& trend, std::size_t cv, const
   if (!found || found->p_value > level) return std::nullopt;
   if (found->before <= 0.0 || found->after <= 0.0) return std::nullopt;
   const double step = std::log(found->after / found->before);
-  if (std::abs(step) < std::log(calibration::kLeastRatio)) return std::nullopt;
+  if (std::abs(step) < std::log(kLeastRatio)) return std::nullopt;
   // Of the logarithm: errors are known to a share of their size, and the larger ones count.
   const double deviation = found->deviation / std::max(found->before, found->after);
   Change change;
@@ -127,6 +127,8 @@ void add_silences(const Trend& trend, Findings& findings) {
     std::size_t spoke = trend.periods.size();  // periods up to the last that is known
     while (spoke > 0 && !known(trend.periods[spoke - 1].channels[c].gain_error)) --spoke;
     if (spoke == trend.periods.size()) continue;
+    // The last period may have just begun.
+    if (spoke + 1 == trend.periods.size() && trend.last[c].verdict != "undetermined") continue;
     Silence silence;
     silence.last = trend.last[c];
     if (spoke > 0) silence.since = spoke;
@@ -143,8 +145,7 @@ Findings find_changes(const Trend& trend) {
   Findings findings;
   for (const std::vector<Series>* all : {&errors, &gains})
     for (const Series& series : *all) findings.asked += series.enough() ? 1 : 0;
-  const double level =
-      calibration::kFalseRate / static_cast<double>(std::max<std::size_t>(1, findings.asked));
+  const double level = kFalseRate / static_cast<double>(std::max<std::size_t>(1, findings.asked));
   for (std::size_t j = 0; j < errors.size(); ++j)
     if (std::optional<Change> change = change_of_errors(trend, j, errors[j], level))
       findings.changes.push_back(std::move(*change));

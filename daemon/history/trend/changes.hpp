@@ -48,8 +48,8 @@ struct Findings {
 };
 
 /// Each series of periods is asked for its likeliest change (`find_level_change`), at
-/// calibration::kFalseRate for all of them together. Of a gain it must be as large as matters, of
-/// prediction errors calibration::kLeastRatio.
+/// kFalseRate for all of them together. Of a gain it must be as large as matters, of
+/// prediction errors kLeastRatio.
 [[nodiscard]] Findings find_changes(const Trend& trend);
 
 }  // namespace mpm::history

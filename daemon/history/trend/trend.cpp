@@ -127,7 +127,7 @@ void TrendMaker::add(const Digest& digest) {
 }
 
 Period TrendMaker::period_of(std::int64_t index, const Sums& sums, Step step) const {
-  const double least = calibration::kLeastShare * seconds_of(step) / head_.sample_time_s;
+  const double least = kLeastShare * seconds_of(step) / head_.sample_time_s;
   Period period{index, sums.from_ns, sums.until_ns, sums.samples, {}, {}};
   for (const CvHead& cv : head_.cvs) {
     CvPeriod& of = period.cvs.emplace_back();
@@ -181,9 +181,9 @@ Trend TrendMaker::finish() const {
   if (hours_.empty()) return trend;
   const double days = static_cast<double>(last_ns_ - hours_.begin()->second.from_ns) /
                       static_cast<double>(kNsPerSecond) / kSecondsPerDay;
-  const Step usual = days <= calibration::kHoursUpToDays  ? Step::kHour
-                     : days <= calibration::kDaysUpToDays ? Step::kDay
-                                                          : Step::kWeek;
+  const Step usual = days <= kHoursUpToDays  ? Step::kHour
+                     : days <= kDaysUpToDays ? Step::kDay
+                                             : Step::kWeek;
   trend.step = step_.value_or(usual);
   std::map<std::int64_t, Sums> periods;
   for (const auto& [hour, sums] : hours_)

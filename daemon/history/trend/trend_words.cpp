@@ -53,7 +53,7 @@ std::string words_of(const Trend& trend, const Change& change, const report::Mom
   std::string text = printable(change.cv) + ": prediction errors " + number_text(change.now, 2) +
                      " times as large (" + interval_text(change.low, change.high, 2) + ")" + since;
   const double moved = change.movement_ratio;
-  if (moved >= calibration::kLeastRatio || moved <= 1.0 / calibration::kLeastRatio)
+  if (moved >= kLeastRatio || moved <= 1.0 / kLeastRatio)
     text += "; it moved " + number_text(moved, 2) + " times as much";
   return text;
 }
@@ -90,7 +90,7 @@ std::string words_of_rate(const Trend& trend, const Findings& findings) {
            std::to_string(level_change::kFewestPoints) + " " + step + "s that are known.";
   return (findings.changes.empty() ? "No change beyond what chance gives" : "Told beyond chance") +
          std::string(": of a history without changes any is told in less than ") +
-         percent_text(calibration::kFalseRate) + " of cases.";
+         percent_text(kFalseRate) + " of cases.";
 }
 
 }  // namespace mpm::history

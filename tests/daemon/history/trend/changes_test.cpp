@@ -98,5 +98,12 @@ TEST_CASE("what was wrong all along is told as an alarm, and the silent as silen
   CHECK(findings.silent[0].since == 8);
 }
 
+TEST_CASE("a day that has just begun is no silence") {
+  const auto of = [](int, std::int64_t at) { return test::sample_digest(at, 1.0, 0.1); };
+  const Trend trend = test::sample_trend(96 * 10 + 2, of, Step::kDay);
+  CHECK_FALSE(known(trend.periods.back().channels[0].gain_error));
+  CHECK(find_changes(trend).silent.empty());
+}
+
 }  // namespace
 }  // namespace mpm::history
