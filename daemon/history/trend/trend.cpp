@@ -90,6 +90,7 @@ void TrendMaker::Sums::add(const Sums& other) {
 }
 
 void TrendMaker::add(const Digest& digest) {
+  if (!begun_.insert(digest.from_ns).second) return;
   Sums sums;
   sums.from_ns = digest.from_ns;
   sums.until_ns = digest.until_ns;

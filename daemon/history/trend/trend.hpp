@@ -5,6 +5,8 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "core/text/words.hpp"
@@ -70,6 +72,7 @@ class TrendMaker {
 
   /// Channels and CVs are those of the last head.
   void add(UnitHead head) { head_ = std::move(head); }
+  /// One that begins as another did is the same again (two runs over one file), and is left out.
   void add(const Digest& digest);
   void add(AlarmChangeNote alarm) { alarms_.push_back(std::move(alarm)); }
 
@@ -101,7 +104,8 @@ class TrendMaker {
   std::optional<Step> step_;
   const files::TimeZone* zone_;
   UnitHead head_;
-  std::map<std::int64_t, Sums> hours_;  // by hour of the clock
+  std::unordered_set<std::int64_t> begun_;  // at these times
+  std::map<std::int64_t, Sums> hours_;      // by hour of the clock
   std::int64_t last_ns_ = 0;
   std::vector<ChannelDigest> last_;
   std::vector<AlarmChangeNote> alarms_;

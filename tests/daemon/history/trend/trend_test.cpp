@@ -118,6 +118,17 @@ TEST_CASE("a year is named where it is not the last one, and seconds of a run ha
   CHECK(period_name(trend, 1) == "hour 3");
 }
 
+TEST_CASE("what is told twice counts once") {
+  const Trend trend = sample_trend(
+      96 * 2,
+      [](int q, std::int64_t) {
+        return sample_digest(test::kMonday + (q % 96) * 900 * test::kSecond, 1.0, 0.3);
+      },
+      Step::kDay);
+  REQUIRE(trend.periods.size() == 1);
+  CHECK(trend.samples() == 1440);
+}
+
 TEST_CASE("of nothing there is no trend") {
   TrendMaker maker(std::nullopt, nullptr);
   maker.add(test::sample_head());
