@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/alarm/condition.hpp"
@@ -29,6 +31,12 @@ struct MonitorCounters {
   std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed, in the
                                    ///< frames that have left the screen
   ScreenCounters implausible;      ///< of these: good by their quality, but not by their look
+};
+
+/// One CV in the frame judged last; NaN where unknown.
+struct CvReading {
+  double measured = std::numeric_limits<double>::quiet_NaN();
+  double residual = std::numeric_limits<double>::quiet_NaN();  ///< measured minus predicted
 };
 
 /// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
@@ -62,6 +70,10 @@ class Monitor {
   [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> partial_correlations(int cv, int input) const;
   [[nodiscard]] int first_lag() const;
   [[nodiscard]] int last_lag() const;
+  /// The frame that the last `push` judged, `Screen::kDelay` before the one that it took: its
+  /// interval, and its CVs. Nothing where none left the screen.
+  [[nodiscard]] const std::optional<std::int64_t>& judged_interval() const;
+  [[nodiscard]] const CvReading& reading(int cv) const;
   /// Changes caused by the last `push`; valid until the next one.
   [[nodiscard]] const std::vector<AlarmTransition>& transitions() const;
   [[nodiscard]] const MonitorCounters& counters() const;

@@ -27,4 +27,18 @@ inline constexpr double kTie = 1e-9;        ///< of the range: values that diffe
 inline constexpr double kOneQuantum = 1.5;  ///< quanta: moves below are of one
 inline constexpr double kMuch = 0.5;        ///< of the signal's s.d., of the rows
 
+/// Whether a series of values changed (level_change.hpp).
+namespace level_change {
+/// Fewer tell no change from scatter: the p-value of a step ten times the scatter is 0.01. Chosen.
+inline constexpr std::size_t kFewestPoints = 6;
+/// A correlation of neighbours r about a fitted level and slope comes out lower by (2 + 4 r) / n on
+/// average. Derived, to the order of 1 / n (Kendall 1954), for a mean and one slope.
+inline constexpr double kLostPoints = 2.0;
+inline constexpr double kLostShare = 4.0;
+/// Of what resembles itself more nothing is believed that has fewer than twenty times the points.
+inline constexpr double kMostResemblance = 0.9;
+/// Degrees of freedom of a s.d. that is known.
+inline constexpr double kKnown = 1e6;
+}  // namespace level_change
+
 }  // namespace mpm

@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", idl::version_text("mpm"));
   app.require_subcommand(1);
   add_detect(app, exit_code);
+  add_trend(app, exit_code);
   add_diagnose(app, exit_code);
   add_info(app, exit_code);
   add_convert(app, exit_code);

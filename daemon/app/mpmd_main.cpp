@@ -12,6 +12,7 @@
 #include "config/load_unit.hpp"
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/slips.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
@@ -25,7 +26,8 @@
 namespace mpm::app {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{500};  // with a diagnosis that is to end
+constexpr std::chrono::milliseconds kPatience{500};    // with a diagnosis that is to end
+constexpr std::uint64_t kSmallestJournal = 1'000'000;  // bytes
 // Exit codes of all programs of the project.
 constexpr int kDone = 0, kFound = 1, kFailed = 2, kBadInput = 3;
 
@@ -58,7 +60,15 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--partition", options.partition,
                  "discovery tag of all units, instead of the unit files'");
   app.add_option("--journal", options.service.journal,
-                 "append every record to this file as JSON lines");
+                 "keep what is to be known later in this folder, as JSON lines that `mpm trend` "
+                 "reads: changes at once, digests each minute");
+  app.add_option("--journal-keep", options.service.journal_keep,
+                 "of the journals of all units together, in bytes or as 500MB, 2GB; the oldest "
+                 "goes first (default: 1GB)")
+      ->transform(size_value(kSmallestJournal));
+  app.add_option("--journal-every-sample", options.service.sample_journal,
+                 "append every sample's records to this file as JSON lines; a gigabyte a day of "
+                 "nine channels at 1 s");
   app.add_option("--state-dir", options.state_folder,
                  "keep the reports of diagnosed alarms in this folder (default: $STATE_DIRECTORY)");
   app.add_flag("--dds-from-environment", options.service.use_environment,
@@ -70,7 +80,7 @@ void declare(CLI::App& app, Options& options) {
   app.footer(
       "Examples:\n"
       "  mpmd --config /etc/mpm/shell.yaml\n"
-      "  mpmd --config /etc/mpm/units --journal /var/lib/mpm/journal.jsonl\n"
+      "  mpmd --config /etc/mpm/units --journal /var/lib/mpm/journal --journal-keep 2GB\n"
       "  mpmd --config /etc/mpm/units --check\n"
       "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or bad unit file");
 }

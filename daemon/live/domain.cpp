@@ -25,9 +25,9 @@ Domain::Domain(const idl::DomainOptions& options)
   around_.place = bus::place_text(options.domain, options.partition);
 }
 
-UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, Journal* journal,
+UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, SampleJournal* samples,
                                Clock::time_point now) {
-  auto pipeline = std::make_unique<UnitPipeline>(unit, outputs_, journal, now);
+  auto pipeline = std::make_unique<UnitPipeline>(unit, outputs_, samples, now);
   return *(units_[unit.unit] = std::move(pipeline));
 }
 

@@ -21,7 +21,8 @@ class Domain {
 
   explicit Domain(const idl::DomainOptions& options);
 
-  UnitPipeline& add_unit(const config::UnitConfig& unit, Journal* journal, Clock::time_point now);
+  UnitPipeline& add_unit(const config::UnitConfig& unit, SampleJournal* samples,
+                         Clock::time_point now);
   void attach_to(idl::WaitSet& wait_set) const;
   /// Takes one batch of each topic.
   void poll(Clock::time_point now);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "daemon/bus/domain_options.hpp"
+#include "daemon/live/report_store.hpp"
 
 namespace mpm::live {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::size_t kMostInStatus = 3;  // units whose troubles are told
 
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
                                const ServiceOptions& options, DiagnosisWorker& worker) {
-  if (!options.journal.empty()) journal_.emplace(options.journal);
+  if (!options.sample_journal.empty()) samples_.emplace(options.sample_journal);
   if (!options.use_environment && std::getenv("CYCLONEDDS_URI") != nullptr)
     spdlog::warn(
         "CYCLONEDDS_URI is set, but the unit files' DDS settings are used; --dds-from-environment "
@@ -37,7 +38,10 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       domain = domains_.emplace_back(std::make_unique<Domain>(settings)).get();
       domain->attach_to(wait_set_);
     }
-    UnitPipeline& pipeline = domain->add_unit(unit, journal_ ? &*journal_ : nullptr, now);
+    UnitPipeline& pipeline = domain->add_unit(unit, samples_ ? &*samples_ : nullptr, now);
+    if (!options.journal.empty())
+      pipeline.keep({unit, history::JournalFiles(options.journal, unit_folder(unit.unit),
+                                                 options.journal_keep / units.size())});
     pipeline.diagnose_with(worker, asker++);
     if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);
     spdlog::info("{}: watching {} channels on domain {}{}", unit.unit,

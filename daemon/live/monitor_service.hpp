@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,7 +14,9 @@
 namespace mpm::live {
 
 struct ServiceOptions {
-  std::string journal;           ///< file; empty: none
+  std::string journal;                         ///< folder; empty: none
+  std::uint64_t journal_keep = 1'000'000'000;  ///< bytes, of all units together
+  std::string sample_journal;                  ///< file of every sample's records; empty: none
   bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
   std::string report_problem;    ///< why reports of diagnoses cannot be kept; empty: they can
 };
@@ -35,7 +38,7 @@ class MonitorService {
 
   [[nodiscard]] std::string status() const;
 
-  std::optional<Journal> journal_;
+  std::optional<SampleJournal> samples_;
   std::vector<std::unique_ptr<Domain>> domains_;  // one per distinct DDS setting
   idl::WaitSet wait_set_;
   host::Notifier notifier_;

@@ -61,10 +61,10 @@ const ChannelRecord* modelled_channel(const config::UnitConfig& unit,
 }  // namespace
 
 UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWriters& outputs,
-                           Journal* journal, Clock::time_point now)
+                           SampleJournal* samples, Clock::time_point now)
     : config_(config),
       outputs_(outputs),
-      journal_(journal),
+      samples_(samples),
       monitor_(config),
       aligner_(config.counts(), files::needed_kinds(config),
                [this](const Frame& frame) { on_frame(frame); }),
@@ -75,6 +75,10 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       next_health_(now) {
   health_.unit = config.unit;
   publish_initial_alarms();
+}
+
+UnitPipeline::~UnitPipeline() {
+  if (journal_) journal_->finish();
 }
 
 void UnitPipeline::diagnose_with(DiagnosisWorker& worker, int asker) {
@@ -151,8 +155,9 @@ void UnitPipeline::on_frame(const Frame& frame) {
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
-  if (journal_ != nullptr)
-    (void)journal_->write(monitor_.channels(), monitor_.alarms());  // problem() is in the health
+  // Of either the problem is in the health.
+  if (journal_) journal_->push(monitor_);
+  if (samples_ != nullptr) (void)samples_->write(monitor_.channels(), monitor_.alarms());
   // Last, when everybody has been told: it may copy the unit's samples.
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
 }
@@ -246,6 +251,7 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
                 line.text);
   judge_health(found);
   incomplete_before_ = aligner.incomplete;
+  if (journal_) journal_->push(health_);
   if (!outputs_.write(health_) && output_limit_.admit(now_))
     spdlog::warn("{}: the health could not be published", config_.unit);
 }
@@ -272,9 +278,12 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
     add("other monitor", Severity::kMaintenanceRequired,
         "another monitor watches this unit as well: " + other_monitor_ +
             "; readers see both in turn");
-  if (journal_ != nullptr && !journal_->problem().empty())
-    add("journal", Severity::kMaintenanceRequired,
-        "the journal cannot be written: " + journal_->problem());
+  const auto add_journal = [&](const char* key, const std::string& problem) {
+    if (!problem.empty())
+      add(key, Severity::kMaintenanceRequired, "the journal cannot be written: " + problem);
+  };
+  if (journal_) add_journal("journal", journal_->problem());
+  if (samples_ != nullptr) add_journal("journal of samples", samples_->problem());
   if (!report_problem_.empty())
     add("reports", Severity::kMaintenanceRequired,
         "reports of diagnoses cannot be kept: " + report_problem_);

@@ -9,9 +9,10 @@
 #include "config/unit_config.hpp"
 #include "core/signal/aligner.hpp"
 #include "daemon/bus/unit_inputs.hpp"
+#include "daemon/history/journal.hpp"
 #include "daemon/host/rate_limiter.hpp"
-#include "daemon/live/journal.hpp"
 #include "daemon/live/live_diagnosis.hpp"
+#include "daemon/live/sample_journal.hpp"
 #include "daemon/live/trouble_log.hpp"
 #include "daemon/report/unit_monitor.hpp"
 #include "idl/output_writers.hpp"
@@ -25,9 +26,12 @@ class UnitPipeline {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `journal` may be null. The others must outlive the pipeline.
+  /// `samples`: takes every sample's records; may be null. The others must outlive the pipeline.
   UnitPipeline(const config::UnitConfig& config, const idl::OutputWriters& outputs,
-               Journal* journal, Clock::time_point now);
+               SampleJournal* samples, Clock::time_point now);
+  ~UnitPipeline();
+  /// From now on what is to be known later is kept there.
+  void keep(history::Journal journal) { journal_.emplace(std::move(journal)); }
   /// From now on alarms are diagnosed, if the unit file wants that. `asker`: no other unit's.
   void diagnose_with(DiagnosisWorker& worker, int asker);
   UnitPipeline(const UnitPipeline&) = delete;  // the aligner's sink points here
@@ -62,7 +66,8 @@ class UnitPipeline {
 
   config::UnitConfig config_;
   const idl::OutputWriters& outputs_;
-  Journal* journal_;
+  SampleJournal* samples_;
+  std::optional<history::Journal> journal_;
   report::UnitMonitor monitor_;
   Aligner aligner_;
   std::optional<LiveDiagnosis> diagnosis_;

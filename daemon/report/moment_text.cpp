@@ -13,8 +13,10 @@ constexpr double kMinute = 60.0;
 
 }  // namespace
 
+bool is_date(std::int64_t time_ns) { return time_ns >= kFirstDateNs; }
+
 MomentText::MomentText(std::int64_t last_ns, double sample_time_s, const files::TimeZone* zone)
-    : dated_(last_ns >= kFirstDateNs),
+    : dated_(is_date(last_ns)),
       seconds_(sample_time_s < kMinute),
       zone_(zone),
       last_year_(files::formatted_utc(local_s(last_ns), "%Y")) {}

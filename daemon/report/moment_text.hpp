@@ -7,6 +7,9 @@
 
 namespace mpm::report {
 
+/// Whether a moment is one of a calendar, not of a run that began at 0: it lies after 1979.
+[[nodiscard]] bool is_date(std::int64_t time_ns);
+
 /// Moments of a recording as people say them: "14:20 on 3 March", and where its times are no dates
 /// but seconds since some beginning, "4300 s".
 class MomentText {

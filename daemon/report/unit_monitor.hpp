@@ -26,6 +26,11 @@ class UnitMonitor {
   /// Alarms that the last frame changed.
   [[nodiscard]] const std::vector<AlarmRecord>& alarms() const { return alarms_; }
   [[nodiscard]] const MonitorCounters& counters() const { return monitor_.counters(); }
+  /// What the records say, by index, without making them.
+  [[nodiscard]] const Monitor& monitor() const { return monitor_; }
+  /// Of the last frame.
+  [[nodiscard]] std::int64_t interval() const { return interval_; }
+  [[nodiscard]] std::int64_t source_time_ns() const { return source_time_ns_; }
 
  private:
   void fill();

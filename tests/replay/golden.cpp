@@ -92,7 +92,7 @@ void simulate(const Case& item, const TemporaryFolder& folder) {
 std::vector<Kept> verdicts(const Case& item, const TemporaryFolder& folder) {
   simulate(item, folder);
   run_or_throw({"mpm", "detect", "--config", unit_file(item), "--data", folder.file("run.csv"),
-                "--journal", folder.file("journal.jsonl")},
+                "--journal-every-sample", folder.file("journal.jsonl")},
                folder);
   return {{item.name + ".jsonl", condensed(read_file(folder.file("journal.jsonl"))), difference}};
 }

@@ -17,7 +17,7 @@ forbid config 'dds/|spdlog|CLI/|systemd|idl/|sim/|daemon/|tests/'
 forbid idl 'yaml-cpp|spdlog|CLI/|nlohmann|systemd|config/|sim/|daemon/|tests/'
 forbid sim 'yaml-cpp|dds/|systemd|daemon/|tests/'
 forbid daemon 'yaml-cpp|dds/|sim/|tests/'
-for folder in files mcap report; do forbid daemon/$folder 'idl/|mpm\.h|spdlog|systemd'; done
+for folder in files mcap report history; do forbid daemon/$folder 'idl/|mpm\.h|spdlog|systemd'; done
 
 if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \
   --include='*.hpp' --include='*.cpp'; then
@@ -94,14 +94,16 @@ report/diagnosis
 report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
 report files/times files report/diagnosis report/page
+history report
+history/trend files/times report history
 bus
 bus/watch files/times report bus
 bus/doctor bus
 bag files/times files files/csv mcap/format mcap/read mcap/write
 bag/record host files/times mcap/write bag
 bag/replay host mcap/read bag
-live host files/times files report/diagnosis report bus
-app/commands host files/times files files/csv mcap/read mcap report/diagnosis report/closed_loop report bus bus/watch bus/doctor bag bag/record bag/replay live
+live host files/times files report/diagnosis report history bus
+app/commands host files/times files files/csv mcap/read mcap report/diagnosis report/closed_loop report history history/trend bus bus/watch bus/doctor bag bag/record bag/replay live
 app host live app/commands
 TABLE
 exit $status

@@ -70,7 +70,7 @@ TEST_CASE("a right model raises no alarm, and the channels become matches") {
 
 TEST_CASE("mpm watch --json prints what the journal holds, byte for byte, at full speed") {
   TemporaryFolder folder;
-  Bench bench("journal", {"--journal", folder.file("journal.jsonl")});
+  Bench bench("journal", {"--journal-every-sample", folder.file("journal.jsonl")});
   Process watch(bench.watch({"--json"}), folder.file("watch.out"), folder.file("watch.err"));
   REQUIRE(idl::eventually(
       [&] { return read_file(folder.file("watch.out")).find("health") != std::string::npos; }));

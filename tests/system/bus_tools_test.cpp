@@ -273,8 +273,8 @@ TEST_CASE("lines on standard input become samples that the monitor judges as it 
   REQUIRE(run({"mpmsim", "--config", unit, "--scenario", "hidden_gain", "--seed", "5", "--samples",
                "600", "--csv", file("run.csv")},
               file("sim.out"), file("sim.err")) == 0);
-  REQUIRE(run({"mpm", "detect", "--config", unit, "--data", file("run.csv"), "--journal",
-               file("expected.jsonl")},
+  REQUIRE(run({"mpm", "detect", "--config", unit, "--data", file("run.csv"),
+               "--journal-every-sample", file("expected.jsonl")},
               file("detect.out"), file("detect.err")) == 0);
   const std::string expected = read_file(file("expected.jsonl"));
 
@@ -294,7 +294,7 @@ TEST_CASE("lines on standard input become samples that the monitor judges as it 
     CAPTURE(input);
     const std::string journal = file("live.jsonl");
     std::filesystem::remove(journal);
-    Process monitor = corner.start({"mpmd", "--config", unit, "--journal", journal});
+    Process monitor = corner.start({"mpmd", "--config", unit, "--journal-every-sample", journal});
     CHECK(corner.mpm({"publish", "--config", unit}, file(input)) == 0);
     CHECK(idl::eventually([&] { return read_file(journal).size() >= expected.size(); }, kPatience));
     const bool same = read_file(journal) == expected;

@@ -42,8 +42,8 @@ void check_recording_under(const ClockTrouble& trouble) {
   std::vector<std::string> to_file = simulate;
   to_file.insert(to_file.end(), {"--csv", folder.file("run.csv")});
   must(to_file);
-  must({"mpm", "detect", "--config", kUnit, "--data", folder.file("run.csv"), "--journal",
-        folder.file("expected.jsonl")});
+  must({"mpm", "detect", "--config", kUnit, "--data", folder.file("run.csv"),
+        "--journal-every-sample", folder.file("expected.jsonl")});
   const std::string expected = read_file(folder.file("expected.jsonl"));
   const auto wait_for_journal = [&](const std::string& name) {
     CHECK(idl::eventually([&] { return read_file(folder.file(name)).size() >= expected.size(); },
@@ -52,8 +52,8 @@ void check_recording_under(const ClockTrouble& trouble) {
     CHECK(identical);  // byte for byte; not printed: megabytes
   };
   const auto monitor = [&](const std::string& journal) {
-    return Process({"mpmd", "--config", kUnit, "--partition", domain.partition, "--journal",
-                    folder.file(journal)},
+    return Process({"mpmd", "--config", kUnit, "--partition", domain.partition,
+                    "--journal-every-sample", folder.file(journal)},
                    folder.file("mpmd.out"), folder.file("mpmd.err"));
   };
   {
@@ -75,8 +75,8 @@ void check_recording_under(const ClockTrouble& trouble) {
     CHECK(daemon.wait(std::chrono::seconds(5)) == 0);
   }
 
-  must({"mpm", "detect", "--config", kUnit, "--data", folder.file("run.mcap"), "--journal",
-        folder.file("detect.jsonl")});
+  must({"mpm", "detect", "--config", kUnit, "--data", folder.file("run.mcap"),
+        "--journal-every-sample", folder.file("detect.jsonl")});
   const bool detected = read_file(folder.file("detect.jsonl")) == expected;
   CHECK(detected);
   must({"mpm", "convert", folder.file("run.mcap"), folder.file("back.csv")});

@@ -135,7 +135,8 @@ TEST_CASE("a monitor that stood still itself says so") {
 
 TEST_CASE("two monitors of one unit, and what the disk does not take, are in health and status") {
   TemporaryFolder folder;
-  Bench bench("doctor-monitors", {"--journal", "/dev/full", "--state-dir", "/proc/none"},
+  Bench bench("doctor-monitors",
+              {"--journal-every-sample", "/dev/full", "--state-dir", "/proc/none"},
               {"CYCLONEDDS_URI=file:///none"});
   const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
   Plant plant(2.0);

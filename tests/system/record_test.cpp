@@ -50,7 +50,8 @@ struct Stage {
     REQUIRE(code == 0);
   }
   [[nodiscard]] Process monitor(const std::string& journal) {
-    return start("mpmd", {"mpmd", "--config", kUnit, "--journal", folder.file(journal)});
+    return start("mpmd",
+                 {"mpmd", "--config", kUnit, "--journal-every-sample", folder.file(journal)});
   }
   /// The journal, once it is as long as it will be.
   [[nodiscard]] std::string journal(const std::string& name, std::size_t bytes) {
@@ -88,7 +89,7 @@ void check_three_ways(const std::string& scenario, int seed) {
   stage.run_alone("sim", to_file);
   stage.run_alone("detect",
                   {"mpm", "detect", "--config", kUnit, "--data", stage.folder.file("run.csv"),
-                   "--journal", stage.folder.file("expected.jsonl")});
+                   "--journal-every-sample", stage.folder.file("expected.jsonl")});
   const std::string expected = read_file(stage.folder.file("expected.jsonl"));
 
   const std::string recording = stage.folder.file("run.mcap");
@@ -106,8 +107,8 @@ void check_three_ways(const std::string& scenario, int seed) {
     INFO(read_file(stage.folder.file("record.err")));
     CHECK(read_file(stage.folder.file("record.err")).find(" 0 dropped") != std::string::npos);
   }
-  stage.run_alone("detect", {"mpm", "detect", "--config", kUnit, "--data", recording, "--journal",
-                             stage.folder.file("detect.jsonl")});
+  stage.run_alone("detect", {"mpm", "detect", "--config", kUnit, "--data", recording,
+                             "--journal-every-sample", stage.folder.file("detect.jsonl")});
   const bool detect_same = read_file(stage.folder.file("detect.jsonl")) == expected;
   CHECK(detect_same);
   for (const std::string rate : {"1", "100", "0"}) {

@@ -26,13 +26,15 @@ void check_same_answer(const std::string& scenario, const std::string& seed) {
   std::vector<std::string> to_file = simulate;
   to_file.insert(to_file.end(), {"--csv", folder.file("run.csv")});
   REQUIRE(run(to_file, folder.file("sim.out"), folder.file("sim.err")) == 0);
-  REQUIRE(run({"mpm", "detect", "--config", kUnit, "--data", folder.file("run.csv"), "--journal",
-               folder.file("detect.jsonl")},
+  REQUIRE(run({"mpm", "detect", "--config", kUnit, "--data", folder.file("run.csv"),
+               "--journal-every-sample", folder.file("detect.jsonl"), "--journal",
+               folder.file("detect_journal")},
               folder.file("detect.out"), folder.file("detect.err")) == 0);
 
-  Process daemon({"mpmd", "--config", kUnit, "--partition", domain.partition, "--journal",
-                  folder.file("live.jsonl")},
-                 folder.file("mpmd.out"), folder.file("mpmd.err"));
+  Process daemon(
+      {"mpmd", "--config", kUnit, "--partition", domain.partition, "--journal-every-sample",
+       folder.file("live.jsonl"), "--journal", folder.file("live_journal")},
+      folder.file("mpmd.out"), folder.file("mpmd.err"));
   std::vector<std::string> to_bus = simulate;
   to_bus.insert(to_bus.end(),
                 {"--speed", "0", "--wait-readers", "20", "--partition", domain.partition});
@@ -47,6 +49,14 @@ void check_same_answer(const std::string& scenario, const std::string& seed) {
   CHECK(identical);  // byte for byte; not printed: megabytes
   daemon.send(SIGTERM);
   CHECK(daemon.wait(std::chrono::seconds(5)) == 0);
+
+  // The journal that is kept as well, but for the health, of which a file knows nothing.
+  std::string kept;
+  for (const std::string& line :
+       lines_of(read_file(folder.file("live_journal/shell-000001.jsonl"))))
+    if (line.find("{\"record\":\"health\"") != 0) kept += line + "\n";
+  CHECK(kept == read_file(folder.file("detect_journal/shell-000001.jsonl")));
+  CHECK(kept.find("{\"record\":\"digest\"") != std::string::npos);
 
   const bool alarmed = expected.find("\"record\":\"alarm\"") != std::string::npos;
   CHECK(alarmed == (scenario != "none"));
@@ -69,8 +79,8 @@ TEST_CASE("without predictions the daemon says what mpm detect says") {
   must({"mpmsim", "--config", kUnit, "--scenario", "hidden_gain", "--seed", "5", "--samples", "900",
         "--start-time", "0", "--csv", folder.file("run.csv")});
   must({"mpm", "convert", folder.file("run.csv"), folder.file("run.mcap"), "--config", kUnit});
-  Process daemon({"mpmd", "--config", kUnit, "--partition", domain.partition, "--journal",
-                  folder.file("live.jsonl")},
+  Process daemon({"mpmd", "--config", kUnit, "--partition", domain.partition,
+                  "--journal-every-sample", folder.file("live.jsonl")},
                  folder.file("mpmd.out"), folder.file("mpmd.err"));
   must({"mpm", "replay", folder.file("run.mcap"), "--topics", "mpm/mv", "mpm/cv", "--rate", "0",
         "--partition", domain.partition});
@@ -89,8 +99,8 @@ TEST_CASE("without predictions the daemon says what mpm detect says") {
     unpredicted << '\n';
   }
   unpredicted.close();
-  must({"mpm", "detect", "--config", kUnit, "--data", folder.file("unpredicted.csv"), "--journal",
-        folder.file("detect.jsonl")});
+  must({"mpm", "detect", "--config", kUnit, "--data", folder.file("unpredicted.csv"),
+        "--journal-every-sample", folder.file("detect.jsonl")});
 
   // The daemon still waits with the last intervals: what is missing there might come late.
   const std::vector<std::string> expected = lines_of(read_file(folder.file("detect.jsonl")));

@@ -138,8 +138,9 @@ TEST_CASE("command lines end with the agreed exit codes") {
   CHECK(read_file(out).find("unit: good") != std::string::npos);
   CHECK(run({"mpmd", "--version"}, out, err) == 0);
   CHECK(read_file(out).find("Cyclone DDS 0.10.2") != std::string::npos);
-  CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--journal", "/no/such/folder/x"}, out,
-            err) == 2);
+  CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--journal-every-sample",
+             "/no/such/folder/x"},
+            out, err) == 2);
   write_file(folder.file("nic.yaml"), unit_yaml("nic") + "dds: {interface: nosuchnic0}\n");
   CHECK(run({"mpmd", "--config", folder.file("nic.yaml")}, out, err) == 2);
   CHECK(read_file(err).find("nosuchnic0") != std::string::npos);  // Cyclone's reason is passed on

@@ -8,6 +8,8 @@ namespace mpm::app {
 
 /// `mpm detect`: the daemon's own pipeline on a file.
 void add_detect(CLI::App& app, int& exit_code);
+/// `mpm trend`: how a model fared over months, from data or from a journal.
+void add_trend(CLI::App& app, int& exit_code);
 /// `mpm diagnose`: what the simulation gets wrong in recorded data, and a model that gets it right.
 void add_diagnose(CLI::App& app, int& exit_code);
 /// `mpm info`: what a data file holds.

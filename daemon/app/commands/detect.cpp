@@ -15,8 +15,10 @@
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
+#include "daemon/history/journal.hpp"
 #include "daemon/host/terminal.hpp"
-#include "daemon/live/journal.hpp"
+#include "daemon/live/report_store.hpp"
+#include "daemon/live/sample_journal.hpp"
 #include "daemon/mcap/read/file_sequence.hpp"
 #include "daemon/report/detect_report.hpp"
 #include "daemon/report/detect_text.hpp"
@@ -25,22 +27,55 @@
 namespace mpm::app {
 namespace {
 
-constexpr std::chrono::seconds kPatience{1};  // before the progress is shown
+constexpr std::chrono::seconds kPatience{1};                // before the progress is shown
+constexpr std::uint64_t kWholeJournal = 1'000'000'000'000;  // bytes: nothing of it goes
 
 struct DetectOptions {
   std::string config;
   std::vector<std::string> data;
   files::TimeChoiceText time;
   std::string scenario;
-  std::string journal;
+  std::string journal;         // folder
+  std::string sample_journal;  // file
   TimesText times;
   bool json = false;
   bool fail_on_mismatch = false;
 };
 
+/// What is kept of a run besides its report.
+struct Journals {
+  std::optional<history::Journal> journal;
+  std::optional<live::SampleJournal> samples;
+
+  Journals(const DetectOptions& options, const config::UnitConfig& unit) {
+    if (!options.journal.empty())
+      journal.emplace(unit, history::JournalFiles(options.journal, live::unit_folder(unit.unit),
+                                                  kWholeJournal));
+    if (!options.sample_journal.empty()) samples.emplace(options.sample_journal);
+  }
+
+  void push(report::UnitMonitor& monitor) {
+    if (journal) journal->push(monitor);
+    if (samples) static_cast<void>(samples->write(monitor.channels(), monitor.alarms()));
+    check();
+  }
+  void finish() {
+    if (journal) journal->finish();
+    check();
+  }
+
+ private:
+  void check() const {
+    for (const std::string& problem :
+         {journal ? journal->problem() : "", samples ? samples->problem() : ""})
+      if (!problem.empty())
+        throw std::runtime_error("the journal could not be written: " + problem);
+  }
+};
+
 /// What is left out is a gap for the monitor.
 report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& source,
-                         const files::TimeChoice& choice, live::Journal* journal) {
+                         const files::TimeChoice& choice, Journals& journals) {
   report::UnitMonitor monitor(unit);
   report::DetectReport report;
   report.unit = unit.unit;
@@ -56,9 +91,9 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
     report.last_ns = frame.source_time_ns;
     monitor.push(frame);
     report.alarms.insert(report.alarms.end(), monitor.alarms().begin(), monitor.alarms().end());
-    if (journal != nullptr && !journal->write(monitor.channels(), monitor.alarms()))
-      throw std::runtime_error("the journal could not be written: " + journal->problem());
+    journals.push(monitor);
   }
+  journals.finish();
   const MonitorCounters& counters = monitor.counters();
   report.samples = counters.frames;
   report.used_samples = counters.used;
@@ -94,10 +129,8 @@ int detect(const DetectOptions& options) {
     const std::unique_ptr<files::FrameSource> frames =
         bag::open_recording(options.data, loaded.config, times);
     const files::TimeChoice choice(options.time, times);
-    std::optional<live::Journal> journal;
-    if (!options.journal.empty()) journal.emplace(options.journal);
-    const report::DetectReport report =
-        run(loaded.config, *frames, choice, journal ? &*journal : nullptr);
+    Journals journals(options, loaded.config);
+    const report::DetectReport report = run(loaded.config, *frames, choice, journals);
     for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
     if (report.samples == 0)
       throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",
@@ -124,8 +157,8 @@ void add_detect(CLI::App& app, int& exit_code) {
   command->add_option("-c,--config", options->config, "unit file")->required();
   command
       ->add_option("--data", options->data,
-                   "data file: CSV in any historian layout, or MCAP recording; several of "
-                   "those, or a folder of them, are one")
+                   "data file: CSV in any historian layout, or MCAP recording; several, or a "
+                   "folder of recordings, are one")
       ->required();
   command->add_option("--scenario", options->scenario,
                       "scenario (name or file) whose `monitor` settings replace the unit file's");
@@ -133,6 +166,8 @@ void add_detect(CLI::App& app, int& exit_code) {
   add_times(*command, options->times);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--journal", options->journal,
+                      "keep what mpmd keeps in its journal, in this folder");
+  command->add_option("--journal-every-sample", options->sample_journal,
                       "append every sample's verdicts and alarms to this file as JSON lines");
   command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
                     "exit with 1 if any channel mismatches");

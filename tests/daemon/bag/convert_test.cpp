@@ -141,8 +141,8 @@ TEST_CASE("Detect gives the same from MCAP as from CSV") {
   REQUIRE(run({"mpm", "convert", csv, mcap, "--config", kShell}, folder.file("o"),
               folder.file("e")) == 0);
   for (const std::string& data : {csv, mcap})
-    REQUIRE(run({"mpm", "detect", "--config", kShell, "--data", data, "--json", "--journal",
-                 data + ".jsonl"},
+    REQUIRE(run({"mpm", "detect", "--config", kShell, "--data", data, "--json",
+                 "--journal-every-sample", data + ".jsonl"},
                 data + ".json", folder.file("e")) == 0);
   CHECK(read_file(csv + ".json") == read_file(mcap + ".json"));
   const bool identical = read_file(csv + ".jsonl") == read_file(mcap + ".jsonl");

@@ -35,9 +35,11 @@ TEST_CASE("mpm detect says the same of a few rows, whatever file holds them") {
   const int count = GENERATE(1, 7, 8, 9, 12);
   write_file(bench.folder.file("a.csv"), rows(count));
   static_cast<void>(bench.convert("a.csv", "a.mcap", bench.with_unit()));
-  REQUIRE(detect(bench, "a.csv", {"--json", "--journal", bench.folder.file("csv.jsonl")}) == 0);
+  REQUIRE(detect(bench, "a.csv",
+                 {"--json", "--journal-every-sample", bench.folder.file("csv.jsonl")}) == 0);
   const std::string csv = bench.text("out");
-  REQUIRE(detect(bench, "a.mcap", {"--json", "--journal", bench.folder.file("mcap.jsonl")}) == 0);
+  REQUIRE(detect(bench, "a.mcap",
+                 {"--json", "--journal-every-sample", bench.folder.file("mcap.jsonl")}) == 0);
   CHECK(bench.text("out") == csv);
   CHECK(bench.text("mcap.jsonl") == bench.text("csv.jsonl"));
   const auto json = nlohmann::json::parse(csv);

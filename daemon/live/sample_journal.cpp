@@ -1,4 +1,4 @@
-#include "daemon/live/journal.hpp"
+#include "daemon/live/sample_journal.hpp"
 
 #include <cerrno>
 #include <system_error>
@@ -7,12 +7,12 @@
 
 namespace mpm::live {
 
-Journal::Journal(const std::string& path) : file_(std::fopen(path.c_str(), "ae")) {
+SampleJournal::SampleJournal(const std::string& path) : file_(std::fopen(path.c_str(), "ae")) {
   if (!file_) throw std::system_error(errno, std::generic_category(), path);
 }
 
-bool Journal::write(const std::vector<ChannelRecord>& channels,
-                    const std::vector<AlarmRecord>& alarms) {
+bool SampleJournal::write(const std::vector<ChannelRecord>& channels,
+                          const std::vector<AlarmRecord>& alarms) {
   lines_.clear();
   for (const ChannelRecord& record : channels)
     lines_.append(report::json_text(report::json_of(record))).append("\n");

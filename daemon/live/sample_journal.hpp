@@ -10,11 +10,12 @@
 
 namespace mpm::live {
 
-/// JSON lines of every record, appended to a file; on disk (as far as the kernel) after each frame.
-class Journal {
+/// JSON lines of every record of every sample, appended to a file: for comparing monitors, a
+/// gigabyte a day of nine channels at 1 s. On disk (as far as the kernel) after each frame.
+class SampleJournal {
  public:
   /// Throws std::system_error if the file cannot be written.
-  explicit Journal(const std::string& path);
+  explicit SampleJournal(const std::string& path);
 
   /// All channels after one frame, then the alarms that it changed. False if the file would not
   /// take it (full disk ...); what it does not take is lost.

@@ -1,4 +1,4 @@
-#include "daemon/live/journal.hpp"
+#include "daemon/live/sample_journal.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -7,13 +7,13 @@
 namespace mpm::live {
 
 TEST_CASE("a journal says why its disk takes no more") {
-  Journal full("/dev/full");  // gives ENOSPC for ever
+  SampleJournal full("/dev/full");  // gives ENOSPC for ever
   CHECK(full.problem().empty());
   CHECK_FALSE(full.write(std::vector<ChannelRecord>(1), {}));
   CHECK(full.problem() == "No space left on device");
 
   const test::TemporaryFolder folder;
-  Journal journal(folder.file("journal.jsonl"));
+  SampleJournal journal(folder.file("journal.jsonl"));
   CHECK(journal.write(std::vector<ChannelRecord>(2), {}));
   CHECK(journal.problem().empty());
   CHECK(test::lines_of(test::read_file(folder.file("journal.jsonl"))).size() == 2);

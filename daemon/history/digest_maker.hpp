@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "daemon/history/digest.hpp"
+#include "daemon/report/unit_monitor.hpp"
+
+namespace mpm::history {
+
+/// Digests of what a unit's monitor says. A digest is of a minute of source time, or of 5 or 15
+/// where a minute has fewer than ten samples; all divide an hour and a zone's offset from UTC, so
+/// that hours, days and weeks are whole digests.
+class DigestMaker {
+ public:
+  explicit DigestMaker(const config::UnitConfig& unit);
+
+  /// After each `monitor.push`. The digest of the stretch before, where the frame began another.
+  [[nodiscard]] std::optional<Digest> push(const report::UnitMonitor& monitor);
+  /// The digest of what came since the last one; nothing where that is nothing.
+  [[nodiscard]] std::optional<Digest> finish();
+
+  /// For samples from `time_ns` on.
+  [[nodiscard]] UnitHead head(std::int64_t time_ns) const;
+
+ private:
+  struct Cv {
+    std::int64_t known = 0, pairs = 0;
+    double residual_square = 0.0, prediction_square = 0.0, movement_square = 0.0;
+  };
+  struct Channel {
+    std::int64_t match = 0, mismatch = 0, excited = 0;
+  };
+
+  void take(const Monitor& monitor);
+  void take_readings(const Monitor& monitor);
+  [[nodiscard]] ChannelDigest digest_of(std::size_t channel) const;
+
+  UnitHead head_;
+  int inputs_, cv_count_;
+  std::int64_t window_ns_;
+  // Of the stretch at hand.
+  std::int64_t window_ = 0;
+  std::int64_t from_ns_ = 0, until_ns_ = 0, samples_ = 0;
+  std::vector<Cv> cvs_;
+  std::vector<Channel> channels_;
+  std::vector<ChannelStatus> status_;  // after the last sample
+  std::vector<AlarmState> alarms_;
+  // The last readings, as many as the horizon has: ring_[place * CVs + cv].
+  std::vector<CvReading> ring_;
+  std::size_t place_ = 0;
+  std::int64_t judged_ = 0;
+  bool judged_any_ = false;
+};
+
+/// Of the horizon over which a CV's predictions are told: half of what the slowest channel of the
+/// model takes to settle, in samples, at most an hour's worth of a unit of one second.
+[[nodiscard]] std::int64_t horizon_samples(const config::UnitConfig& unit);
+
+}  // namespace mpm::history
