@@ -93,10 +93,13 @@ void Recorder::write_all() {
   std::vector<RecordedSample> samples;
   std::size_t written = 0;  // of `samples`
   try {
-    while (queue_.pop(samples, kTick)) {
+    while (true) {
+      const bool save = save_asked_.exchange(false);  // before what was taken by then is popped
+      if (!queue_.pop(samples, kTick)) break;
       const MutexLock lock(mutex_);
       for (written = 0; written < samples.size(); ++written) recording_.write(samples[written]);
       recording_.tick(clock_.now_ns());
+      if (save) recording_.save(clock_.now_ns());
     }
     const MutexLock lock(mutex_);
     recording_.finish();
@@ -117,6 +120,11 @@ void Recorder::finish() {
   }
   queue_.close();
   if (writer_.joinable()) writer_.join();
+}
+
+std::vector<std::string> Recorder::take_news() {
+  const MutexLock lock(mutex_);
+  return recording_.take_news();
 }
 
 RecorderState Recorder::state() const {

@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "config/finding.hpp"
 #include "daemon/files/times/time_text.hpp"
+#include "daemon/mcap/read/scan.hpp"
 
 namespace mpm::bag {
 namespace {
@@ -51,6 +53,22 @@ std::optional<NumberedName> numbered_name(const std::string& name) {
   return found;
 }
 
+// What the heads of its chunks tell: nothing is unpacked.
+void look_into(RecordingFiles::File& file) {
+  try {
+    mcap::InputFile input(file.path.string());
+    const mcap::FileLayout layout = mcap::scan(input);
+    file.whole = !layout.damage;
+    if (layout.chunks.empty()) return;
+    file.start_ns = static_cast<std::int64_t>(layout.chunks.front().start_ns);
+    file.end_ns = 0;
+    for (const mcap::ChunkPlace& chunk : layout.chunks)
+      file.end_ns = std::max(file.end_ns, static_cast<std::int64_t>(chunk.end_ns));
+  } catch (const config::InputError&) {  // no recording, in spite of its name
+    file.whole = false;
+  }
+}
+
 // A link counts, wherever it leads.
 bool is_there(const std::filesystem::path& path) {
   return std::filesystem::exists(std::filesystem::symlink_status(path));
@@ -59,18 +77,18 @@ bool is_there(const std::filesystem::path& path) {
 }  // namespace
 
 RecordingFiles::RecordingFiles(const std::string& output, bool split, std::uint64_t quota_bytes,
-                               std::int64_t start_ns)
-    : quota_bytes_(quota_bytes) {
+                               std::int64_t start_ns, std::int64_t keep_ns)
+    : quota_bytes_(quota_bytes), keep_ns_(keep_ns) {
   const std::filesystem::path path(output);
   const bool is_folder = path.extension() != kExtension || std::filesystem::is_directory(path);
   numbered_ = is_folder || split;
   folder_ = is_folder ? path : path.parent_path();
   stem_ = is_folder ? time_name(start_ns) : path.stem().string();
   if (!folder_.empty()) std::filesystem::create_directories(folder_);
-  if (numbered_) find_earlier(is_folder);
+  if (numbered_) find_earlier(is_folder, start_ns);
 }
 
-void RecordingFiles::find_earlier(bool of_any_time) {
+void RecordingFiles::find_earlier(bool of_any_time, std::int64_t start_ns) {
   struct Earlier {
     NumberedName name;
     File file;
@@ -82,12 +100,16 @@ void RecordingFiles::find_earlier(bool of_any_time) {
     std::optional<NumberedName> name = numbered_name(entry.path().filename().string());
     if (!name || (name->stem != stem_ && !(of_any_time && is_time_name(name->stem)))) continue;
     if (name->stem == stem_) number_ = std::max(number_, name->number);
-    earlier.push_back({std::move(*name), {entry.path(), entry.file_size()}});
+    earlier.push_back(
+        {std::move(*name), {entry.path(), entry.file_size(), start_ns, start_ns, true}});
   }
   std::sort(earlier.begin(), earlier.end(), [](const Earlier& a, const Earlier& b) {
     return std::tie(a.name.stem, a.name.number) < std::tie(b.name.stem, b.name.number);
   });
-  for (Earlier& file : earlier) files_.push_back(std::move(file.file));
+  for (Earlier& file : earlier) {
+    if (keep_ns_ > 0) look_into(file.file);
+    files_.push_back(std::move(file.file));
+  }
 }
 
 std::string RecordingFiles::next() {
@@ -105,15 +127,16 @@ std::string RecordingFiles::next() {
   return path.string();
 }
 
-void RecordingFiles::finished(const std::string& path, std::uint64_t bytes) {
-  files_.push_back({path, bytes});
-}
+void RecordingFiles::finished(File file) { files_.push_back(std::move(file)); }
 
-void RecordingFiles::make_room(std::uint64_t room) {
-  if (quota_bytes_ == 0) return;
+void RecordingFiles::make_room(std::uint64_t room, std::int64_t now_ns) {
   std::uint64_t total = room;
   for (const File& file : files_) total += file.bytes;
-  while (total > quota_bytes_ && files_.size() > 1) {
+  const auto has_to_go = [&](const File& file) {
+    return (quota_bytes_ > 0 && total > quota_bytes_) ||
+           (keep_ns_ > 0 && file.end_ns < now_ns - keep_ns_);
+  };
+  while (files_.size() > 1 && has_to_go(files_.front())) {
     std::error_code ignored;  // somebody else may have been quicker
     if (std::filesystem::remove(files_.front().path, ignored)) ++deleted_;
     total -= files_.front().bytes;

@@ -100,19 +100,19 @@ TEST_CASE("the quota takes the oldest of our files and no other") {
   for (const std::string& name : others) write_bytes(folder.file(name), 1000);
 
   RecordingFiles files(folder.file(""), true, 1000, kStart);
-  files.make_room(300);  // 400 + 400 + 300 to come
+  files.make_room(300, kStart);  // 400 + 400 + 300 to come
   CHECK(files.deleted() == 1);
   const std::string first = files.next();
   write_bytes(first, 300);
-  files.finished(first, 300);
-  files.make_room(300);
+  files.finished({first, 300, kStart, kStart, true});
+  files.make_room(300, kStart);
   CHECK(files.deleted() == 1);
   const std::string second = files.next();
   write_bytes(second, 300);
-  files.finished(second, 300);
-  files.make_room(300);
+  files.finished({second, 300, kStart, kStart, true});
+  files.make_room(300, kStart);
   CHECK(files.deleted() == 2);
-  files.make_room(5000);  // never everything
+  files.make_room(5000, kStart);  // never everything
   CHECK(files.deleted() == 3);
   std::vector<std::string> expected = others;
   expected.push_back(std::filesystem::path(second).filename());
@@ -132,13 +132,13 @@ TEST_CASE("numbers go on behind those of earlier runs, which the quota counts an
                                            "qq-0001.mcap"};
   for (const std::string& name : others) write_bytes(folder.file(name), 1000);
   RecordingFiles files(folder.file("q.mcap"), true, 1000, kStart);
-  files.make_room(300);  // 900 + 300 to come
+  files.make_room(300, kStart);  // 900 + 300 to come
   CHECK(files.next() == folder.file("q-10001.mcap"));
   CHECK(files.deleted() == 1);
   CHECK_FALSE(std::filesystem::exists(folder.file("q-0002.mcap")));
   write_bytes(folder.file("q-10002.mcap"), 1);  // by somebody else in the meantime
   CHECK(files.next() == folder.file("q-10003.mcap"));
-  files.make_room(800);
+  files.make_room(800, kStart);
   CHECK_FALSE(std::filesystem::exists(folder.file("q-0009.mcap")));
   CHECK(std::filesystem::exists(folder.file("q-10000.mcap")));  // the newest stays
   for (const std::string& name : others) CHECK(std::filesystem::exists(folder.file(name)));
