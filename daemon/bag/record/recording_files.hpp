@@ -10,7 +10,8 @@ namespace mpm::bag {
 /// Which files a recording becomes, and which of them have to go.
 ///
 /// OUTPUT ending in `.mcap`: that file, or `name-0001.mcap`, `name-0002.mcap` ... where files are
-/// split. Anything else is a folder, made if need be, of files `mpm-20260131T235959Z-0001.mcap`.
+/// split. Anything else is a folder, made if need be, of files `mpm-20260131T235959Z-0001.mcap`, or
+/// `ring-...` where only the last hours are kept.
 /// Numbers go on behind the highest that is there. Earlier numbered files of the same name, in a
 /// folder all recordings with names as above, count for the quota and go first; no other file is
 /// ever deleted.

@@ -34,6 +34,11 @@ FileLayout scan(InputFile& file) {
       break;
     }
     if (head->op == Op::kDataEnd) in_data = false;
+    if (head->op == Op::kStatistics) {
+      Decoder fields(file.view(head->content(), std::min(head->length, sizeof(std::uint64_t))));
+      const std::uint64_t messages = fields.u64();
+      if (fields.ok()) layout.messages = messages;
+    }
     if (!in_data) continue;
     if (head->op == Op::kMessage) layout.messages_outside = true;
     if (head->op == Op::kSchema || head->op == Op::kChannel) {

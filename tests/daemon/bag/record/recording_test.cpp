@@ -120,6 +120,21 @@ TEST_CASE("the quota takes the oldest of our files and no other") {
   CHECK(names_in(folder.file("")) == expected);
 }
 
+TEST_CASE("what is kept for some time only does not take the recordings of others with it") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"mpm-20200101T000000Z-0001.mcap", "ring-20200101T000000Z-0001.mcap",
+                           "ring-20200101T000000Z-0002.mcap"})
+    write_bytes(folder.file(name), 10);  // no recordings: they count as ended at the start
+  RecordingFiles files(folder.file(""), true, 0, kStart, 60 * kSecond);
+  CHECK(files.next() == folder.file("ring-20231114T221320Z-0001.mcap"));
+  files.make_room(0, kStart + 60 * kSecond);
+  CHECK(files.deleted() == 0);
+  files.make_room(0, kStart + 61 * kSecond);
+  CHECK(names_in(folder.file("")) ==
+        std::vector<std::string>{"mpm-20200101T000000Z-0001.mcap",
+                                 "ring-20200101T000000Z-0002.mcap"});  // the newest stays
+}
+
 TEST_CASE("numbers go on behind those of earlier runs, which the quota counts and takes first") {
   const test::TemporaryFolder folder;
   for (const char* name : {"q-0002.mcap", "q-0009.mcap", "q-10000.mcap"})
