@@ -91,7 +91,7 @@ class Rates {
             " dropped";
     if (state.lost > 0) text += "  " + std::to_string(state.lost) + " lost by DDS";
     if (totals.missing_intervals > 0)
-      text += "  " + std::to_string(totals.missing_intervals) + " intervals missing";
+      text += "  " + counted(totals.missing_intervals, "interval") + " missing";
     if (totals.files > 1) text += "  " + std::to_string(totals.files) + " files";
     if (totals.deleted > 0) text += ", " + std::to_string(totals.deleted) + " deleted";
     return text;

@@ -21,7 +21,7 @@ TEST_CASE("mpm list tells what lies in a folder, in lines or JSON") {
   static_cast<void>(bench.convert("run.csv", "runs/run.mcap", bench.with_unit()));
   CHECK(list({bench.folder.file("runs")}) == 0);
   const std::string line = bench.text("out");
-  CHECK(line.starts_with("run.mcap  1970-01-01T00:00:00Z  2 min  "));
+  CHECK(line.starts_with("run.mcap  1970-01-01T00:00:00Z  2.0 min  "));
   CHECK(line.find("  small  whole\n") != std::string::npos);
   CHECK(list({bench.folder.file("runs"), "--json"}) == 0);
   const auto json = nlohmann::json::parse(bench.text("out"));
