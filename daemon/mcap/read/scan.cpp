@@ -98,7 +98,7 @@ std::string index_problem(InputFile& file, const FileLayout& layout, std::uint64
       !std::equal(
           chunks.begin(), chunks.end(), layout.chunks.begin(),
           [](std::uint64_t offset, const ChunkPlace& chunk) { return offset == chunk.offset; }))
-    return "it names " + counted(chunks.size(), "chunk") + ", not the " +
+    return "it names " + mpm::counted(chunks.size(), "chunk") + ", not the " +
            std::to_string(layout.chunks.size()) + " that are there";
   if (counted && *counted != messages)
     return "it counts " + mpm::counted(*counted, "message") + ", not the " +
