@@ -163,8 +163,8 @@ void RecordingWriter::tick(std::int64_t now_ns) {
 void RecordingWriter::look_for_alarm(const RecordedSample& sample) {
   if (!snapshots_.wanted() || topics_[sample.topic].name != idl::kAlarmEventTopic) return;
   if (const std::optional<std::string> name = alarm_snapshot(sample.sample.cdr))
-    snapshots_.begin(*name, sample.sample.source_time_ns, options_.snapshots.after_ns,
-                     sample.log_time_ns, files_.complete());
+    snapshots_.begin(*name, saturated_difference(sample.log_time_ns, sample.age_ns),
+                     options_.snapshots.after_ns, sample.log_time_ns, files_.complete());
 }
 
 void RecordingWriter::save(std::int64_t now_ns) {

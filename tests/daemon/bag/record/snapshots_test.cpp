@@ -60,6 +60,11 @@ class Run {
   void alarm(const std::string& mv, std::int64_t told_ns, const std::string& to = "active") {
     write(event_, event_bytes("shell", mv, "y1", to, told_ns), told_ns);
   }
+  /// Told now, by a machine whose clock is `ahead_ns` before ours; ours is as well.
+  void alarm_by_another_clock(const std::string& mv, std::int64_t ahead_ns) {
+    const std::int64_t told_ns = now_ns + ahead_ns;
+    write(event_, event_bytes("shell", mv, "y1", "active", told_ns), told_ns, 0);
+  }
   void by_hand() { writer_.save(now_ns); }
   void finish() { writer_.finish(); }
   [[nodiscard]] std::vector<std::string> news() { return writer_.take_news(); }
@@ -75,7 +80,11 @@ class Run {
     return options;
   }
   void write(std::size_t topic, std::span<const std::byte> cdr, std::int64_t source_time_ns) {
-    RecordedSample sample{topic, now_ns, {}};
+    write(topic, cdr, source_time_ns, now_ns - source_time_ns);
+  }
+  void write(std::size_t topic, std::span<const std::byte> cdr, std::int64_t source_time_ns,
+             std::int64_t age_ns) {
+    RecordedSample sample{topic, now_ns, {}, age_ns};
     sample.sample.cdr.assign(cdr.begin(), cdr.end());
     sample.sample.source_time_ns = source_time_ns;
     writer_.write(sample);
@@ -201,6 +210,19 @@ TEST_CASE("what a monitor said long ago makes no snapshot") {
   run.finish();
   CHECK(names_in(folder.file("ring/saved")).empty());
   CHECK(run.news().empty());
+}
+
+TEST_CASE("a clock that was set since the recording began makes no snapshot late or lost") {
+  const test::TemporaryFolder folder;
+  Run run(folder, kHour);
+  run.go(3600);
+  run.alarm_by_another_clock("u1", -24 * 60 * kMinute);
+  run.go(900);
+  run.finish();
+  const std::vector<std::int64_t> saved =
+      seconds_in(folder.file("ring/saved/shell-u1-y1-20231113T231320Z"));
+  CHECK(saved.front() == 1);
+  CHECK(saved.back() == 3600 + 600 - 1);
 }
 
 TEST_CASE("a recorder that was killed leaves whole files, and the next one goes on") {
