@@ -1,6 +1,7 @@
 #include "config/load_sections.hpp"
 #include "config/yaml_text.hpp"
 #include "core/model/eigenvalues.hpp"
+#include "core/text/number_text.hpp"
 
 namespace mpm::config {
 namespace {
@@ -22,7 +23,7 @@ std::optional<Eigen::MatrixXd> read_matrix(const Value& value) {
     if (row.size() != length) return std::nullopt;
     if (i == 0) matrix.resize(static_cast<Eigen::Index>(rows.size()), static_cast<int>(length));
     if (static_cast<Eigen::Index>(length) != matrix.cols()) {
-      rows[i].error("this row has " + std::to_string(length) + " numbers, the first one " +
+      rows[i].error("this row has " + counted(length, "number") + ", the first one " +
                     std::to_string(matrix.cols()));
       return std::nullopt;
     }
@@ -73,7 +74,8 @@ void load_state_space(const Value& value, UnitConfig& config) {
     if (numbers.size() != start->items().size()) return;
     x0 = Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<int>(numbers.size()));
     if (x0.size() != states && x0.size() != 0) {
-      start->error("must have " + std::to_string(states) + " numbers, one per state");
+      start->error("must have " + counted(static_cast<std::uint64_t>(states), "number") +
+                   ", one per state");
       return;
     }
   }

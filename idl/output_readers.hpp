@@ -67,13 +67,25 @@ class ReadersOf<std::tuple<Record...>> {
     (std::index_sequence_for<Record...>());
     take_layouts();
     std::stable_sort(taken_.begin(), taken_.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+                     [](const Taken& a, const Taken& b) { return a.written_ns < b.written_ns; });
     sorted_.clear();
-    for (auto& [written_ns, output] : taken_) sorted_.push_back(std::move(output));
+    writers_.clear();
+    for (Taken& taken : taken_) {
+      sorted_.push_back(std::move(taken.output));
+      writers_.push_back(taken.writer);
+    }
     return sorted_;
   }
+  /// Who wrote what was taken last, one by one, as in SampleInfo.
+  [[nodiscard]] const std::vector<std::uint64_t>& writers() const { return writers_; }
 
  private:
+  struct Taken {
+    std::int64_t written_ns = 0;
+    std::uint64_t writer = 0;
+    Output output;
+  };
+
   template <class One>
   using OptionalReader = std::optional<Reader<SampleOf<One>>>;
 
@@ -91,27 +103,25 @@ class ReadersOf<std::tuple<Record...>> {
     if (!reader) return;
     reader->take_with_info([this](const SampleOf<One>& sample, const SampleInfo& info) {
       if (info.valid)
-        add(info.source_time_ns, record_of<One>(sample));
+        taken_.push_back({info.source_time_ns, info.writer, record_of<One>(sample)});
       else if (std::is_same_v<One, HealthRecord> && sample.unit != nullptr)
-        add(info.source_time_ns, MonitorGone{sample.unit});
+        taken_.push_back({info.source_time_ns, info.writer, MonitorGone{sample.unit}});
     });
   }
 
   void take_layouts() {
     if (!layouts_) return;
     layouts_->take_with_info([this](const mpm_Layout& sample, const SampleInfo& info) {
-      if (info.valid) add(0, layout_record(sample));  // first: it orders the rest
+      if (info.valid)  // first: it orders the rest
+        taken_.push_back({0, info.writer, layout_record(sample)});
     });
-  }
-
-  void add(std::int64_t written_ns, Output output) {
-    taken_.emplace_back(written_ns, std::move(output));
   }
 
   std::tuple<OptionalReader<Record>...> readers_;
   std::optional<Reader<mpm_Layout>> layouts_;
-  std::vector<std::pair<std::int64_t, Output>> taken_;
+  std::vector<Taken> taken_;
   std::vector<Output> sorted_;
+  std::vector<std::uint64_t> writers_;  // of sorted_
 };
 
 /// Reads what daemons say, in the order in which they said it.

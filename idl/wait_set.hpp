@@ -1,15 +1,25 @@
 #pragma once
 
 #include <chrono>
+#include <thread>
 
+#include "core/parallel/mutex.hpp"
+#include "idl/condition_variable.hpp"
 #include "idl/entity.hpp"
 
 namespace mpm::idl {
 
 /// Sleeps until one of several readers, of any participants of this process, has something.
+///
+/// How long it sleeps is reckoned on the steady clock, to a second. Cyclone's wait sets (0.10) wait
+/// for a moment of the machine's clock, so a clock that is set back by an hour meanwhile would make
+/// the wait an hour longer: a thread wakes the sleeper once a second.
 class WaitSet {
  public:
   WaitSet();
+  WaitSet(const WaitSet&) = delete;
+  WaitSet& operator=(const WaitSet&) = delete;
+  ~WaitSet();
 
   /// `condition`: Reader::readable(); must outlive the wait set.
   void attach(dds_entity_t condition);
@@ -17,7 +27,14 @@ class WaitSet {
   [[nodiscard]] bool wait(std::chrono::nanoseconds timeout) const;
 
  private:
+  void wake_now_and_then();
+
   Entity wait_set_;
+  Entity waker_;  // a condition that only the thread triggers
+  Mutex mutex_;
+  ConditionVariable changed_;
+  bool over_ MPM_GUARDED_BY(mutex_) = false;
+  std::thread thread_;
 };
 
 }  // namespace mpm::idl

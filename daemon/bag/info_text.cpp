@@ -100,20 +100,6 @@ __attribute__((format(printf, 1, 2))) std::string line(const char* format, ...) 
   return {text.data(), std::min(text.size() - 1, static_cast<std::size_t>(std::max(size, 0)))};
 }
 
-std::string duration_text(double s) {
-  if (s < 120.0) return line("%.3g s", s);
-  if (s < 7200.0) return line("%.1f min", s / 60.0);
-  if (s < 172800.0) return line("%.1f h", s / 3600.0);
-  return line("%.1f days", s / 86400.0);
-}
-
-std::string bytes_text(std::uint64_t bytes) {
-  const auto value = static_cast<double>(bytes);
-  if (value < 1e4) return line("%.0f bytes", value);
-  if (value < 1e7) return line("%.1f kB", value * 1e-3);
-  return line("%.1f MB", value * 1e-6);
-}
-
 std::string span_text(const TimeTally& times) {
   if (times.count == 0) return "nothing";
   return files::utc_text(times.first_ns) + " to " + files::utc_text(times.last_ns) + " (" +
@@ -190,6 +176,21 @@ std::string csv_text(const FileInfo& info) {
 }
 
 }  // namespace
+
+std::string duration_text(double s) {
+  if (s < 120.0) return line("%.3g s", s);
+  if (s < 7200.0) return line("%.1f min", s / 60.0);
+  if (s < 172800.0) return line("%.1f h", s / 3600.0);
+  return line("%.1f days", s / 86400.0);
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+  const auto value = static_cast<double>(bytes);
+  if (value < 1e4) return line("%.0f bytes", value);
+  if (value < 1e7) return line("%.1f kB", value * 1e-3);
+  if (value < 1e10) return line("%.1f MB", value * 1e-6);
+  return line("%.1f GB", value * 1e-9);
+}
 
 Json to_json(const FileInfo& info) {
   Json json;

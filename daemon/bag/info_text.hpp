@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -11,5 +12,10 @@ namespace mpm::bag {
 [[nodiscard]] nlohmann::ordered_json to_json(const FileInfo& info);
 /// For people.
 [[nodiscard]] std::string to_text(const FileInfo& info);
+
+/// "50.0 min"
+[[nodiscard]] std::string duration_text(double seconds);
+/// "508.5 kB"
+[[nodiscard]] std::string bytes_text(std::uint64_t bytes);
 
 }  // namespace mpm::bag

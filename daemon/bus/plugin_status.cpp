@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/text/number_text.hpp"
+
 namespace mpm::bus {
 namespace {
 
@@ -64,7 +66,7 @@ PluginStatus plugin_status(const std::vector<MonitorWord>& units, const AgeLimit
   for (int code = worst; code > kOk; --code)
     for (const MonitorWord& unit : units)
       if (code_of(unit, limits) == code) text += (text.empty() ? "" : "; ") + text_of(unit);
-  if (text.empty()) text = fmt::format("{} units, {} alarms", units.size(), alarms);
+  if (text.empty()) text = counted(units.size(), "unit") + ", " + counted(alarms, "alarm");
   for (const MonitorWord& unit : units) data += performance(unit, limits);
   return {worst, std::string("MPM ") + kWords.at(static_cast<std::size_t>(worst)) + ": " +
                      plain(text, false) + " |" + data};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "config/suggest.hpp"
+#include "core/text/number_text.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::bus {
@@ -204,10 +205,9 @@ void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troub
     const Arrival& newest = input.newest();
     if (newest.values != count || (newest.qualities != 0 && newest.qualities != count))
       troubles.push_back({"length " + topic_of(kind), Severity::kFailure,
-                          topic_of(kind) + " has " + std::to_string(newest.values) +
-                              " values and " + std::to_string(newest.qualities) +
-                              " qualities where the unit file has " + std::to_string(count) +
-                              " signals"});
+                          topic_of(kind) + " has " + counted(newest.values, "value") + " and " +
+                              std::to_string(newest.qualities) +
+                              " qualities where the unit file has " + counted(count, "signal")});
     for (const InputStream::Writer& writer : input.writers())
       if (writer.standing >= kStanding && now - writer.last < expected_.silence)
         troubles.push_back({"standing " + topic_of(kind), Severity::kFailure,

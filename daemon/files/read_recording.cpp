@@ -6,6 +6,7 @@
 
 #include "config/finding.hpp"
 #include "core/identify/fit/runs.hpp"
+#include "core/text/number_text.hpp"
 
 namespace mpm::files {
 namespace {
@@ -148,8 +149,8 @@ std::string recording_problem(const Recording& recording, Eigen::Index needed) {
   for (Eigen::Index row = 0; row < recording.samples(); ++row)
     if (usable(recording.cvs, row) && usable(recording.inputs, row)) ++rows;
   if (rows < needed)
-    return "too short: " + std::to_string(rows) +
-           " usable samples, a diagnosis of this model needs " + std::to_string(needed) + " (" +
+    return "too short: " + counted(static_cast<std::uint64_t>(rows), "usable sample") +
+           ", a diagnosis of this model needs " + std::to_string(needed) + " (" +
            seconds_text(static_cast<double>(needed) * recording.sample_time_s) + ")";
   for (Eigen::Index i = 0; i < recording.inputs.cols(); ++i)
     if (moves(recording.inputs.col(i))) return {};

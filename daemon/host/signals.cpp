@@ -10,21 +10,26 @@
 
 namespace mpm::host {
 
-StopSignal::StopSignal() {
-  sigset_t stop;
-  sigemptyset(&stop);
-  sigaddset(&stop, SIGTERM);
-  sigaddset(&stop, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &stop, nullptr);
-  fd_ = signalfd(-1, &stop, SFD_NONBLOCK | SFD_CLOEXEC);
+AwaitedSignal::AwaitedSignal(std::initializer_list<int> signals) {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : signals) sigaddset(&set, signal);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
   if (fd_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
 }
 
-StopSignal::~StopSignal() { close(fd_); }
+AwaitedSignal::~AwaitedSignal() { close(fd_); }
+
+bool AwaitedSignal::take() {
+  signalfd_siginfo info;
+  return read(fd_, &info, sizeof info) == sizeof info;
+}
+
+StopSignal::StopSignal() : signal_({SIGTERM, SIGINT}) {}
 
 bool StopSignal::received() {
-  signalfd_siginfo info;
-  if (!received_ && read(fd_, &info, sizeof info) == sizeof info) received_ = true;
+  received_ = received_ || signal_.take();
   return received_;
 }
 

@@ -1,21 +1,35 @@
 #pragma once
 
+#include <initializer_list>
+
 namespace mpm::host {
 
-/// SIGTERM and SIGINT as something to ask for. Made before any thread starts, so that all threads
-/// inherit the blocked signals and none is interrupted.
+/// Signals as something to ask for. Made before any thread starts, so that all threads inherit the
+/// blocked signals and none is interrupted.
+class AwaitedSignal {
+ public:
+  explicit AwaitedSignal(std::initializer_list<int> signals);
+  AwaitedSignal(const AwaitedSignal&) = delete;
+  AwaitedSignal& operator=(const AwaitedSignal&) = delete;
+  ~AwaitedSignal();
+
+  /// True where one of them came since the last call.
+  [[nodiscard]] bool take();
+
+ private:
+  int fd_;
+};
+
+/// SIGTERM and SIGINT.
 class StopSignal {
  public:
   StopSignal();
-  StopSignal(const StopSignal&) = delete;
-  StopSignal& operator=(const StopSignal&) = delete;
-  ~StopSignal();
 
   /// True once one of them came.
   [[nodiscard]] bool received();
 
  private:
-  int fd_;
+  AwaitedSignal signal_;
   bool received_ = false;
 };
 

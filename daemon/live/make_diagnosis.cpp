@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "core/identify/diagnosis/diagnosis.hpp"
+#include "daemon/files/folder_name.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/live/named_cause.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
@@ -16,7 +17,7 @@ report::DiagnosisRun prepare(const DiagnosisJob& job) {
   run.unit = *job.unit;
   run.recording = job.samples.recording(job.unit->sample_time_s);
   run.program = idl::version_text("mpmd");
-  run.command_line = "mpmd, because of the alarm of " + time_folder(job.alarm_time_ns);
+  run.command_line = "mpmd, because of the alarm of " + files::time_folder(job.alarm_time_ns);
   run.config_file = job.unit->unit + " as mpmd runs it";
   run.data_file = "the last " + std::to_string(job.samples.rows()) + " samples of " +
                   job.unit->unit + " in mpmd";

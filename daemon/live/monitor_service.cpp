@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "core/text/number_text.hpp"
 #include "daemon/bus/domain_options.hpp"
 #include "daemon/live/report_store.hpp"
 
@@ -44,9 +45,10 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
                                                  options.journal_keep / units.size())});
     pipeline.diagnose_with(worker, asker++);
     if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);
-    spdlog::info("{}: watching {} channels on domain {}{}", unit.unit,
-                 unit.counts().inputs() * unit.counts().cv, unit.dds.domain,
-                 unit.dds.partition.empty() ? "" : ", partition " + unit.dds.partition);
+    spdlog::info(
+        "{}: watching {} on domain {}{}", unit.unit,
+        counted(static_cast<std::uint64_t>(unit.counts().inputs() * unit.counts().cv), "channel"),
+        unit.dds.domain, unit.dds.partition.empty() ? "" : ", partition " + unit.dds.partition);
   }
 }
 
@@ -80,16 +82,17 @@ std::string MonitorService::status() const {
       alarms += health.active_alarms;
     }
   }
-  std::string text =
-      fmt::format("{} units; channels: {} match, {} mismatch, {} undetermined; {} alarms", units,
-                  matching, mismatching, undetermined, alarms);
+  std::string text = counted(units, "unit") +
+                     fmt::format("; channels: {} match, {} mismatch, {} undetermined; ", matching,
+                                 mismatching, undetermined) +
+                     counted(alarms, "alarm");
   std::size_t troubled = 0;
   for (const auto& domain : domains_)
     for (const auto& [name, unit] : domain->units())
       if (!unit->trouble_text().empty() && ++troubled <= kMostInStatus)
         text += "; " + name + ": " + unit->trouble_text();
   if (troubled > kMostInStatus)
-    text += fmt::format("; {} more units in trouble", troubled - kMostInStatus);
+    text += "; " + counted(troubled - kMostInStatus, "more unit") + " in trouble";
   return text;
 }
 

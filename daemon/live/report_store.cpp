@@ -3,16 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <regex>
 #include <system_error>
 #include <vector>
 
-#include "daemon/files/times/time_text.hpp"
+#include "daemon/files/folder_name.hpp"
 #include "daemon/report/report_files.hpp"
 
 namespace mpm::live {
@@ -36,36 +33,6 @@ void prune(const fs::path& unit, const fs::path& newest, std::size_t kept) {
 
 }  // namespace
 
-std::string time_folder(std::int64_t time_ns) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  const std::int64_t part = ((time_ns % kSecond) + kSecond) % kSecond;
-  const std::int64_t second = time_ns / kSecond - (time_ns % kSecond < 0 ? 1 : 0);
-  std::string name = files::formatted_utc(second, "%Y%m%dT%H%M%S");
-  const auto milliseconds = static_cast<int>(part / 1'000'000);
-  if (milliseconds > 0) {
-    std::array<char, 16> text{};
-    std::snprintf(text.data(), text.size(), ".%03d", milliseconds);
-    name += text.data();
-  }
-  return name + "Z";
-}
-
-std::string unit_folder(const std::string& unit) {
-  std::string name;
-  for (const char letter : unit) {
-    const auto code = static_cast<unsigned char>(letter);
-    if (std::isalnum(code) != 0 || letter == '-' || letter == '_' ||
-        (letter == '.' && !name.empty())) {
-      name += letter;
-      continue;
-    }
-    std::array<char, 8> text{};
-    std::snprintf(text.data(), text.size(), "%%%02X", static_cast<unsigned>(code));
-    name += text.data();
-  }
-  return name;
-}
-
 ReportStore::ReportStore(std::string folder, std::size_t kept)
     : folder_(std::move(folder)), kept_(kept) {}
 
@@ -80,8 +47,8 @@ std::string ReportStore::problem() const {
 
 std::string ReportStore::write(const report::DiagnosisRun& run, std::int64_t alarm_time_ns) const {
   if (folder_.empty()) return {};
-  const fs::path unit = fs::path(folder_) / unit_folder(run.unit.unit);
-  const fs::path place = unit / time_folder(alarm_time_ns);
+  const fs::path unit = fs::path(folder_) / files::folder_name(run.unit.unit);
+  const fs::path place = unit / files::time_folder(alarm_time_ns);
   files::OutputFolder folder(place.string());
   report::write_reports(run, folder);
   folder.commit();

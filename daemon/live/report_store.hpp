@@ -28,9 +28,4 @@ class ReportStore {
   std::size_t kept_;  // of each unit, the last ones written
 };
 
-/// "20240501T120000Z", with milliseconds where there are any.
-[[nodiscard]] std::string time_folder(std::int64_t time_ns);
-/// The unit's name as the name of a folder: whatever a path might misread is %XX.
-[[nodiscard]] std::string unit_folder(const std::string& unit);
-
 }  // namespace mpm::live

@@ -9,6 +9,7 @@
 
 #include "config/unit_layout.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "idl/topics.hpp"
@@ -297,7 +298,7 @@ void UnitPipeline::judge_health(const std::vector<bus::Trouble>& troubles) {
     health_.state = state;
     health_.detail = std::move(detail);
   };
-  const std::string alarms = std::to_string(health_.active_alarms) + " alarms";
+  const std::string alarms = counted(health_.active_alarms, "alarm");
   if (!troubles.empty() && troubles.front().severity > bus::Severity::kMaintenanceRequired)
     set(to_string(troubles.front().severity), trouble_text_);
   else if (health_.frames == 0)

@@ -6,28 +6,11 @@
 #include <iostream>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
+#include "entity.hpp"
 #include "mpm.h"
 
 namespace {
-
-class Entity {
- public:
-  Entity(dds_entity_t handle, const std::string& what) : handle_(handle) {
-    if (handle < 0) throw std::runtime_error(what + ": " + dds_strretcode(handle));
-  }
-  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
-  Entity(const Entity&) = delete;
-  Entity& operator=(const Entity&) = delete;
-  ~Entity() {
-    if (handle_ > 0) dds_delete(handle_);
-  }
-  [[nodiscard]] dds_entity_t get() const { return handle_; }
-
- private:
-  dds_entity_t handle_;
-};
 
 /// Reads a topic that keeps the last word of each key for late joiners.
 template <class Sample>

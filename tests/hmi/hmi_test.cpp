@@ -20,8 +20,10 @@ std::vector<std::string> environment(const Bench& bench) {
 
 }  // namespace
 
-TEST_CASE("clients in C, C++ and Python see the alarm that a gateway in C brings about") {
-  Bench bench("hmi-c");
+TEST_CASE("clients in C, C++ and Python see the alarm that a gateway in C or C++ brings about") {
+  const std::string program = GENERATE("hmi_gateway_c", "hmi_gateway_cpp");
+  CAPTURE(program);
+  Bench bench(program);
   const std::vector<std::string> around = environment(bench);
   const std::string domain = std::to_string(bench.options.domain);
   const auto file = [&](const char* name) { return bench.folder.file(name); };
@@ -31,7 +33,7 @@ TEST_CASE("clients in C, C++ and Python see the alarm that a gateway in C brings
   const Process python(
       {kScripts + "alarms.py", domain, "60", "--partition", bench.options.partition},
       file("py.out"), file("py.err"), around);
-  Process gateway({kPrograms + "hmi_gateway_c", domain, "toy", "3000", "1"}, file("gateway.out"),
+  Process gateway({kPrograms + program, domain, "toy", "3000", "1"}, file("gateway.out"),
                   file("gateway.err"), around);
   INFO(read_file(file("gateway.err")));
   CHECK(gateway.wait(std::chrono::seconds(60)) == 0);

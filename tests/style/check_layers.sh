@@ -100,8 +100,8 @@ bus
 bus/watch files/times report bus
 bus/doctor bus
 bag files/times files files/csv mcap/format mcap/read mcap/write
-bag/record host files/times mcap/write bag
-bag/replay host mcap/read bag
+bag/record host files/times files mcap/read mcap/write mcap bag
+bag/replay host files/times mcap/read bag
 live host files/times files report/diagnosis report history bus
 app/commands host files/times files files/csv mcap/read mcap report/diagnosis report/closed_loop report history history/trend bus bus/watch bus/doctor bag bag/record bag/replay live
 app host live app/commands

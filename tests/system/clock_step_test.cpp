@@ -96,5 +96,21 @@ TEST_CASE("a recording keeps the order of arrival while somebody sets the clock"
     check_recording_under(trouble);
 }
 
+// On a quiet bus, where nothing else would wake it.
+TEST_CASE("a monitor goes on while the clock is set back by an hour") {
+  TemporaryFolder folder;
+  const idl::DomainOptions domain = idl::test_domain("clock_back");
+  Process daemon({"mpmd", "--config", kUnit, "--partition", domain.partition},
+                 folder.file("mpmd.out"), folder.file("mpmd.err"),
+                 {kPreload, "ASAN_OPTIONS=verify_asan_link_order=0", "MPM_STEP_MS=3600000",
+                  "MPM_STEP_EVERY=0", "MPM_STEP_WAITS=1"});
+  const auto said = [&](const char* word) {
+    return read_file(folder.file("mpmd.err")).find(word) != std::string::npos;
+  };
+  REQUIRE(idl::eventually([&] { return said("watching"); }, std::chrono::seconds(20)));
+  daemon.send(SIGTERM);
+  CHECK(idl::eventually([&] { return said("stopped"); }, std::chrono::seconds(10)));
+}
+
 }  // namespace
 }  // namespace mpm::test

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "daemon/live/report_store.hpp"
+#include "daemon/files/folder_name.hpp"
 #include "idl/output_readers.hpp"
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
@@ -169,7 +169,7 @@ TEST_CASE("an alarm gets its cause, who joins later sees it, and no sample waits
   CHECK(ratio.high > ratio.value);
 
   const std::string report =
-      plant.folder.file("state/shell/" + live::time_folder(alarm.source_time_ns) + "/");
+      plant.folder.file("state/shell/" + files::time_folder(alarm.source_time_ns) + "/");
   CHECK(read_file(report + "report.json").find("\"cause\": \"gain\"") != std::string::npos);
   CHECK(read_file(report + "report.html").find("</html>") != std::string::npos);
   CHECK(run({"mpmd", "--check", "--config", report + "extended.yaml"},

@@ -51,7 +51,7 @@ TEST_CASE("systemd is told when the daemon is ready, alive, well and stopping") 
   Bench bench("notify", {"--state-dir", "/proc/none"},
               {"NOTIFY_SOCKET=" + folder.file("notify"), "WATCHDOG_USEC=300000"});
   CHECK(socket.hears("READY=1"));
-  CHECK(socket.hears("STATUS=1 units; channels: 0 match, 0 mismatch, 2 undetermined; 0 alarms"));
+  CHECK(socket.hears("STATUS=1 unit; channels: 0 match, 0 mismatch, 2 undetermined; 0 alarms"));
   CHECK(socket.hears("0 alarms; toy: reports of diagnoses cannot be kept: /proc/none"));
   CHECK(socket.hears("WATCHDOG=1"));
   CHECK(socket.heard().find("STOPPING=1") == std::string::npos);

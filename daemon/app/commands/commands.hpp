@@ -14,6 +14,8 @@ void add_trend(CLI::App& app, int& exit_code);
 void add_diagnose(CLI::App& app, int& exit_code);
 /// `mpm info`: what a data file holds.
 void add_info(CLI::App& app, int& exit_code);
+/// `mpm list`: which recordings lie in a folder.
+void add_list(CLI::App& app, int& exit_code);
 /// `mpm convert`: recordings and data files into each other.
 void add_convert(CLI::App& app, int& exit_code);
 /// `mpm recover`: mends a recording whose recorder was killed.

@@ -30,7 +30,7 @@ void tell(const Options& options, const bag::ConvertReport& report) {
       << counted(report.signals, "signal") << " from " << files::utc_text(report.first_ns) << " to "
       << files::utc_text(report.last_ns) << "\n  " << counted(report.values, "value") << " ("
       << report.uncertain << " uncertain, " << report.bad << " bad), " << report.missing
-      << " missing; " << report.bytes << " bytes\n"
+      << " missing; " << counted(report.bytes, "byte") << "\n"
       << std::flush;
   for (const std::string& notice : report.notices)
     std::cerr << options.input << ": " << notice << '\n';

@@ -35,7 +35,8 @@ int run_recover(const std::string& input, const std::string& output) {
               << counted(report.channels, "channel") << " in " << counted(report.chunks, "chunk");
     if (report.torn_messages > 0)
       std::cout << ", " << report.torn_messages << " of them from the chunk that was cut off";
-    std::cout << "; " << report.lost_bytes << " bytes of the old file are lost\n" << std::flush;
+    std::cout << "; " << counted(report.lost_bytes, "byte") << " of the old file lost\n"
+              << std::flush;
     return 0;
   } catch (const config::InputError& error) {
     std::cerr << error.what() << '\n';

@@ -17,10 +17,12 @@
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/status_line.hpp"
+#include "daemon/app/commands/topic_choice_options.hpp"
 #include "daemon/bag/replay/keyboard.hpp"
 #include "daemon/bag/replay/mcap_source.hpp"
 #include "daemon/bag/replay/player.hpp"
 #include "daemon/bag/replay/selection.hpp"
+#include "daemon/files/times/time_text.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "idl/raw_writer.hpp"
@@ -38,12 +40,14 @@ constexpr std::chrono::seconds kFlushTime{10};
 
 struct ReplayOptions {
   std::vector<std::string> files;
-  std::vector<std::string> topics;
+  bag::TopicChoice topics;
   std::vector<std::string> remap;
   idl::DomainOptions domain;
   bag::PlayerOptions player;
   double start_offset_s = 0.0;
   double duration_s = 0.0;
+  double delay_s = 0.0;
+  std::string until;
   double wait_readers_s = 10.0;
   int readers = 1;
 };
@@ -63,7 +67,7 @@ std::map<std::string, std::string> parse_remap(const std::vector<std::string>& r
 
 /// `--topics T... FILE` takes FILE for a topic.
 void find_swallowed_files(ReplayOptions& options) {
-  std::vector<std::string>& topics = options.topics;
+  std::vector<std::string>& topics = options.topics.names;
   const auto is_file = [](const std::string& text) {
     return idl::find_known_topic(text) == nullptr && std::filesystem::exists(text);
   };
@@ -75,15 +79,26 @@ void find_swallowed_files(ReplayOptions& options) {
 
 /// Throws std::invalid_argument.
 std::set<std::string> topics_of(const ReplayOptions& options) {
-  std::set<std::string> topics(options.topics.begin(), options.topics.end());
-  for (const std::string& topic : topics)
+  for (const std::string& topic : options.topics.names)
     if (idl::find_known_topic(topic) == nullptr)
       throw std::invalid_argument("--topics: '" + topic +
                                   "' is no topic of the monitor (write files before the options)");
-  if (topics.empty())
-    for (const idl::KnownTopic& topic : idl::known_topics())
-      if (topic.input) topics.insert(topic.name);
-  return topics;
+  std::vector<std::string> inputs;
+  for (const idl::KnownTopic& topic : idl::known_topics())
+    if (topic.input) inputs.emplace_back(topic.name);
+  return bag::chosen_topics(options.topics, inputs);
+}
+
+/// `text`: a time since the recording's beginning, or a moment. Throws std::invalid_argument.
+void set_end(std::string text, bag::PlayerOptions& player) {
+  if (text.empty()) return;
+  std::string problem;
+  if (const std::string moment = text; positive_time_value()(text).empty())
+    player.end_offset_ns = static_cast<std::int64_t>(std::stod(text) * kNsPerSecond);
+  else if (!(player.end_ns = files::parse_time(moment, problem)))
+    throw std::invalid_argument("--playback-until: '" + moment +
+                                "' is neither a time above 0, as 90 or 1.5h, nor a moment, as "
+                                "2026-01-31T12:00:00Z");
 }
 
 // What is sent before a reader and its writer know each other is lost.
@@ -150,8 +165,10 @@ int replay(const ReplayOptions& options, host::StopSignal& stop) {
   player_options.remap = parse_remap(options.remap);
   player_options.start_offset_ns = static_cast<std::int64_t>(options.start_offset_s * kNsPerSecond);
   player_options.duration_ns = static_cast<std::int64_t>(options.duration_s * kNsPerSecond);
+  player_options.delay_ns = static_cast<std::int64_t>(options.delay_s * kNsPerSecond);
+  set_end(options.until, player_options);
   bag::check_selection(source, player_options);
-  for (const std::string& topic : options.topics)
+  for (const std::string& topic : options.topics.names)
     if (source.topics().count(topic) == 0)
       std::cerr << "mpm replay: the recording has no " << topic << '\n';
   bag::Keyboard keyboard;
@@ -219,14 +236,19 @@ void add_replay(CLI::App& app, int& exit_code) {
       ->transform(time_value());
   command->add_option("--duration", options->duration_s, "end after this much recorded time")
       ->transform(positive_time_value());
+  command->add_option("--playback-until", options->until,
+                      "end there: recorded time since the beginning, as 90 or 1.5h, or a moment, "
+                      "as 2026-01-31T12:00:00Z");
+  command
+      ->add_option("--delay", options->delay_s,
+                   "wait this long before the first sample, in a loop before each pass")
+      ->transform(time_value());
   command->add_flag("-l,--loop", player.loop,
                     "begin again at the end; interval numbers and times go on");
   command->add_flag("-p,--start-paused", player.start_paused, "wait for the space bar");
-  command
-      ->add_option("--topics", options->topics,
+  add_topic_choice(*command, options->topics,
                    "these topics, as mpm/mv,mpm/cv (default: the five inputs, so that a monitor "
-                   "judges anew)")
-      ->delimiter(',');
+                   "judges anew)");
   command->add_option("--unit", player.unit, "only this unit");
   command->add_option("--remap", options->remap, "publish unit FROM as TO: FROM:=TO; repeatable")
       ->allow_extra_args(false);  // what follows is a file

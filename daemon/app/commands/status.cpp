@@ -88,25 +88,62 @@ class LastWords {
   std::map<std::string, Word> words_;
 };
 
-bus::PluginStatus ask(const StatusOptions& options) {
-  host::StopSignal stop;
-  host::set_up_logging("off");  // one line is all there may be
-  const idl::Participant participant(options.domain);
+/// Where to ask for whom; no units: whoever is there.
+struct Place {
+  idl::DomainOptions domain;
+  std::vector<std::string> units;
+};
+
+std::vector<bus::MonitorWord> ask(const Place& place, double wait_s, host::StopSignal& stop) {
+  const idl::Participant participant(place.domain);
   idl::Reader<mpm_Health> reader(participant, idl::kHealthTopic, idl::health_qos());
   idl::WaitSet wait_set;
   wait_set.attach(reader.readable());
   LastWords words;
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                                   std::chrono::duration<double>(options.wait_s));
-  while (Clock::now() < end && !stop.received() && !words.all_here(options.units))
+                                                   std::chrono::duration<double>(wait_s));
+  while (Clock::now() < end && !stop.received() && !words.all_here(place.units))
     if (wait_set.wait(kLongestWait))
       reader.take_with_info(
           [&](const mpm_Health& health, const idl::SampleInfo& info) { words.hear(health, info); });
-  return bus::plugin_status(words.of(options.units), options.limits,
-                            bus::place_text(options.domain.domain, options.domain.partition));
+  return words.of(place.units);
 }
 
-int status(StatusOptions options) {
+/// One after the other; a unit that speaks is heard within a second.
+bus::PluginStatus ask(const std::vector<Place>& places, const StatusOptions& options) {
+  host::StopSignal stop;
+  host::set_up_logging("off");  // one line is all there may be
+  std::vector<bus::MonitorWord> words;
+  for (const Place& place : places)
+    for (bus::MonitorWord& word : ask(place, options.wait_s, stop))
+      words.push_back(std::move(word));
+  const idl::DomainOptions& first = places.front().domain;
+  return bus::plugin_status(words, options.limits, bus::place_text(first.domain, first.partition));
+}
+
+/// The units wanted, each where its file says; those without a file where the first file says.
+std::vector<Place> places_of(const std::vector<config::UnitConfig>& units,
+                             const StatusOptions& options) {
+  std::vector<std::string> without = options.units;
+  std::map<std::string, std::size_t> known;  // by network settings
+  std::vector<Place> places;
+  for (const config::UnitConfig& unit : units) {
+    const idl::DomainOptions domain =
+        with_flags(*options.command, bus::domain_options(unit.dds), options.domain);
+    const bool wanted = options.units.empty() || std::erase(without, unit.unit) > 0;
+    if (!wanted && !places.empty()) continue;
+    const auto [place, is_new] = known.try_emplace(idl::domain_xml(domain), places.size());
+    if (is_new) places.push_back({domain, {}});
+    if (wanted) places[place->second].units.push_back(unit.unit);
+  }
+  Place& first = places.front();
+  first.units.insert(first.units.end(), without.begin(), without.end());
+  if (first.units.empty()) places.erase(places.begin());
+  return places;
+}
+
+int status(const StatusOptions& options) {
+  std::vector<Place> places = {{options.domain, options.units}};
   if (!options.config.empty()) {
     const config::LoadUnitsResult loaded = config::load_units(options.config);
     if (!loaded.ok() || loaded.units.empty()) {
@@ -116,13 +153,10 @@ int status(StatusOptions options) {
                 << '\n';
       return kUnknown;
     }
-    options.domain =
-        with_flags(*options.command, bus::domain_options(loaded.units.front().dds), options.domain);
-    if (options.units.empty())
-      for (const config::UnitConfig& unit : loaded.units) options.units.push_back(unit.unit);
+    places = places_of(loaded.units, options);
   }
   try {
-    const bus::PluginStatus status = ask(options);
+    const bus::PluginStatus status = ask(places, options);
     std::cout << status.line << '\n';
     return status.code;
   } catch (const std::exception& error) {
@@ -139,7 +173,7 @@ void add_status(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<StatusOptions>();
   options->command = command;
   command->add_option("-c,--config", options->config,
-                      "unit file, or folder of unit files of one domain: who must be there");
+                      "unit file, or folder of unit files: who must be there, and on which domain");
   command->add_option("--unit", options->units, "only this unit, which must be there; repeatable")
       ->allow_extra_args(false);
   add_bus_flags(*command, options->domain);
@@ -150,7 +184,7 @@ void add_status(CLI::App& app, int& exit_code) {
   command->add_option("--critical", options->limits.critical_s, "the same")
       ->capture_default_str()
       ->transform(positive_time_value());
-  command->add_option("--wait", options->wait_s, "how long to listen at most")
+  command->add_option("--wait", options->wait_s, "how long to listen at most, on each domain")
       ->capture_default_str()
       ->transform(positive_time_value());
   command->footer(

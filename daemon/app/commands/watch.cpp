@@ -4,15 +4,19 @@
 
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
+#include "daemon/bus/unit_inputs.hpp"
 #include "daemon/bus/watch/viewer.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/terminal.hpp"
+#include "idl/discovery.hpp"
 #include "idl/output_readers.hpp"
 
 namespace mpm::app {
@@ -41,6 +45,28 @@ bus::RenderOptions render_options(const WatchOptions& options) {
       options.alarms_only};
 }
 
+/// The processes behind writers; asks who is there when one is not known yet.
+class WriterNames {
+ public:
+  explicit WriterNames(const idl::Participant& participant) : discovery_(participant) {}
+
+  /// Empty where it has left before it was asked for.
+  [[nodiscard]] std::string of(std::uint64_t writer) {
+    const auto known = names_.find(writer);
+    if (known != names_.end()) return known->second;
+    const bus::Surroundings around{"", discovery_.endpoints(), {}};
+    if (bus::find_writer(around, writer) == nullptr) return "";
+    if (names_.size() >= kMost) names_.clear();
+    return names_[writer] = bus::writer_name(around, writer);
+  }
+
+ private:
+  static constexpr std::size_t kMost = 10'000;  // processes come and go
+
+  idl::Discovery discovery_;
+  std::map<std::uint64_t, std::string> names_;
+};
+
 // 0, or 2 if the alarm that was waited for did not come.
 int watch(const WatchOptions& options) {
   using Clock = std::chrono::steady_clock;
@@ -55,15 +81,20 @@ int watch(const WatchOptions& options) {
                                               : idl::OutputReaders::Scope::kEverything);
   idl::WaitSet wait_set;
   readers.attach_to(wait_set);
+  WriterNames names(participant);
   bus::Viewer viewer(mode, render_options(options), options.unit);
 
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(options.for_s));
   bool last_look = false;
   while (viewer.has_reader() && !stop.received()) {
-    if (wait_set.wait(kLongestWait))
-      for (const idl::Output& output : readers.take()) viewer.show(output);
+    const bool any = wait_set.wait(kLongestWait);
     const Clock::time_point now = Clock::now();
+    if (any) {
+      const std::vector<idl::Output>& outputs = readers.take();
+      for (std::size_t i = 0; i < outputs.size(); ++i)
+        viewer.show(outputs[i], names.of(readers.writers()[i]), now);
+    }
     last_look = options.for_s > 0.0 && now >= end;
     viewer.tick(now);
     if (options.until_alarm && viewer.any_alarm()) return 0;

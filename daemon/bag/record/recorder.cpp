@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 
+#include "core/signal/saturated.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/topics.hpp"
 
@@ -75,6 +76,10 @@ void Recorder::poll(std::chrono::milliseconds longest) {
 int Recorder::take() {
   int count = 0;
   const std::int64_t now_ns = clock_.now_ns();
+  // What sources are stamped with: somebody may have set the clock since the recording began.
+  const std::int64_t machine_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                      std::chrono::system_clock::now().time_since_epoch())
+                                      .count();
   for (std::size_t topic = 0; topic < readers_.size(); ++topic) {
     const bool ours = idl::find_known_topic(readers_[topic].topic()) != nullptr;
     count += readers_[topic].take([&](idl::RawSample& sample) {
@@ -82,7 +87,8 @@ int Recorder::take() {
         const std::string unit = idl::unit_of(sample.cdr);
         if (unit.empty() || (!unit_.empty() && unit != unit_)) return;  // "": a writer's greeting
       }
-      batch_.push_back({topic, now_ns, std::move(sample)});
+      const std::int64_t age_ns = saturated_difference(machine_ns, sample.source_time_ns);
+      batch_.push_back({topic, now_ns, std::move(sample), age_ns});
     });
   }
   if (!batch_.empty()) queue_.push(batch_);
@@ -93,10 +99,13 @@ void Recorder::write_all() {
   std::vector<RecordedSample> samples;
   std::size_t written = 0;  // of `samples`
   try {
-    while (queue_.pop(samples, kTick)) {
+    while (true) {
+      const bool save = save_asked_.exchange(false);  // before what was taken by then is popped
+      if (!queue_.pop(samples, kTick)) break;
       const MutexLock lock(mutex_);
       for (written = 0; written < samples.size(); ++written) recording_.write(samples[written]);
       recording_.tick(clock_.now_ns());
+      if (save) recording_.save(clock_.now_ns());
     }
     const MutexLock lock(mutex_);
     recording_.finish();
@@ -117,6 +126,11 @@ void Recorder::finish() {
   }
   queue_.close();
   if (writer_.joinable()) writer_.join();
+}
+
+std::vector<std::string> Recorder::take_news() {
+  const MutexLock lock(mutex_);
+  return recording_.take_news();
 }
 
 RecorderState Recorder::state() const {

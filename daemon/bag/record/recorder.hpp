@@ -44,10 +44,14 @@ class Recorder {
   void poll(std::chrono::milliseconds longest);
   /// Looks for chosen topics whose type only their writers know. About once a second is enough.
   void look_for_topics();
+  /// Saves a snapshot of all that was taken so far.
+  void save() { save_asked_ = true; }
   /// Takes what is there, writes all and closes the file.
   void finish();
 
   [[nodiscard]] RecorderState state() const;
+  /// What there is to tell of snapshots since the last call.
+  [[nodiscard]] std::vector<std::string> take_news();
   /// Chosen topics that nobody writes yet, or not with a type that could be asked for.
   [[nodiscard]] const std::set<std::string>& not_found() const { return not_found_; }
 
@@ -70,6 +74,7 @@ class Recorder {
   std::vector<RecordedSample> batch_;
 
   SampleQueue queue_;
+  std::atomic<bool> save_asked_ = false;
   mutable Mutex mutex_;
   RecordingWriter recording_ MPM_GUARDED_BY(mutex_);
   std::string problem_ MPM_GUARDED_BY(mutex_);

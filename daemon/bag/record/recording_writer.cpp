@@ -6,6 +6,7 @@
 
 #include "core/signal/saturated.hpp"
 #include "daemon/bag/lifecycle.hpp"
+#include "idl/topics.hpp"
 
 namespace mpm::bag {
 namespace {
@@ -17,10 +18,16 @@ constexpr std::uint64_t kFilesPerQuota = 8;
 constexpr std::uint64_t kChunksPerFile = 4;
 constexpr std::uint64_t kSmallestChunk = 4096;
 
-RecordingOptions with_size(RecordingOptions options) {
+// With snapshots: so many files span the time before an alarm, and the oldest can go.
+constexpr std::int64_t kFilesPerSnapshot = 8;
+
+RecordingOptions with_limits(RecordingOptions options) {
   options.file.must_be_new = true;
   if (options.quota_bytes > 0 && options.max_size_bytes == 0)
     options.max_size_bytes = std::max<std::uint64_t>(options.quota_bytes / kFilesPerQuota, 1);
+  if (options.snapshots.before_ns > 0 && options.max_duration_ns == 0)
+    options.max_duration_ns = std::max<std::int64_t>(
+        options.snapshots.before_ns / kFilesPerSnapshot, options.file.chunk_age_ns);
   if (options.max_size_bytes > 0)
     options.file.chunk_bytes =
         std::min<std::size_t>(options.file.chunk_bytes,
@@ -35,10 +42,13 @@ mcap::ByteView bytes_of(const std::string& text) {
 }  // namespace
 
 RecordingWriter::RecordingWriter(const RecordingOptions& options, std::int64_t now_ns)
-    : options_(with_size(options)),
+    : options_(with_limits(options)),
       files_(options_.output, options_.max_size_bytes > 0 || options_.max_duration_ns > 0,
-             options_.quota_bytes, now_ns) {
+             options_.quota_bytes, now_ns, options_.snapshots.before_ns),
+      snapshots_(options_.output, options_.snapshots),
+      last_ns_(now_ns) {
   open(now_ns);
+  if (snapshots_.wanted()) snapshots_.check(path_);
 }
 
 std::size_t RecordingWriter::add_topic(RecordedTopic topic) {
@@ -48,8 +58,8 @@ std::size_t RecordingWriter::add_topic(RecordedTopic topic) {
 
 void RecordingWriter::open(std::int64_t now_ns) {
   // The last chunk may go beyond the size, and the indexes come on top.
-  files_.make_room(options_.max_size_bytes + options_.max_size_bytes / 4 +
-                   options_.file.chunk_bytes);
+  files_.make_room(
+      options_.max_size_bytes + options_.max_size_bytes / 4 + options_.file.chunk_bytes, now_ns);
   path_ = files_.next();
   writer_.emplace(path_, options_.file);
   opened_ns_ = now_ns;
@@ -64,20 +74,22 @@ void RecordingWriter::open(std::int64_t now_ns) {
   }
 }
 
-void RecordingWriter::close() {
+void RecordingWriter::close(std::int64_t now_ns) {
   writer_->finish();
-  const std::uint64_t bytes = writer_->bytes_written();
+  const RecordingFiles::File file{path_, writer_->bytes_written(), opened_ns_, now_ns, true};
   writer_.reset();
-  totals_.bytes += bytes;
-  files_.finished(path_, bytes);
+  totals_.bytes += file.bytes;
+  files_.finished(file);
+  snapshots_.add(file, now_ns);
 }
 
 void RecordingWriter::rotate_if_due(std::int64_t now_ns) {
+  last_ns_ = now_ns;
   const bool full =
       options_.max_size_bytes > 0 && writer_->bytes_written() >= options_.max_size_bytes;
   const bool old = options_.max_duration_ns > 0 && now_ns - opened_ns_ >= options_.max_duration_ns;
-  if (!full && !old) return;
-  close();
+  if (!full && !old && !snapshots_.due(now_ns)) return;
+  close(now_ns);
   open(now_ns);
 }
 
@@ -89,6 +101,7 @@ void RecordingWriter::write(const RecordedSample& sample) {
     last_[{sample.topic, idl::leading_texts(sample.sample.cdr, keys)}] = sample;
   put(sample);
   ++totals_.samples;
+  look_for_alarm(sample);
   if (writer_->chunks() == chunks_seen_) return;
   chunks_seen_ = writer_->chunks();
   saved_ = totals_.samples - (writer_->has_open_chunk() ? 1 : 0);
@@ -147,8 +160,21 @@ void RecordingWriter::tick(std::int64_t now_ns) {
   rotate_if_due(now_ns);
 }
 
+void RecordingWriter::look_for_alarm(const RecordedSample& sample) {
+  if (!snapshots_.wanted() || topics_[sample.topic].name != idl::kAlarmEventTopic) return;
+  if (const std::optional<std::string> name = alarm_snapshot(sample.sample.cdr))
+    snapshots_.begin(*name, saturated_difference(sample.log_time_ns, sample.age_ns),
+                     options_.snapshots.after_ns, sample.log_time_ns, files_.complete());
+}
+
+void RecordingWriter::save(std::int64_t now_ns) {
+  snapshots_.begin(hand_snapshot(now_ns), now_ns, 0, now_ns, files_.complete());
+  rotate_if_due(now_ns);
+}
+
 void RecordingWriter::finish() {
-  if (writer_) close();
+  if (writer_) close(last_ns_);
+  snapshots_.finish();
 }
 
 void RecordingWriter::give_up() noexcept {
@@ -156,7 +182,8 @@ void RecordingWriter::give_up() noexcept {
   if (writer_->has_open_chunk()) unsaved_ = totals_.samples - saved_;
   try {
     writer_->drop_chunk();
-    close();
+    close(last_ns_);
+    snapshots_.finish();
   } catch (const std::exception&) {  // the caller has told already; `mpm recover` mends it
   }
 }

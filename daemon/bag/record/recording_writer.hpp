@@ -8,6 +8,7 @@
 
 #include "daemon/bag/record/recording_files.hpp"
 #include "daemon/bag/record/sample_queue.hpp"
+#include "daemon/bag/record/snapshots.hpp"
 #include "daemon/mcap/write/writer.hpp"
 
 namespace mpm::bag {
@@ -17,6 +18,7 @@ struct RecordingOptions {
   std::uint64_t max_size_bytes = 0;  ///< of one file; 0 = no limit
   std::int64_t max_duration_ns = 0;  ///< of one file; 0 = no limit
   std::uint64_t quota_bytes = 0;     ///< of all files; 0 = no limit
+  SnapshotOptions snapshots;         ///< where there are any, older files go
   mcap::WriterOptions file;
 };
 
@@ -47,10 +49,13 @@ struct RecordingTotals {
 /// A sample goes to the channel of its topic as the CDR that it was; log time is when it was
 /// received, publish time its DDS source time. That an instance ended goes to `<topic>/_lifecycle`
 /// as JSON, with the key's CDR in hexadecimal: MCAP itself has no place for it.
+///
+/// With snapshots it keeps no more than they may need, and an alarm that becomes active (a sample
+/// of mpm/alarm_event) makes one, in `OUTPUT/saved`.
 class RecordingWriter {
  public:
   /// `now_ns`: UTC since 1970, as all times here. Throws std::runtime_error where a file cannot be
-  /// written, std::invalid_argument where there is one already.
+  /// written, std::invalid_argument where there is one already, or snapshots cannot be made there.
   RecordingWriter(const RecordingOptions& options, std::int64_t now_ns);
 
   /// Returns the index for RecordedSample.
@@ -58,11 +63,15 @@ class RecordingWriter {
   void write(const RecordedSample& sample);
   /// For when nothing comes: closes a chunk or a file that is old enough.
   void tick(std::int64_t now_ns);
+  /// A snapshot by hand: what there is up to now.
+  void save(std::int64_t now_ns);
   void finish();
   /// After a failure: the file is finished with what fitted, as far as the disk lets it.
   void give_up() noexcept;
 
   [[nodiscard]] RecordingTotals totals() const;
+  /// Of snapshots, since the last call.
+  [[nodiscard]] std::vector<std::string> take_news() { return snapshots_.take_news(); }
   /// Of the samples, those that were given up.
   [[nodiscard]] std::uint64_t unsaved() const { return unsaved_; }
   /// The file that is being written.
@@ -83,7 +92,8 @@ class RecordingWriter {
   };
 
   void open(std::int64_t now_ns);
-  void close();
+  void close(std::int64_t now_ns);
+  void look_for_alarm(const RecordedSample& sample);
   void rotate_if_due(std::int64_t now_ns);
   void put(const RecordedSample& sample);
   void put_lifecycle(const RecordedSample& sample);
@@ -93,10 +103,12 @@ class RecordingWriter {
 
   RecordingOptions options_;
   RecordingFiles files_;
+  Snapshots snapshots_;
   std::vector<RecordedTopic> topics_;
   std::optional<mcap::Writer> writer_;
   std::string path_;
   std::int64_t opened_ns_ = 0;
+  std::int64_t last_ns_ = 0;                  // the latest that was heard of the time
   std::map<std::size_t, Channels> channels_;  // of the open file
   std::map<std::string, mcap::SchemaId> schemas_;
   std::map<std::pair<std::size_t, std::vector<std::string>>, RecordedSample> last_;  // to repeat

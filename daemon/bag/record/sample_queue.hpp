@@ -15,6 +15,7 @@ struct RecordedSample {
   std::size_t topic = 0;         ///< index of the recorder's topic
   std::int64_t log_time_ns = 0;  ///< when it was received, UTC since 1970
   idl::RawSample sample;
+  std::int64_t age_ns = 0;  ///< when it was received, by its source time and the machine's clock
 };
 
 /// From the thread that takes samples to the one that writes them. Bounded: what does not fit is

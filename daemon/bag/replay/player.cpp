@@ -54,13 +54,12 @@ bool Player::play_pass() {
   ReplaySample sample;
   pacer_.reset();
   sent_any_ = false;
-  while (source_.next(sample)) {
+  wait_for_start();
+  while (!quit_ && source_.next(sample)) {
     if (!begin_ns_) begin_ns_ = sample.log_time_ns;
-    if (options_.duration_ns > 0 &&
-        sample.log_time_ns - *begin_ns_ - options_.start_offset_ns >= options_.duration_ns)
-      return true;
+    if (is_over(options_, *begin_ns_, sample.log_time_ns)) return true;
     const std::string unit = idl::unit_of(sample.cdr);
-    if (!selects(options_, sample.log_time_ns - *begin_ns_, unit)) continue;
+    if (!selects(options_, *begin_ns_, sample.log_time_ns, unit)) continue;
     state_.recorded_ns = sample.log_time_ns - *begin_ns_;
     if (wait_for(sample.log_time_ns) == Wait::kQuit) return true;
     if (state_.passes == 0 && options_.loop) shift_.see(sample, unit);
@@ -74,6 +73,15 @@ bool Player::play_pass() {
     sent_any_ = true;
   }
   return true;
+}
+
+// Only the key that quits counts here.
+void Player::wait_for_start() {
+  const std::int64_t start = clock_.now() + options_.delay_ns;
+  for (std::int64_t now = clock_.now(); now < start && !quit_; now = clock_.now()) {
+    quit_ = next_key_(state_) == Key::kQuit;
+    clock_.sleep_until(std::min(start, now + kLongestSleepNs));
+  }
 }
 
 Player::Wait Player::wait_for(std::int64_t log_time_ns) {

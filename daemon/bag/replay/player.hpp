@@ -14,10 +14,13 @@
 namespace mpm::bag {
 
 struct PlayerOptions {
-  double rate = 1.0;                 ///< 0 = no waiting
-  std::int64_t start_offset_ns = 0;  ///< recorded time to leave out at the beginning
-  std::int64_t duration_ns = 0;      ///< recorded time to play; 0 = to the end
-  bool loop = false;                 ///< begin again at the end, for ever
+  double rate = 1.0;                   ///< 0 = no waiting
+  std::int64_t start_offset_ns = 0;    ///< recorded time to leave out at the beginning
+  std::int64_t duration_ns = 0;        ///< recorded time to play; 0 = to the end
+  std::int64_t end_offset_ns = 0;      ///< recorded time since the beginning to end at; 0 = none
+  std::optional<std::int64_t> end_ns;  ///< log time to end at
+  std::int64_t delay_ns = 0;           ///< to wait before the first sample, of every pass
+  bool loop = false;                   ///< begin again at the end, for ever
   bool start_paused = false;
   std::string unit;                          ///< only this one; empty = all
   std::map<std::string, std::string> remap;  ///< unit names, from -> to
@@ -56,6 +59,7 @@ class Player {
   enum class Wait { kSend, kQuit };
 
   [[nodiscard]] bool play_pass();
+  void wait_for_start();
   [[nodiscard]] Wait wait_for(std::int64_t log_time_ns);
   /// True if a sample is to be sent now, whatever its time.
   [[nodiscard]] bool handle(Key key);

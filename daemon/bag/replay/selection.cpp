@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/text/printable.hpp"
+#include "daemon/files/times/time_text.hpp"
 
 namespace mpm::bag {
 namespace {
@@ -33,10 +34,17 @@ std::string seconds_text(std::int64_t time_ns) {
 
 }  // namespace
 
-bool selects(const PlayerOptions& options, std::int64_t since_ns, const std::string& unit) {
-  const std::int64_t into_ns = since_ns - options.start_offset_ns;
-  return into_ns >= 0 && (options.duration_ns == 0 || into_ns < options.duration_ns) &&
-         (options.unit.empty() || unit == options.unit);
+bool is_over(const PlayerOptions& options, std::int64_t begin_ns, std::int64_t log_time_ns) {
+  const std::int64_t since_ns = log_time_ns - begin_ns;
+  return (options.duration_ns > 0 && since_ns - options.start_offset_ns >= options.duration_ns) ||
+         (options.end_offset_ns > 0 && since_ns >= options.end_offset_ns) ||
+         (options.end_ns && log_time_ns >= *options.end_ns);
+}
+
+bool selects(const PlayerOptions& options, std::int64_t begin_ns, std::int64_t log_time_ns,
+             const std::string& unit) {
+  return log_time_ns - begin_ns >= options.start_offset_ns &&
+         !is_over(options, begin_ns, log_time_ns) && (options.unit.empty() || unit == options.unit);
 }
 
 void check_selection(ReplaySource& source, const PlayerOptions& options) {
@@ -54,7 +62,7 @@ void check_selection(ReplaySource& source, const PlayerOptions& options) {
     length_ns = sample.log_time_ns - *begin_ns;
     const std::string unit = idl::unit_of(sample.cdr);
     units.insert(unit);
-    any = any || selects(options, length_ns, unit);
+    any = any || selects(options, *begin_ns, sample.log_time_ns, unit);
   }
   source.rewind();
   if (!begin_ns) fail("the recording holds no sample of the topics to replay");
@@ -65,7 +73,9 @@ void check_selection(ReplaySource& source, const PlayerOptions& options) {
   if (any) return;
   if (options.start_offset_ns > length_ns)
     fail("--start-offset: the recording ends after " + seconds_text(length_ns));
-  fail("no sample lies in the part that --start-offset and --duration choose");
+  if (options.end_ns && *options.end_ns <= *begin_ns)
+    fail("--playback-until: the recording begins at " + files::utc_text(*begin_ns));
+  fail("no sample lies in the part that --start-offset, --duration and --playback-until choose");
 }
 
 }  // namespace mpm::bag

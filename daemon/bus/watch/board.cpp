@@ -6,6 +6,8 @@
 namespace mpm::bus {
 namespace {
 
+constexpr std::size_t kMostHidden = 10'000;  // anybody may speak
+
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 std::size_t digits_end(const std::string& text, std::size_t from) {
@@ -29,6 +31,10 @@ void order(UnitBoard& board) {
   inputs.insert(inputs.end(), dvs.begin(), dvs.end());
   order(board.inputs, inputs);
   order(board.cvs, board.layout["cv"]);
+}
+
+const std::string& unit_of(const idl::Output& output) {
+  return std::visit([](const auto& record) -> const std::string& { return record.unit; }, output);
 }
 
 bool add_once(std::vector<std::string>& tags, const std::string& tag) {
@@ -59,12 +65,42 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a.size() - i < b.size() - j;
 }
 
-void Board::update(const idl::Output& output) {
+bool Board::listens_to(const idl::Output& output, const std::string& writer,
+                       Clock::time_point now) {
+  // A layout is the control system's.
+  if (writer.empty() || std::holds_alternative<idl::LayoutRecord>(output)) return true;
+  const std::string& unit = unit_of(output);
+  if (!wanted(unit)) return false;
+  const std::string before = speakers_.first(unit);
+  const bool listens = speakers_.listens_to(unit, writer, now);
+  if (listens && !before.empty() && before != writer) turn_to(unit, before, writer);
+  if (std::holds_alternative<idl::MonitorGone>(output)) speakers_.leaves(unit, writer);
+  if (const auto it = units_.find(unit); it != units_.end())
+    it->second.note = speakers_.note(unit, now);
+  return listens;
+}
+
+void Board::turn_to(const std::string& unit, const std::string& before, const std::string& writer) {
+  UnitBoard& shown = units_[unit];
+  UnitBoard next = std::move(hidden_[{unit, writer}]);
+  next.layout = shown.layout;
+  order(next);
+  hidden_.erase({unit, writer});
+  if (hidden_.size() >= kMostHidden) hidden_.clear();
+  hidden_[{unit, before}] = std::move(shown);
+  shown = std::move(next);
+}
+
+void Board::update(const idl::Output& output, const std::string& writer) {
+  const bool shown = writer.empty() || std::holds_alternative<idl::LayoutRecord>(output) ||
+                     speakers_.first(unit_of(output)) == writer;
+  writer_ = shown ? "" : writer;
   std::visit([this](const auto& record) { show(record); }, output);
 }
 
 UnitBoard* Board::board_of(const std::string& unit) {
-  return wanted(unit) ? &units_[unit] : nullptr;
+  if (!wanted(unit)) return nullptr;
+  return writer_.empty() ? &units_[unit] : &hidden_[{unit, writer_}];
 }
 
 void Board::show(const idl::LayoutRecord& layout) {
@@ -109,8 +145,12 @@ void Board::show(const HealthRecord& health) {
 }
 
 void Board::show(const idl::MonitorGone& gone) {
-  const auto it = units_.find(gone.unit);
-  if (it != units_.end()) it->second.gone = true;
+  if (units_.find(gone.unit) == units_.end()) return;
+  if (UnitBoard* board = board_of(gone.unit)) board->gone = true;
+}
+
+void Board::note_speakers(Clock::time_point now) {
+  for (auto& [name, unit] : units_) unit.note = speakers_.note(name, now);
 }
 
 void Board::take_rate(std::chrono::duration<double> elapsed) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/bus/watch/speakers.hpp"
 #include "idl/output_readers.hpp"
 
 namespace mpm::bus {
@@ -22,6 +23,7 @@ struct UnitBoard {
   std::map<std::string, std::vector<std::string>> layout;                  ///< by kind
   HealthRecord health;
   bool gone = false;  ///< its monitor left
+  std::string note;   ///< what else there is to say of its monitors
   std::uint64_t samples = 0;
   std::int64_t last_interval = 0;
   double samples_per_s = 0.0;
@@ -35,7 +37,16 @@ class Board {
   /// `unit` empty: all.
   explicit Board(std::string unit) : unit_(std::move(unit)) {}
 
-  void update(const idl::Output& output);
+  using Clock = Speakers::Clock;
+
+  /// False where `writer`, the process that this comes from, is not the monitor of its unit that is
+  /// shown (Speakers). Asked before `update`.
+  [[nodiscard]] bool listens_to(const idl::Output& output, const std::string& writer,
+                                Clock::time_point now);
+  /// `writer` empty: it is shown. What another one says is kept for when its turn comes.
+  void update(const idl::Output& output, const std::string& writer = {});
+  /// For when nobody speaks: what there is to say of a unit's monitors.
+  void note_speakers(Clock::time_point now);
   /// Takes the sample rate over the time since the last call.
   void take_rate(std::chrono::duration<double> elapsed);
 
@@ -47,6 +58,7 @@ class Board {
 
  private:
   UnitBoard* board_of(const std::string& unit);
+  void turn_to(const std::string& unit, const std::string& before, const std::string& writer);
   void show(const idl::LayoutRecord& layout);
   void show(const ChannelRecord& channel);
   void show(const AlarmStateRecord& alarm);
@@ -56,6 +68,9 @@ class Board {
 
   std::string unit_;
   std::map<std::string, UnitBoard> units_;
+  Speakers speakers_;
+  std::map<std::pair<std::string, std::string>, UnitBoard> hidden_;  // by unit and writer
+  std::string writer_;                                               // of what is being shown
 };
 
 }  // namespace mpm::bus

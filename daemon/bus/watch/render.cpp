@@ -71,6 +71,7 @@ std::string head(const std::string& name, const UnitBoard& board, const report::
   else if (!health.state.empty())
     text += "  health: " + health.state +
             (health.detail.empty() ? "" : " (" + health.detail + ")") + '\n';
+  if (!board.note.empty()) text += "  " + layout.paint(Tint::kRed, board.note) + '\n';
   return text;
 }
 

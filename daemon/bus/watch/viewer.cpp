@@ -42,15 +42,16 @@ Viewer::Viewer(ViewMode mode, const RenderOptions& options, std::string unit)
   if (mode_ == ViewMode::kTable) std::fputs("\x1b[2J", stdout);
 }
 
-void Viewer::show(const idl::Output& output) {
+void Viewer::show(const idl::Output& output, const std::string& writer, Clock::time_point now) {
   if (mode_ == ViewMode::kJson) {
     print_json(output);
     board_.update(output);
     return;
   }
   const idl::Output shown = printable_output(output);
-  if (mode_ == ViewMode::kLines) print_change(shown);
-  board_.update(shown);
+  const bool listens = board_.listens_to(shown, writer, now);
+  if (mode_ == ViewMode::kLines && listens) print_change(shown);
+  board_.update(shown, writer);
 }
 
 void Viewer::print_json(const idl::Output& output) {
@@ -99,6 +100,7 @@ void Viewer::tick(Clock::time_point now) {
 void Viewer::draw(Clock::time_point now) {
   if (now - last_rate_ >= kRatePeriod) {
     board_.take_rate(now - last_rate_);
+    board_.note_speakers(now);
     last_rate_ = now;
   }
   if (now - last_drawn_ < kRedraw) return;

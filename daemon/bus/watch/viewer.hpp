@@ -21,7 +21,9 @@ class Viewer {
 
   Viewer(ViewMode mode, const RenderOptions& options, std::string unit);
 
-  void show(const idl::Output& output);
+  /// `writer`: the process it comes from. Of several monitors of one unit one is shown (Speakers);
+  /// as JSON everything is.
+  void show(const idl::Output& output, const std::string& writer, Clock::time_point now);
   /// Redraws the table a few times a second; passes on what was written so far.
   void tick(Clock::time_point now);
   /// False when nobody reads stdout any more.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/files/csv/cell.hpp"
 
@@ -62,13 +63,13 @@ void ReadTally::tell(std::vector<std::string>& notices) const {
         std::to_string(sum(qualities)) +
         " qualities taken as bad, since their words are not known: " + listed(qualities));
   if (not_finite > 0)
-    notices.push_back(std::to_string(not_finite) +
-                      " values taken as missing: they are not finite, or too large for a double");
+    notices.push_back(counted(not_finite, "value") +
+                      " taken as missing: they are not finite, or too large for a double");
   if (repeated > 0)
-    notices.push_back(std::to_string(repeated) +
-                      " values replaced by later ones of the same tag and time");
+    notices.push_back(counted(repeated, "value") +
+                      " replaced by later ones of the same tag and time");
   if (empty_rows > 0)
-    notices.push_back(std::to_string(empty_rows) + " rows without time and values are left out");
+    notices.push_back(counted(empty_rows, "row") + " without time and values left out");
 }
 
 double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell,
@@ -137,15 +138,15 @@ bool check_width(const LineReader& lines, const std::vector<Cell>& cells, std::s
                  std::vector<std::string>& notices) {
   if (cells.size() < width) {
     if (lines.complete())
-      lines.fail(cells.back().column, "has " + std::to_string(cells.size()) +
-                                          " cells, the header " + std::to_string(width));
+      lines.fail(cells.back().column,
+                 "has " + counted(cells.size(), "cell") + ", the header " + std::to_string(width));
     notices.push_back("line " + std::to_string(lines.number()) + " is cut off and ignored");
     return false;
   }
   for (std::size_t i = width; i < cells.size(); ++i)  // a delimiter at the end does no harm
     if (!cells[i].text.empty())
-      lines.fail(cells[i].column, "has " + std::to_string(cells.size()) + " cells, the header " +
-                                      std::to_string(width));
+      lines.fail(cells[i].column,
+                 "has " + counted(cells.size(), "cell") + ", the header " + std::to_string(width));
   return true;
 }
 

@@ -1,5 +1,6 @@
 #include "daemon/files/times/local_times.hpp"
 
+#include "core/text/number_text.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::files {
@@ -105,8 +106,8 @@ std::vector<std::string> LocalTimes::notices() const {
   if (local_ > 0)
     notices.push_back("times without a zone are read as those of " + style_.zone->name());
   if (twice_ > 0)
-    notices.push_back(std::to_string(twice_) + " times lie in an hour that " + style_.zone->name() +
-                      " has twice; they are taken in the order of the rows");
+    notices.push_back(counted(twice_, "time") + " in an hour that " + style_.zone->name() +
+                      " has twice, taken in the order of the rows");
   return notices;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/text/number_text.hpp"
 #include "daemon/mcap/format/crc32.hpp"
 #include "daemon/mcap/format/decode.hpp"
 
@@ -34,6 +35,11 @@ FileLayout scan(InputFile& file) {
       break;
     }
     if (head->op == Op::kDataEnd) in_data = false;
+    if (head->op == Op::kStatistics) {
+      Decoder fields(file.view(head->content(), std::min(head->length, sizeof(std::uint64_t))));
+      const std::uint64_t messages = fields.u64();
+      if (fields.ok()) layout.messages = messages;
+    }
     if (!in_data) continue;
     if (head->op == Op::kMessage) layout.messages_outside = true;
     if (head->op == Op::kSchema || head->op == Op::kChannel) {
@@ -92,10 +98,10 @@ std::string index_problem(InputFile& file, const FileLayout& layout, std::uint64
       !std::equal(
           chunks.begin(), chunks.end(), layout.chunks.begin(),
           [](std::uint64_t offset, const ChunkPlace& chunk) { return offset == chunk.offset; }))
-    return "it names " + std::to_string(chunks.size()) + " chunks, not the " +
+    return "it names " + mpm::counted(chunks.size(), "chunk") + ", not the " +
            std::to_string(layout.chunks.size()) + " that are there";
   if (counted && *counted != messages)
-    return "it counts " + std::to_string(*counted) + " messages, not the " +
+    return "it counts " + mpm::counted(*counted, "message") + ", not the " +
            std::to_string(messages) + " that are there";
   return {};
 }

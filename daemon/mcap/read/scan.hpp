@@ -21,9 +21,10 @@ struct FileLayout {
   std::set<std::string> compressions;  ///< of the chunks; "" = none
   std::uint64_t packed_bytes = 0;      ///< of the chunks' records
   std::uint64_t unpacked_bytes = 0;
-  Definitions definitions;        ///< those outside of chunks
-  bool messages_outside = false;  ///< there are messages outside of chunks
-  std::optional<Damage> damage;   ///< where the walk ended, if not at the end of the file
+  Definitions definitions;                ///< those outside of chunks
+  bool messages_outside = false;          ///< there are messages outside of chunks
+  std::optional<std::uint64_t> messages;  ///< as the index counts them, where it does
+  std::optional<Damage> damage;           ///< where the walk ended, if not at the end of the file
 };
 
 /// Reads the heads of all records. A file that no index describes is told by this as well as any.

@@ -94,7 +94,7 @@ TEST_CASE("A historian's export becomes a recording and says what was left out")
   for (const std::string& notice : report.notices) notices += notice + '\n';
   CHECK(notices.find("other") != std::string::npos);
   CHECK(notices.find("line 7 is cut off") != std::string::npos);
-  CHECK(notices.find("4 times lie in an hour that Europe/Berlin has twice") != std::string::npos);
+  CHECK(notices.find("4 times in an hour that Europe/Berlin has twice") != std::string::npos);
   bag::ConvertOptions out;
   static_cast<void>(bench.convert("h.mcap", "back.csv", out));
   CHECK(bench.text("back.csv") ==

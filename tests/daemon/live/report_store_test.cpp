@@ -23,15 +23,6 @@ std::set<std::string> names(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("folders are named by the alarm's time and by the unit, whatever it is called") {
-  CHECK(time_folder(0) == "19700101T000000Z");
-  CHECK(time_folder(1'714'564'800'250'000'000) == "20240501T120000.250Z");
-  CHECK(time_folder(-1'000'000) == "19691231T235959.999Z");
-  CHECK(unit_folder("shell-3_x.y") == "shell-3_x.y");
-  CHECK(unit_folder("../a b") == "%2E.%2Fa%20b");
-  CHECK(unit_folder("..") == "%2E.");
-}
-
 TEST_CASE("the store writes all files of a diagnosis and keeps the last written ones") {
   const test::TemporaryFolder folder;
   const ReportStore store(folder.file("state"), 2);

@@ -505,5 +505,5 @@ TEST_CASE("What was assumed is said") {
   says("proficy_data_section.csv", "line 2 is taken for the header");
   says("excel_few_days_month_first.csv", "dates are read month first");
   says("excel_dates_going_on.csv", "dates are read day first");
-  says("excel_us.csv", "1 rows without time and values are left out");
+  says("excel_us.csv", "1 row without time and values left out");
 }

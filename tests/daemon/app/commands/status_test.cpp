@@ -1,4 +1,9 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "tests/system/process.hpp"
 
@@ -17,6 +22,35 @@ TEST_CASE("mpm status says one line, whatever happens") {
   CHECK(run({"mpm", "status", "--interface", "nosuchnic0"}, out, err) == 3);
   CHECK(lines_of(read_file(out)).size() == 1);
   CHECK(read_file(err).empty());
+}
+
+TEST_CASE("mpm status asks for every unit where its file says") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out"), err = folder.file("err");
+  std::filesystem::create_directory(folder.file("units"));
+  for (const std::string unit : {"one", "two"})
+    write_file(folder.file("units/" + unit + ".yaml"),
+               "unit: " + unit + "\nsample_time: 1\nsignals: {mv: [u], cv: [y]}\n" +
+                   "model: {channels: [{cv: y, mv: u, gain: 2, time_constants: [5]}]}\n" +
+                   "dds: {domain: 7, partition: status-" + unit + "-" + std::to_string(getpid()) +
+                   "}\n");
+  const Process monitor({"mpmd", "--config", folder.file("units")}, folder.file("mpmd.out"),
+                        folder.file("mpmd.err"));
+  const auto said = [&](std::vector<std::string> options) {
+    options.insert(options.begin(),
+                   {"mpm", "status", "--config", folder.file("units"), "--wait", "5"});
+    static_cast<void>(run(options, out, err));
+    return read_file(out);
+  };
+  const std::string both = said({});
+  INFO(both);
+  CHECK(both.find("one: ") != std::string::npos);
+  CHECK(both.find("two: ") != std::string::npos);
+  CHECK(both.find("no monitor") == std::string::npos);
+  const std::string second = said({"--unit", "two"});
+  CHECK(second.find("two: ") != std::string::npos);
+  CHECK(second.find("no monitor") == std::string::npos);
+  CHECK(second.find("one") == std::string::npos);
 }
 
 }  // namespace mpm::test

@@ -100,24 +100,39 @@ TEST_CASE("the quota takes the oldest of our files and no other") {
   for (const std::string& name : others) write_bytes(folder.file(name), 1000);
 
   RecordingFiles files(folder.file(""), true, 1000, kStart);
-  files.make_room(300);  // 400 + 400 + 300 to come
+  files.make_room(300, kStart);  // 400 + 400 + 300 to come
   CHECK(files.deleted() == 1);
   const std::string first = files.next();
   write_bytes(first, 300);
-  files.finished(first, 300);
-  files.make_room(300);
+  files.finished({first, 300, kStart, kStart, true});
+  files.make_room(300, kStart);
   CHECK(files.deleted() == 1);
   const std::string second = files.next();
   write_bytes(second, 300);
-  files.finished(second, 300);
-  files.make_room(300);
+  files.finished({second, 300, kStart, kStart, true});
+  files.make_room(300, kStart);
   CHECK(files.deleted() == 2);
-  files.make_room(5000);  // never everything
+  files.make_room(5000, kStart);  // never everything
   CHECK(files.deleted() == 3);
   std::vector<std::string> expected = others;
   expected.push_back(std::filesystem::path(second).filename());
   std::sort(expected.begin(), expected.end());
   CHECK(names_in(folder.file("")) == expected);
+}
+
+TEST_CASE("what is kept for some time only does not take the recordings of others with it") {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"mpm-20200101T000000Z-0001.mcap", "ring-20200101T000000Z-0001.mcap",
+                           "ring-20200101T000000Z-0002.mcap"})
+    write_bytes(folder.file(name), 10);  // no recordings: they count as ended at the start
+  RecordingFiles files(folder.file(""), true, 0, kStart, 60 * kSecond);
+  CHECK(files.next() == folder.file("ring-20231114T221320Z-0001.mcap"));
+  files.make_room(0, kStart + 60 * kSecond);
+  CHECK(files.deleted() == 0);
+  files.make_room(0, kStart + 61 * kSecond);
+  CHECK(names_in(folder.file("")) ==
+        std::vector<std::string>{"mpm-20200101T000000Z-0001.mcap",
+                                 "ring-20200101T000000Z-0002.mcap"});  // the newest stays
 }
 
 TEST_CASE("numbers go on behind those of earlier runs, which the quota counts and takes first") {
@@ -132,13 +147,13 @@ TEST_CASE("numbers go on behind those of earlier runs, which the quota counts an
                                            "qq-0001.mcap"};
   for (const std::string& name : others) write_bytes(folder.file(name), 1000);
   RecordingFiles files(folder.file("q.mcap"), true, 1000, kStart);
-  files.make_room(300);  // 900 + 300 to come
+  files.make_room(300, kStart);  // 900 + 300 to come
   CHECK(files.next() == folder.file("q-10001.mcap"));
   CHECK(files.deleted() == 1);
   CHECK_FALSE(std::filesystem::exists(folder.file("q-0002.mcap")));
   write_bytes(folder.file("q-10002.mcap"), 1);  // by somebody else in the meantime
   CHECK(files.next() == folder.file("q-10003.mcap"));
-  files.make_room(800);
+  files.make_room(800, kStart);
   CHECK_FALSE(std::filesystem::exists(folder.file("q-0009.mcap")));
   CHECK(std::filesystem::exists(folder.file("q-10000.mcap")));  // the newest stays
   for (const std::string& name : others) CHECK(std::filesystem::exists(folder.file(name)));

@@ -146,6 +146,42 @@ TEST_CASE("a replay starts and ends where it is told and keeps to one unit") {
   CHECK(stage.sent[0].unit == "copy");
 }
 
+TEST_CASE("a replay ends at a moment, of the recording or of the clock, whichever is first") {
+  FakeSource source(10);  // one sample each half second from 50 s on
+  const auto count = [&](const PlayerOptions& options) {
+    Stage stage;
+    stage.play(source, options);
+    source.rewind();
+    return stage.sent.size();
+  };
+  PlayerOptions options;
+  options.end_offset_ns = 4 * kSecond;
+  CHECK(count(options) == 8);
+  options.start_offset_ns = 3 * kSecond;  // does not move the end
+  CHECK(count(options) == 2);
+  options.end_ns = 53 * kSecond + kSecond / 2;
+  CHECK(count(options) == 1);
+  options.end_ns = 60 * kSecond;
+  CHECK(count(options) == 2);
+}
+
+TEST_CASE("a delay comes before every pass, and can be quit") {
+  FakeSource source(1);  // samples at 0 and 0.5 s
+  Stage stage;
+  PlayerOptions options;
+  options.delay_ns = 3 * kSecond;
+  options.loop = true;
+  stage.most = 4;
+  stage.play(source, options);
+  CHECK(stage.times() == Times{3000, 3500, 6500, 7000});
+  source.rewind();
+  Stage quit;
+  quit.keys = {{0, Key::kQuit}};
+  quit.play(source, options);
+  CHECK(quit.sent.empty());
+  CHECK(quit.clock.now() - quit.start < kSecond);
+}
+
 TEST_CASE("keys pause, step, change the speed and quit") {
   FakeSource source(10);
   Stage stage;
@@ -238,7 +274,17 @@ TEST_CASE("a selection that chooses nothing is said before anything is played") 
   CHECK(said(options) == "--start-offset: the recording ends after 9.5 s");
   options.start_offset_ns = 9 * kSecond;
   options.duration_ns = kSecond / 4;  // b is half a second later
-  CHECK(said(options) == "no sample lies in the part that --start-offset and --duration choose");
+  const std::string nothing =
+      "no sample lies in the part that --start-offset, --duration and --playback-until choose";
+  CHECK(said(options) == nothing);
+  options.duration_ns = 0;
+  options.end_offset_ns = 9 * kSecond;
+  CHECK(said(options) == nothing);
+  options = {};
+  options.end_ns = 50 * kSecond;
+  CHECK(said(options) == "--playback-until: the recording begins at 1970-01-01T00:00:50Z");
+  options.end_ns = 50 * kSecond + 1;
+  CHECK(said(options).empty());
 }
 
 TEST_CASE("a recording without chunks does not claim to know its length") {

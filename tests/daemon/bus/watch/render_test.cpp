@@ -66,6 +66,35 @@ TEST_CASE("a monitor that starts anew does not stand by what the one before it s
   CHECK(render(board, {false, false}).find("mismatch") == std::string::npos);
 }
 
+TEST_CASE("of two monitors one is shown, whole, and the other once that has left") {
+  using namespace std::chrono_literals;
+  constexpr Board::Clock::time_point kNow{1h};
+  Board board("");
+  const auto say = [&](const idl::Output& output, const std::string& writer) {
+    const bool listens = board.listens_to(output, writer, kNow);
+    board.update(output, writer);
+    return listens;
+  };
+  const auto picture = [&] { return render(board, {false, false}); };
+  board.update(idl::LayoutRecord{"shell", "mv", {"u2", "u1"}});
+  CHECK(say(channel("u1", "y1", Verdict::kMatch), "first"));
+  CHECK_FALSE(say(channel("u1", "y1", Verdict::kMismatch), "second"));
+  CHECK_FALSE(say(channel("u2", "y1", Verdict::kMatch), "second"));
+  CHECK_FALSE(say(alarm("u1", "y1", AlarmChange::kActive), "second"));
+  CHECK(picture().find("mismatch") == std::string::npos);
+  CHECK(picture().find("no active alarms") != std::string::npos);
+  CHECK(picture().find("two monitors publish for it: first, second") != std::string::npos);
+
+  CHECK(say(idl::MonitorGone{"shell"}, "first"));
+  CHECK(picture().find("monitor gone") != std::string::npos);
+  CHECK(say(channel("u2", "y1", Verdict::kMatch), "second"));
+  CHECK(picture().find("two monitors") == std::string::npos);
+  CHECK(picture().find("monitor gone") == std::string::npos);
+  CHECK(picture().find("mismatch") != std::string::npos);  // said before its turn came
+  CHECK(board.any_alarm());
+  CHECK(board.units().at("shell").inputs == std::vector<std::string>{"u2", "u1"});
+}
+
 TEST_CASE("the picture says every verdict in words, why it is undetermined, and the alarms") {
   Board board("");
   CHECK(render(board, {}) == "waiting for a monitor ...\n");

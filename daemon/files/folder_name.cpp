@@ -1,0 +1,41 @@
+#include "daemon/files/folder_name.hpp"
+
+#include <array>
+#include <cctype>
+#include <cstdio>
+
+#include "daemon/files/times/time_text.hpp"
+
+namespace mpm::files {
+
+std::string time_folder(std::int64_t time_ns) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const std::int64_t part = ((time_ns % kSecond) + kSecond) % kSecond;
+  const std::int64_t second = time_ns / kSecond - (time_ns % kSecond < 0 ? 1 : 0);
+  std::string name = formatted_utc(second, "%Y%m%dT%H%M%S");
+  const auto milliseconds = static_cast<int>(part / 1'000'000);
+  if (milliseconds > 0) {
+    std::array<char, 16> text{};
+    std::snprintf(text.data(), text.size(), ".%03d", milliseconds);
+    name += text.data();
+  }
+  return name + "Z";
+}
+
+std::string folder_name(const std::string& name) {
+  std::string result;
+  for (const char letter : name) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (std::isalnum(code) != 0 || letter == '-' || letter == '_' ||
+        (letter == '.' && !result.empty())) {
+      result += letter;
+      continue;
+    }
+    std::array<char, 8> text{};
+    std::snprintf(text.data(), text.size(), "%%%02X", static_cast<unsigned>(code));
+    result += text.data();
+  }
+  return result;
+}
+
+}  // namespace mpm::files

@@ -1,0 +1,26 @@
+# `cmake --install BUILD --prefix PREFIX`: the programs, what shells and `man` need, the types for
+# clients, and unit files to begin with. Nothing in there needs the source or the build tree.
+include(GNUInstallDirs)
+
+# The programs tell of themselves.
+function(mpm_says output)
+  add_custom_command(OUTPUT ${output} COMMAND mpm ${ARGN} > ${output} DEPENDS mpm VERBATIM)
+endfunction()
+set(said ${PROJECT_BINARY_DIR}/said)
+file(MAKE_DIRECTORY ${said})
+mpm_says(${said}/mpm.1 man)
+mpm_says(${said}/mpm completion bash)
+mpm_says(${said}/_mpm completion zsh)
+mpm_says(${said}/mpm.fish completion fish)
+add_custom_target(mpm_said ALL
+  DEPENDS ${said}/mpm.1 ${said}/mpm ${said}/_mpm ${said}/mpm.fish)
+
+install(TARGETS mpm mpmd mpmsim RUNTIME)
+install(FILES ${said}/mpm.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${said}/mpm DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${said}/_mpm DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+install(FILES ${said}/mpm.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+install(FILES idl/mpm.idl DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
+install(DIRECTORY config/units config/plants config/scenarios
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN *.yaml)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,0 +1,24 @@
+#!/bin/sh
+# check_install.sh BUILD SOURCE: what `cmake --install` puts under a prefix works from there.
+set -eu
+build=$1
+source=$2
+prefix=$(mktemp -d)
+trap 'rm -rf "$prefix"' EXIT
+fail() { printf '%s\n' "$*" >&2; exit 1; }
+
+cmake --install "$build" --prefix "$prefix" >"$prefix/log"
+for program in mpm mpmd mpmsim; do
+  "$prefix/bin/$program" --version | grep -q "^$program " || fail "$program does not run"
+done
+grep -q '^\.TH MPM 1 ' "$prefix/share/man/man1/mpm.1" || fail "no manual page"
+bash -n "$prefix/share/bash-completion/completions/mpm" || fail "no completion for bash"
+grep -q '^#compdef mpm' "$prefix/share/zsh/vendor-completions/_mpm" || fail "none for zsh"
+grep -q '^complete -c mpm' "$prefix/share/fish/vendor_completions.d/mpm.fish" || fail "none for fish"
+cmp "$source/idl/mpm.idl" "$prefix/share/mpm/mpm.idl"
+"$prefix/bin/mpmd" --check --config "$prefix/share/mpm/units" || fail "the example is not right"
+# Plants find their scenarios, and `mpm` the simulator beside it.
+"$prefix/bin/mpmsim" --config "$prefix/share/mpm/plants/shell3x3.yaml" --scenario hidden_gain \
+  --samples 50 --csv "$prefix/run.csv" || fail "no scenarios"
+[ "$(find "$prefix" -name '*.cpp' -o -name '*.a' -o -name 'CMakeLists.txt' | wc -l)" -eq 0 ] ||
+  fail "what nobody asked for is installed"
