@@ -58,6 +58,7 @@ std::vector<fs::path> snapshots_by_age(const fs::path& folder) {
       found.emplace_back(entry.last_write_time(ignored), entry.path());
   std::sort(found.begin(), found.end());
   std::vector<fs::path> paths;
+  paths.reserve(found.size());
   for (auto& [time, path] : found) paths.push_back(std::move(path));
   return paths;
 }
