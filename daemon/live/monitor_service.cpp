@@ -7,6 +7,7 @@
 
 #include "core/text/number_text.hpp"
 #include "daemon/bus/domain_options.hpp"
+#include "daemon/files/folder_name.hpp"
 #include "daemon/live/report_store.hpp"
 
 namespace mpm::live {
@@ -41,7 +42,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
     }
     UnitPipeline& pipeline = domain->add_unit(unit, samples_ ? &*samples_ : nullptr, now);
     if (!options.journal.empty())
-      pipeline.keep({unit, history::JournalFiles(options.journal, unit_folder(unit.unit),
+      pipeline.keep({unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                  options.journal_keep / units.size())});
     pipeline.diagnose_with(worker, asker++);
     if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);

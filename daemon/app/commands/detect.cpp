@@ -15,9 +15,9 @@
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
+#include "daemon/files/folder_name.hpp"
 #include "daemon/history/journal.hpp"
 #include "daemon/host/terminal.hpp"
-#include "daemon/live/report_store.hpp"
 #include "daemon/live/sample_journal.hpp"
 #include "daemon/mcap/read/file_sequence.hpp"
 #include "daemon/report/detect_report.hpp"
@@ -49,7 +49,7 @@ struct Journals {
 
   Journals(const DetectOptions& options, const config::UnitConfig& unit) {
     if (!options.journal.empty())
-      journal.emplace(unit, history::JournalFiles(options.journal, live::unit_folder(unit.unit),
+      journal.emplace(unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                   kWholeJournal));
     if (!options.sample_journal.empty()) samples.emplace(options.sample_journal);
   }
