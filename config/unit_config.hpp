@@ -90,6 +90,14 @@ struct UnitConfig {
     const auto i = static_cast<std::size_t>(index);
     return i < mv.size() ? mv[i].tag : dv[i - mv.size()].tag;
   }
+  /// Tag of what moves a unit: the model's inputs, then the CVs' set-points, then auxiliary
+  /// signals.
+  [[nodiscard]] const std::string& mover_tag(int index) const {
+    auto i = static_cast<std::size_t>(index);
+    if (i < mv.size() + dv.size()) return input_tag(index);
+    i -= mv.size() + dv.size();
+    return i < cv.size() ? cv[i].setpoint : aux[i - cv.size()].tag;
+  }
   /// Tags of the model's inputs, MVs first, and of the CVs.
   [[nodiscard]] std::vector<std::string> input_tags() const {
     std::vector<std::string> tags;

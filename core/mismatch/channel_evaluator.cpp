@@ -36,6 +36,8 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
   estimates_.read(cv, memory.factor);
   const EstimateNoise noise = estimate_noise(memory);
   joint_.read(cv, memory.factor, signatures_, noise, estimates_);
+  const double all = estimates_.rotated().squaredNorm();
+  explained_ = {all, all - joint_.left_square(), noise.variance};
   for (int i = 0; i < shape_.inputs; ++i) {
     evidence[i] = ChannelEvidence{};
     if (estimates_.moved(i) && noise.variance > 0.0)
@@ -107,7 +109,8 @@ void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noi
   }
   const double scale = signatures.gain == 0.0 ? evidence.reference_gain : 1.0;
   const double information = scale * scale * channel.usual.col(0).squaredNorm();
-  const double deviation = std::sqrt(noise.variance / information);
+  const double deviation =
+      calibration::joint_errors::kCaution * std::sqrt(noise.variance / information);
   if (deviation < evidence.excitation_index &&
       evidence.excitation_index < calibration::joint_errors::kMovesWithOthers) {
     evidence.excitation_index = deviation;

@@ -40,6 +40,14 @@ class ChannelEvaluator {
 
   /// Evidence of all inputs to one CV into `evidence` (as many as inputs); the memory is ready.
   void evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence);
+  /// What is explained of a CV's residual beyond its own past, in squares.
+  struct Explained {
+    double inputs = 0.0;        ///< by all inputs' blocks
+    double usual_errors = 0.0;  ///< by usual errors of all channels; else as much
+    double variance = 0.0;      ///< of the noise
+  };
+  /// Of the last `evaluate`.
+  [[nodiscard]] const Explained& explained() const { return explained_; }
 
  private:
   [[nodiscard]] std::size_t index(int cv, int input) const {
@@ -60,6 +68,7 @@ class ChannelEvaluator {
   void scaled_error(const Signature& error, int input, Eigen::Ref<Eigen::VectorXd> out) const;
   [[nodiscard]] double reference_gain(int cv, int input) const;
 
+  Explained explained_;
   RegressionShape shape_;
   std::vector<ChannelSignatures> signatures_;  // input-major
   std::vector<MaterialityLimits> limits_;      // likewise

@@ -35,8 +35,6 @@ JointErrors::JointErrors(const RegressionShape& shape)
 void JointErrors::read(int cv, const GivensQr& factor,
                        const std::vector<ChannelSignatures>& signatures, const EstimateNoise& noise,
                        InputEstimates& estimates) {
-  adequate_ = false;
-  if (noise.freedom < calibration::joint_errors::kFreedomPerColumn * shape_.columns()) return;
   own_lags_ = Eigen::Map<const Eigen::VectorXd>(estimates.own_lags(), shape_.residual_order);
   fit(cv, signatures, noise, estimates);
   for (int turn = 0; turn < calibration::joint_errors::kTurns; ++turn) {
@@ -48,6 +46,8 @@ void JointErrors::read(int cv, const GivensQr& factor,
         calibration::joint_errors::kWorthAnotherTurn * noise.variance)
       break;
   }
+  adequate_ =
+      adequate_ && noise.freedom >= calibration::joint_errors::kFreedomPerColumn * shape_.columns();
   if (!adequate_) estimates.set_own_lags(own_lags_.data());
 }
 

@@ -33,6 +33,8 @@ class JointErrors {
             const EstimateNoise& noise, InputEstimates& estimates);
   /// Whether usual errors explain all that the inputs do.
   [[nodiscard]] bool adequate() const { return adequate_; }
+  /// What they leave of all that the inputs explain, in squares.
+  [[nodiscard]] double left_square() const { return all_.residual_square(0); }
 
   /// One input's errors, whitened, once those of the other inputs are taken out.
   struct Channel {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/mismatch/calibration.hpp"
+
 namespace mpm {
 
 MismatchDetector::MismatchDetector(const RegressionShape& shape,
@@ -13,7 +15,8 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
       history_(shape, remembered),
       work_(shape.columns(), patience),
       evaluator_(shape, model, std::move(limits)),
-      evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs) * memories.size()) {
+      evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs) * memories.size()),
+      explained_(static_cast<std::size_t>(shape.cvs)) {
   for (int j = 0; j < shape.cvs; ++j) regressions_.emplace_back(shape, j, memories, remembered);
 }
 
@@ -36,6 +39,17 @@ void MismatchDetector::fold(int cv) {
 void MismatchDetector::evaluate(int cv, int memory) {
   fold(cv);
   evaluator_.evaluate(cv, regression(cv).memory(memory), &evidence_[first_evidence(cv, memory)]);
+  if (memory == 0) explained_[static_cast<std::size_t>(cv)] = evaluator_.explained();
+}
+
+Rival MismatchDetector::rival(int cv, const FollowedSignal& followed) const {
+  const ChannelEvaluator::Explained& by = explained_[static_cast<std::size_t>(cv)];
+  const double margin = calibration::confounding::kMargin * by.variance;
+  // Without what so many coefficients explain by chance.
+  const double inputs = by.inputs - by.variance * shape_.inputs * shape_.block();
+  const bool much = followed.explained > calibration::confounding::kShare * inputs;
+  return {followed.signal, much && followed.explained > by.usual_errors + margin,
+          !much || followed.explained < by.usual_errors - margin};
 }
 
 void MismatchDetector::start_afresh(int cv, int samples) {

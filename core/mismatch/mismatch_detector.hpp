@@ -7,11 +7,19 @@
 
 #include "core/mismatch/channel_evaluator.hpp"
 #include "core/mismatch/channel_evidence.hpp"
+#include "core/mismatch/outside_signals.hpp"
 #include "core/mismatch/regression_history.hpp"
 #include "core/mismatch/residual_regression.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {
+
+/// A signal that a CV follows, beside errors of the CV's channels as the cause of what is off.
+struct Rival {
+  int signal = -1;
+  bool wins = false;  ///< it clearly explains more
+  bool loses = true;  ///< it clearly explains less
+};
 
 /// Finds the channels of which the model is wrong. Per CV j the model residual e_j is regressed, in
 /// ARX form (the direct method, valid in closed loop because the innovation w_j(k) is independent
@@ -53,6 +61,9 @@ class MismatchDetector {
   [[nodiscard]] const ChannelEvidence& evidence(int cv, int input, int memory = 0) const {
     return evidence_[first_evidence(cv, memory) + static_cast<std::size_t>(input)];
   }
+  /// What a signal that is no input says of a CV beside errors of its channels. After
+  /// `evaluate(cv, 0)`.
+  [[nodiscard]] Rival rival(int cv, const FollowedSignal& followed) const;
   /// Forgets of this CV what is older than its last `samples` samples (>= 0).
   void start_afresh(int cv, int samples);
 
@@ -78,6 +89,7 @@ class MismatchDetector {
   RowWorkspace work_;
   ChannelEvaluator evaluator_;
   std::vector<ChannelEvidence> evidence_;
+  std::vector<ChannelEvaluator::Explained> explained_;  // per CV, of the first memory
 };
 
 }  // namespace mpm

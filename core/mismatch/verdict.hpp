@@ -16,6 +16,7 @@ enum class Reason : std::uint8_t {
   kWarmingUp,       ///< too few effective samples yet
   kNotExcited,      ///< the input did not move enough to show an error of interest
   kCollinear,       ///< the input moved only together with another one (`confounder`)
+  kConfounded,      ///< what is off in this CV follows a signal that is no input (`confounder`)
   kBadData,         ///< too many of the values needed are missing, bad or implausible
   kControllerOff,   ///< no manipulated variable moves: the controller is off or in manual
   kConstrained,     ///< the input sits at a limit
@@ -28,15 +29,8 @@ enum class Reason : std::uint8_t {
 }
 
 [[nodiscard]] constexpr auto words_of(Reason) {
-  return std::array{"",
-                    "warming_up",
-                    "not_excited",
-                    "collinear",
-                    "bad_data",
-                    "controller_off",
-                    "constrained",
-                    "isolating",
-                    "weak_excitation"};
+  return std::array{"",         "warming_up",     "not_excited", "collinear", "confounded",
+                    "bad_data", "controller_off", "constrained", "isolating", "weak_excitation"};
 }
 
 /// The numbers behind a verdict that an alarm repeats.
@@ -67,7 +61,9 @@ struct ChannelVerdict : AlarmEvidence {
 
 /// Judgement on one channel (one input to one CV) after one sample.
 struct ChannelStatus : ChannelVerdict {
-  int confounder = -1;       ///< input index, for kCollinear; -1 otherwise
+  /// For kCollinear and kConfounded: of the inputs, the CVs' set-points and the auxiliary signals,
+  /// counted in this order; -1 otherwise.
+  int confounder = -1;
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
   Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
   double dead_time = 0.0;    ///< of the model, samples

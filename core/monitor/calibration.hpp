@@ -51,6 +51,14 @@ inline constexpr double kAtEnd = 1e-6;         ///< share of its range within wh
 inline constexpr double kMemoryShare = 0.25;   ///< of the samples that a CV remembers
 }  // namespace input_motion
 
+/// How often a CV in which something is off is asked what it follows, samples. Chosen: an alarm
+/// takes some time, and asking costs as much as some hundred rows.
+namespace confounding {
+inline constexpr std::int64_t kBetween = 50;
+/// A signal's means are over the slowest time constant and times each so many times shorter.
+inline constexpr double kPoleRatio = 3.0;
+}  // namespace confounding
+
 /// What an alarm takes beside the p-values that the user may set.
 namespace alarms {
 /// That the error matters may be a little less certain than that there is one: to raise an alarm it

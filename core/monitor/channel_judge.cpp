@@ -30,6 +30,11 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
   if (!has_evidence(channel, status)) return;
   read_evidence(channel, status);
   const bool exceeding = exceeds(channel, status);
+  if (exceeding && channel.confounder >= 0) {
+    status.reason = Reason::kConfounded;
+    status.confounder = channel.confounder;
+    return;
+  }
   const bool convincing = status.smallest_error < visibility::kBlindGainError &&
                           status.p_value < visibility::kConvincing * channel_rate_;
   if (status.excited || ((convincing || alarmed(channel)) && exceeding)) {
@@ -84,7 +89,7 @@ void ChannelJudge::read_evidence(const JudgedChannel& channel, ChannelStatus& st
 }
 
 bool ChannelJudge::exceeds(const JudgedChannel& channel, ChannelStatus& status) const {
-  if (!mean_line_) return channel.evidence.p_value < channel_rate_ || alarmed(channel);
+  if (!mean_line_) return unlikely(channel.evidence) || alarmed(channel);
   status.partial_correlation = channel.peak.value;
   status.lag = channel.peak.lag;
   status.statistic = std::abs(status.partial_correlation);

@@ -21,6 +21,7 @@ struct JudgedChannel {
   const CvAlarms& alarms;  ///< the CV's
   bool mvs_still = false;  ///< no MV moves
   bool at_limit = false;   ///< the input rests at the end of its range
+  int confounder = -1;     ///< the signal that the CV follows, as in ChannelStatus
   CorrelationPeak peak;    ///< with ThresholdKind::kMeanLine, else unused
   double mean_line = 0.0;  ///< likewise
 };
@@ -32,6 +33,10 @@ class ChannelJudge {
  public:
   ChannelJudge(const SignalCounts& counts, const DerivedSettings& settings);
 
+  /// The evidence speaks against the channel.
+  [[nodiscard]] bool unlikely(const ChannelEvidence& evidence) const {
+    return evidence.p_value < channel_rate_;
+  }
   /// Brings the status up to the sample, but for the reported correlation.
   void judge(const JudgedChannel& channel, ChannelStatus& status);
 

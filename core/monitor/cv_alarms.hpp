@@ -39,6 +39,16 @@ class CvAlarms {
   }
   /// A sample without any verdict of this CV.
   void hold();
+  /// It is no channel that is wrong. Calls `changed(input)` for each alarm that cleared.
+  template <class Changed>
+  void clear(Changed changed) {
+    isolating_ = false;
+    for (std::size_t i = 0; i < conditions_.size(); ++i) {
+      if (conditions_[i].state() == AlarmState::kCleared) continue;
+      conditions_[i].set(AlarmState::kCleared);
+      changed(static_cast<int>(i));
+    }
+  }
 
   [[nodiscard]] AlarmState state(int input) const {
     return conditions_[static_cast<std::size_t>(input)].state();

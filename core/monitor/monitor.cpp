@@ -6,6 +6,7 @@
 
 #include "core/mismatch/change_scan.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
+#include "core/mismatch/outside_signals.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/calibration.hpp"
 #include "core/monitor/channel_judge.hpp"
@@ -35,6 +36,8 @@ struct Monitor::State {
     bool evaluated = false;    // in this sample
     bool judged = false;       // there is evidence from the present memory
     std::int64_t settled = 0;  // samples
+    Rival rival;
+    std::int64_t followed_next = 0;  // sample
   };
 
   [[nodiscard]] std::size_t index(int cv, int input) const {
@@ -43,9 +46,11 @@ struct Monitor::State {
   [[nodiscard]] Cv& of(int cv) { return cvs[static_cast<std::size_t>(cv)]; }
 
   void take_frame(const Frame& frame);
+  void take_outside(const Frame& frame);
   void pass_gap(std::int64_t missing);
   void take_sample(const Frame& frame);
   void evaluate();
+  void follow(int cv);
   void move_alarms();
   void judge_channels();
   [[nodiscard]] bool bad_data(int cv, int input);
@@ -61,6 +66,8 @@ struct Monitor::State {
   UnitResiduals residuals;
   ReportedCorrelation correlation;
   MismatchDetector detector;
+  OutsideSignals outside;
+  Eigen::VectorXd outside_values;  // set-points, then auxiliary signals; NaN where unknown
   ChangeScan scan;
   ChannelJudge judge;
   std::vector<Cv> cvs;
@@ -82,6 +89,15 @@ int answering_samples(const LinearModel& model, const DerivedSettings& derived) 
   const double dead_time = std::ceil(model.longest_dead_time_samples());
   return static_cast<int>(std::min(static_cast<double>(derived.settling_samples) + derived.fir_lags,
                                    dead_time + calibration::simulation::kBeginsToAnswer));
+}
+
+// Of means over the slowest time constant and ever shorter times.
+std::vector<double> outside_poles(const DerivedSettings& derived) {
+  std::vector<double> poles;
+  for (double time = -1.0 / std::log(derived.tail_poles.front()); time > 1.0;
+       time /= calibration::confounding::kPoleRatio)
+    poles.push_back(std::exp(-1.0 / time));
+  return poles;
 }
 
 // Some CV, from the first sample on and for good.
@@ -111,6 +127,9 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
                 simulates(may_predict) ? settings.start_poles : std::vector<double>{}},
                settings.memories, settings.remembered, settings.evaluation_stride, model,
                settings.materiality),
+      outside(detector.shape(), counts.cv + counts.aux, outside_poles(settings),
+              settings.remembered),
+      outside_values(Eigen::VectorXd::Zero(counts.cv + counts.aux)),
       scan(detector.shape()),
       judge(counts, settings) {
   const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
@@ -147,6 +166,7 @@ void Monitor::State::take_frame(const Frame& frame) {
   counters.bad_values += static_cast<std::uint64_t>(residuals.read(frame, predictions));
   predictions.advance(inputs);
   take_sample(frame);
+  take_outside(frame);
   evaluate();
   move_alarms();
   judge_channels();
@@ -162,6 +182,7 @@ void Monitor::State::pass_gap(std::int64_t missing) {
   counters.missing += static_cast<std::uint64_t>(missing);
   correlation.close_window();
   detector.skip(missing);
+  outside.skip(missing);
   residuals.skip(missing);
   predictions.skip(missing, inputs);
 }
@@ -187,6 +208,15 @@ void Monitor::State::take_sample(const Frame& frame) {
   correlation.take(inputs, residuals);
 }
 
+void Monitor::State::take_outside(const Frame& frame) {
+  int at = 0;
+  for (const SignalKind kind : {SignalKind::kSetpoint, SignalKind::kAux})
+    for (int i = 0; i < frame[kind].size(); ++i)
+      outside_values(at++) =
+          frame[kind].usable(i) ? frame[kind].values(i) : std::numeric_limits<double>::quiet_NaN();
+  outside.push(outside_values);
+}
+
 // Of each CV every so many samples, one CV after the other.
 void Monitor::State::evaluate() {
   const std::int64_t stride = settings.evaluation_stride;
@@ -200,18 +230,35 @@ void Monitor::State::evaluate() {
     cv.judged = true;
     for (int m = 0; m < detector.memory_count(); ++m)
       if (detector.memory(j, m).ready()) detector.evaluate(j, m);
+    follow(j);
   }
+}
+
+// Where something is off: whether it follows a signal that is no input of the model.
+void Monitor::State::follow(int j) {
+  Cv& cv = of(j);
+  bool off = false;
+  for (int m = 0; m < detector.memory_count(); ++m)
+    for (int i = 0; i < counts.inputs() && detector.memory(j, m).ready(); ++i)
+      off = off || judge.unlikely(detector.evidence(j, i, m));
+  if (!off) cv.rival = {};
+  if (!off || samples < cv.followed_next) return;
+  cv.followed_next = samples + calibration::confounding::kBetween;
+  cv.rival = detector.rival(j, outside.followed(j, detector.history(), detector.regression(j)));
 }
 
 void Monitor::State::move_alarms() {
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
-    if (cv.quality.implausible())
+    const auto changed = [&](int input) {
+      transitions.push_back({j, input, cv.alarms.state(input)});
+    };
+    if (cv.rival.wins)
+      cv.alarms.clear(changed);
+    else if (cv.quality.implausible() || !cv.rival.loses)
       cv.alarms.hold();
     else
-      cv.alarms.update(j, cv.evaluated, detector, scan, settings.alarm, [&](int input) {
-        transitions.push_back({j, input, cv.alarms.state(input)});
-      });
+      cv.alarms.update(j, cv.evaluated, detector, scan, settings.alarm, changed);
   }
 }
 
@@ -233,6 +280,7 @@ void Monitor::State::judge_channels() {
                    .alarms = of(j).alarms,
                    .mvs_still = mvs_still,
                    .at_limit = inputs.at_limit(i),
+                   .confounder = of(j).rival.wins ? counts.inputs() + of(j).rival.signal : -1,
                    .peak = against_line ? correlation.peak(j, i) : CorrelationPeak{},
                    .mean_line = line},
                   status[index(j, i)]);

@@ -69,6 +69,9 @@ DigestMaker::DigestMaker(const config::UnitConfig& unit)
            derived.materiality[static_cast<std::size_t>(i * cv_count_ + j)].gain});
     }
   }
+  const SignalCounts counts = unit.counts();
+  for (int i = 0; i < counts.inputs() + counts.cv + counts.aux; ++i)
+    mover_tags_.push_back(unit.mover_tag(i));
   cvs_.resize(head_.cvs.size());
   channels_.resize(head_.channels.size());
   status_.resize(head_.channels.size());
@@ -154,7 +157,7 @@ ChannelDigest DigestMaker::digest_of(std::size_t channel) const {
   digest.verdict = to_string(status.verdict);
   digest.reason = to_string(status.reason);
   if (status.confounder >= 0)
-    digest.confounder = head_.channels[static_cast<std::size_t>(status.confounder * cv_count_)].mv;
+    digest.confounder = mover_tags_[static_cast<std::size_t>(status.confounder)];
   digest.alarm = to_string(alarms_[channel]);
   digest.smallest_error = rounded(status.smallest_error);
   digest.effective_samples = rounded(status.effective_samples);

@@ -40,6 +40,7 @@ class DigestMaker {
 
   UnitHead head_;
   int inputs_, cv_count_;
+  std::vector<std::string> mover_tags_;
   std::int64_t window_ns_;
   // Of the stretch at hand.
   std::int64_t window_ = 0;

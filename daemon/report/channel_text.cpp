@@ -119,6 +119,11 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
     case Reason::kCollinear:
       return "moved only together with " + printable(channel.confounder) +
              "; move one without the other";
+    case Reason::kConfounded:
+      return "what is off in " + printable(channel.cv) + " follows " +
+             printable(channel.confounder) +
+             ", which is no input of the model: something that moves with it acts on " +
+             printable(channel.cv);
     case Reason::kBadData:
       return "too much of what it needs is missing or bad";
     case Reason::kControllerOff:

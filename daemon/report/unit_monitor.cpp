@@ -104,7 +104,7 @@ void UnitMonitor::fill() {
       record.interval = interval_;
       record.source_time_ns = source_time_ns_;
       static_cast<ChannelVerdict&>(record) = status;
-      record.confounder = status.confounder < 0 ? "" : config_.input_tag(status.confounder);
+      record.confounder = status.confounder < 0 ? "" : config_.mover_tag(status.confounder);
       fill_errors(status, config_.model.sample_time_s, record);
       record.alarm = monitor_.alarm(j, i);
       const Eigen::Ref<const Eigen::VectorXd> values = monitor_.partial_correlations(j, i);

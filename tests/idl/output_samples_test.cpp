@@ -128,6 +128,7 @@ TEST_CASE("the words of a verdict and its reason go to DDS and back") {
   for (const auto& [reason, word] : {std::pair{Reason::kWarmingUp, "warming_up"},
                                      {Reason::kNotExcited, "not_excited"},
                                      {Reason::kCollinear, "collinear"},
+                                     {Reason::kConfounded, "confounded"},
                                      {Reason::kBadData, "bad_data"},
                                      {Reason::kControllerOff, "controller_off"},
                                      {Reason::kConstrained, "constrained"},

@@ -37,6 +37,7 @@ struct Bench {
                  .alarms = alarms,
                  .mvs_still = mvs_still,
                  .at_limit = at_limit,
+                 .confounder = confounder,
                  .peak = peak,
                  .mean_line = line},
                 status);
@@ -47,6 +48,7 @@ struct Bench {
   ChannelEvidence evidence;
   CvAlarms alarms;
   bool bad_data = false, overdue = false, mvs_still = false, at_limit = false;
+  int confounder = -1;
   CorrelationPeak peak;
   double line = 0.0;
 };
@@ -92,6 +94,16 @@ TEST_CASE("an error that would not show is not ruled out, and the reason is told
   bench.evidence.p_value = 4e-4;
   CHECK(bench.judge().verdict == Verdict::kMismatch);
   CHECK(bench.judge().reason == Reason::kWeakExcitation);
+}
+
+TEST_CASE("what follows a signal that is no input is no channel's mismatch") {
+  Bench bench;
+  bench.confounder = 2;
+  CHECK(bench.judge().verdict == Verdict::kMatch);  // nothing is off in this one
+  bench.evidence.p_value = 1e-9;
+  CHECK(bench.judge().verdict == Verdict::kUndetermined);
+  CHECK(bench.judge().reason == Reason::kConfounded);
+  CHECK(bench.judge().confounder == 2);
 }
 
 TEST_CASE("without rows or with bad data there is no verdict") {

@@ -1,0 +1,89 @@
+#include "core/mismatch/outside_signals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace mpm {
+namespace {
+
+// Rows that a factor takes together: speed only.
+constexpr int kBatchRows = 32;
+
+}  // namespace
+
+OutsideSignals::OutsideSignals(const RegressionShape& shape, int signals, std::vector<double> poles,
+                               int depth)
+    : lead_in_(shape.lead_in()),
+      signals_(signals),
+      depth_(depth),
+      poles_(std::move(poles)),
+      origin_(static_cast<std::size_t>(signals), std::numeric_limits<double>::quiet_NaN()),
+      last_(static_cast<std::size_t>(signals), 0.0),
+      unknown_(Eigen::VectorXd::Constant(signals, std::numeric_limits<double>::quiet_NaN())),
+      batch_(shape.lead_in() + block() + 1, kBatchRows),
+      factor_(shape.lead_in() + block(), 1) {
+  for (int w = 0; w < signals * block(); ++w) windows_.emplace_back(depth);
+}
+
+void OutsideSignals::push(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  auto window = windows_.begin();
+  for (int i = 0; i < signals_; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    if (std::isfinite(values(i))) {
+      if (std::isnan(origin_[s])) origin_[s] = values(i);
+      last_[s] = values(i) - origin_[s];
+    }
+    (window++)->push(last_[s]);
+    for (const double pole : poles_) {
+      window->push(pole * window->window()[0] + (1.0 - pole) * last_[s]);
+      ++window;
+    }
+  }
+}
+
+void OutsideSignals::skip(std::int64_t missing) {
+  for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, depth_); ++k) push(unknown_);
+}
+
+FollowedSignal OutsideSignals::followed(int cv, const RegressionHistory& history,
+                                        const ResidualRegression& regression) {
+  FollowedSignal best;
+  best.freedom = block();
+  for (int i = 0; i < signals_; ++i) {
+    const double explained = explained_by(i, cv, history, regression);
+    if (explained <= best.explained) continue;
+    best.explained = explained;
+    best.signal = i;
+  }
+  return best;
+}
+
+double OutsideSignals::explained_by(int signal, int cv, const RegressionHistory& history,
+                                    const ResidualRegression& regression) {
+  factor_.clear();
+  const double lambda = regression.memory(0).length.lambda;
+  int waiting = 0;
+  const auto flush = [&] {
+    if (waiting > 0) factor_.update_batch(batch_, waiting, lambda);
+    waiting = 0;
+  };
+  for (int age = std::min(regression.span(), depth_) - 1; age >= 0; --age) {
+    const double weight = regression.row_weight(age);
+    if (!(weight > 0.0)) continue;
+    double* row = batch_.row(waiting);
+    history.fill_lead_in(age, row);
+    for (int w = 0; w < block(); ++w)
+      row[lead_in_ + w] = windows_[static_cast<std::size_t>(signal * block() + w)].window()[age];
+    row[factor_.columns()] = history.residual(cv, age);
+    for (int c = 0; c <= factor_.columns(); ++c) row[c] *= weight;
+    if (++waiting == kBatchRows) flush();
+  }
+  flush();
+  double explained = 0.0;
+  for (int c = lead_in_; c < factor_.columns(); ++c) explained += std::pow(factor_.z(c, 0), 2);
+  return explained;
+}
+
+}  // namespace mpm

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/mismatch/residual_regression.hpp"
+#include "core/regression/givens_qr.hpp"
+#include "core/signal/lag_window.hpp"
+
+namespace mpm {
+
+/// What a CV's residual follows that is no input of the model.
+struct FollowedSignal {
+  int signal = -1;         ///< -1: none
+  double explained = 0.0;  ///< of the weighted residual square, beyond its own past
+  int freedom = 0;         ///< coefficients that this took
+};
+
+/// Signals that are measured but no inputs of the model (set-points, auxiliary ones), and how well
+/// each by itself explains a CV's residual: a regression on the constant, the last residuals of all
+/// CVs and the signal's value and exponentially weighted means of it (`poles`), with the rows and
+/// weights of the CV's own regression. No allocation after construction.
+class OutsideSignals {
+ public:
+  /// `depth`: samples remembered.
+  OutsideSignals(const RegressionShape& shape, int signals, std::vector<double> poles, int depth);
+
+  [[nodiscard]] int signals() const { return signals_; }
+  /// Takes the signals' values at k, NaN where unknown: unchanged.
+  void push(const Eigen::Ref<const Eigen::VectorXd>& values);
+  void skip(std::int64_t missing);
+
+  /// The signal that explains most of the CV's residual over the rows of its first memory.
+  [[nodiscard]] FollowedSignal followed(int cv, const RegressionHistory& history,
+                                        const ResidualRegression& regression);
+
+ private:
+  [[nodiscard]] int block() const { return static_cast<int>(poles_.size()) + 1; }
+  [[nodiscard]] double explained_by(int signal, int cv, const RegressionHistory& history,
+                                    const ResidualRegression& regression);
+
+  int lead_in_;
+  int signals_;
+  int depth_;
+  std::vector<double> poles_;
+  std::vector<double> origin_, last_;
+  std::vector<LagWindow> windows_;  // signal-major: value, means
+  Eigen::VectorXd unknown_;         // all NaN
+  RowBatch batch_;
+  GivensQr factor_;  // [lead-in | signal]
+};
+
+}  // namespace mpm
