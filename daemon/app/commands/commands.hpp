@@ -10,6 +10,8 @@ namespace mpm::app {
 void add_detect(CLI::App& app, int& exit_code);
 /// `mpm diagnose`: what the simulation gets wrong in recorded data, and a model that gets it right.
 void add_diagnose(CLI::App& app, int& exit_code);
+/// `mpm identify`: a model of a unit from recorded data alone.
+void add_identify(CLI::App& app, int& exit_code);
 /// `mpm info`: what a data file holds.
 void add_info(CLI::App& app, int& exit_code);
 /// `mpm convert`: recordings and data files into each other.

@@ -1,0 +1,60 @@
+#pragma once
+
+/// Numbers that decide an identification, none of which a user sets. Chosen by hand on tuning seeds
+/// where nothing else is said; what they give together is scored by tests/identify_score.
+namespace mpm {
+
+// The regression of high order (high_order.hpp).
+inline constexpr int kDenseLags = 12;          ///< single lags of an input before the blocks
+inline constexpr double kBlockGrowth = 1.2;    ///< of a block's lags to the block before it
+inline constexpr int kLongestLag = 600;        ///< samples
+inline constexpr int kShortestLag = 40;        ///< samples: of the last block, at least
+inline constexpr double kLagShare = 0.125;     ///< of the mean run's rows: the last block's lag
+inline constexpr int kPastLags = 12;           ///< of the CV's own past
+inline constexpr double kRowsPerColumn = 3.0;  ///< rows behind each column, at least
+inline constexpr double kDependent = 1e-7;     ///< of a scaled column that is left: none
+
+// Start values (start_values.hpp), in samples.
+inline constexpr double kFastestStart = 0.6;
+inline constexpr double kStartGrowth = 1.6;   ///< from one time constant to the next
+inline constexpr double kSlowestStart = 2.0;  ///< of the last lag
+inline constexpr double kLatestStart = 0.5;   ///< of the last lag
+inline constexpr double kWorthTrying = 9.0;   ///< fall of the squared error, in its variance
+inline constexpr int kSweeps = 3;
+
+// Prediction errors (prediction_error.hpp).
+inline constexpr int kNoiseOrder = 10;
+inline constexpr double kRowsPerNoiseLag = 20.0;
+inline constexpr double kDeadTimeStep = 0.25;     ///< samples: of a finite difference
+inline constexpr double kLogStep = 0.01;          ///< likewise, of the log of a time constant
+inline constexpr double kConverged = 0.01;        ///< fall of -2 ln likelihood
+inline constexpr int kMostSteps = 25;             ///< of Gauss-Newton
+inline constexpr int kMostCuts = 5;               ///< of a step, each to a third
+inline constexpr double kFastest = 0.05;          ///< samples: of a time constant
+inline constexpr double kStartState = 3.0;        ///< s.d. of the CV: of a first state
+inline constexpr int kMostDecays = 3;             ///< time constants of a first state
+inline constexpr double kOtherTime = 1.3;         ///< ratio of two that differ
+inline constexpr double kStepOfTimes = 1.5;       ///< most that a step changes the log of a time
+inline constexpr double kStepOfDeadTime = 4.0;    ///< samples, likewise
+
+// Which channels, of which form (structure.hpp).
+inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.
+inline constexpr double kNeeded = 25.0;       ///< fall of -2 ln likelihood: p = 1.5e-5 of 3 numbers
+inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
+inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
+inline constexpr double kSecondShare = 0.2;   ///< of the time constant: where a second begins
+
+// What is said (identification.hpp).
+inline constexpr double kValidationShare = 0.25;   ///< of the rows, left out of the choice of forms
+inline constexpr double kOnlyFeedback = 0.05;      ///< share of an input's movement from outside
+inline constexpr double kFamilyError = 0.01;       ///< of any invented relation in a unit
+inline constexpr double kLeastContribution = 0.02; ///< s.d. of a channel to that of its CV
+inline constexpr double kVagueGain = 0.25;         ///< s.d. of a gain to the gain
+inline constexpr double kEntangled = 0.8;          ///< correlation of two gains' estimates
+inline constexpr double kMatters = 0.1;            ///< s.d. of a channel to that of its CV
+inline constexpr double kUsualTimeShare = 0.1;     ///< of the last lag: a time constant
+inline constexpr double kLeastGainOfPrediction = 0.01;  ///< of the unseen innovations' variance
+inline constexpr int kWhitenessLags = 20;
+inline constexpr int kLongestTestedLag = 200;  ///< samples: of an input against innovations
+
+}  // namespace mpm

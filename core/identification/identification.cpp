@@ -1,0 +1,341 @@
+#include "core/identification/identification.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/identification/calibration.hpp"
+#include "core/identification/high_order.hpp"
+#include "core/identification/identification_data.hpp"
+#include "core/identification/residual_tests.hpp"
+#include "core/identification/start_values.hpp"
+#include "core/identification/structure.hpp"
+#include "core/identify/evidence/outside_movement.hpp"
+#include "core/identify/fit/free_run.hpp"
+#include "core/identify/fit/simulator.hpp"
+#include "core/identify/fit/split.hpp"
+#include "core/parallel/parallel.hpp"
+#include "core/statistics/f_distribution.hpp"
+#include "core/statistics/normal.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kStill = 1e-9;  ///< of its level: rounding, not movement
+
+/// What all CVs are fitted on.
+struct Material {
+  const Recording& recording;
+  IdentificationData all, first, unseen;  ///< first: what forms are chosen on
+  VectorXd input_spread;
+  std::vector<std::optional<double>> outside;
+};
+
+Material material(const Recording& recording) {
+  const Index rows = fitted_rows(recording, 1.0 - kValidationShare);
+  Material result{recording, identification_data(recording),
+                  identification_data(part(recording, 0, rows)),
+                  identification_data(part(recording, rows, recording.samples() - rows)), {}, {}};
+  const IdentificationData& all = result.all;
+  const VectorXd everywhere = VectorXd::Ones(all.samples());
+  result.input_spread.resize(all.inputs.cols());
+  for (Index i = 0; i < all.inputs.cols(); ++i) {
+    const double spread = spread_of(all.inputs.col(i), everywhere);
+    result.input_spread(i) = spread > kStill * std::abs(all.input_mean(i)) ? spread : 0.0;
+  }
+  result.outside = outside_shares(recording, recording.cvs);
+  return result;
+}
+
+/// One CV's part of the outcome.
+struct CvOutcome {
+  std::optional<PredictionErrorFit> fit;
+  std::vector<ChannelAnswer> channels;
+  CvAnswer answer;
+};
+
+std::vector<ChannelHint> hints_of(const IdentificationSettings& settings, int cv,
+                                  const VectorXd& input_spread) {
+  std::vector<ChannelHint> hints(static_cast<std::size_t>(input_spread.size()));
+  for (std::size_t i = 0; i < hints.size(); ++i) {
+    hints[i].cv = cv;
+    hints[i].input = static_cast<int>(i);
+  }
+  for (const ChannelHint& hint : settings.hints)
+    if (hint.cv == cv) hints[static_cast<std::size_t>(hint.input)] = hint;
+  for (std::size_t i = 0; i < hints.size(); ++i)
+    if (input_spread(static_cast<Index>(i)) == 0.0) hints[i].no_relation = true;
+  return hints;
+}
+
+NoiseModel noise_model(const IdentificationData& data, int cv) {
+  const double rows = data.known.col(cv).sum() / static_cast<double>(data.runs.size());
+  return {std::clamp(static_cast<int>(rows / kRowsPerNoiseLag), 1, kNoiseOrder), 0.0};
+}
+
+/// The simplest of the structures that does best on rows that none was fitted to; nothing where
+/// none predicts them better than no channel at all.
+const PredictionErrorFit* confirmed(const Material& material, int cv,
+                                    const std::vector<PredictionErrorFit>& grown,
+                                    const NoiseModel& noise) {
+  const auto cost = [&](const std::vector<ChannelShape>& channels) {
+    return fit_prediction_error(material.unseen, cv, channels, noise, 0).cost;
+  };
+  const PredictionErrorFit* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const PredictionErrorFit& fit : grown) {
+    const double now = cost(fit.channels);
+    if (now < least) least = now, best = &fit;
+  }
+  const double rows = std::max(1.0, material.unseen.known.col(cv).sum());
+  return least < cost({}) - kLeastGainOfPrediction * rows ? best : nullptr;
+}
+
+Interval95 around(double value, double sd) {
+  return {value - kNormalTwoSided95 * sd, value + kNormalTwoSided95 * sd};
+}
+
+/// The input whose gain a vague one is traded against.
+int partner(const PredictionErrorFit& fit, std::size_t which) {
+  Index own = 0, at = 0;
+  std::vector<Index> gains;
+  for (std::size_t c = 0; c < fit.channels.size(); ++c) {
+    gains.push_back(at);
+    if (c == which) own = at;
+    at += static_cast<Index>(free_numbers(fit.channels[c]).size());
+  }
+  double largest = kEntangled;
+  int input = -1;
+  for (std::size_t c = 0; c < fit.channels.size(); ++c) {
+    if (c == which) continue;
+    const double correlation =
+        std::abs(fit.covariance(own, gains[c])) /
+        std::sqrt(fit.covariance(own, own) * fit.covariance(gains[c], gains[c]));
+    if (correlation > largest) largest = correlation, input = fit.channels[c].input;
+  }
+  return input;
+}
+
+void state_numbers(const Material& material, const PredictionErrorFit& fit, std::size_t which,
+                   ChannelAnswer& answer) {
+  const ChannelShape& shape = fit.channels[which];
+  const double dt = material.all.sample_time_s;
+  const std::vector<ShapeNumber> numbers = free_numbers(shape);
+  const VectorXd sd = sd_of(fit, which);
+  answer.form = shape.form;
+  answer.dynamics = transfer_function(shape, dt);
+  answer.dead_time_s = {shape.dead_time * dt, shape.dead_time * dt};
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    const double value = number_of(shape, numbers[n]);
+    const Interval95 interval = around(value, sd(static_cast<Index>(n)));
+    switch (numbers[n]) {
+      case ShapeNumber::kGain: {
+        const double unit = integrates(shape.form) ? 1.0 / dt : 1.0;
+        answer.gain = {interval.low * unit, interval.high * unit};
+        break;
+      }
+      case ShapeNumber::kDeadTime:
+        answer.dead_time_s = {std::max(0.0, interval.low * dt), interval.high * dt};
+        break;
+      case ShapeNumber::kLogTime:
+      case ShapeNumber::kLogSecond:
+        answer.time_constants.push_back(
+            {std::exp(interval.low) * dt, std::exp(interval.high) * dt});
+        break;
+      case ShapeNumber::kLead:
+        answer.lead_s = {interval.low * dt, interval.high * dt};
+        break;
+    }
+  }
+}
+
+double typical_time_constant(const HighOrderModel& model, const std::optional<PredictionErrorFit>& fit) {
+  std::vector<double> times;
+  if (fit)
+    for (const ChannelShape& shape : fit->channels) times.push_back(shape.time_constant);
+  if (times.empty()) return kUsualTimeShare * model.blocks.back().last;
+  std::sort(times.begin(), times.end());
+  return times[times.size() / 2];
+}
+
+void state_channels(const Material& material, const HighOrderModel& model,
+                    const std::vector<ChannelHint>& hints, const NoiseModel& noise, bool refused,
+                    CvOutcome& outcome) {
+  const int cv = outcome.answer.cv;
+  const double spread = spread_of(material.all.cvs.col(cv), material.all.known.col(cv));
+  const double typical = model.sound ? typical_time_constant(model, outcome.fit) : 1.0;
+  std::vector<double> worth;
+  if (outcome.fit) worth = worth_of_channels(material.all, cv, *outcome.fit, noise);
+  for (std::size_t i = 0; i < hints.size(); ++i) {
+    ChannelAnswer answer;
+    answer.cv = cv;
+    answer.input = static_cast<int>(i);
+    const auto input = static_cast<Index>(i);
+    answer.visible_gain = model.sound
+                              ? kNormalTwoSided95 * 2.0 * gain_sd(model, answer.input, typical)
+                              : std::numeric_limits<double>::infinity();
+    const std::optional<double>& outside = material.outside[i];
+    if (material.input_spread(input) == 0.0)
+      answer.left_out = LeftOut::kStill;
+    else if (hints[i].no_relation)
+      answer.left_out = LeftOut::kGivenNone;
+    else if (!(spread > 0.0))
+      answer.left_out = LeftOut::kUnknownCv;
+    else if (!model.sound)
+      answer.left_out = LeftOut::kTooFewRows;
+    else if (outside && *outside < kOnlyFeedback)
+      answer.left_out = LeftOut::kOnlyFeedback;
+    else if (answer.visible_gain * material.input_spread(input) > kMatters * spread)
+      answer.left_out = LeftOut::kHidden;
+    if (outcome.fit)
+      for (std::size_t c = 0; c < outcome.fit->channels.size(); ++c) {
+        const ChannelShape& shape = outcome.fit->channels[c];
+        if (shape.input != answer.input) continue;
+        state_numbers(material, *outcome.fit, c, answer);
+        answer.p_value =
+            f_upper_tail(worth[c] / 3.0, 3.0, std::max(1.0, outcome.fit->rows));
+        const VectorXd given =
+            response(shape, material.all.inputs.col(input), material.all.runs);
+        answer.contribution = spread_of(given, VectorXd::Ones(given.size())) / spread;
+        if (answer.left_out == LeftOut::kOnlyFeedback) continue;
+        const double relative = std::abs(sd_of(*outcome.fit, c)(0) / shape.gain);
+        if (shape.gain == 0.0)
+          answer.left_out = LeftOut::kWrongSign;
+        else if (refused)
+          answer.left_out = LeftOut::kNotConfirmed;
+        else if (answer.contribution < kLeastContribution)
+          answer.left_out = LeftOut::kTooSmall;
+        else if (!(relative < kVagueGain))
+          answer.left_out = LeftOut::kVague;
+        else
+          answer.left_out = LeftOut::kIdentified;
+        if (answer.left_out == LeftOut::kVague) answer.entangled_with = partner(*outcome.fit, c);
+      }
+    outcome.channels.push_back(answer);
+  }
+}
+
+CvOutcome identify_cv(const Material& material, const IdentificationSettings& settings, int cv) {
+  CvOutcome outcome;
+  outcome.answer.cv = cv;
+  const std::vector<ChannelHint> hints = hints_of(settings, cv, material.input_spread);
+  const NoiseModel noise = noise_model(material.all, cv);
+  const HighOrderModel model = high_order_model(material.all, cv);
+  bool refused = false;
+  if (model.sound) {
+    const HighOrderModel first = high_order_model(material.first, cv);
+    const std::vector<ChannelShape> start =
+        start_values(first.sound ? first : model, hints, material.all.sample_time_s);
+    const std::vector<PredictionErrorFit> grown =
+        grown_structures(material.first, cv, start, noise);
+    const PredictionErrorFit* best = confirmed(material, cv, grown, noise);
+    refused = best == nullptr;
+    outcome.fit = pruned(material.all, cv,
+                         fit_prediction_error(material.all, cv,
+                                              (refused ? grown.front() : *best).channels, noise,
+                                              kMostSteps),
+                         noise);
+    const PredictionErrorFit& fit = *outcome.fit;
+    outcome.answer.rows = fit.rows;
+    outcome.answer.innovation_sd = std::sqrt(fit.variance);
+    outcome.answer.noise_sd = spread_of(fit.residual, material.all.known.col(cv));
+    outcome.answer.whiteness_p_value = whiteness_p_value(fit);
+    for (std::size_t i = 0; i < hints.size(); ++i)
+      outcome.answer.input_p_values.push_back(
+          material.input_spread(static_cast<Index>(i)) > 0.0
+              ? past_input_p_value(material.all, fit, static_cast<int>(i))
+              : 1.0);
+  }
+  state_channels(material, model, hints, noise, refused, outcome);
+  return outcome;
+}
+
+/// Holm (1979): which p-values are below what a family error allows.
+void correct_for_many(std::vector<ChannelAnswer>& channels) {
+  std::vector<std::size_t> order(channels.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return channels[a].p_value < channels[b].p_value;
+  });
+  bool rejected = true;
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    ChannelAnswer& answer = channels[order[n]];
+    rejected = rejected &&
+               answer.p_value * static_cast<double>(order.size() - n) < kFamilyError;
+    if (!rejected && answer.left_out == LeftOut::kIdentified)
+      answer.left_out = LeftOut::kNoRelation;
+  }
+}
+
+ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome>& outcomes,
+                           const std::vector<ChannelAnswer>& channels) {
+  const IdentificationData& data = material.all;
+  ModelSpec model;
+  model.sample_time_s = data.sample_time_s;
+  model.input_count = static_cast<int>(data.inputs.cols());
+  model.cv_count = static_cast<int>(data.cvs.cols());
+  model.input_blocks.resize(static_cast<std::size_t>(model.input_count));
+  model.output_blocks.resize(static_cast<std::size_t>(model.cv_count));
+  model.input_origin = data.input_mean;
+  model.output_origin = data.cv_mean;
+  for (const ChannelAnswer& answer : channels)
+    if (answer.left_out == LeftOut::kIdentified)
+      model.channels.push_back({answer.cv, answer.input, *answer.dynamics, {}});
+  for (const CvOutcome& outcome : outcomes) {
+    if (!outcome.fit) continue;
+    double level = 0.0;
+    for (std::size_t r = 0; r < data.runs.size(); ++r)
+      level += outcome.fit->level(static_cast<Index>(r)) *
+               static_cast<double>(data.runs[r].count) / static_cast<double>(data.samples());
+    model.output_origin(outcome.answer.cv) += level;
+  }
+  return model;
+}
+
+/// How far the free run is off on rows that the choice of forms did not see.
+void measure_unseen(const Material& material, const ModelSpec& model, CvAnswer& answer) {
+  const Index rows = material.first.samples();
+  const Recording unseen =
+      part(material.recording, rows, material.recording.samples() - rows);
+  Simulator simulator(unseen);
+  const VectorXd simulated = free_run(simulator, model, answer.cv);
+  double sum = 0.0, count = 0.0;
+  for (Index k = 0; k < simulated.size(); ++k) {
+    const double error = unseen.cvs(k, answer.cv) - simulated(k);
+    if (std::isfinite(error)) sum += error * error, count += 1.0;
+  }
+  answer.unseen_rmse = count > 0.0 ? std::sqrt(sum / count) : 0.0;
+  answer.unseen_spread =
+      spread_of(material.unseen.cvs.col(answer.cv), material.unseen.known.col(answer.cv));
+}
+
+}  // namespace
+
+Identification identify(const Recording& recording, const IdentificationSettings& settings) {
+  const Material given = material(recording);
+  std::vector<CvOutcome> outcomes(static_cast<std::size_t>(recording.cvs.cols()));
+  const Parallel parallel(settings.threads);
+  parallel.for_each(outcomes.size(), [&](std::size_t cv) {
+    outcomes[cv] = identify_cv(given, settings, static_cast<int>(cv));
+  });
+  Identification result;
+  result.outside_shares = given.outside;
+  for (const CvOutcome& outcome : outcomes)
+    result.channels.insert(result.channels.end(), outcome.channels.begin(),
+                           outcome.channels.end());
+  correct_for_many(result.channels);
+  result.model = model_of_answers(given, outcomes, result.channels);
+  for (CvOutcome& outcome : outcomes) {
+    measure_unseen(given, result.model, outcome.answer);
+    result.cvs.push_back(outcome.answer);
+  }
+  return result;
+}
+
+}  // namespace mpm

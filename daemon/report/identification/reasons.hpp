@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/report/identification/identification_run.hpp"
+
+namespace mpm::report {
+
+/// The word that programs go by: `identified`, `no_relation`, ...
+[[nodiscard]] std::string reason_word(LeftOut left_out);
+
+/// Why a channel is not in the model, for a person; empty where it is.
+[[nodiscard]] std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answer);
+
+}  // namespace mpm::report
