@@ -42,6 +42,12 @@ inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to it
 inline constexpr double kNeeded = 25.0;       ///< fall of -2 ln likelihood: p = 1.5e-5 of 3 numbers
 inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
 inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
+/// Where a channel with lead begins, times the time constant that it had: slow tail, overshoot,
+/// inverse response.
+struct LeadStart {
+  double first, second, lead;
+};
+inline constexpr LeadStart kLeadStarts[] = {{3.0, 0.7, 2.0}, {1.0, 0.5, 1.5}, {1.0, 0.5, -0.5}};
 inline constexpr double kSecondShare = 0.2;   ///< of the time constant: where a second begins
 
 // What is said (identification.hpp).

@@ -40,20 +40,10 @@ class CvFitting {
     double longest = 0.0;
     for (const Run& each : data_.runs) longest = std::max(longest, static_cast<double>(each.count));
     State state = at(std::move(channels), nullptr);
-    for (int step = 0; step < most_steps; ++step) {
-      const Step move = linearise(state);
-      State next;
-      double size = 1.0;
-      bool better = false;
-      for (int cut = 0; cut <= kMostCuts && !better; ++cut, size /= 3.0) {
-        next = at(moved(state.channels, move.free, size * move.direction, longest), &state.noise);
-        better = next.cost < state.cost;
-      }
-      if (!better) break;
-      const double gained = state.cost - next.cost;
-      state = std::move(next);
-      if (gained < kConverged) break;
-    }
+    int steps = most_steps;
+    do {
+      descend(state, steps, longest);
+    } while (steps > 0 && try_other_dead_times(state, longest));
     return finished(state);
   }
 
@@ -74,6 +64,43 @@ class CvFitting {
     VectorXd direction;
     MatrixXd covariance;
   };
+
+  /// Gauss-Newton; takes what it used off `steps`.
+  void descend(State& state, int& steps, double longest) const {
+    for (; steps > 0; --steps) {
+      const Step move = linearise(state);
+      State next;
+      double size = 1.0;
+      bool better = false;
+      for (int cut = 0; cut <= kMostCuts && !better; ++cut, size /= 3.0) {
+        next = at(moved(state.channels, move.free, size * move.direction, longest), &state.noise);
+        better = next.cost < state.cost;
+      }
+      if (!better) return;
+      const double gained = state.cost - next.cost;
+      state = std::move(next);
+      if (gained < kConverged) return;
+    }
+  }
+
+  /// The misfit has a kink wherever a dead time passes a whole sample, where Gauss-Newton may end.
+  bool try_other_dead_times(State& state, double longest) const {
+    bool better = false;
+    for (std::size_t c = 0; c < state.channels.size(); ++c) {
+      if (state.channels[c].dead_time_known) continue;
+      const double now = state.channels[c].dead_time;
+      for (const double other : {std::round(now), now - 0.5, now + 0.5, now - 1.0, now + 1.0}) {
+        std::vector<ChannelShape> channels = state.channels;
+        set_number(channels[c], ShapeNumber::kDeadTime, other, longest);
+        if (channels[c].dead_time == now) continue;
+        State next = at(std::move(channels), &state.noise);
+        if (next.cost > state.cost - kConverged) continue;
+        state = std::move(next);
+        better = true;
+      }
+    }
+    return better;
+  }
 
   [[nodiscard]] std::vector<double> decays(const std::vector<ChannelShape>& channels) const {
     std::vector<double> times;
@@ -188,8 +215,15 @@ class CvFitting {
     }
     double step = number.which == ShapeNumber::kDeadTime ? kDeadTimeStep : kLogStep;
     if (number.which == ShapeNumber::kLead) step *= std::max(1.0, shape.time_constant);
-    set_number(other, number.which, number_of(shape, number.which) + step, 1e6);
-    return (response(other, data_.inputs.col(shape.input), data_.runs) - now) / step;
+    const double value = number_of(shape, number.which);
+    set_number(other, number.which, value + step, 1e6);
+    if (number.which != ShapeNumber::kDeadTime)
+      return (response(other, data_.inputs.col(shape.input), data_.runs) - now) / step;
+    ChannelShape earlier = shape;  // the slope changes at whole samples: the mean of both sides
+    set_number(earlier, number.which, value - step, 1e6);
+    return (response(other, data_.inputs.col(shape.input), data_.runs) -
+            response(earlier, data_.inputs.col(shape.input), data_.runs)) /
+           (other.dead_time - earlier.dead_time);
   }
 
   Step linearise(const State& state) const {

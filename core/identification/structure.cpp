@@ -46,10 +46,12 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
         const double delay = next.dead_time_known ? 0.0 : std::min(next.dead_time, next.second);
         next.dead_time -= delay;
       });
-      add(ChannelForm::kSecondOrderLead, [](ChannelShape& next) {
-        next.second = kSecondShare * next.time_constant;
-        next.lead = next.second;
-      });
+      for (const LeadStart& start : kLeadStarts)
+        add(ChannelForm::kSecondOrderLead, [&](ChannelShape& next) {
+          next.second = start.second * next.time_constant;
+          next.lead = start.lead * next.time_constant;
+          next.time_constant *= start.first;
+        });
       add(ChannelForm::kIntegrator, integrating);
       break;
     case ChannelForm::kSecondOrder:
