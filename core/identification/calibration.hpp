@@ -34,6 +34,8 @@ inline constexpr double kFastest = 0.05;          ///< samples: of a time consta
 inline constexpr double kStartState = 3.0;        ///< s.d. of the CV: of a first state
 inline constexpr int kMostDecays = 3;             ///< time constants of a first state
 inline constexpr double kOtherTime = 1.3;         ///< ratio of two that differ
+inline constexpr double kNoWhitening = 1e-9;      ///< bound of an autoregression that does nothing
+inline constexpr double kMostAutocorrelation = 0.98;
 inline constexpr double kStepOfTimes = 1.5;       ///< most that a step changes the log of a time
 inline constexpr double kStepOfDeadTime = 4.0;    ///< samples, likewise
 
@@ -50,9 +52,14 @@ struct LeadStart {
 inline constexpr LeadStart kLeadStarts[] = {{3.0, 0.7, 2.0}, {1.0, 0.5, 1.5}, {1.0, 0.5, -0.5}};
 inline constexpr double kSecondShare = 0.2;   ///< of the time constant: where a second begins
 
+// Whether feedback moves the inputs (feedback_test.hpp).
+inline constexpr int kFeedbackLags = 6;
+inline constexpr double kFeedback = 1e-3;      ///< p-value below which it does
+inline constexpr double kClearlyBetter = 0.9;  ///< of the unseen squared error
+
 // What is said (identification.hpp).
 inline constexpr double kValidationShare = 0.25;   ///< of the rows, left out of the choice of forms
-inline constexpr double kOnlyFeedback = 0.05;      ///< share of an input's movement from outside
+inline constexpr double kOnlyFeedback = 0.2;      ///< share of an input's movement from outside
 inline constexpr double kFamilyError = 0.01;       ///< of any invented relation in a unit
 inline constexpr double kLeastContribution = 0.02; ///< s.d. of a channel to that of its CV
 inline constexpr double kVagueGain = 0.25;         ///< s.d. of a gain to the gain
@@ -60,7 +67,20 @@ inline constexpr double kEntangled = 0.8;          ///< correlation of two gains
 inline constexpr double kMatters = 0.1;            ///< s.d. of a channel to that of its CV
 inline constexpr double kUsualTimeShare = 0.1;     ///< of the last lag: a time constant
 inline constexpr double kLeastGainOfPrediction = 0.01;  ///< of the unseen innovations' variance
+inline constexpr int kStepPoints = 60;          ///< of a step response that is drawn
+inline constexpr double kStepTimes = 5.0;       ///< time constants that it lasts
 inline constexpr int kWhitenessLags = 20;
 inline constexpr int kLongestTestedLag = 200;  ///< samples: of an input against innovations
+
+// A test plan (test_plan.hpp).
+inline constexpr double kShareOfRange = 0.1;       ///< of an MV's limits: a move
+inline constexpr double kShareOfCvRange = 0.25;    ///< of a CV's limits: what a move may do
+inline constexpr double kMoreThanBefore = 3.0;     ///< times the s.d. that did not suffice
+inline constexpr double kSettlingTimes = 5.0;      ///< time constants
+inline constexpr double kSwitchShare = 1.0 / 3.0;  ///< of the settling time: mean time of a level
+inline constexpr double kFewestSettlings = 6.0;    ///< that a test lasts
+inline constexpr double kStepSettlings = 4.0;      ///< as long as so many, steps will do
+inline constexpr double kWantedSd = 5.0;           ///< an effect that matters, in its own s.d.
+inline constexpr double kLeastReturn = 0.02;       ///< of the noise to its level, per sample
 
 }  // namespace mpm

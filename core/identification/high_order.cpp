@@ -72,9 +72,9 @@ int longest_lag(const IdentificationData& data) {
 
 }  // namespace
 
-HighOrderModel high_order_model(const IdentificationData& data, int cv) {
+HighOrderModel high_order_model(const IdentificationData& data, int cv, int past) {
   HighOrderModel model;
-  model.past = kPastLags;
+  model.past = past;
   int longest = longest_lag(data);
   const auto inputs = data.inputs.cols();
   std::vector<Index> rows;
@@ -88,7 +88,7 @@ HighOrderModel high_order_model(const IdentificationData& data, int cv) {
       break;
     if (longest <= 2) return model;
     longest /= 2;
-    model.past = std::max(2, model.past / 2);
+    model.past = std::min(model.past, std::max(2, model.past / 2));
   }
   const auto count = static_cast<Index>(rows.size());
   MatrixXd system = MatrixXd::Zero(count, levels + columns + 1);

@@ -42,6 +42,8 @@ struct HighOrderModel {
   }
 };
 
-[[nodiscard]] HighOrderModel high_order_model(const IdentificationData& data, int cv);
+/// `past`: lags of the CV itself, fewer where the rows do not suffice. With none it is a finite
+/// impulse response, sound only where no feedback moves the inputs.
+[[nodiscard]] HighOrderModel high_order_model(const IdentificationData& data, int cv, int past);
 
 }  // namespace mpm

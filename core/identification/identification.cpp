@@ -1,11 +1,13 @@
 #include "core/identification/identification.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "core/identification/calibration.hpp"
+#include "core/identification/feedback_test.hpp"
 #include "core/identification/high_order.hpp"
 #include "core/identification/identification_data.hpp"
 #include "core/identification/residual_tests.hpp"
@@ -35,13 +37,14 @@ struct Material {
   IdentificationData all, first, unseen;  ///< first: what forms are chosen on
   VectorXd input_spread;
   std::vector<std::optional<double>> outside;
+  double feedback_p_value = 1.0;
 };
 
 Material material(const Recording& recording) {
   const Index rows = fitted_rows(recording, 1.0 - kValidationShare);
   Material result{recording, identification_data(recording),
                   identification_data(part(recording, 0, rows)),
-                  identification_data(part(recording, rows, recording.samples() - rows)), {}, {}};
+                  identification_data(part(recording, rows, recording.samples() - rows)), {}, {}, {}};
   const IdentificationData& all = result.all;
   const VectorXd everywhere = VectorXd::Ones(all.samples());
   result.input_spread.resize(all.inputs.cols());
@@ -50,6 +53,7 @@ Material material(const Recording& recording) {
     result.input_spread(i) = spread > kStill * std::abs(all.input_mean(i)) ? spread : 0.0;
   }
   result.outside = outside_shares(recording, recording.cvs);
+  result.feedback_p_value = feedback_p_value(all);
   return result;
 }
 
@@ -58,6 +62,7 @@ struct CvOutcome {
   std::optional<PredictionErrorFit> fit;
   std::vector<ChannelAnswer> channels;
   CvAnswer answer;
+  double longest_lag = 0.0;  ///< samples
 };
 
 std::vector<ChannelHint> hints_of(const IdentificationSettings& settings, int cv,
@@ -74,27 +79,70 @@ std::vector<ChannelHint> hints_of(const IdentificationSettings& settings, int cv
   return hints;
 }
 
-NoiseModel noise_model(const IdentificationData& data, int cv) {
+NoiseAssumption noise_model(const IdentificationData& data, int cv) {
   const double rows = data.known.col(cv).sum() / static_cast<double>(data.runs.size());
-  return {std::clamp(static_cast<int>(rows / kRowsPerNoiseLag), 1, kNoiseOrder), 0.0};
+  return {{std::clamp(static_cast<int>(rows / kRowsPerNoiseLag), 1, kNoiseOrder), 0.0}, 1.0};
 }
 
-/// The simplest of the structures that does best on rows that none was fitted to; nothing where
-/// none predicts them better than no channel at all.
-const PredictionErrorFit* confirmed(const Material& material, int cv,
-                                    const std::vector<PredictionErrorFit>& grown,
-                                    const NoiseModel& noise) {
-  const auto cost = [&](const std::vector<ChannelShape>& channels) {
-    return fit_prediction_error(material.unseen, cv, channels, noise, 0).cost;
-  };
-  const PredictionErrorFit* best = nullptr;
+/// Channels of a CV, how its noise is taken, and what the samples say that were left out.
+struct Choice {
+  std::vector<ChannelShape> channels;
+  NoiseAssumption noise;
+  bool output_error = false;
+  bool confirmed = false;       ///< predictions are better with the channels
+  double unseen_square = 0.0;   ///< mean, of the free run
+};
+
+/// The simplest of some structures that does best on rows that none was fitted to.
+Choice best_unseen(const Material& material, int cv, const std::vector<PredictionErrorFit>& grown,
+                   const NoiseAssumption& noise) {
+  Choice choice;
+  choice.noise = noise;
   double least = std::numeric_limits<double>::infinity();
   for (const PredictionErrorFit& fit : grown) {
-    const double now = cost(fit.channels);
-    if (now < least) least = now, best = &fit;
+    const double now =
+        fit_prediction_error(material.unseen, cv, fit.channels, noise, 0).cost;
+    if (now < least) least = now, choice.channels = fit.channels;
   }
-  const double rows = std::max(1.0, material.unseen.known.col(cv).sum());
-  return least < cost({}) - kLeastGainOfPrediction * rows ? best : nullptr;
+  const PredictionErrorFit nothing = fit_prediction_error(material.unseen, cv, {}, noise, 0);
+  choice.confirmed = least < nothing.cost - kLeastGainOfPrediction * nothing.rows;
+  choice.unseen_square =
+      fit_prediction_error(material.unseen, cv, choice.channels, output_error(), 0).variance;
+  return choice;
+}
+
+/// Without a noise model, from a regression without the CV's own past.
+std::optional<Choice> by_output_error(const Material& material,
+                                      const std::vector<ChannelHint>& hints, int cv) {
+  const HighOrderModel model = high_order_model(material.first, cv, 0);
+  if (!model.sound) return std::nullopt;
+  const StartSearch search(model, hints, material.all.sample_time_s);
+  const NoiseAssumption noise = output_error(fit_prediction_error(
+      material.first, cv, search.all_at_once(), output_error(), kMostSteps));
+  const std::vector<PredictionErrorFit> grown =
+      grown_structures(material.first, cv,
+                       simplest_structure(material.first, cv, search, noise), noise);
+  Choice choice = best_unseen(material, cv, grown, noise);
+  choice.output_error = true;
+  return choice;
+}
+
+Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
+              const HighOrderModel& all, int cv) {
+  const NoiseAssumption noise = noise_model(material.first, cv);
+  const HighOrderModel first = high_order_model(material.first, cv, kPastLags);
+  const StartSearch search(first.sound ? first : all, hints, material.all.sample_time_s);
+  const std::vector<PredictionErrorFit> grown =
+      grown_structures(material.first, cv,
+                       simplest_structure(material.first, cv, search, noise), noise);
+  Choice choice = best_unseen(material, cv, grown, noise);
+  if (material.feedback_p_value < kFeedback) return choice;
+  // What the noise model takes for noise may be what a poor form leaves.
+  std::optional<Choice> other = by_output_error(material, hints, cv);
+  if (other && other->confirmed &&
+      (!choice.confirmed || other->unseen_square < kClearlyBetter * choice.unseen_square))
+    return std::move(*other);
+  return choice;
 }
 
 Interval95 around(double value, double sd) {
@@ -155,6 +203,41 @@ void state_numbers(const Material& material, const PredictionErrorFit& fit, std:
   }
 }
 
+void state_step(const PredictionErrorFit& fit, std::size_t which, double sample_time_s,
+                ChannelAnswer& answer) {
+  const ChannelShape& shape = fit.channels[which];
+  const double times = shape.time_constant +
+                       (shape.form == ChannelForm::kFirstOrder ? 0.0 : shape.second);
+  const auto stride = static_cast<Index>(
+      std::ceil((shape.dead_time + kStepTimes * times) / kStepPoints + 1e-9));
+  VectorXd input = VectorXd::Ones(stride * kStepPoints + 2);
+  input(0) = 0.0;  // then y(k) is the answer k - 1 samples after the step
+  const std::vector<Run> all = {{0, input.size()}};
+  const VectorXd step = response(shape, input, all);
+  const std::vector<ShapeNumber> numbers = free_numbers(shape);
+  MatrixXd slopes(input.size(), static_cast<Index>(numbers.size()));
+  Index first = 0;
+  for (std::size_t c = 0; c < which; ++c)
+    first += static_cast<Index>(free_numbers(fit.channels[c]).size());
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    ChannelShape other = shape;
+    const double value = number_of(shape, numbers[n]);
+    const double by = numbers[n] == ShapeNumber::kGain || numbers[n] == ShapeNumber::kLead
+                          ? kLogStep * std::max(1e-12, std::abs(value))
+                          : kLogStep;
+    set_number(other, numbers[n], value + by, std::numeric_limits<double>::max());
+    slopes.col(static_cast<Index>(n)) = (response(other, input, all) - step) / by;
+  }
+  const MatrixXd covariance =
+      fit.covariance.block(first, first, slopes.cols(), slopes.cols());
+  for (Index k = 1; k < input.size(); k += stride) {
+    answer.step_times_s.push_back(static_cast<double>(k - 1) * sample_time_s);
+    answer.step.push_back(step(k));
+    answer.step_sd.push_back(
+        std::sqrt(std::max(0.0, (slopes.row(k) * covariance * slopes.row(k).transpose())(0))));
+  }
+}
+
 double typical_time_constant(const HighOrderModel& model, const std::optional<PredictionErrorFit>& fit) {
   std::vector<double> times;
   if (fit)
@@ -165,7 +248,7 @@ double typical_time_constant(const HighOrderModel& model, const std::optional<Pr
 }
 
 void state_channels(const Material& material, const HighOrderModel& model,
-                    const std::vector<ChannelHint>& hints, const NoiseModel& noise, bool refused,
+                    const std::vector<ChannelHint>& hints, const NoiseAssumption& noise, bool refused,
                     CvOutcome& outcome) {
   const int cv = outcome.answer.cv;
   const double spread = spread_of(material.all.cvs.col(cv), material.all.known.col(cv));
@@ -198,6 +281,7 @@ void state_channels(const Material& material, const HighOrderModel& model,
         const ChannelShape& shape = outcome.fit->channels[c];
         if (shape.input != answer.input) continue;
         state_numbers(material, *outcome.fit, c, answer);
+        state_step(*outcome.fit, c, material.all.sample_time_s, answer);
         answer.p_value =
             f_upper_tail(worth[c] / 3.0, 3.0, std::max(1.0, outcome.fit->rows));
         const VectorXd given =
@@ -223,36 +307,39 @@ void state_channels(const Material& material, const HighOrderModel& model,
 
 CvOutcome identify_cv(const Material& material, const IdentificationSettings& settings, int cv) {
   CvOutcome outcome;
-  outcome.answer.cv = cv;
+  CvAnswer& answer = outcome.answer;
+  answer.cv = cv;
+  answer.spread = spread_of(material.all.cvs.col(cv), material.all.known.col(cv));
   const std::vector<ChannelHint> hints = hints_of(settings, cv, material.input_spread);
-  const NoiseModel noise = noise_model(material.all, cv);
-  const HighOrderModel model = high_order_model(material.all, cv);
-  bool refused = false;
+  const HighOrderModel model = high_order_model(material.all, cv, kPastLags);
+  Choice choice;
   if (model.sound) {
-    const HighOrderModel first = high_order_model(material.first, cv);
-    const std::vector<ChannelShape> start =
-        start_values(first.sound ? first : model, hints, material.all.sample_time_s);
-    const std::vector<PredictionErrorFit> grown =
-        grown_structures(material.first, cv, start, noise);
-    const PredictionErrorFit* best = confirmed(material, cv, grown, noise);
-    refused = best == nullptr;
+    outcome.longest_lag = model.blocks.back().last;
+    choice = choose(material, hints, model, cv);
+    const NoiseAssumption usual = noise_model(material.all, cv);
+    if (!choice.output_error) choice.noise = usual;
     outcome.fit = pruned(material.all, cv,
-                         fit_prediction_error(material.all, cv,
-                                              (refused ? grown.front() : *best).channels, noise,
+                         fit_prediction_error(material.all, cv, choice.channels, choice.noise,
                                               kMostSteps),
-                         noise);
-    const PredictionErrorFit& fit = *outcome.fit;
-    outcome.answer.rows = fit.rows;
-    outcome.answer.innovation_sd = std::sqrt(fit.variance);
-    outcome.answer.noise_sd = spread_of(fit.residual, material.all.known.col(cv));
-    outcome.answer.whiteness_p_value = whiteness_p_value(fit);
+                         choice.noise);
+    answer.output_error = choice.output_error;
+    const PredictionErrorFit whitened =
+        choice.output_error
+            ? fit_prediction_error(material.all, cv, outcome.fit->channels, usual, 0)
+            : *outcome.fit;
+    answer.rows = whitened.rows;
+    answer.innovation_sd = std::sqrt(whitened.variance);
+    answer.noise_sd = spread_of(whitened.residual, material.all.known.col(cv));
+    answer.long_run_sd = answer.innovation_sd /
+                         std::max(kLeastReturn, 1.0 - whitened.noise.coefficients.sum());
+    answer.whiteness_p_value = whiteness_p_value(whitened);
     for (std::size_t i = 0; i < hints.size(); ++i)
-      outcome.answer.input_p_values.push_back(
+      answer.input_p_values.push_back(
           material.input_spread(static_cast<Index>(i)) > 0.0
-              ? past_input_p_value(material.all, fit, static_cast<int>(i))
+              ? past_input_p_value(material.all, whitened, static_cast<int>(i))
               : 1.0);
   }
-  state_channels(material, model, hints, noise, refused, outcome);
+  state_channels(material, model, hints, choice.noise, !choice.confirmed, outcome);
   return outcome;
 }
 
@@ -273,6 +360,26 @@ void correct_for_many(std::vector<ChannelAnswer>& channels) {
   }
 }
 
+/// The inputs at which the integrating CVs stand still, nearest to the mean in s.d. of each: what a
+/// CV drifts by beside its inputs is then no drift.
+VectorXd balanced_inputs(const Material& material, const std::vector<CvOutcome>& outcomes,
+                         const ModelSpec& model) {
+  const IdentificationData& data = material.all;
+  MatrixXd slopes = MatrixXd::Zero(model.cv_count, model.input_count);
+  VectorXd drift = VectorXd::Zero(model.cv_count);
+  for (const ChannelSpec& channel : model.channels) {
+    const auto& tf = std::get<TransferFunction>(channel.dynamics);
+    if (!tf.integrating) continue;
+    slopes(channel.cv, channel.input) =
+        tf.gain * data.sample_time_s * material.input_spread(channel.input);
+    drift(channel.cv) = outcomes[static_cast<std::size_t>(channel.cv)].fit->drift;
+  }
+  if (slopes.isZero()) return data.input_mean;
+  const VectorXd moves =
+      Eigen::CompleteOrthogonalDecomposition<MatrixXd>(slopes).solve(-drift);
+  return data.input_mean + moves.cwiseProduct(material.input_spread);
+}
+
 ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome>& outcomes,
                            const std::vector<ChannelAnswer>& channels) {
   const IdentificationData& data = material.all;
@@ -282,18 +389,23 @@ ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome
   model.cv_count = static_cast<int>(data.cvs.cols());
   model.input_blocks.resize(static_cast<std::size_t>(model.input_count));
   model.output_blocks.resize(static_cast<std::size_t>(model.cv_count));
-  model.input_origin = data.input_mean;
   model.output_origin = data.cv_mean;
   for (const ChannelAnswer& answer : channels)
     if (answer.left_out == LeftOut::kIdentified)
       model.channels.push_back({answer.cv, answer.input, *answer.dynamics, {}});
+  model.input_origin = balanced_inputs(material, outcomes, model);
   for (const CvOutcome& outcome : outcomes) {
     if (!outcome.fit) continue;
-    double level = 0.0;
     for (std::size_t r = 0; r < data.runs.size(); ++r)
-      level += outcome.fit->level(static_cast<Index>(r)) *
-               static_cast<double>(data.runs[r].count) / static_cast<double>(data.samples());
-    model.output_origin(outcome.answer.cv) += level;
+      model.output_origin(outcome.answer.cv) +=
+          outcome.fit->level(static_cast<Index>(r)) * static_cast<double>(data.runs[r].count) /
+          static_cast<double>(data.samples());
+  }
+  for (const ChannelSpec& channel : model.channels) {
+    const auto& tf = std::get<TransferFunction>(channel.dynamics);
+    if (!tf.integrating)
+      model.output_origin(channel.cv) +=
+          tf.gain * (model.input_origin(channel.input) - data.input_mean(channel.input));
   }
   return model;
 }
@@ -326,6 +438,11 @@ Identification identify(const Recording& recording, const IdentificationSettings
   });
   Identification result;
   result.outside_shares = given.outside;
+  result.feedback_p_value = given.feedback_p_value;
+  result.input_spread.assign(given.input_spread.begin(), given.input_spread.end());
+  for (const CvOutcome& outcome : outcomes)
+    result.longest_lag_s =
+        std::max(result.longest_lag_s, outcome.longest_lag * recording.sample_time_s);
   for (const CvOutcome& outcome : outcomes)
     result.channels.insert(result.channels.end(), outcome.channels.begin(),
                            outcome.channels.end());

@@ -48,6 +48,8 @@ struct ChannelAnswer {
   Interval95 gain, dead_time_s;            ///< 95 %
   std::vector<Interval95> time_constants;  ///< 95 %, s
   std::optional<Interval95> lead_s = {};
+  /// Answer to a unit step, and its s.d.; times in s. Empty where nothing was fitted.
+  std::vector<double> step_times_s, step, step_sd;
   double p_value = 1.0;       ///< of there being no relation
   double contribution = 0.0;  ///< s.d. of what it gives to that of the CV
   int entangled_with = -1;    ///< the input that a vague gain is traded against
@@ -60,8 +62,12 @@ struct ChannelAnswer {
 struct CvAnswer {
   int cv = 0;
   double rows = 0.0;                 ///< that were fitted
+  double spread = 0.0;               ///< s.d. of the CV
+  /// Fitted by the errors of the free run, for which no feedback and better carrying over speak.
+  bool output_error = false;
   double noise_sd = 0.0;             ///< of what the model leaves, CV units
   double innovation_sd = 0.0;        ///< one step ahead, CV units
+  double long_run_sd = 0.0;          ///< root of the noise's spectrum at frequency 0
   double whiteness_p_value = 1.0;    ///< of the innovations (Ljung and Box 1978)
   /// Per input: p-value of the innovations not depending on its past; 1 where it was not asked.
   std::vector<double> input_p_values;
@@ -74,6 +80,9 @@ struct Identification {
   std::vector<ChannelAnswer> channels;  ///< all, CV by CV, inputs in order
   std::vector<CvAnswer> cvs;
   std::vector<std::optional<double>> outside_shares;  ///< of each input's movement
+  std::vector<double> input_spread;                   ///< s.d. of each input; 0: it stands still
+  double feedback_p_value = 1.0;  ///< of no input depending on the CVs' past
+  double longest_lag_s = 0.0;     ///< that was looked at
 };
 
 /// A model from data alone.

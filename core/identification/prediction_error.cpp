@@ -21,8 +21,8 @@ struct FreeNumber {
 
 class CvFitting {
  public:
-  CvFitting(const IdentificationData& data, int cv, const NoiseModel& noise)
-      : data_(data), cv_(cv), noise_(noise), known_(data.known.col(cv)) {
+  CvFitting(const IdentificationData& data, int cv, const NoiseAssumption& noise)
+      : data_(data), cv_(cv), noise_(noise.model), inflation_(noise.inflation), known_(data.known.col(cv)) {
     spread_ = std::max(1e-300, spread_of(data.cvs.col(cv), known_));
     weights_ = known_;
     for (const auto& [first, count] : data.runs) {
@@ -159,7 +159,7 @@ class CvFitting {
       state.variance = std::max(state.innovations.squaredNorm() / rows_,
                                 1e-24 * spread_ * spread_);
     }
-    state.cost = rows_ * std::log(state.variance);
+    state.cost = rows_ / inflation_ * std::log(state.variance);
     return state;
   }
 
@@ -307,9 +307,9 @@ class CvFitting {
     fit.channels = state.channels;
     fit.noise = state.noise;
     fit.variance = state.variance;
-    fit.rows = rows_;
+    fit.rows = rows_ / inflation_;
     fit.cost = state.cost;
-    fit.covariance = step.covariance;
+    fit.covariance = inflation_ * step.covariance;
     fit.residual = state.residual;
     fit.innovations = state.innovations;
     fit.weights = weights_;
@@ -326,6 +326,7 @@ class CvFitting {
   const IdentificationData& data_;
   int cv_;
   NoiseModel noise_;
+  double inflation_;
   VectorXd known_, weights_;
   double rows_ = 0.0, spread_ = 1.0;
 };
@@ -334,8 +335,21 @@ class CvFitting {
 
 PredictionErrorFit fit_prediction_error(const IdentificationData& data, int cv,
                                         std::vector<ChannelShape> channels,
-                                        const NoiseModel& noise, int most_steps) {
+                                        const NoiseAssumption& noise, int most_steps) {
   return CvFitting(data, cv, noise).run(std::move(channels), most_steps);
+}
+
+NoiseAssumption output_error() { return {{1, kNoWhitening}, 1.0}; }
+
+NoiseAssumption output_error(const PredictionErrorFit& fit) {
+  NoiseAssumption noise = output_error();
+  const Index rows = fit.residual.size() - 1;
+  const double square = fit.residual.squaredNorm();
+  if (rows < 2 || !(square > 0.0)) return noise;
+  const double r = std::clamp(fit.residual.tail(rows).dot(fit.residual.head(rows)) / square, 0.0,
+                              kMostAutocorrelation);
+  noise.inflation = (1.0 + r) / (1.0 - r);  // of an autoregression of first order
+  return noise;
 }
 
 }  // namespace mpm

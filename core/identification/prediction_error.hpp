@@ -9,12 +9,20 @@
 
 namespace mpm {
 
+/// How the noise of a CV is taken.
+struct NoiseAssumption {
+  NoiseModel model;
+  /// By how much the variance of an estimate is larger than if the innovations were white: 1 with a
+  /// noise model that whitens; without one (errors of the free run) what autocorrelation makes it.
+  double inflation = 1.0;
+};
+
 /// One CV explained by some channels.
 struct PredictionErrorFit {
   std::vector<ChannelShape> channels;
   Whitening noise;
   double variance = 1.0;  ///< of the innovations
-  double rows = 0.0;      ///< of innovations
+  double rows = 0.0;      ///< of innovations, over the inflation
   double cost = 0.0;      ///< -2 ln likelihood: rows ln variance
   /// Of the channels' free numbers, channel after channel.
   Eigen::MatrixXd covariance;
@@ -29,9 +37,15 @@ struct PredictionErrorFit {
 /// Maximum likelihood of one CV's channels: the model runs freely, what it leaves is
 /// autoregressive noise, and both are fitted together (Gauss-Newton, orthogonal; Ljung 1999, 10.2).
 /// Sound in closed loop as far as the noise model holds. Every run has a level and a first state of
-/// its own, and of an integrating CV a drift. `noise`: order of the autoregression, or a bound.
+/// its own, and of an integrating CV a drift.
 [[nodiscard]] PredictionErrorFit fit_prediction_error(const IdentificationData& data, int cv,
                                                       std::vector<ChannelShape> channels,
-                                                      const NoiseModel& noise, int most_steps);
+                                                      const NoiseAssumption& noise,
+                                                      int most_steps);
+
+/// Innovations are the errors of the free run: sound only where no feedback moves the inputs.
+[[nodiscard]] NoiseAssumption output_error();
+/// The same with the inflation that a fit's errors show.
+[[nodiscard]] NoiseAssumption output_error(const PredictionErrorFit& fit);
 
 }  // namespace mpm

@@ -16,20 +16,17 @@ using Eigen::VectorXd;
 
 namespace {
 
-struct Candidate {
-  double time_constant = 1.0;
-  double dead_time = 0.0;
-};
-
-/// Coefficients of the blocks that a first-order channel of gain 1 has in the regression: its
-/// impulse response behind A(q), averaged over each block.
-VectorXd coefficients_of(const Candidate& candidate, const HighOrderModel& model) {
+/// Coefficients of the blocks that a channel of gain 1 has in the regression: its impulse response
+/// behind A(q), averaged over each block. Of two lags the sum counts.
+VectorXd coefficients_of(const ChannelShape& shape, const HighOrderModel& model) {
   const int longest = model.blocks.back().last;
+  const bool two = shape.form == ChannelForm::kSecondOrder;
+  const double time_constant = shape.time_constant + (two ? shape.second : 0.0);
   VectorXd impulse(longest + 1);
   double before = 0.0;
   for (int l = 0; l <= longest; ++l) {
-    const double since = static_cast<double>(l) - candidate.dead_time;
-    const double step = since > 0.0 ? -std::expm1(-since / candidate.time_constant) : 0.0;
+    const double since = std::max(0.0, static_cast<double>(l) - shape.dead_time);
+    const double step = integrates(shape.form) ? since : -std::expm1(-since / time_constant);
     impulse(l) = step - before;
     before = step;
   }
@@ -46,148 +43,177 @@ VectorXd coefficients_of(const Candidate& candidate, const HighOrderModel& model
   return means;
 }
 
-std::vector<Candidate> grid(const HighOrderModel& model, std::optional<double> dead_time) {
+std::vector<ChannelShape> grid(const HighOrderModel& model, const ChannelHint& hint,
+                               double sample_time_s) {
   const double longest = model.blocks.back().last;
   std::vector<double> dead_times;
-  if (dead_time) {
-    dead_times.push_back(*dead_time);
+  if (hint.dead_time_s) {
+    dead_times.push_back(*hint.dead_time_s / sample_time_s);
   } else {
     for (const LagBlock& block : model.blocks)
       if (block.first - 1.0 <= kLatestStart * longest) dead_times.push_back(block.first - 1.0);
   }
-  std::vector<Candidate> candidates;
+  std::vector<ChannelShape> shapes;
   for (double time = kFastestStart; time <= kSlowestStart * longest; time *= kStartGrowth)
-    for (const double dead : dead_times) candidates.push_back({time, dead});
-  return candidates;
+    for (const double dead : dead_times) {
+      ChannelShape shape;
+      shape.input = hint.input;
+      shape.gain = 1.0;
+      shape.time_constant = time;
+      shape.dead_time = dead;
+      shape.dead_time_known = hint.dead_time_s.has_value();
+      shape.sign = hint.sign;
+      shapes.push_back(shape);
+    }
+  return shapes;
 }
 
-/// The best of some candidates for what is left of the right-hand side.
-struct Best {
-  std::size_t which = 0;
-  double gain = 0.0;
-  double explained = -1.0;  ///< fall of the squared error; < 0: none fits
-};
-
-Best best_of(const MatrixXd& columns, const Eigen::Ref<const VectorXd>& right, int sign) {
-  Best best;
-  for (Index c = 0; c < columns.cols(); ++c) {
-    const double square = columns.col(c).squaredNorm(), product = columns.col(c).dot(right);
-    if (!(square > 0.0) || (sign != 0 && product * sign < 0.0)) continue;
-    const double explained = product * product / square;
-    if (explained > best.explained)
-      best = {static_cast<std::size_t>(c), product / square, explained};
-  }
-  return best;
+/// An orthonormal basis of what the columns span.
+MatrixXd basis_of(const MatrixXd& columns) {
+  if (columns.cols() == 0) return columns;
+  const Eigen::HouseholderQR<MatrixXd> qr(columns);
+  return qr.householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
 }
 
-/// The factor's columns of one input, and the right-hand side, with all other columns taken out.
-struct Partial {
-  MatrixXd factor;
-  VectorXd right;
-};
-
-Partial partial(const HighOrderModel& model, int input) {
+/// The factor's columns of one input with all other columns taken out.
+MatrixXd partial(const HighOrderModel& model, int input) {
   const Index columns = model.factor.cols(), own = static_cast<Index>(model.blocks.size()),
-              first = model.column_of(input);
-  MatrixXd reordered(columns, columns + 1);
-  reordered.leftCols(first) = model.factor.leftCols(first);
-  reordered.middleCols(first, columns - first - own) =
-      model.factor.rightCols(columns - first - own);
-  reordered.middleCols(columns - own, own) = model.factor.middleCols(first, own);
-  reordered.col(columns) = model.right;
-  // The first `first` columns are triangular already.
-  const Index rest = columns - first;
-  const Eigen::HouseholderQR<MatrixXd> qr(reordered.bottomRightCorner(rest, rest + 1));
+              first = model.column_of(input), rest = columns - first;
+  // What stands before is triangular already.
+  MatrixXd reordered(rest, rest);
+  reordered << model.factor.bottomRightCorner(rest, rest - own),
+      model.factor.block(first, first, rest, own);
+  const Eigen::HouseholderQR<MatrixXd> qr(reordered);
   const MatrixXd triangle = qr.matrixQR().triangularView<Eigen::Upper>();
-  return {triangle.block(rest - own, rest - own, own, own), triangle.col(rest).tail(own)};
-}
-
-/// `columns` without what the orthonormal `basis` spans.
-void take_out(const MatrixXd& basis, Eigen::Ref<MatrixXd> columns) {
-  if (basis.cols() > 0) columns -= basis * (basis.transpose() * columns);
-}
-
-/// The grid of one input.
-struct Choices {
-  std::vector<Candidate> candidates;
-  MatrixXd coefficients;  ///< blocks x candidates
-};
-
-Choices choices_of(const HighOrderModel& model, std::optional<double> dead_time) {
-  Choices choices{grid(model, dead_time), {}};
-  choices.coefficients.resize(static_cast<Index>(model.blocks.size()),
-                              static_cast<Index>(choices.candidates.size()));
-  for (std::size_t c = 0; c < choices.candidates.size(); ++c)
-    choices.coefficients.col(static_cast<Index>(c)) =
-        coefficients_of(choices.candidates[c], model);
-  return choices;
+  return triangle.bottomRightCorner(own, own);
 }
 
 }  // namespace
 
-std::vector<ChannelShape> start_values(const HighOrderModel& model,
-                                       const std::vector<ChannelHint>& hints,
-                                       double sample_time_s) {
-  const auto inputs = hints.size();
+StartSearch::StartSearch(const HighOrderModel& model, const std::vector<ChannelHint>& hints,
+                         double sample_time_s)
+    : model_(model), hints_(hints), choices_(hints.size()) {
   const auto own = static_cast<Index>(model.blocks.size());
-  const Choices usual = choices_of(model, std::nullopt);
-  std::vector<Choices> special(inputs);
-  std::vector<std::optional<Best>> found(inputs);
-  const auto choices = [&](std::size_t i) -> const Choices& {
-    return hints[i].dead_time_s ? special[i] : usual;
-  };
-  for (std::size_t i = 0; i < inputs; ++i) {
+  for (std::size_t i = 0; i < hints.size(); ++i) {
     if (hints[i].no_relation) continue;
-    if (hints[i].dead_time_s)
-      special[i] = choices_of(model, *hints[i].dead_time_s / sample_time_s);
-    const Partial rest = partial(model, static_cast<int>(i));
-    const Best best = best_of(rest.factor * choices(i).coefficients, rest.right, hints[i].sign);
-    if (best.explained > kWorthTrying * model.variance) found[i] = best;
+    Choices& choices = choices_[i];
+    choices.shapes = grid(model, hints[i], sample_time_s);
+    MatrixXd coefficients(own, static_cast<Index>(choices.shapes.size()));
+    for (Index c = 0; c < coefficients.cols(); ++c)
+      coefficients.col(c) = coefficients_of(choices.shapes[static_cast<std::size_t>(c)], model);
+    choices.columns =
+        model.factor.middleCols(model.column_of(static_cast<int>(i)), own) * coefficients;
   }
-  // What the CV's own past explains stays as the regression says.
-  const VectorXd right = model.right - model.factor.leftCols(model.past) * model.noise;
-  const auto column = [&](std::size_t i) -> VectorXd {
-    return model.factor.middleCols(model.column_of(static_cast<int>(i)), own) *
-           choices(i).coefficients.col(static_cast<Index>(found[i]->which));
-  };
-  for (int sweep = 0; sweep < kSweeps; ++sweep)
-    for (std::size_t i = 0; i < inputs; ++i) {
-      if (hints[i].no_relation) continue;
-      MatrixXd others(model.factor.rows(), static_cast<Index>(inputs));
-      Index count = 0;
-      for (std::size_t m = 0; m < inputs; ++m)
-        if (m != i && found[m]) others.col(count++) = column(m).normalized();
-      const Eigen::HouseholderQR<MatrixXd> qr(others.leftCols(count));
-      const MatrixXd basis =
-          qr.householderQ() * MatrixXd::Identity(others.rows(), count);
-      MatrixXd columns = model.factor.middleCols(model.column_of(static_cast<int>(i)), own) *
-                         choices(i).coefficients;
-      VectorXd left = right;
-      take_out(basis, columns);
-      take_out(basis, left);
-      const Best best = best_of(columns, left, hints[i].sign);
-      found[i].reset();
-      if (best.explained > kWorthTrying * model.variance) found[i] = best;
-    }
+  right_ = model.right - model.factor.leftCols(model.past) * model.noise;
+}
+
+bool StartSearch::worth(const Found& found) const {
+  return found.explained > kWorthTrying * model_.variance;
+}
+
+StartSearch::Found StartSearch::best(std::size_t input, const MatrixXd& others) const {
+  Found found;
+  const MatrixXd& columns = choices_[input].columns;
+  const MatrixXd basis = basis_of(others);
+  const MatrixXd shares = basis.transpose() * columns;
+  const VectorXd left = right_ - basis * (basis.transpose() * right_);
+  const int sign = hints_[input].sign;
+  for (Index c = 0; c < columns.cols(); ++c) {
+    const double whole = columns.col(c).squaredNorm();
+    const double square = whole - shares.col(c).squaredNorm();
+    const double product = columns.col(c).dot(left);
+    if (!(square > kDependent * whole) || (sign != 0 && product * sign < 0.0)) continue;
+    const double explained = product * product / square;
+    if (explained > found.explained) found = {c, product / square, explained};
+  }
+  return found;
+}
+
+MatrixXd StartSearch::columns_of(const State& state, std::size_t but) const {
+  MatrixXd columns(model_.factor.rows(), static_cast<Index>(state.size()));
+  Index count = 0;
+  for (std::size_t m = 0; m < state.size(); ++m)
+    if (m != but && state[m])
+      columns.col(count++) = choices_[m].columns.col(state[m]->which).normalized();
+  return columns.leftCols(count);
+}
+
+void StartSearch::sweep(State& state) const {
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    if (!state[i]) continue;
+    const Found found = best(i, columns_of(state, i));
+    if (found.explained >= 0.0) state[i] = found;
+  }
+}
+
+ChannelShape StartSearch::shape_of(std::size_t input, const Found& found) const {
+  ChannelShape shape = choices_[input].shapes[static_cast<std::size_t>(found.which)];
+  shape.gain = found.gain;
+  return shape;
+}
+
+std::vector<ChannelShape> StartSearch::shapes_of(const State& state) const {
   std::vector<ChannelShape> shapes;
-  for (std::size_t i = 0; i < inputs; ++i) {
-    if (!found[i]) continue;
-    const Candidate& candidate = choices(i).candidates[found[i]->which];
-    ChannelShape shape;
-    shape.input = static_cast<int>(i);
-    shape.gain = found[i]->gain;
-    shape.time_constant = candidate.time_constant;
-    shape.dead_time = candidate.dead_time;
-    shape.dead_time_known = hints[i].dead_time_s.has_value();
-    shape.sign = hints[i].sign;
-    shapes.push_back(shape);
-  }
+  for (std::size_t i = 0; i < state.size(); ++i)
+    if (state[i]) shapes.push_back(shape_of(i, *state[i]));
   return shapes;
 }
 
+std::vector<ChannelShape> StartSearch::one_by_one() const {
+  State state(hints_.size());
+  for (std::size_t step = 0; step < state.size(); ++step) {
+    const MatrixXd there = columns_of(state, state.size());
+    std::size_t which = state.size();
+    Found most;
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      if (state[i] || choices_[i].shapes.empty()) continue;
+      const Found found = best(i, there);
+      if (found.explained > most.explained) most = found, which = i;
+    }
+    if (!worth(most)) break;
+    state[which] = most;
+    for (int turn = 0; turn < kSweeps; ++turn) sweep(state);
+  }
+  return shapes_of(state);
+}
+
+std::vector<ChannelShape> StartSearch::all_at_once() const {
+  State state(hints_.size());
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    if (choices_[i].shapes.empty()) continue;
+    const Found found = best(i, columns_of(state, i));
+    if (found.explained >= 0.0) state[i] = found;
+  }
+  for (int turn = 0; turn < kSweeps; ++turn) sweep(state);
+  return shapes_of(state);
+}
+
+std::optional<ChannelShape> StartSearch::addition(const std::vector<ChannelShape>& channels) const {
+  MatrixXd there(model_.factor.rows(), static_cast<Index>(channels.size()));
+  std::vector<bool> taken(hints_.size(), false);
+  const auto own = static_cast<Index>(model_.blocks.size());
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    taken[static_cast<std::size_t>(channels[c].input)] = true;
+    there.col(static_cast<Index>(c)) =
+        model_.factor.middleCols(model_.column_of(channels[c].input), own) *
+        coefficients_of(channels[c], model_);
+    there.col(static_cast<Index>(c)).normalize();
+  }
+  std::size_t which = taken.size();
+  Found most;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (taken[i] || choices_[i].shapes.empty()) continue;
+    const Found found = best(i, there);
+    if (found.explained > most.explained) most = found, which = i;
+  }
+  if (!worth(most)) return std::nullopt;
+  return shape_of(which, most);
+}
+
 double gain_sd(const HighOrderModel& model, int input, double time_constant) {
-  const Partial rest = partial(model, input);
-  const double size = (rest.factor * coefficients_of({time_constant, 0.0}, model)).norm();
+  ChannelShape shape;
+  shape.time_constant = time_constant;
+  const double size = (partial(model, input) * coefficients_of(shape, model)).norm();
   return size > 0.0 ? std::sqrt(model.variance) / size : std::numeric_limits<double>::infinity();
 }
 

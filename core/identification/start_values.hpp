@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/identification/channel_hint.hpp"
@@ -9,13 +11,48 @@
 namespace mpm {
 
 /// First-order channels of one CV, near enough for Gauss-Newton to end at the right minimum: the
-/// regression of high order is asked which lag and dead time on a grid explain most of it, first
-/// with all other inputs free to do anything (so that no wrong guess of theirs matters), then with
-/// the others as they were found, several times over. `hints`: one per input, of this CV.
-/// What explains next to nothing is not among them.
-[[nodiscard]] std::vector<ChannelShape> start_values(const HighOrderModel& model,
-                                                     const std::vector<ChannelHint>& hints,
-                                                     double sample_time_s);
+/// regression of high order is asked which lags and dead times on a grid explain most of it. What
+/// the CV's own past explains stays as the regression says.
+class StartSearch {
+ public:
+  /// `hints`: one per input, of this CV. The model and the hints must outlive the search.
+  StartSearch(const HighOrderModel& model, const std::vector<ChannelHint>& hints,
+              double sample_time_s);
+
+  /// Input by input, the one first that explains most beside those already there, and after each
+  /// all of them anew, until none is worth it.
+  [[nodiscard]] std::vector<ChannelShape> one_by_one() const;
+  /// All inputs at once: each beside all others over and over, whatever it is worth. Where inputs
+  /// move alike, the right ones may show only together.
+  [[nodiscard]] std::vector<ChannelShape> all_at_once() const;
+  /// The input that explains most beside these channels; nothing where none is worth it.
+  [[nodiscard]] std::optional<ChannelShape> addition(
+      const std::vector<ChannelShape>& channels) const;
+
+ private:
+  struct Choices {
+    std::vector<ChannelShape> shapes;  ///< of gain 1
+    Eigen::MatrixXd columns;           ///< of the factor, one per shape
+  };
+  struct Found {
+    Eigen::Index which = 0;
+    double gain = 0.0;
+    double explained = -1.0;  ///< fall of the squared error; < 0: none fits
+  };
+  using State = std::vector<std::optional<Found>>;  ///< one per input
+
+  [[nodiscard]] Found best(std::size_t input, const Eigen::MatrixXd& others) const;
+  [[nodiscard]] Eigen::MatrixXd columns_of(const State& state, std::size_t but) const;
+  void sweep(State& state) const;
+  [[nodiscard]] bool worth(const Found& found) const;
+  [[nodiscard]] ChannelShape shape_of(std::size_t input, const Found& found) const;
+  [[nodiscard]] std::vector<ChannelShape> shapes_of(const State& state) const;
+
+  const HighOrderModel& model_;
+  const std::vector<ChannelHint>& hints_;
+  std::vector<Choices> choices_;  ///< one per input; none where there is no relation
+  Eigen::VectorXd right_;
+};
 
 /// How much (relative to 0) the gain of an input would have to be to show at all, all other inputs
 /// free: s.d. of the gain of a first-order channel of the given speed (samples). Infinite where the

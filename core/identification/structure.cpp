@@ -73,7 +73,7 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
 }
 
 PredictionErrorFit without(const IdentificationData& data, int cv, const PredictionErrorFit& fit,
-                           std::size_t which, const NoiseModel& noise) {
+                           std::size_t which, const NoiseAssumption& noise) {
   std::vector<ChannelShape> rest = fit.channels;
   rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(which));
   return fit_prediction_error(data, cv, std::move(rest), noise, kTrialSteps);
@@ -92,7 +92,7 @@ Eigen::VectorXd sd_of(const PredictionErrorFit& fit, std::size_t which) {
 }
 
 PredictionErrorFit pruned(const IdentificationData& data, int cv, PredictionErrorFit fit,
-                          const NoiseModel& noise) {
+                          const NoiseAssumption& noise) {
   while (!fit.channels.empty()) {
     std::size_t weakest = 0;
     for (std::size_t c = 1; c < fit.channels.size(); ++c)
@@ -106,7 +106,7 @@ PredictionErrorFit pruned(const IdentificationData& data, int cv, PredictionErro
 }
 
 std::vector<double> worth_of_channels(const IdentificationData& data, int cv,
-                                      const PredictionErrorFit& fit, const NoiseModel& noise) {
+                                      const PredictionErrorFit& fit, const NoiseAssumption& noise) {
   std::vector<double> worth;
   for (std::size_t c = 0; c < fit.channels.size(); ++c) {
     const double z2 = squared_z(fit, c);
@@ -115,11 +115,29 @@ std::vector<double> worth_of_channels(const IdentificationData& data, int cv,
   return worth;
 }
 
+PredictionErrorFit simplest_structure(const IdentificationData& data, int cv,
+                                      const StartSearch& search, const NoiseAssumption& noise) {
+  std::optional<PredictionErrorFit> best;
+  for (std::vector<ChannelShape> start : {search.one_by_one(), search.all_at_once()}) {
+    PredictionErrorFit fit = pruned(
+        data, cv, fit_prediction_error(data, cv, std::move(start), noise, kMostSteps), noise);
+    while (const std::optional<ChannelShape> missing = search.addition(fit.channels)) {
+      std::vector<ChannelShape> more = fit.channels;
+      more.push_back(*missing);
+      PredictionErrorFit fuller = pruned(
+          data, cv, fit_prediction_error(data, cv, std::move(more), noise, kMostSteps), noise);
+      if (bic(fuller) + kWorthRicher > bic(fit)) break;
+      fit = std::move(fuller);
+    }
+    if (!best || bic(fit) < bic(*best)) best = std::move(fit);
+  }
+  return std::move(*best);
+}
+
 std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data, int cv,
-                                                 std::vector<ChannelShape> channels,
-                                                 const NoiseModel& noise) {
-  std::vector<PredictionErrorFit> grown = {pruned(
-      data, cv, fit_prediction_error(data, cv, std::move(channels), noise, kMostSteps), noise)};
+                                                 PredictionErrorFit simplest,
+                                                 const NoiseAssumption& noise) {
+  std::vector<PredictionErrorFit> grown = {std::move(simplest)};
   using Trial = std::pair<std::size_t, ChannelForm>;
   std::vector<Trial> closed;  // changes that did not pay when they were tried
   for (;;) {

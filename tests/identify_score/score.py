@@ -87,7 +87,7 @@ def true_channels(mpm_text):
                    "time_constants": fields.get("time_constants", []),
                    "lead": float(fields.get("lead", 0)),
                    "integrating": fields.get("integrating") == "true"}
-        channels[fields["cv"], fields["mv"]] = channel
+        channels[fields["cv"], fields.get("mv") or fields["dv"]] = channel
     return channels
 
 
