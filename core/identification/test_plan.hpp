@@ -12,8 +12,7 @@ struct TestLimits {
   struct Range {
     std::optional<double> low, high;
   };
-  std::vector<Range> inputs, cvs;               ///< own units
-  std::vector<std::optional<double>> max_move;  ///< of each input per sample
+  std::vector<Range> inputs, cvs;  ///< own units
 };
 
 enum class TestSignal {

@@ -18,6 +18,7 @@
 #include "daemon/files/replacement_file.hpp"
 #include "daemon/report/identification/identification_report.hpp"
 #include "daemon/report/identification/new_unit.hpp"
+#include "daemon/report/identification/plan_report.hpp"
 #include "daemon/report/record_json.hpp"
 #include "idl/version.hpp"
 
@@ -32,6 +33,7 @@ struct IdentifyOptions {
   std::string out;
   std::string report;
   int threads = available_threads();
+  bool plan = false;
   bool json = false;
   bool quiet = false;
 };
@@ -68,6 +70,11 @@ report::IdentificationRun prepare(const IdentifyOptions& options, config::UnitCo
   return run;
 }
 
+std::string outcome(const IdentifyOptions& options, bool found) {
+  if (!found) return "\nnothing could be identified; no unit file was written\n";
+  return options.out.empty() ? std::string() : "\nwritten to " + options.out + "\n";
+}
+
 // 0, or 1 where nothing could be identified.
 int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   std::optional<files::OutputFolder> folder;
@@ -79,8 +86,10 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   settings.hints = run.unit.identify;
   settings.threads = options.threads;
   run.identification = identify(run.recording, settings);
+  if (options.plan)
+    run.plan = test_plan(run.identification, report::test_limits(run.unit), run.unit.counts().mv);
   const bool found = report::found_any(run);
-  if (found) {
+  if (found && !options.out.empty()) {
     const std::string yaml = report::new_unit_yaml(run, text_of(options.config));
     files::ReplacementFile out(options.out);
     out.write(yaml);
@@ -94,10 +103,7 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   if (options.json)
     std::cout << json << std::flush;
   else if (!options.quiet)
-    std::cout << to_text(run)
-              << (found ? "\nwritten to " + options.out + "\n"
-                        : "\nnothing could be identified; nothing was written\n")
-              << std::flush;
+    std::cout << to_text(run) << outcome(options, found) << std::flush;
   return found ? 0 : 1;
 }
 
@@ -125,8 +131,8 @@ void add_identify(CLI::App& app, int& exit_code) {
                    "was split; of several each is a run of its own, at its own level and from its "
                    "own first state")
       ->required();
-  command->add_option("--out", options->out, "the unit file with the identified model")
-      ->required();
+  command->add_option("--out", options->out,
+                      "the unit file with the identified model (required, but for --plan)");
   command->add_option("--report", options->report,
                       "folder for model.json: all that is printed, with step responses and their "
                       "bands; made if need be");
@@ -135,6 +141,8 @@ void add_identify(CLI::App& app, int& exit_code) {
                    "that work at once; nothing in the model depends on how many")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
+  command->add_flag("--plan", options->plan,
+                    "say which MVs have moved too little, and how to move them");
   add_time_choice(*command, options->time);
   add_times(*command, options->times);
   command->add_flag("--json", options->json, "print model.json instead of the table");
@@ -142,7 +150,10 @@ void add_identify(CLI::App& app, int& exit_code) {
   command->footer(
       "Exit codes: 0 a model was written, 1 nothing could be identified, 3 bad usage or input\n"
       "Example:\n  mpm identify --config unit.yaml --data monday.csv tuesday.csv --out new.yaml");
-  command->callback([options, &exit_code] { exit_code = identify_file(*options); });
+  command->callback([options, &exit_code] {
+    if (options->out.empty() && !options->plan) throw CLI::RequiredError("--out");
+    exit_code = identify_file(*options);
+  });
 }
 
 }  // namespace mpm::app

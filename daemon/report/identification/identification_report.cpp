@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/text/number_text.hpp"
+#include "daemon/report/identification/plan_report.hpp"
 #include "daemon/report/identification/reasons.hpp"
 #include "daemon/report/terminal_text.hpp"
 
@@ -14,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kSuspicious = 0.001;  ///< p-value of a residual test that is said aloud
-constexpr std::size_t kTextWidth = 96;
+
 
 Json interval_json(const Interval95& interval) {
   return Json::array({interval.low, interval.high});
@@ -65,12 +66,16 @@ Json channel_json(const IdentificationRun& run, const ChannelAnswer& answer) {
   for (const Interval95& each : answer.time_constants)
     interval["time_constants"].push_back(interval_json(each));
   if (answer.lead_s) interval["lead"] = interval_json(*answer.lead_s);
+  json["step_response"] = {{"time", answer.step_times_s},
+                           {"values", answer.step},
+                           {"sd", answer.step_sd}};
   return json;
 }
 
 Json cv_json(const IdentificationRun& run, const CvAnswer& answer) {
   Json json{{"cv", cv_tag(run, answer.cv)},
             {"samples", answer.rows},
+            {"fitted_by", answer.output_error ? "free_run" : "one_step"},
             {"innovation_sd", answer.innovation_sd},
             {"noise_sd", answer.noise_sd},
             {"whiteness_p_value", answer.whiteness_p_value},
@@ -128,7 +133,7 @@ std::string doubts(const IdentificationRun& run) {
                           ": what the model leaves is not white (p = " +
                           number_text(answer.whiteness_p_value, 2) +
                           "); the intervals are too narrow",
-                      2, kTextWidth);
+                      2, kReasonWidth);
     for (std::size_t i = 0; i < answer.input_p_values.size(); ++i)
       if (answer.input_p_values[i] < kSuspicious)
         text += wrapped(cv_tag(run, answer.cv) + ": what the model leaves goes with the past of " +
@@ -136,7 +141,7 @@ std::string doubts(const IdentificationRun& run) {
                             " (p = " + number_text(answer.input_p_values[i], 2) +
                             "); the channel is not linear, not of so low an order, or feedback "
                             "shows through",
-                        2, kTextWidth);
+                        2, kReasonWidth);
   }
   return text;
 }
@@ -150,7 +155,13 @@ nlohmann::ordered_json to_json(const IdentificationRun& run) {
   Json json{{"unit", run.unit.unit},
             {"samples", run.recording.samples()},
             {"runs", run.recording.borders.size() + 1},
-            {"model", found_any(run) ? Json(run.out_file) : Json(nullptr)}};
+            {"model", found_any(run) && !run.out_file.empty() ? Json(run.out_file) : Json(nullptr)},
+            {"feedback_p_value", identification.feedback_p_value},
+            {"operating_point", Json::object()}};
+  for (int i = 0; i < identification.model.input_count; ++i)
+    json["operating_point"][run.unit.input_tag(i)] = identification.model.input_origin(i);
+  for (int j = 0; j < identification.model.cv_count; ++j)
+    json["operating_point"][cv_tag(run, j)] = identification.model.output_origin(j);
   json["channels"] = Json::array();
   for (const ChannelAnswer& answer : identification.channels)
     json["channels"].push_back(channel_json(run, answer));
@@ -162,6 +173,7 @@ nlohmann::ordered_json to_json(const IdentificationRun& run) {
     json["inputs"].push_back({{"mv", run.unit.input_tag(static_cast<int>(i))},
                               {"outside_share", share ? Json(*share) : Json(nullptr)}});
   }
+  if (run.plan) json["plan"] = plan_json(run);
   json["made_by"] = {{"program", run.program},
                      {"command", run.command_line},
                      {"config", run.config_file},
@@ -180,7 +192,7 @@ std::string to_text(const IdentificationRun& run) {
     else
       left_out += wrapped(run.unit.input_tag(answer.input) + " -> " + cv_tag(run, answer.cv) +
                               ": " + reason_text(run, answer),
-                          2, kTextWidth);
+                          2, kReasonWidth);
   std::string text = run.unit.unit + ": " + counted(rows.size() - 1, "channel") + " of " +
                      std::to_string(run.identification.channels.size()) + " identified from " +
                      counted(static_cast<std::uint64_t>(run.recording.samples()), "sample") +
@@ -197,6 +209,7 @@ std::string to_text(const IdentificationRun& run) {
             unseen;
   const std::string doubt = doubts(run);
   if (!doubt.empty()) text += "\nin doubt:\n" + doubt;
+  if (run.plan) text += '\n' + plan_text(run);
   return text;
 }
 

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "daemon/report/identification/identification_run.hpp"
 
 namespace mpm::report {
+
+/// Columns of the sentences.
+inline constexpr std::size_t kReasonWidth = 96;
 
 /// The word that programs go by: `identified`, `no_relation`, ...
 [[nodiscard]] std::string reason_word(LeftOut left_out);
