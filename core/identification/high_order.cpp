@@ -33,9 +33,7 @@ MatrixXd lagged_sums(const Eigen::Ref<const VectorXd>& input, const std::vector<
     before(0) = 0.0;
     for (Index k = 0; k < count; ++k) before(k + 1) = before(k) + input(first + k);
     const double held = input(first);
-    const auto up_to = [&](Index k) {
-      return k >= 0 ? before(k) : held * static_cast<double>(k);
-    };
+    const auto up_to = [&](Index k) { return k >= 0 ? before(k) : held * static_cast<double>(k); };
     for (std::size_t b = 0; b < blocks.size(); ++b)
       for (Index k = 0; k < count; ++k)
         sums(first + k, static_cast<Index>(b)) =

@@ -13,8 +13,8 @@ struct LagBlock {
   int last = 1;
 };
 
-/// Single lags at first, then blocks that grow with the lag, up to `longest`: an answer of any speed
-/// in few coefficients.
+/// Single lags at first, then blocks that grow with the lag, up to `longest`: an answer of any
+/// speed in few coefficients.
 [[nodiscard]] std::vector<LagBlock> lag_blocks(int longest);
 
 /// Sums of an input over the blocks, samples x blocks; before a run its first value held.
@@ -29,13 +29,13 @@ struct LagBlock {
 /// order leaves of the data follows from it.
 struct HighOrderModel {
   std::vector<LagBlock> blocks;
-  int past = 0;             ///< lags of the CV itself: the first columns
-  Eigen::VectorXd noise;    ///< a_1 .. a_past
-  Eigen::MatrixXd factor;   ///< columns x columns, upper triangular
-  Eigen::VectorXd right;    ///< columns: the CV, rotated alike
-  double variance = 0.0;    ///< of e
-  double rows = 0.0;        ///< that were used
-  bool sound = false;       ///< enough rows, and something left to explain
+  int past = 0;            ///< lags of the CV itself: the first columns
+  Eigen::VectorXd noise;   ///< a_1 .. a_past
+  Eigen::MatrixXd factor;  ///< columns x columns, upper triangular
+  Eigen::VectorXd right;   ///< columns: the CV, rotated alike
+  double variance = 0.0;   ///< of e
+  double rows = 0.0;       ///< that were used
+  bool sound = false;      ///< enough rows, and something left to explain
 
   [[nodiscard]] Eigen::Index column_of(int input) const {
     return past + static_cast<Eigen::Index>(input) * static_cast<Eigen::Index>(blocks.size());

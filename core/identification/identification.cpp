@@ -42,9 +42,13 @@ struct Material {
 
 Material material(const Recording& recording) {
   const Index rows = fitted_rows(recording, 1.0 - kValidationShare);
-  Material result{recording, identification_data(recording),
+  Material result{recording,
+                  identification_data(recording),
                   identification_data(part(recording, 0, rows)),
-                  identification_data(part(recording, rows, recording.samples() - rows)), {}, {}, {}};
+                  identification_data(part(recording, rows, recording.samples() - rows)),
+                  {},
+                  {},
+                  {}};
   const IdentificationData& all = result.all;
   const VectorXd everywhere = VectorXd::Ones(all.samples());
   result.input_spread.resize(all.inputs.cols());
@@ -89,8 +93,8 @@ struct Choice {
   std::vector<ChannelShape> channels;
   NoiseAssumption noise;
   bool output_error = false;
-  bool confirmed = false;       ///< predictions are better with the channels
-  double unseen_square = 0.0;   ///< mean, of the free run
+  bool confirmed = false;      ///< predictions are better with the channels
+  double unseen_square = 0.0;  ///< mean, of the free run
 };
 
 /// The simplest of some structures that does best on rows that none was fitted to.
@@ -100,8 +104,7 @@ Choice best_unseen(const Material& material, int cv, const std::vector<Predictio
   choice.noise = noise;
   double least = std::numeric_limits<double>::infinity();
   for (const PredictionErrorFit& fit : grown) {
-    const double now =
-        fit_prediction_error(material.unseen, cv, fit.channels, noise, 0).cost;
+    const double now = fit_prediction_error(material.unseen, cv, fit.channels, noise, 0).cost;
     if (now < least) least = now, choice.channels = fit.channels;
   }
   const PredictionErrorFit nothing = fit_prediction_error(material.unseen, cv, {}, noise, 0);
@@ -118,23 +121,26 @@ std::optional<Choice> by_output_error(const Material& material,
   if (!model.sound) return std::nullopt;
   const StartSearch search(model, hints, material.all.sample_time_s);
   const NoiseAssumption noise = output_error(fit_prediction_error(
-      material.first, cv, search.all_at_once(), output_error(), kMostSteps));
-  const std::vector<PredictionErrorFit> grown =
-      grown_structures(material.first, cv,
-                       simplest_structure(material.first, cv, search, noise), noise);
+      material.first, cv, search.best_sets().front(), output_error(), kMostSteps));
+  const std::vector<PredictionErrorFit> grown = grown_structures(
+      material.first, cv, simplest_structure(material.first, cv, search, noise), noise);
   Choice choice = best_unseen(material, cv, grown, noise);
   choice.output_error = true;
   return choice;
 }
 
+/// The inputs that act are picked on all rows; their forms are to carry over from the first rows to
+/// the unseen.
 Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
               const HighOrderModel& all, int cv) {
-  const NoiseAssumption noise = noise_model(material.first, cv);
-  const HighOrderModel first = high_order_model(material.first, cv, kPastLags);
-  const StartSearch search(first.sound ? first : all, hints, material.all.sample_time_s);
-  const std::vector<PredictionErrorFit> grown =
-      grown_structures(material.first, cv,
-                       simplest_structure(material.first, cv, search, noise), noise);
+  const StartSearch search(all, hints, material.all.sample_time_s);
+  const NoiseAssumption usual = noise_model(material.all, cv),
+                        noise = noise_model(material.first, cv);
+  PredictionErrorFit simplest = simplest_structure(material.all, cv, search, usual);
+  const std::vector<PredictionErrorFit> grown = grown_structures(
+      material.first, cv,
+      fit_prediction_error(material.first, cv, std::move(simplest.channels), noise, kMostSteps),
+      noise);
   Choice choice = best_unseen(material, cv, grown, noise);
   if (material.feedback_p_value < kFeedback) return choice;
   // What the noise model takes for noise may be what a poor form leaves.
@@ -206,10 +212,10 @@ void state_numbers(const Material& material, const PredictionErrorFit& fit, std:
 void state_step(const PredictionErrorFit& fit, std::size_t which, double sample_time_s,
                 ChannelAnswer& answer) {
   const ChannelShape& shape = fit.channels[which];
-  const double times = shape.time_constant +
-                       (shape.form == ChannelForm::kFirstOrder ? 0.0 : shape.second);
-  const auto stride = static_cast<Index>(
-      std::ceil((shape.dead_time + kStepTimes * times) / kStepPoints + 1e-9));
+  const double times =
+      shape.time_constant + (shape.form == ChannelForm::kFirstOrder ? 0.0 : shape.second);
+  const auto stride =
+      static_cast<Index>(std::ceil((shape.dead_time + kStepTimes * times) / kStepPoints + 1e-9));
   VectorXd input = VectorXd::Ones(stride * kStepPoints + 2);
   input(0) = 0.0;  // then y(k) is the answer k - 1 samples after the step
   const std::vector<Run> all = {{0, input.size()}};
@@ -228,8 +234,7 @@ void state_step(const PredictionErrorFit& fit, std::size_t which, double sample_
     set_number(other, numbers[n], value + by, std::numeric_limits<double>::max());
     slopes.col(static_cast<Index>(n)) = (response(other, input, all) - step) / by;
   }
-  const MatrixXd covariance =
-      fit.covariance.block(first, first, slopes.cols(), slopes.cols());
+  const MatrixXd covariance = fit.covariance.block(first, first, slopes.cols(), slopes.cols());
   for (Index k = 1; k < input.size(); k += stride) {
     answer.step_times_s.push_back(static_cast<double>(k - 1) * sample_time_s);
     answer.step.push_back(step(k));
@@ -238,7 +243,8 @@ void state_step(const PredictionErrorFit& fit, std::size_t which, double sample_
   }
 }
 
-double typical_time_constant(const HighOrderModel& model, const std::optional<PredictionErrorFit>& fit) {
+double typical_time_constant(const HighOrderModel& model,
+                             const std::optional<PredictionErrorFit>& fit) {
   std::vector<double> times;
   if (fit)
     for (const ChannelShape& shape : fit->channels) times.push_back(shape.time_constant);
@@ -248,8 +254,8 @@ double typical_time_constant(const HighOrderModel& model, const std::optional<Pr
 }
 
 void state_channels(const Material& material, const HighOrderModel& model,
-                    const std::vector<ChannelHint>& hints, const NoiseAssumption& noise, bool refused,
-                    CvOutcome& outcome) {
+                    const std::vector<ChannelHint>& hints, const NoiseAssumption& noise,
+                    bool refused, CvOutcome& outcome) {
   const int cv = outcome.answer.cv;
   const double spread = spread_of(material.all.cvs.col(cv), material.all.known.col(cv));
   const double typical = model.sound ? typical_time_constant(model, outcome.fit) : 1.0;
@@ -282,10 +288,8 @@ void state_channels(const Material& material, const HighOrderModel& model,
         if (shape.input != answer.input) continue;
         state_numbers(material, *outcome.fit, c, answer);
         state_step(*outcome.fit, c, material.all.sample_time_s, answer);
-        answer.p_value =
-            f_upper_tail(worth[c] / 3.0, 3.0, std::max(1.0, outcome.fit->rows));
-        const VectorXd given =
-            response(shape, material.all.inputs.col(input), material.all.runs);
+        answer.p_value = f_upper_tail(worth[c] / 3.0, 3.0, std::max(1.0, outcome.fit->rows));
+        const VectorXd given = response(shape, material.all.inputs.col(input), material.all.runs);
         answer.contribution = spread_of(given, VectorXd::Ones(given.size())) / spread;
         if (answer.left_out == LeftOut::kOnlyFeedback) continue;
         const double relative = std::abs(sd_of(*outcome.fit, c)(0) / shape.gain);
@@ -318,10 +322,10 @@ CvOutcome identify_cv(const Material& material, const IdentificationSettings& se
     choice = choose(material, hints, model, cv);
     const NoiseAssumption usual = noise_model(material.all, cv);
     if (!choice.output_error) choice.noise = usual;
-    outcome.fit = pruned(material.all, cv,
-                         fit_prediction_error(material.all, cv, choice.channels, choice.noise,
-                                              kMostSteps),
-                         choice.noise);
+    outcome.fit =
+        pruned(material.all, cv,
+               fit_prediction_error(material.all, cv, choice.channels, choice.noise, kMostSteps),
+               choice.noise);
     answer.output_error = choice.output_error;
     const PredictionErrorFit whitened =
         choice.output_error
@@ -330,8 +334,8 @@ CvOutcome identify_cv(const Material& material, const IdentificationSettings& se
     answer.rows = whitened.rows;
     answer.innovation_sd = std::sqrt(whitened.variance);
     answer.noise_sd = spread_of(whitened.residual, material.all.known.col(cv));
-    answer.long_run_sd = answer.innovation_sd /
-                         std::max(kLeastReturn, 1.0 - whitened.noise.coefficients.sum());
+    answer.long_run_sd =
+        answer.innovation_sd / std::max(kLeastReturn, 1.0 - whitened.noise.coefficients.sum());
     answer.whiteness_p_value = whiteness_p_value(whitened);
     for (std::size_t i = 0; i < hints.size(); ++i)
       answer.input_p_values.push_back(
@@ -353,8 +357,7 @@ void correct_for_many(std::vector<ChannelAnswer>& channels) {
   bool rejected = true;
   for (std::size_t n = 0; n < order.size(); ++n) {
     ChannelAnswer& answer = channels[order[n]];
-    rejected = rejected &&
-               answer.p_value * static_cast<double>(order.size() - n) < kFamilyError;
+    rejected = rejected && answer.p_value * static_cast<double>(order.size() - n) < kFamilyError;
     if (!rejected && answer.left_out == LeftOut::kIdentified)
       answer.left_out = LeftOut::kNoRelation;
   }
@@ -375,8 +378,7 @@ VectorXd balanced_inputs(const Material& material, const std::vector<CvOutcome>&
     drift(channel.cv) = outcomes[static_cast<std::size_t>(channel.cv)].fit->drift;
   }
   if (slopes.isZero()) return data.input_mean;
-  const VectorXd moves =
-      Eigen::CompleteOrthogonalDecomposition<MatrixXd>(slopes).solve(-drift);
+  const VectorXd moves = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(slopes).solve(-drift);
   return data.input_mean + moves.cwiseProduct(material.input_spread);
 }
 
@@ -397,9 +399,9 @@ ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome
   for (const CvOutcome& outcome : outcomes) {
     if (!outcome.fit) continue;
     for (std::size_t r = 0; r < data.runs.size(); ++r)
-      model.output_origin(outcome.answer.cv) +=
-          outcome.fit->level(static_cast<Index>(r)) * static_cast<double>(data.runs[r].count) /
-          static_cast<double>(data.samples());
+      model.output_origin(outcome.answer.cv) += outcome.fit->level(static_cast<Index>(r)) *
+                                                static_cast<double>(data.runs[r].count) /
+                                                static_cast<double>(data.samples());
   }
   for (const ChannelSpec& channel : model.channels) {
     const auto& tf = std::get<TransferFunction>(channel.dynamics);
@@ -413,8 +415,7 @@ ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome
 /// How far the free run is off on rows that the choice of forms did not see.
 void measure_unseen(const Material& material, const ModelSpec& model, CvAnswer& answer) {
   const Index rows = material.first.samples();
-  const Recording unseen =
-      part(material.recording, rows, material.recording.samples() - rows);
+  const Recording unseen = part(material.recording, rows, material.recording.samples() - rows);
   Simulator simulator(unseen);
   const VectorXd simulated = free_run(simulator, model, answer.cv);
   double sum = 0.0, count = 0.0;
@@ -444,8 +445,7 @@ Identification identify(const Recording& recording, const IdentificationSettings
     result.longest_lag_s =
         std::max(result.longest_lag_s, outcome.longest_lag * recording.sample_time_s);
   for (const CvOutcome& outcome : outcomes)
-    result.channels.insert(result.channels.end(), outcome.channels.begin(),
-                           outcome.channels.end());
+    result.channels.insert(result.channels.end(), outcome.channels.begin(), outcome.channels.end());
   correct_for_many(result.channels);
   result.model = model_of_answers(given, outcomes, result.channels);
   for (CvOutcome& outcome : outcomes) {

@@ -18,18 +18,18 @@ struct IdentificationSettings {
 
 /// Why a channel is not in the model.
 enum class LeftOut {
-  kIdentified,       ///< it is
-  kGivenNone,        ///< the user says that there is no relation
-  kStill,            ///< the input does not move
-  kUnknownCv,        ///< the CV is hardly known, or does not move
-  kTooFewRows,       ///< for so many inputs
-  kOnlyFeedback,     ///< nothing but the CVs' own disturbances moves the input
-  kHidden,           ///< moves too little, or too much like others, to tell
-  kNoRelation,       ///< an effect that matters would have shown
-  kTooSmall,         ///< there, but without importance
-  kVague,            ///< there, but of unknown size
-  kWrongSign,        ///< the data contradict the sign that the user gives
-  kNotConfirmed,     ///< predictions of what was not fitted are no better with the inputs
+  kIdentified,    ///< it is
+  kGivenNone,     ///< the user says that there is no relation
+  kStill,         ///< the input does not move
+  kUnknownCv,     ///< the CV is hardly known, or does not move
+  kTooFewRows,    ///< for so many inputs
+  kOnlyFeedback,  ///< nothing but the CVs' own disturbances moves the input
+  kHidden,        ///< moves too little, or too much like others, to tell
+  kNoRelation,    ///< an effect that matters would have shown
+  kTooSmall,      ///< there, but without importance
+  kVague,         ///< there, but of unknown size
+  kWrongSign,     ///< the data contradict the sign that the user gives
+  kNotConfirmed,  ///< predictions of what was not fitted are no better with the inputs
 };
 
 struct Interval95 {
@@ -61,14 +61,14 @@ struct ChannelAnswer {
 /// How good the model of a CV is.
 struct CvAnswer {
   int cv = 0;
-  double rows = 0.0;                 ///< that were fitted
-  double spread = 0.0;               ///< s.d. of the CV
+  double rows = 0.0;    ///< that were fitted
+  double spread = 0.0;  ///< s.d. of the CV
   /// Fitted by the errors of the free run, for which no feedback and better carrying over speak.
   bool output_error = false;
-  double noise_sd = 0.0;             ///< of what the model leaves, CV units
-  double innovation_sd = 0.0;        ///< one step ahead, CV units
-  double long_run_sd = 0.0;          ///< root of the noise's spectrum at frequency 0
-  double whiteness_p_value = 1.0;    ///< of the innovations (Ljung and Box 1978)
+  double noise_sd = 0.0;           ///< of what the model leaves, CV units
+  double innovation_sd = 0.0;      ///< one step ahead, CV units
+  double long_run_sd = 0.0;        ///< root of the noise's spectrum at frequency 0
+  double whiteness_p_value = 1.0;  ///< of the innovations (Ljung and Box 1978)
   /// Per input: p-value of the innovations not depending on its past; 1 where it was not asked.
   std::vector<double> input_p_values;
   double unseen_rmse = 0.0;    ///< of the free run on what was left out of the choice
@@ -76,13 +76,13 @@ struct CvAnswer {
 };
 
 struct Identification {
-  ModelSpec model;  ///< the channels that were identified, operating point
+  ModelSpec model;                      ///< the channels that were identified, operating point
   std::vector<ChannelAnswer> channels;  ///< all, CV by CV, inputs in order
   std::vector<CvAnswer> cvs;
   std::vector<std::optional<double>> outside_shares;  ///< of each input's movement
   std::vector<double> input_spread;                   ///< s.d. of each input; 0: it stands still
-  double feedback_p_value = 1.0;  ///< of no input depending on the CVs' past
-  double longest_lag_s = 0.0;     ///< that was looked at
+  double feedback_p_value = 1.0;                      ///< of no input depending on the CVs' past
+  double longest_lag_s = 0.0;                         ///< that was looked at
 };
 
 /// A model from data alone.

@@ -22,7 +22,11 @@ struct FreeNumber {
 class CvFitting {
  public:
   CvFitting(const IdentificationData& data, int cv, const NoiseAssumption& noise)
-      : data_(data), cv_(cv), noise_(noise.model), inflation_(noise.inflation), known_(data.known.col(cv)) {
+      : data_(data),
+        cv_(cv),
+        noise_(noise.model),
+        inflation_(noise.inflation),
+        known_(data.known.col(cv)) {
     spread_ = std::max(1e-300, spread_of(data.cvs.col(cv), known_));
     weights_ = known_;
     for (const auto& [first, count] : data.runs) {
@@ -156,8 +160,7 @@ class CvFitting {
       state.noise = fit_whitening(state.residual, weights_, noise_);
       state.noise.borders = data_.borders;
       state.innovations = state.noise.apply(state.residual).cwiseProduct(weights_);
-      state.variance = std::max(state.innovations.squaredNorm() / rows_,
-                                1e-24 * spread_ * spread_);
+      state.variance = std::max(state.innovations.squaredNorm() / rows_, 1e-24 * spread_ * spread_);
     }
     state.cost = rows_ / inflation_ * std::log(state.variance);
     return state;
@@ -229,7 +232,8 @@ class CvFitting {
   Step linearise(const State& state) const {
     Step step;
     for (std::size_t c = 0; c < state.channels.size(); ++c)
-      for (const ShapeNumber which : free_numbers(state.channels[c])) step.free.push_back({c, which});
+      for (const ShapeNumber which : free_numbers(state.channels[c]))
+        step.free.push_back({c, which});
     const auto count = static_cast<Index>(step.free.size());
     MatrixXd slopes(data_.samples(), count + 1);
     for (Index i = 0; i < count; ++i)
@@ -267,16 +271,15 @@ class CvFitting {
     const VectorXd sizes = stacked.leftCols(count).colwise().norm().cwiseMax(1e-300);
     // A little damping keeps directions that the data do not know where they are.
     MatrixXd system(stacked.rows() + count, count);
-    system.topRows(stacked.rows()) =
-        stacked.leftCols(count) * sizes.cwiseInverse().asDiagonal();
+    system.topRows(stacked.rows()) = stacked.leftCols(count) * sizes.cwiseInverse().asDiagonal();
     system.bottomRows(count).setZero();
     system.bottomRows(count).diagonal().setConstant(1e-6);
     VectorXd right = VectorXd::Zero(system.rows());
     right.head(stacked.rows()) = stacked.col(count);
     const Eigen::HouseholderQR<MatrixXd> qr(system);
     const MatrixXd factor = qr.matrixQR().topRows(count).triangularView<Eigen::Upper>();
-    const MatrixXd inverse = factor.triangularView<Eigen::Upper>().solve(
-        MatrixXd::Identity(count, count));
+    const MatrixXd inverse =
+        factor.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(count, count));
     const MatrixXd scaled = sizes.cwiseInverse().asDiagonal() * inverse;
     step.covariance = scaled * scaled.transpose();
     step.direction = qr.solve(right).cwiseQuotient(sizes);
@@ -291,12 +294,12 @@ class CvFitting {
   }
 
   static std::vector<ChannelShape> moved(std::vector<ChannelShape> channels,
-                                         const std::vector<FreeNumber>& free,
-                                         const VectorXd& by, double longest) {
+                                         const std::vector<FreeNumber>& free, const VectorXd& by,
+                                         double longest) {
     for (std::size_t i = 0; i < free.size(); ++i) {
       ChannelShape& shape = channels[free[i].channel];
-      set_number(shape, free[i].which,
-                 number_of(shape, free[i].which) + by(static_cast<Index>(i)), longest);
+      set_number(shape, free[i].which, number_of(shape, free[i].which) + by(static_cast<Index>(i)),
+                 longest);
     }
     return channels;
   }
@@ -317,8 +320,7 @@ class CvFitting {
     fit.level.resize(static_cast<Index>(state.beside.size()));
     for (std::size_t r = 0; r < state.beside.size(); ++r) {
       fit.level(static_cast<Index>(r)) = state.beside[r](0);
-      if (state.drifts)
-        fit.drift += state.beside[r](1) / static_cast<double>(data_.samples());
+      if (state.drifts) fit.drift += state.beside[r](1) / static_cast<double>(data_.samples());
     }
     return fit;
   }

@@ -40,8 +40,7 @@ struct PredictionErrorFit {
 /// its own, and of an integrating CV a drift.
 [[nodiscard]] PredictionErrorFit fit_prediction_error(const IdentificationData& data, int cv,
                                                       std::vector<ChannelShape> channels,
-                                                      const NoiseAssumption& noise,
-                                                      int most_steps);
+                                                      const NoiseAssumption& noise, int most_steps);
 
 /// Innovations are the errors of the free run: sound only where no feedback moves the inputs.
 [[nodiscard]] NoiseAssumption output_error();

@@ -31,9 +31,9 @@ double whiteness_p_value(const PredictionErrorFit& fit) {
 
 double past_input_p_value(const IdentificationData& data, const PredictionErrorFit& fit,
                           int input) {
-  const int longest = std::max(2, static_cast<int>(std::min(
-                                      static_cast<double>(kLongestTestedLag),
-                                      kLagShare * static_cast<double>(data.samples()))));
+  const int longest =
+      std::max(2, static_cast<int>(std::min(static_cast<double>(kLongestTestedLag),
+                                            kLagShare * static_cast<double>(data.samples()))));
   const MatrixXd sums = lagged_sums(data.inputs.col(input), lag_blocks(longest), data.runs);
   const Index known = fit.slopes.cols(), added = sums.cols();
   MatrixXd system(data.samples(), 1 + known + added + 1);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/identification/calibration.hpp"
 
@@ -107,10 +108,6 @@ StartSearch::StartSearch(const HighOrderModel& model, const std::vector<ChannelH
   right_ = model.right - model.factor.leftCols(model.past) * model.noise;
 }
 
-bool StartSearch::worth(const Found& found) const {
-  return found.explained > kWorthTrying * model_.variance;
-}
-
 StartSearch::Found StartSearch::best(std::size_t input, const MatrixXd& others) const {
   Found found;
   const MatrixXd& columns = choices_[input].columns;
@@ -129,76 +126,138 @@ StartSearch::Found StartSearch::best(std::size_t input, const MatrixXd& others) 
   return found;
 }
 
-MatrixXd StartSearch::columns_of(const State& state, std::size_t but) const {
-  MatrixXd columns(model_.factor.rows(), static_cast<Index>(state.size()));
-  Index count = 0;
-  for (std::size_t m = 0; m < state.size(); ++m)
-    if (m != but && state[m])
-      columns.col(count++) = choices_[m].columns.col(state[m]->which).normalized();
-  return columns.leftCols(count);
-}
-
-void StartSearch::sweep(State& state) const {
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    if (!state[i]) continue;
-    const Found found = best(i, columns_of(state, i));
-    if (found.explained >= 0.0) state[i] = found;
-  }
-}
-
-ChannelShape StartSearch::shape_of(std::size_t input, const Found& found) const {
+ChannelShape StartSearch::best_shape(std::size_t input, const Found& found) const {
   ChannelShape shape = choices_[input].shapes[static_cast<std::size_t>(found.which)];
   shape.gain = found.gain;
   return shape;
 }
 
-std::vector<ChannelShape> StartSearch::shapes_of(const State& state) const {
-  std::vector<ChannelShape> shapes;
-  for (std::size_t i = 0; i < state.size(); ++i)
-    if (state[i]) shapes.push_back(shape_of(i, *state[i]));
-  return shapes;
+VectorXd StartSearch::column(const ChannelShape& shape) const {
+  return model_.factor.middleCols(model_.column_of(shape.input),
+                                  static_cast<Index>(model_.blocks.size())) *
+         coefficients_of(shape, model_);
 }
 
-std::vector<ChannelShape> StartSearch::one_by_one() const {
-  State state(hints_.size());
-  for (std::size_t step = 0; step < state.size(); ++step) {
-    const MatrixXd there = columns_of(state, state.size());
-    std::size_t which = state.size();
-    Found most;
-    for (std::size_t i = 0; i < state.size(); ++i) {
-      if (state[i] || choices_[i].shapes.empty()) continue;
-      const Found found = best(i, there);
-      if (found.explained > most.explained) most = found, which = i;
+MatrixXd StartSearch::columns(const std::vector<ChannelShape>& channels) const {
+  MatrixXd result(model_.factor.rows(), static_cast<Index>(channels.size()));
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    result.col(static_cast<Index>(c)) = column(channels[c]).normalized();
+  return result;
+}
+
+/// Gauss-Newton on the factor: a few hundred rows, whatever the data had.
+StartSearch::Set StartSearch::fitted(std::vector<ChannelShape> channels) const {
+  const double longest = kSlowestStart * model_.blocks.back().last;
+  const auto error = [&](const std::vector<ChannelShape>& shapes) {
+    VectorXd left = right_;
+    for (const ChannelShape& shape : shapes) left -= shape.gain * column(shape);
+    return left;
+  };
+  Set set{std::move(channels), 0.0};
+  VectorXd left = error(set.channels);
+  set.left = left.squaredNorm();
+  for (int step = 0; step < kSetSteps; ++step) {
+    std::vector<std::pair<std::size_t, ShapeNumber>> numbers;
+    for (std::size_t c = 0; c < set.channels.size(); ++c)
+      for (const ShapeNumber which : free_numbers(set.channels[c])) numbers.emplace_back(c, which);
+    const auto count = static_cast<Index>(numbers.size());
+    MatrixXd slopes(left.size(), count);
+    for (Index n = 0; n < count; ++n) {
+      const auto& [c, which] = numbers[static_cast<std::size_t>(n)];
+      ChannelShape other = set.channels[c];
+      const VectorXd now = column(other);
+      if (which == ShapeNumber::kGain) {
+        slopes.col(n) = now;
+        continue;
+      }
+      const double by = which == ShapeNumber::kDeadTime ? kDeadTimeStep : kLogStep;
+      set_number(other, which, number_of(other, which) + by, 2.0 * longest);
+      slopes.col(n) = other.gain * (column(other) - now) / by;
     }
-    if (!worth(most)) break;
-    state[which] = most;
-    for (int turn = 0; turn < kSweeps; ++turn) sweep(state);
+    const VectorXd sizes = slopes.colwise().norm().cwiseMax(1e-300);
+    MatrixXd system = MatrixXd::Zero(left.size() + count, count);
+    system.topRows(left.size()) = slopes * sizes.cwiseInverse().asDiagonal();
+    system.bottomRows(count).diagonal().setConstant(kSetDamping);
+    VectorXd target = VectorXd::Zero(system.rows());
+    target.head(left.size()) = left;
+    const VectorXd move = Eigen::HouseholderQR<MatrixXd>(system).solve(target).cwiseQuotient(sizes);
+    const double before = set.left;
+    double size = 1.0;
+    for (int cut = 0; cut <= kMostCuts; ++cut, size /= 3.0) {
+      std::vector<ChannelShape> next = set.channels;
+      for (Index n = 0; n < count; ++n) {
+        const auto& [c, which] = numbers[static_cast<std::size_t>(n)];
+        const double most = which == ShapeNumber::kGain ? std::numeric_limits<double>::infinity()
+                            : which == ShapeNumber::kDeadTime ? kStepOfDeadTime
+                                                              : kStepOfTimes;
+        set_number(next[c], which,
+                   number_of(next[c], which) + std::clamp(size * move(n), -most, most), longest);
+      }
+      const VectorXd now = error(next);
+      if (!(now.squaredNorm() < set.left)) continue;
+      set = {std::move(next), now.squaredNorm()};
+      left = now;
+      break;
+    }
+    if (before - set.left < kSetConverged * model_.variance) break;
   }
-  return shapes_of(state);
+  return set;
 }
 
-std::vector<ChannelShape> StartSearch::all_at_once() const {
-  State state(hints_.size());
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    if (choices_[i].shapes.empty()) continue;
-    const Found found = best(i, columns_of(state, i));
-    if (found.explained >= 0.0) state[i] = found;
+double StartSearch::bic(const Set& set) const {
+  return set.left / model_.variance +
+         3.0 * static_cast<double>(set.channels.size()) * std::log(model_.rows);
+}
+
+std::vector<std::vector<ChannelShape>> StartSearch::best_sets() const {
+  std::vector<Set> beam = {fitted({})}, all = beam;
+  const auto better = [this](const Set& a, const Set& b) { return bic(a) < bic(b); };
+  const auto inputs_of = [this](const Set& set) {
+    std::vector<bool> taken(hints_.size(), false);
+    for (const ChannelShape& shape : set.channels)
+      taken[static_cast<std::size_t>(shape.input)] = true;
+    return taken;
+  };
+  for (std::size_t size = 1; size <= hints_.size(); ++size) {
+    std::vector<Set> grown;
+    for (const Set& set : beam) {
+      const std::vector<bool> taken = inputs_of(set);
+      const MatrixXd there = columns(set.channels);
+      for (std::size_t i = 0; i < taken.size(); ++i) {
+        if (taken[i] || choices_[i].shapes.empty()) continue;
+        const Found found = best(i, there);
+        if (found.explained < 0.0) continue;
+        std::vector<ChannelShape> channels = set.channels;
+        channels.push_back(best_shape(i, found));
+        grown.push_back(fitted(std::move(channels)));
+      }
+    }
+    std::stable_sort(grown.begin(), grown.end(), better);
+    beam.clear();
+    for (Set& set : grown) {  // the same inputs in another order may have ended elsewhere
+      const auto same = [&](const Set& kept) { return inputs_of(kept) == inputs_of(set); };
+      if (beam.size() < kSetsKept && std::none_of(beam.begin(), beam.end(), same))
+        beam.push_back(std::move(set));
+    }
+    all.insert(all.end(), beam.begin(), beam.end());
+    // Two more inputs that are worth nothing end it.
+    if (size > 2 && !beam.empty() &&
+        bic(beam.front()) > bic(*std::min_element(all.begin(), all.end(), better)) +
+                                kHopelessSets * std::log(model_.rows))
+      break;
+    if (beam.empty()) break;
   }
-  for (int turn = 0; turn < kSweeps; ++turn) sweep(state);
-  return shapes_of(state);
+  std::stable_sort(all.begin(), all.end(), better);
+  all.resize(std::min(all.size(), kSetsTried));
+  std::vector<std::vector<ChannelShape>> sets;
+  for (Set& set : all) sets.push_back(std::move(set.channels));
+  return sets;
 }
 
 std::optional<ChannelShape> StartSearch::addition(const std::vector<ChannelShape>& channels) const {
-  MatrixXd there(model_.factor.rows(), static_cast<Index>(channels.size()));
+  const MatrixXd there = columns(channels);
   std::vector<bool> taken(hints_.size(), false);
-  const auto own = static_cast<Index>(model_.blocks.size());
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    taken[static_cast<std::size_t>(channels[c].input)] = true;
-    there.col(static_cast<Index>(c)) =
-        model_.factor.middleCols(model_.column_of(channels[c].input), own) *
-        coefficients_of(channels[c], model_);
-    there.col(static_cast<Index>(c)).normalize();
-  }
+  for (const ChannelShape& shape : channels) taken[static_cast<std::size_t>(shape.input)] = true;
   std::size_t which = taken.size();
   Found most;
   for (std::size_t i = 0; i < taken.size(); ++i) {
@@ -206,8 +265,8 @@ std::optional<ChannelShape> StartSearch::addition(const std::vector<ChannelShape
     const Found found = best(i, there);
     if (found.explained > most.explained) most = found, which = i;
   }
-  if (!worth(most)) return std::nullopt;
-  return shape_of(which, most);
+  if (!(most.explained > kWorthTrying * model_.variance)) return std::nullopt;
+  return best_shape(which, most);
 }
 
 double gain_sd(const HighOrderModel& model, int input, double time_constant) {

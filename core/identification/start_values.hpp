@@ -19,12 +19,10 @@ class StartSearch {
   StartSearch(const HighOrderModel& model, const std::vector<ChannelHint>& hints,
               double sample_time_s);
 
-  /// Input by input, the one first that explains most beside those already there, and after each
-  /// all of them anew, until none is worth it.
-  [[nodiscard]] std::vector<ChannelShape> one_by_one() const;
-  /// All inputs at once: each beside all others over and over, whatever it is worth. Where inputs
-  /// move alike, the right ones may show only together.
-  [[nodiscard]] std::vector<ChannelShape> all_at_once() const;
+  /// The best sets of channels, best first (BIC of the regression): sets grow by one input at a
+  /// time, a few of each size are kept, and whenever one grew all its numbers are fitted anew.
+  /// Where inputs move alike, the right ones may show only together.
+  [[nodiscard]] std::vector<std::vector<ChannelShape>> best_sets() const;
   /// The input that explains most beside these channels; nothing where none is worth it.
   [[nodiscard]] std::optional<ChannelShape> addition(
       const std::vector<ChannelShape>& channels) const;
@@ -39,14 +37,18 @@ class StartSearch {
     double gain = 0.0;
     double explained = -1.0;  ///< fall of the squared error; < 0: none fits
   };
-  using State = std::vector<std::optional<Found>>;  ///< one per input
+  struct Set {
+    std::vector<ChannelShape> channels;
+    double left = 0.0;  ///< squared error
+  };
 
   [[nodiscard]] Found best(std::size_t input, const Eigen::MatrixXd& others) const;
-  [[nodiscard]] Eigen::MatrixXd columns_of(const State& state, std::size_t but) const;
-  void sweep(State& state) const;
-  [[nodiscard]] bool worth(const Found& found) const;
-  [[nodiscard]] ChannelShape shape_of(std::size_t input, const Found& found) const;
-  [[nodiscard]] std::vector<ChannelShape> shapes_of(const State& state) const;
+  [[nodiscard]] ChannelShape best_shape(std::size_t input, const Found& found) const;
+  /// What a channel of gain 1 gives.
+  [[nodiscard]] Eigen::VectorXd column(const ChannelShape& shape) const;
+  [[nodiscard]] Eigen::MatrixXd columns(const std::vector<ChannelShape>& channels) const;
+  [[nodiscard]] Set fitted(std::vector<ChannelShape> channels) const;
+  [[nodiscard]] double bic(const Set& set) const;
 
   const HighOrderModel& model_;
   const std::vector<ChannelHint>& hints_;

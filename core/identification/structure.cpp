@@ -76,7 +76,7 @@ PredictionErrorFit without(const IdentificationData& data, int cv, const Predict
                            std::size_t which, const NoiseAssumption& noise) {
   std::vector<ChannelShape> rest = fit.channels;
   rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(which));
-  return fit_prediction_error(data, cv, std::move(rest), noise, kTrialSteps);
+  return fit_prediction_error(data, cv, std::move(rest), noise, kMostSteps);
 }
 
 double squared_z(const PredictionErrorFit& fit, std::size_t which) {
@@ -93,16 +93,17 @@ Eigen::VectorXd sd_of(const PredictionErrorFit& fit, std::size_t which) {
 
 PredictionErrorFit pruned(const IdentificationData& data, int cv, PredictionErrorFit fit,
                           const NoiseAssumption& noise) {
-  while (!fit.channels.empty()) {
-    std::size_t weakest = 0;
-    for (std::size_t c = 1; c < fit.channels.size(); ++c)
-      if (squared_z(fit, c) < squared_z(fit, weakest)) weakest = c;
-    if (squared_z(fit, weakest) > kBeyondDoubt) break;
-    PredictionErrorFit rest = without(data, cv, fit, weakest, noise);
-    if (rest.cost - fit.cost > kNeeded) break;
-    fit = std::move(rest);
+  for (;;) {
+    // Of inputs that move alike, the one whose gain looks least sure need not be the one too many.
+    std::optional<PredictionErrorFit> best;
+    for (std::size_t c = 0; c < fit.channels.size(); ++c) {
+      if (squared_z(fit, c) > kBeyondDoubt) continue;
+      PredictionErrorFit rest = without(data, cv, fit, c, noise);
+      if (!best || rest.cost < best->cost) best = std::move(rest);
+    }
+    if (!best || best->cost - fit.cost > kNeeded) return fit;
+    fit = std::move(*best);
   }
-  return fit;
 }
 
 std::vector<double> worth_of_channels(const IdentificationData& data, int cv,
@@ -118,7 +119,7 @@ std::vector<double> worth_of_channels(const IdentificationData& data, int cv,
 PredictionErrorFit simplest_structure(const IdentificationData& data, int cv,
                                       const StartSearch& search, const NoiseAssumption& noise) {
   std::optional<PredictionErrorFit> best;
-  for (std::vector<ChannelShape> start : {search.one_by_one(), search.all_at_once()}) {
+  for (std::vector<ChannelShape>& start : search.best_sets()) {
     PredictionErrorFit fit = pruned(
         data, cv, fit_prediction_error(data, cv, std::move(start), noise, kMostSteps), noise);
     while (const std::optional<ChannelShape> missing = search.addition(fit.channels)) {
@@ -158,8 +159,7 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
         if (!best || bic(fit) < bic(*best)) best = std::move(fit);
       }
     if (!best) break;
-    grown.push_back(
-        fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps));
+    grown.push_back(fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps));
   }
   return grown;
 }

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// First-order channels of one CV: from either start of the search, what the data do not need goes,
+/// First-order channels of one CV: from each set of the search, what the data do not need goes,
 /// what is missing comes; the better outcome (BIC).
 [[nodiscard]] PredictionErrorFit simplest_structure(const IdentificationData& data, int cv,
                                                     const StartSearch& search,

@@ -25,8 +25,7 @@ bool wants_movement(LeftOut left_out) {
 
 double settling_of(const ChannelAnswer& answer, double sample_time_s) {
   const TransferFunction& tf = *answer.dynamics;
-  const double times =
-      std::accumulate(tf.time_constants_s.begin(), tf.time_constants_s.end(), 0.0);
+  const double times = std::accumulate(tf.time_constants_s.begin(), tf.time_constants_s.end(), 0.0);
   return tf.dead_time_s + kSettlingTimes * std::max(times, sample_time_s);
 }
 
@@ -79,8 +78,8 @@ std::vector<PlannedTest> test_plan(const Identification& identification, const T
       const CvAnswer& cv = identification.cvs[static_cast<std::size_t>(answer.cv)];
       test.settling_s = std::max(test.settling_s, settling_s(identification, answer.cv));
       if (cv.spread > 0.0)
-        noise_rows = std::max(
-            noise_rows, std::pow(kWantedSd * cv.long_run_sd / (kMatters * cv.spread), 2.0));
+        noise_rows = std::max(noise_rows,
+                              std::pow(kWantedSd * cv.long_run_sd / (kMatters * cv.spread), 2.0));
     }
     if (test.cvs.empty()) continue;
     test.amplitude = amplitude_of(identification, limits, input);

@@ -21,8 +21,7 @@ struct Given {
 /// `notices`. Throws config::InputError as the readers do.
 [[nodiscard]] Given read_given(const std::vector<std::string>& files,
                                const config::UnitConfig& unit, const files::TimeStyle& times,
-                               const files::TimeChoice& choice,
-                               std::vector<std::string>& notices);
+                               const files::TimeChoice& choice, std::vector<std::string>& notices);
 
 /// The command line of this process as it was typed, quoted where a shell would need it.
 [[nodiscard]] std::string command_line();

@@ -121,15 +121,16 @@ int identify_file(const IdentifyOptions& options) {
 
 void add_identify(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<IdentifyOptions>();
-  CLI::App* command =
-      app.add_subcommand("identify", "A model of a unit from tags and history, with what it is "
-                                     "sure of and what it left out");
+  CLI::App* command = app.add_subcommand("identify",
+                                         "A model of a unit from tags and history, with what it is "
+                                         "sure of and what it left out");
   command->add_option("--config", options->config, "unit file; needs no model")->required();
   command
-      ->add_option("--data", options->data,
-                   "data file: CSV in any historian layout, MCAP recording, or a folder of one that "
-                   "was split; of several each is a run of its own, at its own level and from its "
-                   "own first state")
+      ->add_option(
+          "--data", options->data,
+          "data file: CSV in any historian layout, MCAP recording, or a folder of one that "
+          "was split; of several each is a run of its own, at its own level and from its "
+          "own first state")
       ->required();
   command->add_option("--out", options->out,
                       "the unit file with the identified model (required, but for --plan)");

@@ -16,7 +16,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kSuspicious = 0.001;  ///< p-value of a residual test that is said aloud
 
-
 Json interval_json(const Interval95& interval) {
   return Json::array({interval.low, interval.high});
 }
@@ -66,9 +65,8 @@ Json channel_json(const IdentificationRun& run, const ChannelAnswer& answer) {
   for (const Interval95& each : answer.time_constants)
     interval["time_constants"].push_back(interval_json(each));
   if (answer.lead_s) interval["lead"] = interval_json(*answer.lead_s);
-  json["step_response"] = {{"time", answer.step_times_s},
-                           {"values", answer.step},
-                           {"sd", answer.step_sd}};
+  json["step_response"] = {
+      {"time", answer.step_times_s}, {"values", answer.step}, {"sd", answer.step_sd}};
   return json;
 }
 
@@ -83,8 +81,7 @@ Json cv_json(const IdentificationRun& run, const CvAnswer& answer) {
             {"unseen_sd", answer.unseen_spread}};
   json["past_input_p_values"] = Json::object();
   for (std::size_t i = 0; i < answer.input_p_values.size(); ++i)
-    json["past_input_p_values"][run.unit.input_tag(static_cast<int>(i))] =
-        answer.input_p_values[i];
+    json["past_input_p_values"][run.unit.input_tag(static_cast<int>(i))] = answer.input_p_values[i];
   return json;
 }
 
@@ -129,11 +126,10 @@ std::string doubts(const IdentificationRun& run) {
   for (const CvAnswer& answer : run.identification.cvs) {
     if (answer.rows == 0.0) continue;
     if (answer.whiteness_p_value < kSuspicious)
-      text += wrapped(cv_tag(run, answer.cv) +
-                          ": what the model leaves is not white (p = " +
-                          number_text(answer.whiteness_p_value, 2) +
-                          "); the intervals are too narrow",
-                      2, kReasonWidth);
+      text +=
+          wrapped(cv_tag(run, answer.cv) + ": what the model leaves is not white (p = " +
+                      number_text(answer.whiteness_p_value, 2) + "); the intervals are too narrow",
+                  2, kReasonWidth);
     for (std::size_t i = 0; i < answer.input_p_values.size(); ++i)
       if (answer.input_p_values[i] < kSuspicious)
         text += wrapped(cv_tag(run, answer.cv) + ": what the model leaves goes with the past of " +
@@ -205,8 +201,8 @@ std::string to_text(const IdentificationRun& run) {
       unseen += "  " + cv_tag(run, answer.cv) + ": " + number_text(answer.unseen_rmse) + " of " +
                 number_text(answer.unseen_spread) + "\n";
   if (!unseen.empty() && found_any(run))
-    text += "\nerror of the free run on the last part, which chose no form, and s.d. there:\n" +
-            unseen;
+    text +=
+        "\nerror of the free run on the last part, which chose no form, and s.d. there:\n" + unseen;
   const std::string doubt = doubts(run);
   if (!doubt.empty()) text += "\nin doubt:\n" + doubt;
   if (run.plan) text += '\n' + plan_text(run);

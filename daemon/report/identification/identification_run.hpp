@@ -19,9 +19,9 @@ struct IdentificationRun {
   std::string program;  ///< with its version
   std::string command_line;
   std::string config_file, data_file;
-  std::string out_file;  ///< empty where none is to be written
+  std::string out_file;                          ///< empty where none is to be written
   std::optional<std::vector<PlannedTest>> plan;  ///< where one was asked for
-  std::vector<std::string> notices;  ///< on the data
+  std::vector<std::string> notices;              ///< on the data
 };
 
 }  // namespace mpm::report

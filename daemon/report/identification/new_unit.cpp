@@ -63,8 +63,7 @@ std::string new_unit_yaml(const IdentificationRun& run, const std::string& text)
   // Written in another style than one section below the other: as the program sees it.
   all << header(run);
   config::print_unit(unit, all);
-  if (!loads(all.str(), run))
-    throw std::logic_error("the identified model does not load back");
+  if (!loads(all.str(), run)) throw std::logic_error("the identified model does not load back");
   return all.str();
 }
 

@@ -52,7 +52,8 @@ std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answe
       return "too few samples for so many inputs";
     case LeftOut::kOnlyFeedback:
       return "only feedback moves " + input +
-             ": what is seen is the controller as much as the process; move it, or a set-point, from "
+             ": what is seen is the controller as much as the process; move it, or a set-point, "
+             "from "
              "outside";
     case LeftOut::kHidden:
       if (!std::isfinite(answer.visible_gain))

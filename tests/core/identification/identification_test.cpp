@@ -27,8 +27,8 @@ Recording open_loop(Index rows, std::uint64_t seed) {
       telegraph(seed + 3, rows, 31);
   cvs.col(0) = first_order(inputs.col(0), 2.0, 12.0, 4) + first_order(inputs.col(2), -0.5, 30.0) +
                autoregressive(0.05 * white(seed + 4, rows), 0.9);
-  cvs.col(1) = first_order(inputs.col(1), 1.5, 8.0, 1) +
-               autoregressive(0.05 * white(seed + 5, rows), 0.7);
+  cvs.col(1) =
+      first_order(inputs.col(1), 1.5, 8.0, 1) + autoregressive(0.05 * white(seed + 5, rows), 0.7);
   inputs.col(0).array() += 40.0;
   cvs.col(1).array() += 100.0;
   return recording_of(inputs, cvs);
@@ -49,8 +49,8 @@ TEST_CASE("identify finds the channels that are there, their numbers, and no oth
     int cv, input;
     double gain, time_constant, dead_time;
   };
-  for (const Hidden& hidden : {Hidden{0, 0, 2.0, 12.0, 4.0}, Hidden{0, 2, -0.5, 30.0, 0.0},
-                               Hidden{1, 1, 1.5, 8.0, 1.0}}) {
+  for (const Hidden& hidden :
+       {Hidden{0, 0, 2.0, 12.0, 4.0}, Hidden{0, 2, -0.5, 30.0, 0.0}, Hidden{1, 1, 1.5, 8.0, 1.0}}) {
     CAPTURE(hidden.cv, hidden.input);
     const ChannelAnswer& answer = answer_of(found, hidden.cv, hidden.input);
     REQUIRE(answer.left_out == LeftOut::kIdentified);
