@@ -6,6 +6,8 @@
 /// where nothing else is said; what they give together is scored by tests/identify_score.
 namespace mpm {
 
+inline constexpr int kFewestRows = 30;  ///< fewer tell nothing
+
 // The regression of high order (high_order.hpp).
 inline constexpr int kDenseLags = 12;          ///< single lags of an input before the blocks
 inline constexpr double kBlockGrowth = 1.2;    ///< of a block's lags to the block before it
@@ -18,12 +20,15 @@ inline constexpr double kDependent = 1e-7;     ///< of a scaled column that is l
 
 // Start values (start_values.hpp), in samples.
 inline constexpr double kFastestStart = 0.6;
-inline constexpr double kStartGrowth = 1.6;    ///< from one time constant to the next
-inline constexpr double kSlowestStart = 2.0;   ///< of the last lag
-inline constexpr double kLatestStart = 0.5;    ///< of the last lag
-inline constexpr double kWorthTrying = 9.0;    ///< fall of the squared error, in its variance
-inline constexpr std::size_t kSetsKept = 3;    ///< of each size
-inline constexpr std::size_t kSetsTried = 4;   ///< on the data themselves
+inline constexpr double kStartGrowth = 1.6;   ///< from one time constant to the next
+inline constexpr double kSlowestStart = 2.0;  ///< of the last lag
+inline constexpr double kLatestStart = 0.5;   ///< of the last lag
+inline constexpr double kWorthTrying = 9.0;   ///< fall of the squared error, in its variance
+inline constexpr std::size_t kSetsKept = 3;   ///< of each size
+inline constexpr std::size_t kSetsTried = 4;  ///< on the data themselves
+inline constexpr double kFullTimes[] = {5.0, 15.0, 45.0};  ///< samples: starts of all inputs
+inline constexpr double kFullDeadTimes[] = {1.0, 4.0};     ///< samples
+inline constexpr std::size_t kFullsKept = 2;
 inline constexpr double kHopelessSets = 9.0;   ///< logs of the rows in BIC behind the best
 inline constexpr int kSetSteps = 12;           ///< of Gauss-Newton on the factor
 inline constexpr double kSetDamping = 1e-3;    ///< to the size of a column

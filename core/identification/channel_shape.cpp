@@ -58,7 +58,8 @@ void set_number(ChannelShape& shape, ShapeNumber which, double value, double lon
       shape.second = time();
       break;
     case ShapeNumber::kLead:
-      shape.lead = std::clamp(value, -longest, longest);
+      // Who gives a gain's sign means that of the answer: no inverse response.
+      shape.lead = std::clamp(value, shape.sign != 0 ? 0.0 : -longest, longest);
       break;
   }
 }

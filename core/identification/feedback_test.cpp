@@ -12,13 +12,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-double feedback_p_value(const IdentificationData& data) {
+double feedback_p_value(const IdentificationData& data, int first_lag) {
   const Index inputs = data.inputs.cols(), cvs = data.cvs.cols(), lags = kFeedbackLags;
   std::vector<Index> rows;
   for (const Run& run : data.runs)
     for (Index k = run.first + lags; k < run.first + run.count; ++k)
       if (data.known.middleRows(k - lags, lags + 1).minCoeff() > 0.0) rows.push_back(k);
-  const Index own = 1 + lags * inputs, asked = (lags + 1) * cvs;
+  const Index own = 1 + lags * inputs, asked = (lags + 1 - first_lag) * cvs;
   const auto count = static_cast<Index>(rows.size());
   if (count < static_cast<Index>(kRowsPerColumn) * (own + asked)) return 1.0;
   MatrixXd system(count, own + asked + inputs);
@@ -27,8 +27,8 @@ double feedback_p_value(const IdentificationData& data) {
     system(r, 0) = 1.0;
     for (Index l = 1; l <= lags; ++l)
       system.row(r).segment(1 + (l - 1) * inputs, inputs) = data.inputs.row(k - l);
-    for (Index l = 0; l <= lags; ++l)
-      system.row(r).segment(own + l * cvs, cvs) = data.cvs.row(k - l);
+    for (Index l = first_lag; l <= lags; ++l)
+      system.row(r).segment(own + (l - first_lag) * cvs, cvs) = data.cvs.row(k - l);
     system.row(r).tail(inputs) = data.inputs.row(k);
   }
   const VectorXd sizes = system.colwise().norm().cwiseMax(1e-300);
@@ -40,9 +40,10 @@ double feedback_p_value(const IdentificationData& data) {
   for (Index i = 0; i < inputs; ++i) {
     const VectorXd rotated = qr.matrixQR().col(columns + i).head(columns + i + 1);
     const double explained = rotated.segment(own, asked).squaredNorm();
-    // An input that its own past explains to within rounding is a test signal.
     const double rest = rotated.tail(i + 1).squaredNorm();
-    if (rest < kDependent * kDependent) continue;
+    constexpr double kRounding = kDependent * kDependent;
+    if (explained < kRounding) continue;
+    if (rest < kRounding) return 0.0;  // a controller without noise
     least = std::min(least, f_upper_tail(explained / static_cast<double>(asked) / (rest / freedom),
                                          static_cast<double>(asked), freedom));
   }

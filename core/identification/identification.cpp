@@ -38,6 +38,7 @@ struct Material {
   VectorXd input_spread;
   std::vector<std::optional<double>> outside;
   double feedback_p_value = 1.0;
+  bool open_loop = false;  ///< as far as anything shows
 };
 
 Material material(const Recording& recording) {
@@ -57,7 +58,8 @@ Material material(const Recording& recording) {
     result.input_spread(i) = spread > kStill * std::abs(all.input_mean(i)) ? spread : 0.0;
   }
   result.outside = outside_shares(recording, recording.cvs);
-  result.feedback_p_value = feedback_p_value(all);
+  result.feedback_p_value = feedback_p_value(all, 0);
+  result.open_loop = feedback_p_value(all, 1) > kFeedback;
   return result;
 }
 
@@ -142,7 +144,7 @@ Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
       fit_prediction_error(material.first, cv, std::move(simplest.channels), noise, kMostSteps),
       noise);
   Choice choice = best_unseen(material, cv, grown, noise);
-  if (material.feedback_p_value < kFeedback) return choice;
+  if (!material.open_loop) return choice;
   // What the noise model takes for noise may be what a poor form leaves.
   std::optional<Choice> other = by_output_error(material, hints, cv);
   if (other && other->confirmed &&
@@ -278,7 +280,7 @@ void state_channels(const Material& material, const HighOrderModel& model,
       answer.left_out = LeftOut::kUnknownCv;
     else if (!model.sound)
       answer.left_out = LeftOut::kTooFewRows;
-    else if (outside && *outside < kOnlyFeedback)
+    else if (outside && *outside < kOnlyFeedback && material.feedback_p_value < kFeedback)
       answer.left_out = LeftOut::kOnlyFeedback;
     else if (answer.visible_gain * material.input_spread(input) > kMatters * spread)
       answer.left_out = LeftOut::kHidden;
@@ -293,7 +295,7 @@ void state_channels(const Material& material, const HighOrderModel& model,
         answer.contribution = spread_of(given, VectorXd::Ones(given.size())) / spread;
         if (answer.left_out == LeftOut::kOnlyFeedback) continue;
         const double relative = std::abs(sd_of(*outcome.fit, c)(0) / shape.gain);
-        if (shape.gain == 0.0)
+        if (shape.gain == 0.0 || shape.gain * hints[i].sign < 0.0)
           answer.left_out = LeftOut::kWrongSign;
         else if (refused)
           answer.left_out = LeftOut::kNotConfirmed;
@@ -309,6 +311,39 @@ void state_channels(const Material& material, const HighOrderModel& model,
   }
 }
 
+/// A choice, and its channels fitted to all rows.
+struct Chosen {
+  Choice choice;
+  PredictionErrorFit fit;
+};
+
+Chosen choose_and_fit(const Material& material, const std::vector<ChannelHint>& hints,
+                      const HighOrderModel& model, int cv) {
+  Choice choice = choose(material, hints, model, cv);
+  if (!choice.output_error) choice.noise = noise_model(material.all, cv);
+  PredictionErrorFit fit =
+      pruned(material.all, cv,
+             fit_prediction_error(material.all, cv, choice.channels, choice.noise, kMostSteps),
+             choice.noise);
+  return {std::move(choice), std::move(fit)};
+}
+
+/// With the signs that the user gives, unless the data are far better without: then they contradict
+/// them.
+Chosen with_signs(const Material& material, const std::vector<ChannelHint>& hints,
+                  const HighOrderModel& model, int cv) {
+  Chosen given = choose_and_fit(material, hints, model, cv);
+  std::vector<ChannelHint> free = hints;
+  for (ChannelHint& hint : free) hint.sign = 0;
+  if (free == hints) return given;
+  Chosen other = choose_and_fit(material, free, model, cv);
+  const NoiseAssumption noise = noise_model(material.all, cv);
+  const auto cost = [&](const Chosen& chosen) {
+    return fit_prediction_error(material.all, cv, chosen.fit.channels, noise, 0).cost;
+  };
+  return cost(other) + kBeyondDoubt < cost(given) ? std::move(other) : std::move(given);
+}
+
 CvOutcome identify_cv(const Material& material, const IdentificationSettings& settings, int cv) {
   CvOutcome outcome;
   CvAnswer& answer = outcome.answer;
@@ -319,18 +354,14 @@ CvOutcome identify_cv(const Material& material, const IdentificationSettings& se
   Choice choice;
   if (model.sound) {
     outcome.longest_lag = model.blocks.back().last;
-    choice = choose(material, hints, model, cv);
-    const NoiseAssumption usual = noise_model(material.all, cv);
-    if (!choice.output_error) choice.noise = usual;
-    outcome.fit =
-        pruned(material.all, cv,
-               fit_prediction_error(material.all, cv, choice.channels, choice.noise, kMostSteps),
-               choice.noise);
+    Chosen chosen = with_signs(material, hints, model, cv);
+    choice = std::move(chosen.choice);
+    outcome.fit = std::move(chosen.fit);
     answer.output_error = choice.output_error;
     const PredictionErrorFit whitened =
-        choice.output_error
-            ? fit_prediction_error(material.all, cv, outcome.fit->channels, usual, 0)
-            : *outcome.fit;
+        choice.output_error ? fit_prediction_error(material.all, cv, outcome.fit->channels,
+                                                   noise_model(material.all, cv), 0)
+                            : *outcome.fit;
     answer.rows = whitened.rows;
     answer.innovation_sd = std::sqrt(whitened.variance);
     answer.noise_sd = spread_of(whitened.residual, material.all.known.col(cv));
@@ -430,7 +461,42 @@ void measure_unseen(const Material& material, const ModelSpec& model, CvAnswer& 
 
 }  // namespace
 
+namespace {
+
+/// What too few rows say.
+Identification nothing_of(const Recording& recording) {
+  Identification result;
+  const auto inputs = static_cast<int>(recording.inputs.cols());
+  const auto cvs = static_cast<int>(recording.cvs.cols());
+  result.model.sample_time_s = recording.sample_time_s;
+  result.model.input_count = inputs;
+  result.model.cv_count = cvs;
+  result.model.input_origin.setZero(inputs);
+  result.model.output_origin.setZero(cvs);
+  result.model.input_blocks.resize(static_cast<std::size_t>(inputs));
+  result.model.output_blocks.resize(static_cast<std::size_t>(cvs));
+  result.outside_shares.resize(static_cast<std::size_t>(inputs));
+  result.input_spread.resize(static_cast<std::size_t>(inputs), 0.0);
+  for (int cv = 0; cv < cvs; ++cv) {
+    CvAnswer answer;
+    answer.cv = cv;
+    result.cvs.push_back(answer);
+    for (int input = 0; input < inputs; ++input) {
+      ChannelAnswer channel;
+      channel.cv = cv;
+      channel.input = input;
+      channel.left_out = LeftOut::kTooFewRows;
+      channel.visible_gain = std::numeric_limits<double>::infinity();
+      result.channels.push_back(channel);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 Identification identify(const Recording& recording, const IdentificationSettings& settings) {
+  if (recording.samples() < kFewestRows) return nothing_of(recording);
   const Material given = material(recording);
   std::vector<CvOutcome> outcomes(static_cast<std::size_t>(recording.cvs.cols()));
   const Parallel parallel(settings.threads);

@@ -209,15 +209,17 @@ double StartSearch::bic(const Set& set) const {
          3.0 * static_cast<double>(set.channels.size()) * std::log(model_.rows);
 }
 
-std::vector<std::vector<ChannelShape>> StartSearch::best_sets() const {
-  std::vector<Set> beam = {fitted({})}, all = beam;
-  const auto better = [this](const Set& a, const Set& b) { return bic(a) < bic(b); };
-  const auto inputs_of = [this](const Set& set) {
-    std::vector<bool> taken(hints_.size(), false);
-    for (const ChannelShape& shape : set.channels)
-      taken[static_cast<std::size_t>(shape.input)] = true;
-    return taken;
-  };
+std::vector<bool> StartSearch::inputs_of(const Set& set) const {
+  std::vector<bool> taken(hints_.size(), false);
+  for (const ChannelShape& shape : set.channels)
+    taken[static_cast<std::size_t>(shape.input)] = true;
+  return taken;
+}
+
+void StartSearch::grow(std::vector<Set>& sets) const {
+  std::vector<Set> beam = {fitted({})};
+  double least = bic(beam.front());
+  sets.push_back(beam.front());
   for (std::size_t size = 1; size <= hints_.size(); ++size) {
     std::vector<Set> grown;
     for (const Set& set : beam) {
@@ -232,25 +234,82 @@ std::vector<std::vector<ChannelShape>> StartSearch::best_sets() const {
         grown.push_back(fitted(std::move(channels)));
       }
     }
-    std::stable_sort(grown.begin(), grown.end(), better);
+    std::stable_sort(grown.begin(), grown.end(),
+                     [this](const Set& a, const Set& b) { return better(a, b); });
     beam.clear();
     for (Set& set : grown) {  // the same inputs in another order may have ended elsewhere
       const auto same = [&](const Set& kept) { return inputs_of(kept) == inputs_of(set); };
       if (beam.size() < kSetsKept && std::none_of(beam.begin(), beam.end(), same))
         beam.push_back(std::move(set));
     }
-    all.insert(all.end(), beam.begin(), beam.end());
-    // Two more inputs that are worth nothing end it.
-    if (size > 2 && !beam.empty() &&
-        bic(beam.front()) > bic(*std::min_element(all.begin(), all.end(), better)) +
-                                kHopelessSets * std::log(model_.rows))
-      break;
-    if (beam.empty()) break;
+    if (beam.empty()) return;
+    sets.insert(sets.end(), beam.begin(), beam.end());
+    if (bic(beam.front()) > least + kHopelessSets * std::log(model_.rows)) return;
+    least = std::min(least, bic(beam.front()));
   }
-  std::stable_sort(all.begin(), all.end(), better);
-  all.resize(std::min(all.size(), kSetsTried));
+}
+
+StartSearch::Set StartSearch::full(double time_constant, double dead_time) const {
+  std::vector<ChannelShape> channels;
+  for (const Choices& choices : choices_) {
+    if (choices.shapes.empty()) continue;
+    ChannelShape shape = choices.shapes.front();
+    shape.time_constant = time_constant;
+    if (!shape.dead_time_known) shape.dead_time = dead_time;
+    channels.push_back(shape);
+  }
+  MatrixXd all(model_.factor.rows(), static_cast<Index>(channels.size()));
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    all.col(static_cast<Index>(c)) = column(channels[c]);
+  const VectorXd gains = Eigen::ColPivHouseholderQR<MatrixXd>(all).solve(right_);
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    set_number(channels[c], ShapeNumber::kGain, gains(static_cast<Index>(c)), 0.0);
+  Set set = fitted(std::move(channels));
+  return fitted(std::move(set.channels));  // once more: it began far away
+}
+
+void StartSearch::shrink(std::vector<Set>& sets) const {
+  std::vector<Set> starts;
+  for (const double time_constant : kFullTimes)
+    for (const double dead_time : kFullDeadTimes) starts.push_back(full(time_constant, dead_time));
+  std::stable_sort(starts.begin(), starts.end(),
+                   [this](const Set& a, const Set& b) { return better(a, b); });
+  for (std::size_t s = 0; s < std::min(kFullsKept, starts.size()); ++s) {
+    Set now = starts[s];
+    double least = bic(now);
+    sets.push_back(now);
+    while (now.channels.size() > 1) {
+      Set next;
+      for (std::size_t c = 0; c < now.channels.size(); ++c) {
+        std::vector<ChannelShape> rest = now.channels;
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(c));
+        Set without = fitted(std::move(rest));
+        if (next.channels.empty() || without.left < next.left) next = std::move(without);
+      }
+      now = std::move(next);
+      sets.push_back(now);
+      if (bic(now) > least + kHopelessSets * std::log(model_.rows)) break;
+      least = std::min(least, bic(now));
+    }
+  }
+}
+
+std::vector<std::vector<ChannelShape>> StartSearch::best_sets() const {
+  std::vector<Set> all;
+  grow(all);
+  if (std::any_of(choices_.begin(), choices_.end(),
+                  [](const Choices& choices) { return !choices.shapes.empty(); }))
+    shrink(all);
+  std::stable_sort(all.begin(), all.end(),
+                   [this](const Set& a, const Set& b) { return better(a, b); });
+  std::vector<Set> tried;
+  for (Set& set : all) {
+    const auto same = [&](const Set& kept) { return inputs_of(kept) == inputs_of(set); };
+    if (tried.size() < kSetsTried && std::none_of(tried.begin(), tried.end(), same))
+      tried.push_back(std::move(set));
+  }
   std::vector<std::vector<ChannelShape>> sets;
-  for (Set& set : all) sets.push_back(std::move(set.channels));
+  for (Set& set : tried) sets.push_back(std::move(set.channels));
   return sets;
 }
 

@@ -49,6 +49,11 @@ class StartSearch {
   [[nodiscard]] Eigen::MatrixXd columns(const std::vector<ChannelShape>& channels) const;
   [[nodiscard]] Set fitted(std::vector<ChannelShape> channels) const;
   [[nodiscard]] double bic(const Set& set) const;
+  [[nodiscard]] bool better(const Set& a, const Set& b) const { return bic(a) < bic(b); }
+  [[nodiscard]] Set full(double time_constant, double dead_time) const;
+  [[nodiscard]] std::vector<bool> inputs_of(const Set& set) const;
+  void grow(std::vector<Set>& sets) const;
+  void shrink(std::vector<Set>& sets) const;
 
   const HighOrderModel& model_;
   const std::vector<ChannelHint>& hints_;

@@ -46,12 +46,14 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
         const double delay = next.dead_time_known ? 0.0 : std::min(next.dead_time, next.second);
         next.dead_time -= delay;
       });
-      for (const LeadStart& start : kLeadStarts)
+      for (const LeadStart& start : kLeadStarts) {
+        if (start.lead < 0.0 && shape.sign != 0) continue;
         add(ChannelForm::kSecondOrderLead, [&](ChannelShape& next) {
           next.second = start.second * next.time_constant;
           next.lead = start.lead * next.time_constant;
           next.time_constant *= start.first;
         });
+      }
       add(ChannelForm::kIntegrator, integrating);
       break;
     case ChannelForm::kSecondOrder:

@@ -111,8 +111,8 @@ TEST_CASE("hints are kept") {
   IdentificationSettings settings;
   settings.hints = {{0, 0, false, -1, {}}, {0, 2, true, 0, {}}, {1, 1, false, 1, 3.0}};
   const Identification found = identify(recording, settings);
-  // The data say +2: with the sign that is given nothing fits.
-  CHECK(answer_of(found, 0, 0).left_out != LeftOut::kIdentified);
+  // The data say +2.
+  CHECK(answer_of(found, 0, 0).left_out == LeftOut::kWrongSign);
   CHECK(answer_of(found, 0, 2).left_out == LeftOut::kGivenNone);
   REQUIRE(answer_of(found, 1, 1).left_out == LeftOut::kIdentified);
   CHECK(answer_of(found, 1, 1).dynamics->dead_time_s == 3.0);
