@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
+#include "core/identification/identification.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 /// A small plant in a loop, in closed form: what tests/oracles/identification.py simulates too.
@@ -44,5 +46,25 @@ struct Loop {
     return recording_of(inputs, cvs);
   }
 };
+
+inline const ChannelAnswer& answer_of(const Identification& found, int cv, int input) {
+  for (const ChannelAnswer& answer : found.channels)
+    if (answer.cv == cv && answer.input == input) return answer;
+  throw std::logic_error("no such channel");
+}
+
+/// Three inputs moved from outside, two CVs; what is hidden is not in `identify`'s sight.
+inline Recording open_loop(Eigen::Index rows, std::uint64_t seed) {
+  Eigen::MatrixXd inputs(rows, 3), cvs(rows, 2);
+  inputs << telegraph(seed + 1, rows, 17), telegraph(seed + 2, rows, 23),
+      telegraph(seed + 3, rows, 31);
+  cvs.col(0) = first_order(inputs.col(0), 2.0, 12.0, 4) + first_order(inputs.col(2), -0.5, 30.0) +
+               autoregressive(0.05 * white(seed + 4, rows), 0.9);
+  cvs.col(1) =
+      first_order(inputs.col(1), 1.5, 8.0, 1) + autoregressive(0.05 * white(seed + 5, rows), 0.7);
+  inputs.col(0).array() += 40.0;
+  cvs.col(1).array() += 100.0;
+  return recording_of(inputs, cvs);
+}
 
 }  // namespace mpm::test
