@@ -309,14 +309,6 @@ void state_channels(const Material& material, const HighOrderModel& model,
       }
     outcome.channels.push_back(answer);
   }
-  if (!model.sound || !outcome.fit) return;
-  // What explains something, but not beyond doubt, is not told to be absent.
-  const StartSearch search(model, hints, material.all.sample_time_s);
-  if (const std::optional<ChannelShape> likely = search.addition(outcome.fit->channels)) {
-    ChannelAnswer& answer = outcome.channels[static_cast<std::size_t>(likely->input)];
-    if (answer.left_out == LeftOut::kNoRelation) answer.left_out = LeftOut::kHidden;
-    answer.visible_gain = std::max(answer.visible_gain, 2.0 * std::abs(likely->gain));
-  }
 }
 
 /// A choice, and its channels fitted to all rows.
