@@ -67,7 +67,7 @@ ModelSignals signals_of(const UnitConfig& unit) {
 }
 
 void load_model(const Value& root, const Value* section, const Value* top_level_origin,
-                UnitConfig& config) {
+                ModelNeed need, UnitConfig& config) {
   ModelSpec& model = config.model;
   model.sample_time_s = config.sample_time_s;
   model.input_count = config.counts().inputs();
@@ -81,7 +81,7 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
 
   if (top_level_origin != nullptr) load_origin(*top_level_origin, config);
   bool tried = false;
-  if (section != nullptr) {
+  if (section != nullptr && !(section->is_null() && need == ModelNeed::kMayBeMissing)) {
     const Map map = section->map(
         {"channels", "state_space", "input", "output", "state", "disturbances", "operating_point"});
     if (const Value* inner = map.find("operating_point")) {
@@ -105,7 +105,8 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
     if (channels != nullptr && tried && model.channels.size() == channels->items().size())
       warn_of_idle_cvs(*section, config);
   }
-  if (!tried) check_missing_model(section, section != nullptr ? *section : root, config);
+  if (!tried && need == ModelNeed::kNeeded)
+    check_missing_model(section, section != nullptr ? *section : root, config);
 }
 
 }  // namespace mpm::config

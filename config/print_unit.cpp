@@ -135,7 +135,22 @@ void print_materiality(const UnitConfig& config, std::ostream& out) {
         << inline_fields(materiality_fields(), channel.limits).substr(1) << '\n';
 }
 
+void print_identify(const UnitConfig& config, std::ostream& out) {
+  if (config.identify.empty()) return;
+  out << "identify:\n  channels:\n";
+  for (const ChannelHint& hint : config.identify) {
+    out << "    - {cv: " << yaml_text(config.cv[static_cast<std::size_t>(hint.cv)].tag)
+        << ", mv: " << yaml_text(config.input_tag(hint.input));
+    if (hint.no_relation) out << ", relation: none";
+    if (hint.sign != 0) out << ", sign: \"" << (hint.sign > 0 ? '+' : '-') << '"';
+    if (hint.dead_time_s) out << ", dead_time: " << yaml_text(*hint.dead_time_s);
+    out << "}\n";
+  }
+}
+
 }  // namespace
+
+void print_model_section(const UnitConfig& config, std::ostream& out) { print_model(config, out); }
 
 void print_unit(const UnitConfig& config, std::ostream& out) {
   out << "unit: " << yaml_text(config.unit) << '\n'
@@ -155,6 +170,7 @@ void print_unit(const UnitConfig& config, std::ostream& out) {
   print_fields(dds_fields(), config.dds, out);
   out << "  peers: " << yaml_text(config.dds.peers) << '\n';
   print_simulation(config, out);
+  print_identify(config, out);
 }
 
 }  // namespace mpm::config

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/identification/channel_hint.hpp"
 #include "core/model/model_spec.hpp"
 #include "core/monitor/settings.hpp"
 #include "core/signal/frame.hpp"
@@ -80,6 +81,7 @@ struct UnitConfig {
   AlarmSettings alarms;
   DdsSettings dds;
   SimulationSettings simulation;
+  std::vector<ChannelHint> identify;  ///< what `mpm identify` is told beforehand
 
   [[nodiscard]] SignalCounts counts() const {
     return {static_cast<int>(mv.size()), static_cast<int>(dv.size()), static_cast<int>(cv.size()),

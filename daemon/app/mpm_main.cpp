@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   add_detect(app, exit_code);
   add_trend(app, exit_code);
   add_diagnose(app, exit_code);
+  add_identify(app, exit_code);
   add_info(app, exit_code);
   add_list(app, exit_code);
   add_convert(app, exit_code);
@@ -40,6 +41,7 @@ int run(int argc, char** argv) {
       "Examples:\n"
       "  mpm detect --config unit.yaml --data last_month.csv    which models are wrong?\n"
       "  mpm diagnose --config unit.yaml --data last_month.csv --out report    and how?\n"
+      "  mpm identify --config unit.yaml --data step_test.csv --out new.yaml    a model from data\n"
       "  mpm watch    what the monitors say, live\n"
       "  mpm record --config unit.yaml --output monday.mcap    keep what goes over the bus\n"
       "  mpm COMMAND --help    the options of a command, with examples\n"

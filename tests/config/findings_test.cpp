@@ -37,7 +37,8 @@ struct Case {
 };
 
 const std::string kKnownRoot =
-    "unit, sample_time, signals, model, operating_point, monitor, alarms, dds, simulation";
+    "unit, sample_time, signals, model, operating_point, monitor, alarms, dds, simulation, "
+    "identify";
 
 }  // namespace
 

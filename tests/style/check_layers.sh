@@ -75,6 +75,7 @@ record text alarm mismatch
 monitor text signal statistics model alarm mismatch
 identify/fit parallel model
 identify/evidence model mismatch monitor identify/fit
+identification parallel statistics model identify/fit identify/evidence
 identify/causes parallel text model identify/fit
 identify/valves
 identify/search parallel identify/fit identify/causes
@@ -96,6 +97,7 @@ report/closed_loop files/csv report/diagnosis
 report files/times files report/diagnosis report/page
 history report
 history/trend files/times report history
+report/identification report
 bus
 bus/watch files/times report bus
 bus/doctor bus
@@ -103,7 +105,7 @@ bag files/times files files/csv mcap/format mcap/read mcap/write
 bag/record host files/times files mcap/read mcap/write mcap bag
 bag/replay host files/times mcap/read bag
 live host files/times files report/diagnosis report history bus
-app/commands host files/times files files/csv mcap/read mcap report/diagnosis report/closed_loop report history history/trend bus bus/watch bus/doctor bag bag/record bag/replay live
+app/commands host files/times files files/csv mcap/read mcap report/diagnosis report/closed_loop report/identification report history history/trend bus bus/watch bus/doctor bag bag/record bag/replay live
 app host live app/commands
 TABLE
 exit $status

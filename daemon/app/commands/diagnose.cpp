@@ -1,8 +1,6 @@
 #include "daemon/app/commands/commands.hpp"
 
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,10 +11,10 @@
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/parallel/parallel.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/app/commands/given_data.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
-#include "daemon/bag/open_recording.hpp"
 #include "daemon/files/output_folder.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/host/signals.hpp"
@@ -52,26 +50,6 @@ struct DiagnoseOptions {
   throw config::InputError({file, 0, 0, config::Severity::kError, "", message});
 }
 
-/// As it was typed, quoted where a shell would need it.
-std::string command_line() {
-  std::ifstream in("/proc/self/cmdline", std::ios::binary);
-  std::string text;
-  for (std::string word; std::getline(in, word, '\0');) {
-    const bool plain =
-        !word.empty() && word.find_first_of(" \t\n\"'\\$&|;<>()*?[]#~`!{}") == std::string::npos;
-    if (!text.empty()) text += ' ';
-    if (plain) {
-      text += word;
-      continue;
-    }
-    text += '\'';
-    for (const char letter : word)
-      text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-    text += '\'';
-  }
-  return text;
-}
-
 /// Nothing where the unit file is wrong, which has then been told.
 std::optional<config::UnitConfig> load(const std::string& file) {
   const config::LoadResult loaded = config::load_unit(file);
@@ -83,45 +61,11 @@ std::optional<config::UnitConfig> load(const std::string& file) {
   return loaded.config;
 }
 
-Recording read(const std::string& file, const config::UnitConfig& unit,
-               const files::TimeStyle& times, const files::TimeChoice& choice,
-               std::vector<std::string>& notices) {
-  const std::unique_ptr<files::FrameSource> frames = bag::open_recording(file, unit, times);
-  files::RecordingFile data = files::read_recording(*frames, unit, file, choice);
-  const std::string prefix = file + ": ";
-  for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
-  const auto count = [&](std::int64_t number, const char* what, const std::string& rest) {
-    if (number > 0)
-      notices.push_back(prefix + counted(static_cast<std::uint64_t>(number), what) + rest);
-  };
-  count(data.missing, "interval", " without a row");
-  count(data.long_gaps, "gap",
-        " of more than " + std::to_string(data.longest_gap) +
-            " intervals; a new run begins after each");
-  count(data.scraps, "row", " left out, of runs too short to tell anything");
-  count(data.out_of_order, "row", " left out, for the time does not grow");
-  count(data.bad_values, "value", " of inputs and CVs missing or bad");
-  return std::move(data.recording);
-}
-
-/// What the files given to one option hold together.
-struct Given {
-  Recording recording;             ///< each file a run of it, or several
-  std::vector<std::string> files;  ///< of each run
-  std::string name;                ///< of all the files
-};
-
+/// All of what the files hold; refuses what no diagnosis can use.
 Given read_all(const std::vector<std::string>& files, const config::UnitConfig& unit,
                const files::TimeStyle& times, const files::TimeChoice& choice,
                std::vector<std::string>& notices) {
-  std::vector<Recording> recordings;
-  Given all;
-  for (const std::string& file : files) {
-    recordings.push_back(read(file, unit, times, choice, notices));
-    all.files.insert(all.files.end(), runs_of(recordings.back()).size(), file);
-    all.name += (all.name.empty() ? "" : ", ") + file;
-  }
-  all.recording = joined(recordings);
+  Given all = read_given(files, unit, times, choice, notices);
   const std::string problem = files::recording_problem(all.recording, needed_samples(unit.model));
   if (!problem.empty()) refuse(all.name, problem);
   return all;

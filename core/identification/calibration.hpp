@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+
+/// Numbers that decide an identification, none of which a user sets. Chosen by hand on tuning seeds
+/// where nothing else is said; what they give together is scored by tests/identify_score.
+namespace mpm {
+
+inline constexpr int kFewestRows = 30;  ///< fewer tell nothing
+
+// The regression of high order (high_order.hpp).
+inline constexpr int kDenseLags = 12;          ///< single lags of an input before the blocks
+inline constexpr double kBlockGrowth = 1.2;    ///< of a block's lags to the block before it
+inline constexpr int kLongestLag = 600;        ///< samples
+inline constexpr int kShortestLag = 40;        ///< samples: of the last block, at least
+inline constexpr double kLagShare = 0.125;     ///< of the mean run's rows: the last block's lag
+inline constexpr int kPastLags = 12;           ///< of the CV's own past
+inline constexpr double kRowsPerColumn = 3.0;  ///< rows behind each column, at least
+inline constexpr double kDependent = 1e-7;     ///< of a scaled column that is left: none
+
+// Start values (start_values.hpp), in samples.
+inline constexpr double kFastestStart = 0.6;
+inline constexpr double kStartGrowth = 1.6;   ///< from one time constant to the next
+inline constexpr double kSlowestStart = 2.0;  ///< of the last lag
+inline constexpr double kLatestStart = 0.5;   ///< of the last lag
+inline constexpr double kWorthTrying = 9.0;   ///< fall of the squared error, in its variance
+inline constexpr std::size_t kSetsKept = 3;   ///< of each size
+inline constexpr std::size_t kSetsTried = 4;  ///< on the data themselves
+inline constexpr double kFullTimes[] = {5.0, 15.0, 45.0};  ///< samples: starts of all inputs
+inline constexpr double kFullDeadTimes[] = {1.0, 4.0};     ///< samples
+inline constexpr std::size_t kFullsKept = 2;
+inline constexpr double kHopelessSets = 9.0;   ///< logs of the rows in BIC behind the best
+inline constexpr int kSetSteps = 12;           ///< of Gauss-Newton on the factor
+inline constexpr double kSetDamping = 1e-3;    ///< to the size of a column
+inline constexpr double kSetConverged = 0.05;  ///< variances
+
+// Prediction errors (prediction_error.hpp).
+inline constexpr int kNoiseOrder = 10;
+inline constexpr double kRowsPerNoiseLag = 20.0;
+inline constexpr double kDeadTimeStep = 0.25;  ///< samples: of a finite difference
+inline constexpr double kLogStep = 0.01;       ///< likewise, of the log of a time constant
+inline constexpr double kConverged = 0.01;     ///< fall of -2 ln likelihood
+inline constexpr int kMostSteps = 25;          ///< of Gauss-Newton
+inline constexpr int kMostCuts = 5;            ///< of a step, each to a third
+inline constexpr double kFastest = 0.05;       ///< samples: of a time constant
+inline constexpr double kStartState = 3.0;     ///< s.d. of the CV: of a first state
+inline constexpr int kMostDecays = 3;          ///< time constants of a first state
+inline constexpr double kOtherTime = 1.3;      ///< ratio of two that differ
+inline constexpr double kNoWhitening = 1e-9;   ///< bound of an autoregression that does nothing
+inline constexpr double kMostAutocorrelation = 0.98;
+inline constexpr double kStepOfTimes = 1.5;     ///< most that a step changes the log of a time
+inline constexpr double kStepOfDeadTime = 4.0;  ///< samples, likewise
+
+// Which channels, of which form (structure.hpp).
+inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.
+inline constexpr double kNeeded = 25.0;       ///< fall of -2 ln likelihood: p = 1.5e-5 of 3 numbers
+inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
+inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
+/// Where a channel with lead begins, times the time constant that it had: slow tail, overshoot,
+/// inverse response.
+struct LeadStart {
+  double first, second, lead;
+};
+inline constexpr LeadStart kLeadStarts[] = {{3.0, 0.7, 2.0}, {1.0, 0.5, 1.5}, {1.0, 0.5, -0.5}};
+inline constexpr double kSecondShare = 0.2;  ///< of the time constant: where a second begins
+
+// Whether feedback moves the inputs (feedback_test.hpp).
+inline constexpr int kFeedbackLags = 6;
+inline constexpr double kFeedback = 1e-3;      ///< p-value below which it does
+inline constexpr double kClearlyBetter = 0.9;  ///< of the unseen squared error
+
+// What is said (identification.hpp).
+inline constexpr double kValidationShare = 0.25;  ///< of the rows, left out of the choice of forms
+inline constexpr double kOnlyFeedback = 0.2;      ///< share of an input's movement from outside
+inline constexpr double kFamilyError = 0.01;      ///< of any invented relation in a unit
+inline constexpr double kLeastContribution = 0.02;      ///< s.d. of a channel to that of its CV
+inline constexpr double kVagueGain = 0.25;              ///< s.d. of a gain to the gain
+inline constexpr double kEntangled = 0.8;               ///< correlation of two gains' estimates
+inline constexpr double kMatters = 0.1;                 ///< s.d. of a channel to that of its CV
+inline constexpr double kUsualTimeShare = 0.1;          ///< of the last lag: a time constant
+inline constexpr double kLeastGainOfPrediction = 0.01;  ///< of the unseen innovations' variance
+inline constexpr int kStepPoints = 60;                  ///< of a step response that is drawn
+inline constexpr double kStepTimes = 5.0;               ///< time constants that it lasts
+inline constexpr int kWhitenessLags = 20;
+inline constexpr int kLongestTestedLag = 200;  ///< samples: of an input against innovations
+
+// A test plan (test_plan.hpp).
+inline constexpr double kShareOfRange = 0.1;       ///< of an MV's limits: a move
+inline constexpr double kShareOfCvRange = 0.25;    ///< of a CV's limits: what a move may do
+inline constexpr double kMoreThanBefore = 3.0;     ///< times the s.d. that did not suffice
+inline constexpr double kSettlingTimes = 5.0;      ///< time constants
+inline constexpr double kSwitchShare = 1.0 / 3.0;  ///< of the settling time: mean time of a level
+inline constexpr double kFewestSettlings = 6.0;    ///< that a test lasts
+inline constexpr double kStepSettlings = 4.0;      ///< as long as so many, steps will do
+inline constexpr double kWantedSd = 5.0;           ///< an effect that matters, in its own s.d.
+inline constexpr double kLeastReturn = 0.02;       ///< of the noise to its level, per sample
+
+}  // namespace mpm

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/identification/channel_hint.hpp"
+#include "core/identification/channel_shape.hpp"
+#include "core/identification/high_order.hpp"
+
+namespace mpm {
+
+/// First-order channels of one CV, near enough for Gauss-Newton to end at the right minimum: the
+/// regression of high order is asked which lags and dead times on a grid explain most of it. What
+/// the CV's own past explains stays as the regression says.
+class StartSearch {
+ public:
+  /// `hints`: one per input, of this CV. The model and the hints must outlive the search.
+  StartSearch(const HighOrderModel& model, const std::vector<ChannelHint>& hints,
+              double sample_time_s);
+
+  /// The best sets of channels, best first (BIC of the regression): sets grow by one input at a
+  /// time, a few of each size are kept, and whenever one grew all its numbers are fitted anew.
+  /// Where inputs move alike, the right ones may show only together.
+  [[nodiscard]] std::vector<std::vector<ChannelShape>> best_sets() const;
+  /// The input that explains most beside these channels; nothing where none is worth it.
+  [[nodiscard]] std::optional<ChannelShape> addition(
+      const std::vector<ChannelShape>& channels) const;
+
+ private:
+  struct Choices {
+    std::vector<ChannelShape> shapes;  ///< of gain 1
+    Eigen::MatrixXd columns;           ///< of the factor, one per shape
+  };
+  struct Found {
+    Eigen::Index which = 0;
+    double gain = 0.0;
+    double explained = -1.0;  ///< fall of the squared error; < 0: none fits
+  };
+  struct Set {
+    std::vector<ChannelShape> channels;
+    double left = 0.0;  ///< squared error
+  };
+
+  [[nodiscard]] Found best(std::size_t input, const Eigen::MatrixXd& others) const;
+  [[nodiscard]] ChannelShape best_shape(std::size_t input, const Found& found) const;
+  /// What a channel of gain 1 gives.
+  [[nodiscard]] Eigen::VectorXd column(const ChannelShape& shape) const;
+  [[nodiscard]] Eigen::MatrixXd columns(const std::vector<ChannelShape>& channels) const;
+  [[nodiscard]] Set fitted(std::vector<ChannelShape> channels) const;
+  [[nodiscard]] double bic(const Set& set) const;
+  [[nodiscard]] bool better(const Set& a, const Set& b) const { return bic(a) < bic(b); }
+  [[nodiscard]] Set full(double time_constant, double dead_time) const;
+  [[nodiscard]] std::vector<bool> inputs_of(const Set& set) const;
+  void grow(std::vector<Set>& sets) const;
+  void shrink(std::vector<Set>& sets) const;
+
+  const HighOrderModel& model_;
+  const std::vector<ChannelHint>& hints_;
+  std::vector<Choices> choices_;  ///< one per input; none where there is no relation
+  Eigen::VectorXd right_;
+};
+
+/// How much (relative to 0) the gain of an input would have to be to show at all, all other inputs
+/// free: s.d. of the gain of a first-order channel of the given speed (samples). Infinite where the
+/// others' past, or the CV's own, explains the input.
+[[nodiscard]] double gain_sd(const HighOrderModel& model, int input, double time_constant);
+
+}  // namespace mpm

@@ -1,0 +1,169 @@
+#include "core/identification/structure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/identification/calibration.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+
+namespace {
+
+/// Where the free numbers of channel `which` begin among all.
+Index first_number(const PredictionErrorFit& fit, std::size_t which) {
+  Index first = 0;
+  for (std::size_t c = 0; c < which; ++c)
+    first += static_cast<Index>(free_numbers(fit.channels[c]).size());
+  return first;
+}
+
+double numbers(const PredictionErrorFit& fit) {
+  return static_cast<double>(first_number(fit, fit.channels.size()));
+}
+
+/// Bayesian information criterion (Schwarz 1978).
+double bic(const PredictionErrorFit& fit) {
+  return fit.cost + numbers(fit) * std::log(std::max(2.0, fit.rows));
+}
+
+/// The next richer forms of a channel, begun where they do the same or nearly so.
+std::vector<ChannelShape> richer(const ChannelShape& shape) {
+  std::vector<ChannelShape> result;
+  const auto add = [&](ChannelForm form, auto change) {
+    ChannelShape next = shape;
+    next.form = form;
+    change(next);
+    result.push_back(next);
+  };
+  const auto integrating = [](ChannelShape& next) { next.gain /= next.time_constant; };
+  switch (shape.form) {
+    case ChannelForm::kFirstOrder:
+      add(ChannelForm::kSecondOrder, [](ChannelShape& next) {
+        next.second = std::max(kFastest, kSecondShare * next.time_constant);
+        const double delay = next.dead_time_known ? 0.0 : std::min(next.dead_time, next.second);
+        next.dead_time -= delay;
+      });
+      for (const LeadStart& start : kLeadStarts) {
+        if (start.lead < 0.0 && shape.sign != 0) continue;
+        add(ChannelForm::kSecondOrderLead, [&](ChannelShape& next) {
+          next.second = start.second * next.time_constant;
+          next.lead = start.lead * next.time_constant;
+          next.time_constant *= start.first;
+        });
+      }
+      add(ChannelForm::kIntegrator, integrating);
+      break;
+    case ChannelForm::kSecondOrder:
+      add(ChannelForm::kSecondOrderLead, [](ChannelShape&) {});
+      add(ChannelForm::kIntegratorLag, [&](ChannelShape& next) {
+        const auto [fast, slow] = std::minmax(next.time_constant, next.second);
+        next.gain /= slow;
+        next.time_constant = fast;
+      });
+      break;
+    case ChannelForm::kIntegrator:
+      add(ChannelForm::kIntegratorLag, [](ChannelShape& next) { next.time_constant = 1.0; });
+      break;
+    case ChannelForm::kSecondOrderLead:
+    case ChannelForm::kIntegratorLag:
+      break;
+  }
+  return result;
+}
+
+PredictionErrorFit without(const IdentificationData& data, int cv, const PredictionErrorFit& fit,
+                           std::size_t which, const NoiseAssumption& noise) {
+  std::vector<ChannelShape> rest = fit.channels;
+  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(which));
+  return fit_prediction_error(data, cv, std::move(rest), noise, kMostSteps);
+}
+
+double squared_z(const PredictionErrorFit& fit, std::size_t which) {
+  const double ratio = fit.channels[which].gain / sd_of(fit, which)(0);
+  return ratio * ratio;
+}
+
+}  // namespace
+
+Eigen::VectorXd sd_of(const PredictionErrorFit& fit, std::size_t which) {
+  const auto count = static_cast<Index>(free_numbers(fit.channels[which]).size());
+  return fit.covariance.diagonal().segment(first_number(fit, which), count).cwiseSqrt();
+}
+
+PredictionErrorFit pruned(const IdentificationData& data, int cv, PredictionErrorFit fit,
+                          const NoiseAssumption& noise) {
+  for (;;) {
+    // Of inputs that move alike, the one whose gain looks least sure need not be the one too many.
+    std::optional<PredictionErrorFit> best;
+    for (std::size_t c = 0; c < fit.channels.size(); ++c) {
+      if (squared_z(fit, c) > kBeyondDoubt) continue;
+      PredictionErrorFit rest = without(data, cv, fit, c, noise);
+      if (!best || rest.cost < best->cost) best = std::move(rest);
+    }
+    if (!best || best->cost - fit.cost > kNeeded) return fit;
+    fit = std::move(*best);
+  }
+}
+
+std::vector<double> worth_of_channels(const IdentificationData& data, int cv,
+                                      const PredictionErrorFit& fit, const NoiseAssumption& noise) {
+  std::vector<double> worth;
+  for (std::size_t c = 0; c < fit.channels.size(); ++c) {
+    const double z2 = squared_z(fit, c);
+    worth.push_back(z2 > kBeyondDoubt ? z2 : without(data, cv, fit, c, noise).cost - fit.cost);
+  }
+  return worth;
+}
+
+PredictionErrorFit simplest_structure(const IdentificationData& data, int cv,
+                                      const StartSearch& search, const NoiseAssumption& noise) {
+  std::optional<PredictionErrorFit> best;
+  for (std::vector<ChannelShape>& start : search.best_sets()) {
+    PredictionErrorFit fit = pruned(
+        data, cv, fit_prediction_error(data, cv, std::move(start), noise, kMostSteps), noise);
+    while (const std::optional<ChannelShape> missing = search.addition(fit.channels)) {
+      std::vector<ChannelShape> more = fit.channels;
+      more.push_back(*missing);
+      PredictionErrorFit fuller = pruned(
+          data, cv, fit_prediction_error(data, cv, std::move(more), noise, kMostSteps), noise);
+      if (bic(fuller) + kWorthRicher > bic(fit)) break;
+      fit = std::move(fuller);
+    }
+    if (!best || bic(fit) < bic(*best)) best = std::move(fit);
+  }
+  return std::move(*best);
+}
+
+std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data, int cv,
+                                                 PredictionErrorFit simplest,
+                                                 const NoiseAssumption& noise) {
+  std::vector<PredictionErrorFit> grown = {std::move(simplest)};
+  using Trial = std::pair<std::size_t, ChannelForm>;
+  std::vector<Trial> closed;  // changes that did not pay when they were tried
+  for (;;) {
+    const PredictionErrorFit& now = grown.back();
+    std::optional<PredictionErrorFit> best;
+    for (std::size_t c = 0; c < now.channels.size(); ++c)
+      for (const ChannelShape& shape : richer(now.channels[c])) {
+        const Trial trial{c, shape.form};
+        if (std::find(closed.begin(), closed.end(), trial) != closed.end()) continue;
+        std::vector<ChannelShape> changed = now.channels;
+        changed[c] = shape;
+        PredictionErrorFit fit =
+            fit_prediction_error(data, cv, std::move(changed), noise, kTrialSteps);
+        if (bic(fit) + kWorthRicher > bic(now)) {
+          closed.push_back(trial);
+          continue;
+        }
+        if (!best || bic(fit) < bic(*best)) best = std::move(fit);
+      }
+    if (!best) break;
+    grown.push_back(fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps));
+  }
+  return grown;
+}
+
+}  // namespace mpm

@@ -1,0 +1,71 @@
+#include "daemon/app/commands/given_data.hpp"
+
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <utility>
+
+#include "core/text/number_text.hpp"
+#include "daemon/bag/open_recording.hpp"
+#include "daemon/files/read_recording.hpp"
+
+namespace mpm::app {
+namespace {
+
+Recording read(const std::string& file, const config::UnitConfig& unit,
+               const files::TimeStyle& times, const files::TimeChoice& choice,
+               std::vector<std::string>& notices) {
+  const std::unique_ptr<files::FrameSource> frames = bag::open_recording(file, unit, times);
+  files::RecordingFile data = files::read_recording(*frames, unit, file, choice);
+  const std::string prefix = file + ": ";
+  for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
+  const auto count = [&](std::int64_t number, const char* what, const std::string& rest) {
+    if (number > 0)
+      notices.push_back(prefix + counted(static_cast<std::uint64_t>(number), what) + rest);
+  };
+  count(data.missing, "interval", " without a row");
+  count(data.long_gaps, "gap",
+        " of more than " + std::to_string(data.longest_gap) +
+            " intervals; a new run begins after each");
+  count(data.scraps, "row", " left out, of runs too short to tell anything");
+  count(data.out_of_order, "row", " left out, for the time does not grow");
+  count(data.bad_values, "value", " of inputs and CVs missing or bad");
+  return std::move(data.recording);
+}
+
+}  // namespace
+
+Given read_given(const std::vector<std::string>& files, const config::UnitConfig& unit,
+                 const files::TimeStyle& times, const files::TimeChoice& choice,
+                 std::vector<std::string>& notices) {
+  std::vector<Recording> recordings;
+  Given all;
+  for (const std::string& file : files) {
+    recordings.push_back(read(file, unit, times, choice, notices));
+    all.files.insert(all.files.end(), runs_of(recordings.back()).size(), file);
+    all.name += (all.name.empty() ? "" : ", ") + file;
+  }
+  all.recording = joined(recordings);
+  return all;
+}
+
+std::string command_line() {
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::string text;
+  for (std::string word; std::getline(in, word, '\0');) {
+    const bool plain =
+        !word.empty() && word.find_first_of(" \t\n\"'\\$&|;<>()*?[]#~`!{}") == std::string::npos;
+    if (!text.empty()) text += ' ';
+    if (plain) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char letter : word)
+      text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    text += '\'';
+  }
+  return text;
+}
+
+}  // namespace mpm::app

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "core/identify/fit/recording.hpp"
+#include "daemon/files/times/time_choice.hpp"
+#include "daemon/files/times/time_style.hpp"
+
+namespace mpm::app {
+
+/// What the files given to one option hold together.
+struct Given {
+  Recording recording;             ///< each file a run of it, or several
+  std::vector<std::string> files;  ///< of each run
+  std::string name;                ///< of all the files
+};
+
+/// Reads the files, of either kind, one after the other. What was left out or is missing goes to
+/// `notices`. Throws config::InputError as the readers do.
+[[nodiscard]] Given read_given(const std::vector<std::string>& files,
+                               const config::UnitConfig& unit, const files::TimeStyle& times,
+                               const files::TimeChoice& choice, std::vector<std::string>& notices);
+
+/// The command line of this process as it was typed, quoted where a shell would need it.
+[[nodiscard]] std::string command_line();
+
+}  // namespace mpm::app

@@ -1,0 +1,160 @@
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/load_unit.hpp"
+#include "core/identification/identification.hpp"
+#include "core/parallel/parallel.hpp"
+#include "daemon/app/commands/commands.hpp"
+#include "daemon/app/commands/given_data.hpp"
+#include "daemon/app/commands/time_choice_options.hpp"
+#include "daemon/app/commands/time_zone.hpp"
+#include "daemon/files/output_folder.hpp"
+#include "daemon/files/replacement_file.hpp"
+#include "daemon/report/identification/identification_report.hpp"
+#include "daemon/report/identification/new_unit.hpp"
+#include "daemon/report/identification/plan_report.hpp"
+#include "daemon/report/record_json.hpp"
+#include "idl/version.hpp"
+
+namespace mpm::app {
+namespace {
+
+struct IdentifyOptions {
+  std::string config;
+  std::vector<std::string> data;
+  files::TimeChoiceText time;
+  TimesText times;
+  std::string out;
+  std::string report;
+  int threads = available_threads();
+  bool plan = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// Nothing where the unit file is wrong, which has then been told.
+std::optional<config::UnitConfig> load(const std::string& file) {
+  config::LoadResult loaded = config::load_unit(file, config::ModelNeed::kMayBeMissing);
+  for (const config::Finding& finding : loaded.findings)
+    std::cerr << config::format(finding) << '\n';
+  if (!loaded.ok()) return std::nullopt;
+  return std::move(loaded.config);
+}
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+report::IdentificationRun prepare(const IdentifyOptions& options, config::UnitConfig unit) {
+  report::IdentificationRun run;
+  run.unit = std::move(unit);
+  const files::TimeStyle times = times_of(options.times);
+  // Recorded predictions are another model's: data without them will do.
+  config::UnitConfig measured = run.unit;
+  for (config::CvSignal& cv : measured.cv) cv.prediction.clear();
+  Given data = read_given(options.data, measured, times, files::TimeChoice(options.time, times),
+                          run.notices);
+  run.recording = std::move(data.recording);
+  run.data_file = std::move(data.name);
+  run.program = idl::version_text("mpm");
+  run.command_line = command_line();
+  run.config_file = options.config;
+  run.out_file = options.out;
+  return run;
+}
+
+std::string outcome(const IdentifyOptions& options, bool found) {
+  if (!found) return "\nnothing could be identified; no unit file was written\n";
+  return options.out.empty() ? std::string() : "\nwritten to " + options.out + "\n";
+}
+
+// 0, or 1 where nothing could be identified.
+int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
+  std::optional<files::OutputFolder> folder;
+  if (!options.report.empty()) folder.emplace(options.report);
+  report::IdentificationRun run = prepare(options, std::move(unit));
+  if (!options.quiet)
+    for (const std::string& notice : run.notices) std::cerr << notice << '\n';
+  IdentificationSettings settings;
+  settings.hints = run.unit.identify;
+  settings.threads = options.threads;
+  run.identification = identify(run.recording, settings);
+  if (options.plan)
+    run.plan = test_plan(run.identification, report::test_limits(run.unit), run.unit.counts().mv);
+  const bool found = report::found_any(run);
+  if (found && !options.out.empty()) {
+    const std::string yaml = report::new_unit_yaml(run, text_of(options.config));
+    files::ReplacementFile out(options.out);
+    out.write(yaml);
+    out.commit();
+  }
+  const std::string json = report::json_text(to_json(run), 2) + "\n";
+  if (folder) {
+    folder->write("model.json", json);
+    folder->commit();
+  }
+  if (options.json)
+    std::cout << json << std::flush;
+  else if (!options.quiet)
+    std::cout << to_text(run) << outcome(options, found) << std::flush;
+  return found ? 0 : 1;
+}
+
+int identify_file(const IdentifyOptions& options) {
+  try {
+    std::optional<config::UnitConfig> unit = load(options.config);
+    return unit ? identify_unit(options, std::move(*unit)) : 3;
+  } catch (const config::InputError& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
+  }
+}
+
+}  // namespace
+
+void add_identify(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<IdentifyOptions>();
+  CLI::App* command = app.add_subcommand("identify",
+                                         "A model of a unit from tags and history, with what it is "
+                                         "sure of and what it left out");
+  command->add_option("--config", options->config, "unit file; needs no model")->required();
+  command
+      ->add_option(
+          "--data", options->data,
+          "data file: CSV in any historian layout, MCAP recording, or a folder of one that "
+          "was split; of several each is a run of its own, at its own level and from its "
+          "own first state")
+      ->required();
+  command->add_option("--out", options->out,
+                      "the unit file with the identified model (required, but for --plan)");
+  command->add_option("--report", options->report,
+                      "folder for model.json: all that is printed, with step responses and their "
+                      "bands; made if need be");
+  command
+      ->add_option("--threads", options->threads,
+                   "that work at once; nothing in the model depends on how many")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--plan", options->plan,
+                    "say which MVs have moved too little, and how to move them");
+  add_time_choice(*command, options->time);
+  add_times(*command, options->times);
+  command->add_flag("--json", options->json, "print model.json instead of the table");
+  command->add_flag("--quiet", options->quiet, "print nothing but errors");
+  command->footer(
+      "Exit codes: 0 a model was written, 1 nothing could be identified, 3 bad usage or input\n"
+      "Example:\n  mpm identify --config unit.yaml --data monday.csv tuesday.csv --out new.yaml");
+  command->callback([options, &exit_code] {
+    if (options->out.empty() && !options->plan) throw CLI::RequiredError("--out");
+    exit_code = identify_file(*options);
+  });
+}
+
+}  // namespace mpm::app

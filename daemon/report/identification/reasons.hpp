@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "daemon/report/identification/identification_run.hpp"
+
+namespace mpm::report {
+
+/// Columns of the sentences.
+inline constexpr std::size_t kReasonWidth = 96;
+
+/// The word that programs go by: `identified`, `no_relation`, ...
+[[nodiscard]] std::string reason_word(LeftOut left_out);
+
+/// Why a channel is not in the model, for a person; empty where it is.
+[[nodiscard]] std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answer);
+
+}  // namespace mpm::report

@@ -1,0 +1,23 @@
+#include "core/identification/feedback_test.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/core/identification/loop.hpp"
+
+namespace mpm::test {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+TEST_CASE("feedback is seen where there is some, also one without dynamics") {
+  // p-values: uniform without feedback, below 1e-3 once in a thousand.
+  CHECK(feedback_p_value(identification_data(Loop().run(1500)), 0) < 1e-9);
+  CHECK(feedback_p_value(identification_data(open_loop(1500, 910)), 0) > 1e-3);
+  CHECK(feedback_p_value(identification_data(open_loop(1500, 910)), 1) > 1e-3);
+  Loop still;
+  still.setpoint_moves = false;
+  CHECK(feedback_p_value(identification_data(still.run(1500)), 0) < 1e-9);
+}
+
+}  // namespace mpm::test

@@ -1,0 +1,125 @@
+#include "core/identification/identification.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/core/identification/loop.hpp"
+
+namespace mpm::test {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void check_covers(const Interval95& interval, double truth, double room) {
+  const double middle = 0.5 * (interval.low + interval.high), half = interval.high - middle;
+  CHECK(std::abs(truth - middle) < room * half);
+}
+
+}  // namespace
+
+TEST_CASE("identify finds the channels that are there, their numbers, and no others") {
+  // 95 % intervals: all of them are to hold the truth within twice their width.
+  const Identification found = identify(open_loop(3000, 700), {});
+  CHECK(found.model.channels.size() == 3);
+  struct Hidden {
+    int cv, input;
+    double gain, time_constant, dead_time;
+  };
+  for (const Hidden& hidden :
+       {Hidden{0, 0, 2.0, 12.0, 4.0}, Hidden{0, 2, -0.5, 30.0, 0.0}, Hidden{1, 1, 1.5, 8.0, 1.0}}) {
+    CAPTURE(hidden.cv, hidden.input);
+    const ChannelAnswer& answer = answer_of(found, hidden.cv, hidden.input);
+    REQUIRE(answer.left_out == LeftOut::kIdentified);
+    CHECK(answer.form == ChannelForm::kFirstOrder);
+    check_covers(answer.gain, hidden.gain, 2.0);
+    REQUIRE(answer.time_constants.size() == 1);
+    check_covers(answer.time_constants[0], hidden.time_constant, 2.0);
+    CHECK(answer.dynamics->dead_time_s == Approx(hidden.dead_time).margin(1.0));
+    CHECK(answer.dynamics->gain == Approx(hidden.gain).epsilon(0.05));
+    // The band ends where the gain is known as well as its interval says.
+    CHECK(answer.step.back() == Approx(answer.dynamics->gain).epsilon(0.02));
+  }
+  for (const auto& [cv, input] : {std::pair{0, 1}, {1, 0}, {1, 2}})
+    CHECK(answer_of(found, cv, input).left_out == LeftOut::kNoRelation);
+  // Levels: input 0 rests at 40, CV 1 at 100 with its input at 0.
+  CHECK(found.model.input_origin(0) == Approx(40.0).margin(0.5));
+  CHECK(found.model.output_origin(1) ==
+        Approx(100.0 + 1.5 * found.model.input_origin(1)).margin(0.1));
+  CHECK(found.feedback_p_value > 1e-3);
+}
+
+TEST_CASE("an input that only feedback moves is left out and told so") {
+  Loop loop;
+  loop.setpoint_moves = false;
+  loop.second.gain = 0.0;
+  const Identification found = identify(loop.run(2000), {});
+  CHECK(answer_of(found, 0, 0).left_out == LeftOut::kOnlyFeedback);
+  CHECK(found.model.channels.empty());
+}
+
+TEST_CASE("hints are kept") {
+  const Recording recording = open_loop(2000, 720);
+  IdentificationSettings settings;
+  settings.hints = {{0, 0, false, -1, {}}, {0, 2, true, 0, {}}, {1, 1, false, 1, 3.0}};
+  const Identification found = identify(recording, settings);
+  // The data say +2.
+  CHECK(answer_of(found, 0, 0).left_out == LeftOut::kWrongSign);
+  CHECK(answer_of(found, 0, 2).left_out == LeftOut::kGivenNone);
+  REQUIRE(answer_of(found, 1, 1).left_out == LeftOut::kIdentified);
+  CHECK(answer_of(found, 1, 1).dynamics->dead_time_s == 3.0);
+}
+
+TEST_CASE("runs at levels of their own are one model") {
+  Recording one = open_loop(900, 740), two = open_loop(900, 760), three = open_loop(900, 780);
+  two.cvs.array() += 7.0;
+  three.cvs.array() -= 20.0;
+  const Identification found = identify(joined({one, two, three}), {});
+  CHECK(found.model.channels.size() == 3);
+  CHECK(answer_of(found, 0, 0).dynamics->gain == Approx(2.0).epsilon(0.05));
+}
+
+TEST_CASE("a level that integrates is told from one that settles, with the inputs that hold it") {
+  const Index rows = 3000;
+  MatrixXd inputs(rows, 2), cvs(rows, 1);
+  inputs << telegraph(801, rows, 20), telegraph(802, rows, 33);
+  const VectorXd noise = autoregressive(0.05 * white(803, rows), 0.8);
+  double level = 0.0;
+  for (Index k = 0; k < rows; ++k) {
+    cvs(k, 0) = level + noise(k);
+    // Rests where the first input is 0.1: gain 0.05 per sample, one sample of dead time.
+    level += 0.05 * ((k > 0 ? inputs(k - 1, 0) : 0.0) - 0.1);
+  }
+  const Identification found = identify(recording_of(inputs, cvs), {});
+  REQUIRE(answer_of(found, 0, 0).left_out == LeftOut::kIdentified);
+  CHECK(answer_of(found, 0, 0).dynamics->integrating);
+  CHECK(answer_of(found, 0, 0).dynamics->gain == Approx(0.05).epsilon(0.05));
+  CHECK(answer_of(found, 0, 1).left_out != LeftOut::kIdentified);
+  CHECK(found.model.input_origin(0) == Approx(0.1).margin(0.02));
+}
+
+TEST_CASE("the same data give the same bits on any number of threads") {
+  const Recording recording = open_loop(1200, 860);
+  IdentificationSettings many;
+  many.threads = 4;
+  const Identification one = identify(recording, {}), four = identify(recording, many);
+  REQUIRE(one.channels.size() == four.channels.size());
+  for (std::size_t c = 0; c < one.channels.size(); ++c) {
+    CHECK(one.channels[c].gain.low == four.channels[c].gain.low);
+    CHECK(one.channels[c].p_value == four.channels[c].p_value);
+  }
+}
+
+TEST_CASE("what is hardly there is refused, never a crash") {
+  Recording recording = open_loop(60, 880);
+  CHECK(identify(recording, {}).channels.size() == 6);
+  recording = open_loop(500, 881);
+  recording.cvs.col(0).setConstant(std::nan(""));
+  recording.inputs.col(2).setConstant(std::nan(""));
+  const Identification found = identify(recording, {});
+  CHECK(answer_of(found, 0, 0).left_out != LeftOut::kIdentified);
+  CHECK(answer_of(found, 1, 1).left_out == LeftOut::kIdentified);
+  CHECK(identify(recording_of(MatrixXd(0, 2), MatrixXd(0, 1)), {}).model.channels.empty());
+}
+
+}  // namespace mpm::test
