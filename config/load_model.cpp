@@ -67,7 +67,7 @@ ModelSignals signals_of(const UnitConfig& unit) {
 }
 
 void load_model(const Value& root, const Value* section, const Value* top_level_origin,
-                UnitConfig& config) {
+                ModelNeed need, UnitConfig& config) {
   ModelSpec& model = config.model;
   model.sample_time_s = config.sample_time_s;
   model.input_count = config.counts().inputs();
@@ -81,7 +81,7 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
 
   if (top_level_origin != nullptr) load_origin(*top_level_origin, config);
   bool tried = false;
-  if (section != nullptr) {
+  if (section != nullptr && !(section->is_null() && need == ModelNeed::kMayBeMissing)) {
     const Map map = section->map(
         {"channels", "state_space", "input", "output", "state", "disturbances", "operating_point"});
     if (const Value* inner = map.find("operating_point")) {
@@ -95,7 +95,8 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
     tried = (channels != nullptr && !channels->is_null()) || state_space != nullptr;
     if (channels != nullptr && !channels->is_null())
       model.channels = read_channels(*channels, signals_of(config));
-    if (state_space != nullptr) load_state_space(*state_space, config);
+    if (state_space != nullptr)
+      load_state_space(state_space->map({"A", "B", "C", "D", "x0"}), config);
     if (const Value* blocks = map.find("input"))
       read_input_blocks(*blocks, config.input_tags(), model.input_blocks);
     if (const Value* blocks = map.find("output"))
@@ -105,7 +106,8 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
     if (channels != nullptr && tried && model.channels.size() == channels->items().size())
       warn_of_idle_cvs(*section, config);
   }
-  if (!tried) check_missing_model(section, section != nullptr ? *section : root, config);
+  if (!tried && need == ModelNeed::kNeeded)
+    check_missing_model(section, section != nullptr ? *section : root, config);
 }
 
 }  // namespace mpm::config

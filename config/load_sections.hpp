@@ -5,6 +5,7 @@
 
 #include "config/choice.hpp"
 #include "config/fields.hpp"
+#include "config/load_unit.hpp"
 #include "config/suggest.hpp"
 #include "config/unit_config.hpp"
 #include "config/yaml_value.hpp"
@@ -17,7 +18,7 @@ inline constexpr std::size_t kLongestTag = 128;
 
 void load_signals(const Value* section, UnitConfig& config);
 void load_model(const Value& root, const Value* section, const Value* top_level_origin,
-                UnitConfig& config);
+                ModelNeed need, UnitConfig& config);
 /// Overwrites in `monitor` what the section gives.
 void load_monitor(const Value* section, const UnitConfig& unit, MonitorSettings& monitor);
 void load_alarms(const Value* section, UnitConfig& config);
@@ -25,7 +26,8 @@ void load_dds(const Value* section, UnitConfig& config);
 void load_simulation(const Value* section, UnitConfig& config);
 
 /// A part of `load_model`; see load_model_parts.hpp for the others.
-void load_state_space(const Value& value, UnitConfig& config);
+/// `map` has A, B, C and perhaps D and x0.
+void load_state_space(const Map& map, UnitConfig& config);
 
 /// Index of the tag that `value` names, or -1 (reported as an unknown `noun`).
 [[nodiscard]] int find_tag(const Value& value, const std::vector<std::string>& tags,

@@ -47,7 +47,7 @@ void check_cost(const Map& root, const UnitConfig& config) {
                    " s of every " + number_text(config.sample_time_s) + " s sample (" + size + ")");
 }
 
-void load_root(const Value& document, Report& report, UnitConfig& config) {
+void load_root(const Value& document, ModelNeed need, Report& report, UnitConfig& config) {
   if (!document.is_map()) {
     document.error("a unit file is a map of keys such as `unit:` and `signals:`");
     return;
@@ -61,7 +61,7 @@ void load_root(const Value& document, Report& report, UnitConfig& config) {
   load_signals(signals, config);
   // Without signals everything below would only complain about unknown tags.
   if (config.mv.empty() || config.cv.empty()) return;
-  load_model(document, root.find("model"), root.find("operating_point"), config);
+  load_model(document, root.find("model"), root.find("operating_point"), need, config);
   load_monitor(root.find("monitor"), config, config.monitor);
   load_alarms(root.find("alarms"), config);
   load_dds(root.find("dds"), config);
@@ -72,26 +72,26 @@ void load_root(const Value& document, Report& report, UnitConfig& config) {
   if (simulation == nullptr || simulation->is_null()) give_default_movement(config);
 }
 
-void load_text(const std::string& text, Report& report, UnitConfig& config) {
+void load_text(const std::string& text, ModelNeed need, Report& report, UnitConfig& config) {
   if (const std::optional<Value> document = parse_yaml(text, report))
-    load_root(*document, report, config);
+    load_root(*document, need, report, config);
 }
 
 }  // namespace
 
-LoadResult load_unit(const std::string& path) {
+LoadResult load_unit(const std::string& path, ModelNeed need) {
   LoadResult result;
   Report report(path);
   if (const std::optional<std::string> text = read_text_file(path, report))
-    load_text(*text, report, result.config);
+    load_text(*text, need, report, result.config);
   result.findings = report.take();
   return result;
 }
 
-LoadResult load_unit_text(const std::string& text, const std::string& name) {
+LoadResult load_unit_text(const std::string& text, const std::string& name, ModelNeed need) {
   LoadResult result;
   Report report(name);
-  load_text(text, report, result.config);
+  load_text(text, need, report, result.config);
   result.findings = report.take();
   return result;
 }

@@ -26,11 +26,15 @@ struct LoadUnitsResult {
   [[nodiscard]] bool ok() const { return !has_errors(findings); }
 };
 
+/// Whether a unit may do without a model and without predictions: only who makes one allows it.
+enum class ModelNeed { kNeeded, kMayBeMissing };
+
 /// Reads and checks one unit file (interfaces: "Unit file"). Never throws on what the file holds.
-[[nodiscard]] LoadResult load_unit(const std::string& path);
+[[nodiscard]] LoadResult load_unit(const std::string& path, ModelNeed need = ModelNeed::kNeeded);
 
 /// The same from text; `name` stands for the file in the findings.
-[[nodiscard]] LoadResult load_unit_text(const std::string& text, const std::string& name);
+[[nodiscard]] LoadResult load_unit_text(const std::string& text, const std::string& name,
+                                        ModelNeed need = ModelNeed::kNeeded);
 
 /// Reads all files or folders; two files with the same unit name are an error.
 [[nodiscard]] LoadUnitsResult load_units(const std::vector<std::string>& paths);
