@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   add_detect(app, exit_code);
   add_trend(app, exit_code);
   add_diagnose(app, exit_code);
+  add_import(app, exit_code);
   add_info(app, exit_code);
   add_list(app, exit_code);
   add_convert(app, exit_code);

@@ -12,6 +12,8 @@ void add_detect(CLI::App& app, int& exit_code);
 void add_trend(CLI::App& app, int& exit_code);
 /// `mpm diagnose`: what the simulation gets wrong in recorded data, and a model that gets it right.
 void add_diagnose(CLI::App& app, int& exit_code);
+/// `mpm import`: a model from another tool, into a unit file.
+void add_import(CLI::App& app, int& exit_code);
 /// `mpm info`: what a data file holds.
 void add_info(CLI::App& app, int& exit_code);
 /// `mpm list`: which recordings lie in a folder.
