@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/model/calibration.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {
@@ -16,14 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kMuchNearer = 0.1;  // deviation for which a richer structure is worth it
-constexpr Index kMostPoints = 500;   // that are fitted; all are checked
-constexpr int kRestarts = 8;         // of the search, from where it ended
-constexpr int kSteps = 200;          // of each
-constexpr int kValuesPerNumber = 2;  // fewer are met by anything
-constexpr double kExact = 1e-4;      // share of the largest coefficient: four digits
-constexpr double kBegun = 1e-3;      // share of the largest coefficient
-constexpr double kEqual = 1e-4;      // relative difference of time constants that is none
+namespace reduction = calibration::step_reduction;
 
 /// What a transfer function may have, simplest first.
 struct Structure {
@@ -52,7 +46,8 @@ UnitResponse unit_response(const Structure& structure, double t, double t1, doub
   const double e1 = std::exp(-t / t1);
   if (structure.integrating) return {t - t1 * (1.0 - e1), 1.0 - e1};
   if (structure.lags == 1) return {1.0 - e1, e1 / t1};
-  if (std::abs(t1 - t2) < kEqual * t1) return {1.0 - (1.0 + t / t1) * e1, t / (t1 * t1) * e1};
+  if (std::abs(t1 - t2) < reduction::kEqual * t1)
+    return {1.0 - (1.0 + t / t1) * e1, t / (t1 * t1) * e1};
   const double e2 = std::exp(-t / t2);
   return {1.0 - (t1 * e1 - t2 * e2) / (t1 - t2), (e1 - e2) / (t1 - t2)};
 }
@@ -64,7 +59,7 @@ struct Points {
 
 Points points_of(const std::vector<double>& values) {
   const auto count = static_cast<Index>(values.size());
-  const Index points = std::min(count, kMostPoints);
+  const Index points = std::min(count, reduction::kMostPoints);
   Points result{VectorXd(points), VectorXd(points)};
   for (Index i = 0; i < points; ++i) {
     const Index at = points > 1 ? i * (count - 1) / (points - 1) : 0;
@@ -110,14 +105,14 @@ Eigen::Vector3d search(const Structure& structure, const Points& points, Eigen::
     return Corner{place, tried(structure, points, place).error};
   };
   const auto by_error = [](const Corner& a, const Corner& b) { return a.error < b.error; };
-  for (int restart = 0; restart < kRestarts; ++restart) {
+  for (int restart = 0; restart < reduction::kRestarts; ++restart) {
     std::vector<Corner> corners = {corner(from)};
     for (int i = 0; i < size; ++i) {
       Eigen::Vector3d place = from;
-      place(i) += i == 0 ? 0.5 + 0.1 * std::abs(from(0)) : 0.5;
+      place(i) += i == 0 ? 0.5 : 0.5;
       corners.push_back(corner(place));
     }
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < reduction::kSteps; ++step) {
       std::sort(corners.begin(), corners.end(), by_error);
       Corner& worst = corners.back();
       Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -148,7 +143,7 @@ Eigen::Vector3d search(const Structure& structure, const Points& points, Eigen::
 Eigen::Vector3d first_place(const std::vector<double>& values, double largest) {
   double begun = 0.0, far = 1.0;
   for (std::size_t i = 1; i < values.size(); ++i)
-    if (std::abs(values[i]) > kBegun * largest) {
+    if (std::abs(values[i]) > calibration::kNotBegun * largest) {
       begun = static_cast<double>(i - 1);
       break;
     }
@@ -156,34 +151,28 @@ Eigen::Vector3d first_place(const std::vector<double>& values, double largest) {
     if (std::abs(values[i] - values.back()) > std::exp(-1.0) * std::abs(values.back()))
       far = static_cast<double>(i);
   const double lag = std::max(1.0, far - begun);
-  return {begun, std::log(lag), std::log(lag / 4.0)};
+  return {begun, std::log(lag), std::log(reduction::kSecondLag * lag)};
 }
 
-double four_digits(double value) {
+double rounded(double value) {
   if (value == 0.0 || !std::isfinite(value)) return value;
-  const double scale = std::pow(10.0, 3.0 - std::floor(std::log10(std::abs(value))));
-  const double rounded = std::round(value * scale) / scale;
-  return std::isfinite(rounded) ? rounded : value;
+  const double scale = std::pow(reduction::kBase,
+                                reduction::kDigits - 1.0 - std::floor(std::log10(std::abs(value))));
+  const double result = std::round(value * scale) / scale;
+  return std::isfinite(result) ? result : value;
 }
-
-/// Of a time constant; with a longer one gain and lead are not to be told apart.
-constexpr double kLongestLead = 100.0;
-
-/// Less than that is none: a thousandth of a sample, or of the largest time constant.
-constexpr double kNothing = 1e-3;
 
 TransferFunction transfer_function(const Structure& structure, const Trial& trial,
                                    double sample_time_s) {
   TransferFunction result;
   result.integrating = structure.integrating;
-  result.gain = four_digits(structure.integrating ? trial.gain / sample_time_s : trial.gain);
+  result.gain = rounded(structure.integrating ? trial.gain / sample_time_s : trial.gain);
   result.dead_time_s =
-      trial.dead_time > kNothing ? four_digits(trial.dead_time * sample_time_s) : 0.0;
-  if (structure.lags > 0) result.time_constants_s = {four_digits(trial.t1 * sample_time_s)};
-  if (structure.lags > 1) result.time_constants_s.push_back(four_digits(trial.t2 * sample_time_s));
+      trial.dead_time > reduction::kNothing ? rounded(trial.dead_time * sample_time_s) : 0.0;
+  if (structure.lags > 0) result.time_constants_s = {rounded(trial.t1 * sample_time_s)};
+  if (structure.lags > 1) result.time_constants_s.push_back(rounded(trial.t2 * sample_time_s));
   std::sort(result.time_constants_s.rbegin(), result.time_constants_s.rend());
-  if (structure.lead)
-    result.lead_s = four_digits(trial.gain_times_lead / trial.gain * sample_time_s);
+  if (structure.lead) result.lead_s = rounded(trial.gain_times_lead / trial.gain * sample_time_s);
   return result;
 }
 
@@ -194,7 +183,7 @@ double deviation_of(const TransferFunction& dynamics, const std::vector<double>&
   if (!std::isfinite(dynamics.gain) || !std::isfinite(dynamics.lead_s)) return infinite;
   for (const double time_s : dynamics.time_constants_s)
     if (!(time_s > 0.0) || !std::isfinite(time_s) ||
-        std::abs(dynamics.lead_s) > kLongestLead * time_s)
+        std::abs(dynamics.lead_s) > reduction::kLongestLead * time_s)
       return infinite;
   if (!(dynamics.dead_time_s < static_cast<double>(values.size()) * sample_time_s)) return infinite;
   ModelSpec spec;
@@ -227,15 +216,15 @@ std::optional<ReducedStepResponse> reduce_step_response(const StepResponse& resp
   std::optional<ReducedStepResponse> best;
   for (const Structure& structure : kStructures) {
     const int numbers = 2 + structure.lags + (structure.lead ? 1 : 0);
-    if (static_cast<Index>(values.size()) < kValuesPerNumber * numbers) continue;
+    if (static_cast<Index>(values.size()) < reduction::kValuesPerNumber * numbers) continue;
     // One that integrates goes on for ever: only where nothing that settles will do.
     if (structure.integrating && best && !best->dynamics.integrating) continue;
     const Eigen::Vector3d place = search(structure, points, from, 1 + structure.lags);
     const TransferFunction dynamics =
         transfer_function(structure, tried(structure, points, place), sample_time_s);
     const double deviation = deviation_of(dynamics, values, largest, sample_time_s);
-    const double wanted = best ? kMuchNearer * best->deviation : kReductionTolerance;
-    if (deviation <= wanted && !(best && best->deviation < kExact))
+    const double wanted = best ? reduction::kMuchNearer * best->deviation : reduction::kTolerance;
+    if (deviation <= wanted && !(best && best->deviation < reduction::kExact))
       best = ReducedStepResponse{dynamics, deviation};
   }
   return best;

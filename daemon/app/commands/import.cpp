@@ -9,6 +9,7 @@
 
 #include "config/import_state_space.hpp"
 #include "config/load_unit.hpp"
+#include "core/model/calibration.hpp"
 #include "core/model/reduce_step_response.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/commands.hpp"
@@ -57,7 +58,7 @@ void take(ChannelSpec channel, config::UnitConfig& unit, Story& story) {
                        ? text_of(*reduced)
                        : "kept as a step response of " + counted(response.values.size(), "value") +
                              "; no lag, lead or integrator of second order or less is within " +
-                             number_text(100.0 * kReductionTolerance) + " %"));
+                             number_text(100.0 * calibration::step_reduction::kTolerance) + " %"));
   if (reduced) channel.dynamics = reduced->dynamics;
   unit.model.channels.push_back(std::move(channel));
 }
