@@ -95,7 +95,8 @@ void load_model(const Value& root, const Value* section, const Value* top_level_
     tried = (channels != nullptr && !channels->is_null()) || state_space != nullptr;
     if (channels != nullptr && !channels->is_null())
       model.channels = read_channels(*channels, signals_of(config));
-    if (state_space != nullptr) load_state_space(*state_space, config);
+    if (state_space != nullptr)
+      load_state_space(state_space->map({"A", "B", "C", "D", "x0"}), config);
     if (const Value* blocks = map.find("input"))
       read_input_blocks(*blocks, config.input_tags(), model.input_blocks);
     if (const Value* blocks = map.find("output"))

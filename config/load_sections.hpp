@@ -27,7 +27,8 @@ void load_simulation(const Value* section, UnitConfig& config);
 void load_identify(const Value* section, UnitConfig& config);
 
 /// A part of `load_model`; see load_model_parts.hpp for the others.
-void load_state_space(const Value& value, UnitConfig& config);
+/// `map` has A, B, C and perhaps D and x0.
+void load_state_space(const Map& map, UnitConfig& config);
 
 /// Index of the tag that `value` names, or -1 (reported as an unknown `noun`).
 [[nodiscard]] int find_tag(const Value& value, const std::vector<std::string>& tags,

@@ -48,8 +48,7 @@ bool has_shape(const Map& map, std::string_view key, const Eigen::MatrixXd& matr
 
 }  // namespace
 
-void load_state_space(const Value& value, UnitConfig& config) {
-  const Map map = value.map({"A", "B", "C", "D", "x0"});
+void load_state_space(const Map& map, UnitConfig& config) {
   const Eigen::Index inputs = config.model.input_count;
   const Eigen::Index cvs = config.model.cv_count;
   const std::optional<Eigen::MatrixXd> a = read_matrix(map, "A");

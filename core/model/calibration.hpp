@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 /// The numbers of this room that decide how a model is taken. Where each comes from: see
 /// core/mismatch/calibration.hpp.
 namespace mpm::calibration {
@@ -49,5 +51,33 @@ inline constexpr double kMostSteps = 200.0;
 inline constexpr double kNearlyEmpty = 0.05;
 inline constexpr int kParts = 8;
 }  // namespace tanks
+
+/// Step responses in the form of a transfer function (tests/core/model/reduce_step_response_test).
+/// All chosen.
+namespace step_reduction {
+/// Largest deviation, share of the largest coefficient: what tables are rounded to, and less than
+/// any error that the monitor looks for.
+inline constexpr double kTolerance = 0.01;
+/// A richer structure is worth it where it deviates by this share of what the simpler one does, and
+/// none is where that is within four digits.
+inline constexpr double kMuchNearer = 0.1;
+inline constexpr double kExact = 1e-4;
+inline constexpr double kBase = 10.0, kDigits = 4.0;
+/// Values for each number that is fitted; fewer are met by anything.
+inline constexpr int kValuesPerNumber = 2;
+/// Values that are fitted (all are checked), and the search: how often it begins again where it
+/// ended, and steps of each time.
+inline constexpr Eigen::Index kMostPoints = 500;
+inline constexpr int kRestarts = 8;
+inline constexpr int kSteps = 200;
+/// Relative difference of time constants that is none: beyond, closed forms lose digits.
+inline constexpr double kEqual = 1e-4;
+/// Time constants in a lead: with a longer one, gain and lead are not to be told apart.
+inline constexpr double kLongestLead = 100.0;
+/// Samples of dead time that are none.
+inline constexpr double kNothing = 1e-3;
+/// Where the search begins with a second lag, share of the first.
+inline constexpr double kSecondLag = 0.25;
+}  // namespace step_reduction
 
 }  // namespace mpm::calibration

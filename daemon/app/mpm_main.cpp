@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
   add_trend(app, exit_code);
   add_diagnose(app, exit_code);
   add_identify(app, exit_code);
+  add_import(app, exit_code);
   add_info(app, exit_code);
   add_list(app, exit_code);
   add_convert(app, exit_code);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "config/finding.hpp"
 #include "daemon/bag/mcap_frame_writer.hpp"
@@ -35,24 +36,35 @@ void count(const Frame& frame, const std::vector<files::Column>& columns, Conver
 }
 
 /// Which columns of a wide file need one for the quality: known only when all was read.
-std::vector<bool> find_qualities(const std::string& input, const TableOptions& options) {
+std::vector<bool> find_qualities(const std::string& input, const TableOptions& options,
+                                 const files::TimeChoice& choice) {
   const Table table = open_table(input, options);
   std::vector<bool> needed(table.columns.size());
   Frame frame;
-  while (table.frames->next(frame))
+  while (table.frames->next(frame)) {
+    if (!choice.takes(frame.source_time_ns)) continue;
     for (std::size_t i = 0; i < needed.size(); ++i)
       needed[i] =
           needed[i] || files::needs_quality(frame[table.columns[i].kind], table.columns[i].index);
+  }
   return needed;
 }
 
 template <class Writer>
-void copy(const Table& table, Writer& writer, ConvertReport& report) {
+void copy(const Table& table, const files::TimeChoice& choice, Writer& writer,
+          ConvertReport& report) {
   Frame frame(table.unit.counts());
+  std::int64_t first_ns = 0, last_ns = 0;
+  bool any = false;
   while (table.frames->next(frame)) {
+    last_ns = frame.source_time_ns;
+    if (!std::exchange(any, true)) first_ns = last_ns;
+    if (!choice.takes(last_ns)) continue;
     count(frame, table.columns, report);
     writer.write(frame);
   }
+  if (any && report.rows == 0)
+    throw std::invalid_argument(files::nothing_chosen(first_ns, last_ns));
   writer.finish();
 }
 
@@ -76,15 +88,15 @@ ConvertReport convert(const std::string& input, const std::string& output,
   try {
     files::CsvOptions csv{options.layout, options.seconds, options.output_zone, {}};
     if (!to_mcap && options.layout == files::CsvLayout::kWide)
-      csv.quality = find_qualities(input, table_options);
+      csv.quality = find_qualities(input, table_options, options.choice);
     const Table table = open_table(input, table_options);
     report.signals = table.columns.size();
     if (to_mcap) {
       McapFrameWriter writer(file->temporary(), table.unit, table.columns);
-      copy(table, writer, report);
+      copy(table, options.choice, writer, report);
     } else {
       files::CsvWriter writer(file ? file->temporary() : output, table.columns, std::move(csv));
-      copy(table, writer, report);
+      copy(table, options.choice, writer, report);
       report.bytes = writer.bytes_written();
     }
     report.notices = table.notices;

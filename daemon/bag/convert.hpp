@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/bag/table.hpp"
+#include "daemon/files/times/time_choice.hpp"
 
 namespace mpm::bag {
 
@@ -16,6 +17,7 @@ struct ConvertOptions {
   files::CsvLayout layout = files::CsvLayout::kWide;   ///< of a CSV output
   bool seconds = false;                                ///< its times as seconds
   files::TimeStyle input_times;                        ///< of a CSV input
+  files::TimeChoice choice;                            ///< rows that go over
   std::shared_ptr<const files::TimeZone> output_zone;  ///< null = UTC
 };
 

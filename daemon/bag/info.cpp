@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "config/finding.hpp"
 #include "core/signal/saturated.hpp"
@@ -29,9 +30,19 @@ std::string tag_or_place(const std::vector<std::string>& tags, SignalKind kind, 
 /// Takes the messages of an MCAP file one by one.
 class McapInspector {
  public:
-  explicit McapInspector(FileInfo& info) : info_(info) {}
+  McapInspector(FileInfo& info, const files::TimeChoice& choice) : info_(info), choice_(choice) {}
+
+  /// Messages so far, taken or not.
+  [[nodiscard]] std::uint64_t seen() const { return seen_; }
 
   void add(const mcap::Message& message) {
+    ++seen_;
+    if (!choice_.takes(message.log_time_ns)) {
+      cut();
+      if (message.channel->topic == idl::kLayoutTopic) add_layout(message);
+      return;
+    }
+    cut_ = false;
     info_.times.add(message.log_time_ns);
     TopicTally& topic = info_.topics[message.channel->topic];
     topic.message_encoding = message.channel->message_encoding;
@@ -41,13 +52,11 @@ class McapInspector {
     }
     topic.times.add(message.log_time_ns);
     topic.bytes += message.data.size();
+    if (message.channel->topic == idl::kLayoutTopic) add_layout(message);
     if (message.channel->message_encoding != "cdr") return;
-    if (const std::optional<SignalKind> kind = kind_of(message.channel->topic)) {
+    if (const std::optional<SignalKind> kind = kind_of(message.channel->topic))
       if (const mpm_Sample* sample = samples_.decode(message.data))
         add_sample(idl::view_of(*kind, *sample));
-    } else if (message.channel->topic == idl::kLayoutTopic) {
-      if (const mpm_Layout* layout = layouts_.decode(message.data)) add_layout(*layout);
-    }
   }
 
   /// Layouts may come after the samples that they name.
@@ -64,6 +73,19 @@ class McapInspector {
     if (info_.units.size() >= kMostUnits && info_.units.find(key) == info_.units.end())
       return nullptr;
     return &info_.units[key];
+  }
+
+  /// Where messages are left out on purpose, no sample is missing.
+  void cut() {
+    if (std::exchange(cut_, true)) return;
+    for (auto& [name, unit] : info_.units)
+      for (auto& [kind, samples] : unit.samples) samples.cut = true;
+  }
+
+  /// Whenever it came, it names what was taken.
+  void add_layout(const mcap::Message& message) {
+    if (message.channel->message_encoding != "cdr") return;
+    if (const mpm_Layout* layout = layouts_.decode(message.data)) add_layout(*layout);
   }
 
   void add_layout(const mpm_Layout& layout) {
@@ -87,9 +109,10 @@ class McapInspector {
     SampleTally& tally = unit->samples[sample.kind];
     tally.kind = sample.kind;
     const std::int64_t step = saturated_difference(sample.interval, tally.last_interval);
-    if (tally.times.count > 0 && step > 1)
+    if (tally.times.count > 0 && step > 1 && !tally.cut)
       tally.times.add_gap(tally.last_ns, sample.source_time_ns,
                           static_cast<std::uint64_t>(step - 1));
+    tally.cut = false;
     if (tally.times.count == 0 || step > 0 || step < -kRestart) {
       tally.last_interval = sample.interval;
       tally.last_ns = sample.source_time_ns;
@@ -105,6 +128,9 @@ class McapInspector {
   static constexpr std::int64_t kRestart = 1000;  // intervals back: not out of order, a new count
 
   FileInfo& info_;
+  const files::TimeChoice& choice_;
+  std::uint64_t seen_ = 0;
+  bool cut_ = false;  ///< the last message was not taken
   idl::CdrDecoder<mpm_Sample> samples_;
   idl::CdrDecoder<mpm_Layout> layouts_;
   std::map<std::pair<std::string, SignalKind>, std::vector<std::string>> tags_;
@@ -114,7 +140,7 @@ void inspect_file(const std::string& path, McapInspector& inspector, FileInfo& i
   mcap::Reader reader(path);
   // Of several files, which one is meant.
   const std::string prefix = info.files.size() > 1 ? path + ": " : "";
-  const std::uint64_t before = info.times.count;
+  const std::uint64_t before = inspector.seen();
   try {
     mcap::Message message;
     while (reader.next(message)) inspector.add(message);
@@ -133,7 +159,7 @@ void inspect_file(const std::string& path, McapInspector& inspector, FileInfo& i
   info.compressions.insert(layout.compressions.begin(), layout.compressions.end());
   const std::string problem = layout.damage
                                   ? "the file has no end"
-                                  : mcap::index_problem(file, layout, info.times.count - before);
+                                  : mcap::index_problem(file, layout, inspector.seen() - before);
   if (info.index_problem.empty() && !problem.empty()) info.index_problem = prefix + problem;
 }
 
@@ -149,14 +175,15 @@ std::int64_t start_ns(const std::string& path) {
 }
 
 // Not by mcap::FileSequence, which refuses what is torn.
-void inspect_mcap(const std::vector<std::string>& paths, FileInfo& info) {
+void inspect_mcap(const std::vector<std::string>& paths, const files::TimeChoice& choice,
+                  FileInfo& info) {
   std::vector<std::pair<std::int64_t, std::string>> starts;
   for (const std::string& file : mcap::recording_files(paths))
     starts.emplace_back(start_ns(file), file);
   std::stable_sort(starts.begin(), starts.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [start, file] : starts) info.files.push_back(file);
-  McapInspector inspector(info);
+  McapInspector inspector(info, choice);
   for (const std::string& file : info.files) inspect_file(file, inspector, info);
   inspector.finish();
 }
@@ -166,8 +193,11 @@ class RowClock {
  public:
   explicit RowClock(FileInfo& info) : info_(info) {}
 
-  void add(std::int64_t time_ns) {
-    if (info_.times.count > 0 && time_ns > last_ns_) {
+  /// `cut`: rows before it were left out on purpose.
+  void add(std::int64_t time_ns, bool cut) {
+    if (cut) {
+      last_ns_ = time_ns;
+    } else if (info_.times.count > 0 && time_ns > last_ns_) {
       if (step_ns_ == 0.0) {
         steps_.emplace_back(last_ns_, time_ns);
         if (steps_.size() == kFirstSteps) settle();
@@ -206,7 +236,7 @@ class RowClock {
   double step_ns_ = 0.0;
 };
 
-void inspect_csv(FileInfo& info, const files::TimeStyle& times) {
+void inspect_csv(FileInfo& info, const files::TimeStyle& times, const files::TimeChoice& choice) {
   files::CsvRows rows(info.path, times);
   info.is_long = rows.is_long();
   info.delimiter = rows.delimiter();
@@ -216,8 +246,13 @@ void inspect_csv(FileInfo& info, const files::TimeStyle& times) {
   }
   RowClock clock(info);
   Frame frame;
+  bool cut = false;
   while (rows.next(frame)) {
-    clock.add(frame.source_time_ns);
+    if (!choice.takes(frame.source_time_ns)) {
+      cut = true;
+      continue;
+    }
+    clock.add(frame.source_time_ns, std::exchange(cut, false));
     const SignalBlock& block = frame[SignalKind::kAux];
     for (std::size_t i = 0; i < info.signals.size(); ++i)
       info.signals[i].add(block.values(static_cast<Eigen::Index>(i)), block.quality[i]);
@@ -266,14 +301,18 @@ double TimeTally::rate_hz() const {
   return count > 1 && span_s > 0.0 ? static_cast<double>(count - 1) / span_s : 0.0;
 }
 
-FileInfo inspect(const std::vector<std::string>& paths, const files::TimeStyle& times) {
+FileInfo inspect(const std::vector<std::string>& paths, const files::TimeStyle& times,
+                 const files::TimeChoice& choice) {
   FileInfo info;
   info.path = mcap::name_of(paths);
   info.is_mcap = mcap::is_recording(paths);
   if (info.is_mcap)
-    inspect_mcap(paths, info);
+    inspect_mcap(paths, choice, info);
   else
-    inspect_csv(info, times);
+    inspect_csv(info, times, choice);
+  if (info.times.count == 0 && !choice.all() && info.problem.empty())
+    throw config::InputError({info.path, 0, 0, config::Severity::kError, "",
+                              "--from, --until and --exclude leave nothing of it"});
   std::error_code ignored;
   for (const std::string& file : info.is_mcap ? info.files : paths)
     info.bytes += std::filesystem::file_size(file, ignored);

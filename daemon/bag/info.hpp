@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/signal/frame.hpp"
+#include "daemon/files/times/time_choice.hpp"
 #include "daemon/files/times/time_style.hpp"
 
 namespace mpm::bag {
@@ -48,6 +49,7 @@ struct SampleTally {
   std::vector<SignalTally> signals;
   std::int64_t last_interval = 0;
   std::int64_t last_ns = 0;
+  bool cut = false;  ///< something was left out on purpose since the last sample
 };
 
 struct UnitTally {
@@ -88,11 +90,13 @@ struct FileInfo {
   std::vector<std::string> notices;
 };
 
-/// Reads all of the files. Several MCAP files, or a folder of them, are one recording. Throws
-/// config::InputError where it is no data file at all; one that is torn is told as far as it goes.
-/// Local times of a CSV without a zone in `times` are refused.
+/// Reads of the files what `choice` takes: rows of a CSV by their time, messages of an MCAP by when
+/// they were recorded. What was left out on purpose is no gap. Several MCAP files, or a folder of
+/// them, are one recording. Throws config::InputError where it is no data file at all; one that is
+/// torn is told as far as it goes. Local times of a CSV without a zone in `times` are refused.
 [[nodiscard]] FileInfo inspect(const std::vector<std::string>& paths,
-                               const files::TimeStyle& times = {});
+                               const files::TimeStyle& times = {},
+                               const files::TimeChoice& choice = {});
 [[nodiscard]] FileInfo inspect(const std::string& path, const files::TimeStyle& times = {});
 
 }  // namespace mpm::bag

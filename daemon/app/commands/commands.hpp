@@ -14,6 +14,8 @@ void add_trend(CLI::App& app, int& exit_code);
 void add_diagnose(CLI::App& app, int& exit_code);
 /// `mpm identify`: a model of a unit from recorded data alone.
 void add_identify(CLI::App& app, int& exit_code);
+/// `mpm import`: a model from another tool, into a unit file.
+void add_import(CLI::App& app, int& exit_code);
 /// `mpm info`: what a data file holds.
 void add_info(CLI::App& app, int& exit_code);
 /// `mpm list`: which recordings lie in a folder.

@@ -6,6 +6,7 @@
 
 #include "config/load_unit.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/convert.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -22,6 +23,7 @@ struct Options {
   std::string time_zone;
   std::string from_time_zone;
   std::string time_format;
+  files::TimeChoiceText time;
 };
 
 void tell(const Options& options, const bag::ConvertReport& report) {
@@ -54,6 +56,7 @@ int convert(const Options& options) {
     wanted.input_times =
         times_of({options.from_time_zone.empty() ? options.time_zone : options.from_time_zone,
                   options.time_format});
+    wanted.choice = files::TimeChoice(options.time, wanted.input_times);
     tell(options, bag::convert(options.input, options.output, wanted));
     return 0;
   } catch (const config::InputError& error) {
@@ -89,6 +92,7 @@ void add_convert(CLI::App& app, int& exit_code) {
       "refused)");
   command->add_option("--from-time-zone", options->from_time_zone,
                       "zone of local times in a CSV input, where it is not that of --time-zone");
+  add_time_choice(*command, options->time);
   add_time_format(*command, options->time_format);
   command->footer(
       "Examples:\n"

@@ -4,11 +4,11 @@ namespace mpm::app {
 
 void add_time_choice(CLI::App& command, files::TimeChoiceText& text) {
   command.add_option("--from", text.from,
-                     "first time of --data that is used: seconds or ISO 8601, as the data tell it");
-  command.add_option("--until", text.until, "time from which on --data is not used any more");
+                     "first time of the data that is used: seconds or ISO 8601, as they tell it");
+  command.add_option("--until", text.until, "time from which on the data are not used any more");
   command
       .add_option("--exclude", text.exclude,
-                  "A/B: leave out what --data holds from time A to time B (may be repeated)")
+                  "A/B: leave out what the data hold from time A to time B (may be repeated)")
       ->take_all()
       ->expected(1);
 }

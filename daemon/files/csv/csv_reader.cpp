@@ -7,12 +7,15 @@
 #include <utility>
 
 #include "config/finding.hpp"
+#include "daemon/files/csv/averaged_rows.hpp"
 
 namespace mpm::files {
 namespace {
 
 constexpr std::size_t kRowsAhead = 200;
 constexpr double kSampleTimeTolerance = 0.1;
+constexpr double kIntervalsAhead = 100.0, kMostRowsAhead = 20'000.0;  // to see MVs move
+constexpr double kSparsest = 0.5;  // of the sample time: two rows make a mean
 constexpr double kNsPerSecond = 1e9;
 constexpr double kLargestInterval = 9e15;  // exact in a double
 
@@ -42,7 +45,10 @@ CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit,
 
 CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& name,
                      const config::UnitConfig& unit, const TimeStyle& times, Purpose purpose)
-    : sample_time_s_(unit.sample_time_s), lines_(std::move(input), name), tags_(unit, purpose) {
+    : sample_time_s_(unit.sample_time_s),
+      purpose_(purpose),
+      lines_(std::move(input), name),
+      tags_(unit, purpose) {
   open(unit.counts(), times);
 }
 
@@ -61,10 +67,10 @@ void CsvReader::open(const SignalCounts& counts, const TimeStyle& times) {
     ahead_.push_back(std::move(frame));
   }
   if (ahead_.empty()) lines_.fail(header_line, 1, "no data below the header");
-  check_sample_time(header_line);
+  fit_sample_time(header_line);
 }
 
-void CsvReader::check_sample_time(int first_line) const {
+void CsvReader::fit_sample_time(int first_line) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < ahead_.size(); ++i) {
     const auto step_ns =
@@ -78,10 +84,32 @@ void CsvReader::check_sample_time(int first_line) const {
   if (steps_s.empty()) return;
   const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
   std::nth_element(steps_s.begin(), middle, steps_s.end());
+  if (purpose_ == Purpose::kJudge &&
+      *middle <= (kSparsest + kSampleTimeTolerance) * sample_time_s_) {
+    average(*middle);
+    return;
+  }
   if (std::abs(*middle - sample_time_s_) > kSampleTimeTolerance * sample_time_s_)
     lines_.fail(first_line, 1,
                 "the rows are " + seconds(*middle) + " apart (median), the unit's sample_time is " +
                     seconds(sample_time_s_));
+}
+
+void CsvReader::average(double step_s) {
+  const auto enough =
+      static_cast<std::size_t>(std::min(kMostRowsAhead, kIntervalsAhead * sample_time_s_ / step_s));
+  for (Frame frame; ahead_.size() < enough && rows_->next(frame);) ahead_.push_back(frame);
+  const std::optional<std::int64_t> moves_ns = moves_at(ahead_, step_s, sample_time_s_);
+  rows_ = std::make_unique<AveragedRows>(std::move(rows_), std::exchange(ahead_, {}),
+                                         moves_ns.value_or(first_ns_), step_s, sample_time_s_,
+                                         row_notices_);
+  notices_.push_back(
+      "the rows, " + seconds(step_s) + " apart, are averaged to the unit's sample_time of " +
+      seconds(sample_time_s_) + (moves_ns ? ", in intervals that begin where the MVs move" : ""));
+  Frame frame;
+  if (!rows_->next(frame)) return;
+  first_ns_ = frame.source_time_ns;
+  ahead_.push_back(std::move(frame));
 }
 
 bool CsvReader::read(Frame& frame) {

@@ -17,13 +17,16 @@ namespace mpm::files {
 /// `tag,time,value,quality`, in the layouts of docs/data.md. Memory stays flat, except for a long
 /// file that is not sorted by time.
 ///
+/// To judge a unit, rows at least twice as dense as its sample_time are averaged down to it
+/// (`AveragedRows`), which is noted.
+///
 /// Frame k of a file is numbered round((t - t_first) / sample_time); rows whose time does not grow
 /// keep their number, for the monitor to judge.
 class CsvReader : public FrameSource {
  public:
   /// Reads the header and the first rows. Throws config::InputError (`file:line:col: message`) if
-  /// the file cannot be opened, a tag that the purpose needs is missing or the rows are not
-  /// sample_time apart.
+  /// the file cannot be opened, a tag that the purpose needs is missing or the rows are
+  /// neither sample_time apart nor dense enough to be averaged.
   /// Local times without a zone in `times` are refused.
   CsvReader(const std::string& path, const config::UnitConfig& unit, const TimeStyle& times = {},
             Purpose purpose = Purpose::kJudge);
@@ -40,7 +43,8 @@ class CsvReader : public FrameSource {
 
  private:
   void open(const SignalCounts& counts, const TimeStyle& times);
-  void check_sample_time(int first_line) const;
+  void fit_sample_time(int first_line);
+  void average(double step_s);
   [[nodiscard]] bool read(Frame& frame);
   void number(Frame& frame);
   /// Intervals since the first row, by the clock of the file as followed so far.
@@ -48,6 +52,7 @@ class CsvReader : public FrameSource {
   [[nodiscard]] bool clock_stays_back(double at);
 
   double sample_time_s_;
+  Purpose purpose_;
   std::uintmax_t file_bytes_ = 0;  // 0 = not known
   LineReader lines_;
   TagTable tags_;

@@ -56,6 +56,59 @@ TEST_CASE("mpm convert - writes CSV to standard output and what it has to tell b
   CHECK_FALSE(std::filesystem::exists("-"));
 }
 
+TEST_CASE("a choice of time holds for what is told and for what is converted") {
+  Bench bench;
+  const auto path = [&](const char* name) { return bench.folder.file(name); };
+  const auto mpm = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "mpm");
+    return run(arguments, path("out"), path("err")).value_or(-1);
+  };
+  // Minutes 0 to 59, of which 20 to 24 are not there.
+  std::string text = "time,u,\"d,1\",y,z,yhat,sp\n";
+  for (int k = 0; k < 60; ++k)
+    if (k < 20 || k >= 25)
+      text += std::to_string(60 * k) + "," + std::to_string(k) + ",1,2,3,4,5\n";
+  write_file(path("all.csv"), text);
+  REQUIRE(mpm({"convert", path("all.csv"), path("all.mcap"), "--config", path("small.yaml")}) == 0);
+
+  // From minute 10 until before 50, without 30 to 34: 40 minutes, less 5 and 5.
+  const std::vector<std::string> choice = {"--from", "600",       "--until",
+                                           "3000",   "--exclude", "1800/2100"};
+  const auto chosen = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), choice.begin(), choice.end());
+    REQUIRE(mpm(arguments) == 0);
+  };
+  for (const char* input : {"all.csv", "all.mcap"}) {
+    CAPTURE(input);
+    chosen({"convert", path(input), path("some.csv"), "--time-zone", "seconds"});
+    const std::vector<std::string> rows = lines_of(bench.text("some.csv"));
+    REQUIRE(rows.size() == 31);
+    CHECK(rows[1].rfind("600,", 0) == 0);
+    CHECK(rows[15].rfind("1740,", 0) == 0);  // minutes 10 to 19 and 25 to 29
+    CHECK(rows[16].rfind("2100,", 0) == 0);
+    CHECK(rows[30].rfind("2940,", 0) == 0);
+  }
+  chosen({"info", path("all.csv"), "--json"});
+  const auto csv = nlohmann::json::parse(bench.text("out"));
+  CHECK(csv["rows"]["count"] == 30);
+  CHECK(csv["gaps"]["count"] == 1);  // what is left out on purpose is none
+  CHECK(csv["gaps"]["missing"] == 5);
+  chosen({"info", path("all.mcap"), "--json"});
+  const auto mcap = nlohmann::json::parse(bench.text("out"));
+  CHECK(mcap["index"] == "intact");
+  CHECK(mcap["units"][0]["samples"][0]["gaps"]["count"] == 1);
+  CHECK(mcap["units"][0]["samples"][0]["gaps"]["missing"] == 5);
+
+  for (const char* input : {"all.csv", "all.mcap"}) {
+    CHECK(mpm({"convert", path(input), path("none.csv"), "--from", "5000"}) == 3);
+    CHECK_FALSE(std::filesystem::exists(path("none.csv")));
+    CHECK(bench.text("err").find("leave no row of it: it goes from 0 s to 3540 s") !=
+          std::string::npos);
+    CHECK(mpm({"info", path(input), "--from", "5000"}) == 3);
+    CHECK(bench.text("err").find("leave nothing of it") != std::string::npos);
+  }
+}
+
 TEST_CASE("what standard output does not take is a failure") {
   Bench bench;
   const auto path = [&](const char* name) { return bench.folder.file(name); };

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "config/load_unit.hpp"
 #include "daemon/bag/open_recording.hpp"
@@ -140,6 +142,43 @@ TEST_CASE("Every command that reads data takes --time-zone and --time-format") {
   CHECK(detect(bench, "o.csv", {said[0], said[1], "--time-format", "dd.mm.yyyy"}) == 3);
   CHECK(bench.text("err").find("--time-format: error: 'dd.mm.yyyy' does not tell") !=
         std::string::npos);
+}
+
+// The plant's exact answer at 1 s to an input that a controller moves every 10 s: for an input held
+// through a row, y(t + 1) = a y(t) + (1 - a) 2 u(t - 15), a = exp(-1 / 60).
+TEST_CASE("data faster than the sample time are averaged, and no dead time comes of it") {
+  Bench bench;
+  const double factor = std::exp(-1.0 / 60.0);
+  const int phase = GENERATE(0, 5);  // of the file's first row after a move of the controller
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  std::string text = "time,u,y\n";
+  double y = 0.0, drift = 0.0;
+  std::vector<double> u;
+  for (int t = 0; t < 30'000; ++t) {
+    const int interval = t / 10;
+    u.push_back(t % 10 == 0 ? (interval % 3 == 0 ? (random() % 2 == 0 ? 1.0 : -1.0) : u.back())
+                            : u.back());
+    drift = 0.99 * drift + 0.01 * normal(random);
+    if (t >= phase)
+      text += std::to_string(t) + ',' + std::to_string(u.back()) + ',' +
+              std::to_string(y + drift + 0.05 * normal(random)) + '\n';
+    y = factor * y + (1.0 - factor) * 2.0 * (t >= 15 ? u[static_cast<std::size_t>(t - 15)] : 0.0);
+  }
+  write_file(bench.folder.file("fast.csv"), text);
+  const auto verdict = [&](const std::string& dead_time, const std::string& gain) {
+    write_file(bench.folder.file("small.yaml"),
+               "unit: small\nsample_time: 10\nsignals: {mv: u, cv: y}\nmodel: {channels: [{cv: y, "
+               "mv: u, gain: " +
+                   gain + ", time_constants: [60], dead_time: " + dead_time + "}]}\n");
+    REQUIRE(detect(bench, "fast.csv", {"--json"}) == 0);
+    CHECK(bench.text("err").find("the rows, 1 s apart, are averaged to the unit's sample_time of "
+                                 "10 s") != std::string::npos);
+    return nlohmann::json::parse(bench.text("out"))["channels"][0]["verdict"].get<std::string>();
+  };
+  CHECK(verdict("15", "2") == "match");
+  CHECK(verdict("45", "2") == "mismatch");
+  CHECK(verdict("15", "3") == "mismatch");
 }
 
 }  // namespace

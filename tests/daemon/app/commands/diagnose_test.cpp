@@ -17,9 +17,10 @@ const std::string kSmall =
     "model: {channels: [{cv: y, mv: u, gain: 2, time_constants: [8], dead_time: 1}]}\n";
 
 /// Rows in which y answers u with `gain` instead of 2.
-std::string rows(int count, double gain, bool moving = true, double step_s = 1.0) {
+std::string rows(int count, double gain, bool moving = true, double step_s = 1.0,
+                 double first_y = 0.0) {
   std::string text = "time,u,y,sp\n";
-  double y = 0.0, last = 0.0;
+  double y = first_y, last = 0.0;
   unsigned state = 1;
   for (int k = 0; k < count; ++k) {
     state = state * 1664525U + 1013904223U;
@@ -185,6 +186,31 @@ TEST_CASE("several files are runs, and so is what a choice of time leaves") {
         nlohmann::json{stretch(50, 199), stretch(210, 299), stretch(400, 449)});
   CHECK(bench.diagnose(bench.small(), data, {"--from", "soon"}) == 3);
   CHECK(bench.diagnose(bench.small(), data, {"--from", "1000"}) == 3);
+}
+
+TEST_CASE("a run that begins elsewhere than the one before accuses nothing") {
+  const Bench bench;
+  std::string right = kSmall;  // the rows have no dead time
+  right.erase(right.find(", dead_time: 1"), std::string(", dead_time: 1").size());
+  write_file(bench.folder.file("right.yaml"), right);
+  // The second begins 6 above what its inputs hold and decays from there, three times what a move
+  // does; the third is at another level throughout.
+  write_file(bench.folder.file("high.csv"), rows(450, 2.0, true, 1.0, 6.0));
+  std::string level = "time,u,y,sp\n";
+  for (const std::string& line : lines_of(rows(450, 2.0))) {
+    const std::size_t u = line.find(','), y = line.find(',', u + 1);
+    if (u > 0 && line[0] != 't')
+      level += line.substr(0, y + 1) + std::to_string(std::stod(line.substr(y + 1)) + 3.0) + ",0\n";
+  }
+  write_file(bench.folder.file("level.csv"), level);
+  REQUIRE(bench.diagnose(
+              bench.folder.file("right.yaml"), bench.data(rows(450, 2.0)),
+              {"--data", bench.folder.file("high.csv"), bench.folder.file("level.csv")}) == 0);
+  const auto report = nlohmann::json::parse(read_file(bench.out + "/report.json"));
+  INFO(report["findings"].dump());
+  CHECK(report["used"].size() == 3);
+  CHECK(report["verdict"] != "mismatch");
+  CHECK(report["findings"].empty());
 }
 
 /// A run of shell3x3 in which a gain is wrong.
