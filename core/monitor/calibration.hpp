@@ -17,7 +17,7 @@ inline constexpr double kSeenDeviations = 5.8;
 /// Chosen.
 inline constexpr double kBlindGainError = 100.0;
 /// Where the excitation is poor, only evidence counts whose p-value is below the usual rate times
-/// this. Chosen: of 1122 healthy channels of loops made elsewhere that were not excited none was
+/// this. Chosen: of 1230 healthy channels of loops made elsewhere that were not excited none was
 /// below (tests/foreign/power.py --seeds 100003-100014 --model-error 0).
 inline constexpr double kConvincing = 0.1;
 }  // namespace visibility
