@@ -108,21 +108,13 @@ inline constexpr int kTailFitMost = 20000;
 /// be wrong is looked for with this much false doubt, which costs power only.
 namespace joint_errors {
 inline constexpr double kAdequatePValue = 0.05;
-/// An input that moves so little by itself that a gain error would have this s.d. were the other
-/// inputs' blocks free moves with them: that its error would show is not said, however well its
-/// shape could be told from theirs. Chosen.
-inline constexpr double kMovesWithOthers = 5.0;
-/// S.d. among usual errors count as this many times larger when it is asked whether an error would
-/// show: what they leave out is not counted. Chosen: with it next to nothing is vouched for while
-/// nothing but noise moves a loop (`./run study --only constant_setpoints`).
-inline constexpr double kCaution = 1.5;
 /// On fewer degrees of freedom per column the CV's own lags are too uncertain, and a large error of
 /// one channel leaks into those of others. Chosen.
 inline constexpr double kFreedomPerColumn = 6.0;
 /// A CV's own lags and its channels' errors are learnt by turns, while one takes off more than this
 /// many variances. Chosen.
 inline constexpr int kTurns = 4;
-inline constexpr double kWorthAnotherTurn = 0.5;
+inline constexpr double kWorthAnotherTurn = 1e-3;
 }  // namespace joint_errors
 
 /// The sizes of errors that are not small (`ErrorSizes`). Chosen: from these starts a gain, a time

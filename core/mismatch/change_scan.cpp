@@ -12,14 +12,11 @@ namespace {
 using calibration::change_scan::kMargin;
 using calibration::change_scan::kMoments;
 
-// Rows that a factor takes together: speed only.
-constexpr int kBatchRows = 32;
-
 }  // namespace
 
 ChangeScan::ChangeScan(const RegressionShape& shape)
     : shape_(shape),
-      batch_(shape.columns() + 1, kBatchRows),
+      feed_(shape.columns() + 1),
       whole_(shape.columns(), 1),
       lead_in_(shape.lead_in(), 1),
       one_input_(shape.lead_in() + shape.block(), 1),
@@ -126,7 +123,7 @@ int ChangeScan::fit_input(const Rows& rows, int input, int samples, bool strict,
     const double weight =
         strict ? rows.regression.row_weight(age) : rows.regression.lenient_weight(age);
     if (!(weight > 0.0)) continue;
-    double* row = next_row(factor);
+    double* row = feed_.next_row(factor);
     rows.history.fill_lead_in(age, row);
     if (input >= 0) {
       rows.history.fill_inputs(age, inputs_.data());
@@ -136,7 +133,7 @@ int ChangeScan::fit_input(const Rows& rows, int input, int samples, bool strict,
     for (int c = 0; c <= factor.columns(); ++c) row[c] *= weight;
     ++count;
   }
-  flush(factor);
+  feed_.flush(factor);
   return count;
 }
 
@@ -151,7 +148,7 @@ void ChangeScan::pass(const Rows& rows, bool newest_first, bool with_inputs,
   const auto store_at = [&](int age) {
     const auto found = std::find(moments_.begin(), moments_.end(), age);
     if (found == moments_.end()) return;
-    flush(factor);
+    feed_.flush(factor);
     store(factor, first, count, parts[static_cast<std::size_t>(found - moments_.begin())]);
   };
   for (int step = 0; step < span; ++step) {
@@ -159,7 +156,7 @@ void ChangeScan::pass(const Rows& rows, bool newest_first, bool with_inputs,
     if (newest_first) store_at(age);
     const double weight = rows.regression.lenient_weight(age);
     if (weight > 0.0) {
-      double* row = next_row(factor);
+      double* row = feed_.next_row(factor);
       if (with_inputs) rows.history.fill_inputs(age, row);
       rows.history.fill_lead_in(age, row + first);
       row[first + shape_.lead_in()] = rows.history.residual(rows.cv, age);
@@ -168,17 +165,7 @@ void ChangeScan::pass(const Rows& rows, bool newest_first, bool with_inputs,
     }
     if (!newest_first) store_at(age);
   }
-  flush(factor);
-}
-
-double* ChangeScan::next_row(GivensQr& factor) {
-  if (waiting_ == kBatchRows) flush(factor);
-  return batch_.row(waiting_++);
-}
-
-void ChangeScan::flush(GivensQr& factor) {
-  if (waiting_ > 0) factor.update_batch(batch_, waiting_, 1.0);
-  waiting_ = 0;
+  feed_.flush(factor);
 }
 
 void ChangeScan::store(const GivensQr& factor, int first, int rows, Part& part) const {
@@ -198,9 +185,9 @@ double ChangeScan::joined(const Part& a, const Part& b) {
   for (const Part* part : {&a, &b}) {
     const double* from = part->triangle.data();
     for (int i = 0; i < columns; ++i, from += columns + 1)
-      std::copy_n(from, columns + 1, next_row(lead_in_));
+      std::copy_n(from, columns + 1, feed_.next_row(lead_in_));
   }
-  flush(lead_in_);
+  feed_.flush(lead_in_);
   return a.square + b.square + lead_in_.residual_square(0);
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/mismatch/calibration.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
+#include "core/regression/row_feed.hpp"
 
 namespace mpm {
 
@@ -76,13 +77,8 @@ class ChangeScan {
   [[nodiscard]] InputFit best_input(const Rows& rows, int samples, bool strict);
   int fit_input(const Rows& rows, int input, int samples, bool strict, GivensQr& factor);
 
-  /// The next free row of the batch, and taking it; `flush` gives the factor all that wait.
-  [[nodiscard]] double* next_row(GivensQr& factor);
-  void flush(GivensQr& factor);
-
   RegressionShape shape_;
-  RowBatch batch_;
-  int waiting_ = 0;
+  RowFeed feed_;
   std::vector<int> moments_;  // ages
   double constant_ = 0.0;     // residual square of no change
   double per_square_ = 0.0;   // 1 / its residual variance

@@ -107,16 +107,6 @@ void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noi
     joint_error_ = channel.usual.col(e);
     joint_usual_.add(joint_error_);
   }
-  const double scale = signatures.gain == 0.0 ? evidence.reference_gain : 1.0;
-  const double information = scale * scale * channel.usual.col(0).squaredNorm();
-  const double deviation =
-      calibration::joint_errors::kCaution * std::sqrt(noise.variance / information);
-  if (deviation < evidence.excitation_index &&
-      evidence.excitation_index < calibration::joint_errors::kMovesWithOthers) {
-    evidence.excitation_index = deviation;
-    evidence.gain_error_ratio = scale * channel.usual.col(0).dot(channel.estimate) / information;
-    evidence.gain_error = {evidence.gain_error_ratio, deviation};
-  }
   test_usual_errors(joint_usual_, channel.estimate, noise, evidence);
   if (signatures.gain == 0.0) return;
   const double left = materiality_.fit(channel.estimate, channel.directions, noise, evidence);

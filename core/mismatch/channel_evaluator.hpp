@@ -43,7 +43,7 @@ class ChannelEvaluator {
   /// What is explained of a CV's residual beyond its own past, in squares.
   struct Explained {
     double inputs = 0.0;        ///< by all inputs' blocks
-    double usual_errors = 0.0;  ///< by usual errors of all channels; else as much
+    double usual_errors = 0.0;  ///< by usual errors of all channels alone
     double variance = 0.0;      ///< of the noise
   };
   /// Of the last `evaluate`.

@@ -45,8 +45,8 @@ void InputEstimates::read(int cv, const GivensQr& factor) {
 void InputEstimates::read_own_lags(int cv, const GivensQr& factor) {
   double least_share = 1.0;
   for (int c = 0; c < columns(); ++c) least_share = std::min(least_share, triangle_(c, c));
-  separable_ = least_share > calibration::rounding::kSeparableShare;
-  factor.solve(0, separable_ ? shape_.columns() : lead_in_, coefficients_);
+  const bool separable = least_share > calibration::rounding::kSeparableShare;
+  factor.solve(0, separable ? shape_.columns() : lead_in_, coefficients_);
   own_lags_at_ = 1 + cv * shape_.residual_order;
   residual_norm_ = factor.centred_norm(1 + cv * shape_.residual_order);
 }

@@ -59,8 +59,6 @@ class InputEstimates {
   /// told apart, otherwise of the one on the residual lags alone: a loop without excitation makes
   /// inputs a function of residuals.
   [[nodiscard]] const double* own_lags() const { return coefficients_.data() + own_lags_at_; }
-  /// Whether they are of the regression on everything.
-  [[nodiscard]] bool separable() const { return separable_; }
   /// Until the next `read`.
   void set_own_lags(const double* lags) {
     std::copy_n(lags, shape_.residual_order, coefficients_.data() + own_lags_at_);
@@ -90,7 +88,6 @@ class InputEstimates {
   Eigen::VectorXd estimate_;      // T z
   Eigen::VectorXd coefficients_;  // of the whole regression
   Eigen::Index own_lags_at_ = 0;  // in coefficients_
-  bool separable_ = false;
   double residual_norm_ = 0.0;
 };
 

@@ -8,8 +8,6 @@
 namespace mpm {
 namespace {
 
-// Rows that a factor takes together: speed only.
-constexpr int kBatchRows = 32;
 // By one sample: later, earlier.
 constexpr int kShifts = 2;
 
@@ -24,7 +22,7 @@ JointErrors::JointErrors(const RegressionShape& shape)
       sizes_(Eigen::VectorXd::Zero(shape.inputs * kUsualErrors)),
       lead_in_(Eigen::VectorXd::Zero(shape.lead_in())),
       own_lags_(Eigen::VectorXd::Zero(shape.residual_order)),
-      batch_(shape.inputs * (kUsualErrors + kShifts) + shape.block() + 1, kBatchRows),
+      feed_(shape.inputs * (kUsualErrors + kShifts) + shape.block() + 1),
       all_(shape.inputs * kUsualErrors, 1 + shape.inputs * kShifts),
       last_(shape.inputs * kUsualErrors, 1 + kShifts),
       freed_((shape.inputs - 1) * kUsualErrors + shape.block(), 1),
@@ -75,12 +73,12 @@ void JointErrors::fit(int cv, const std::vector<ChannelSignatures>& signatures,
   all_.clear();
   const int columns = all_.columns();
   for (Eigen::Index r = 0; r < moved_.rows(); ++r) {
-    double* row = next_row(all_);
+    double* row = feed_.next_row(all_);
     for (int c = 0; c < columns; ++c) row[c] = moved_(r, c);
     row[columns] = estimates.rotated()(r);
     for (int c = 0; c < all_.responses() - 1; ++c) row[columns + 1 + c] = shifts_(r, c);
   }
-  flush(all_);
+  feed_.flush(all_);
   int moving = 0;
   for (int i = 0; i < shape_.inputs; ++i) moving += estimates.moved(i) ? shape_.block() : 0;
   int rank = 0;
@@ -118,7 +116,7 @@ const JointErrors::Channel& JointErrors::channel(int input) {
   const int columns = all_.columns();
   const int own = input * kUsualErrors;
   for (int r = 0; r < columns; ++r) {
-    double* row = next_row(last_);
+    double* row = feed_.next_row(last_);
     std::fill(row, row + columns, 0.0);
     for (int c = r; c < columns; ++c) {
       const bool mine = c >= own && c < own + kUsualErrors;
@@ -128,7 +126,7 @@ const JointErrors::Channel& JointErrors::channel(int input) {
     row[columns] = all_.z(r, 0);
     for (int s = 0; s < kShifts; ++s) row[columns + 1 + s] = all_.z(r, 1 + input * kShifts + s);
   }
-  flush(last_);
+  feed_.flush(last_);
   const int first = columns - kUsualErrors;
   for (int r = 0; r < kUsualErrors; ++r) {
     channel_.estimate(r) = last_.z(first + r, 0);
@@ -147,23 +145,13 @@ JointErrors::Freed JointErrors::freed(int input, const InputEstimates& estimates
   const int others = (shape_.inputs - 1) * kUsualErrors;
   const int own = input * kUsualErrors;
   for (Eigen::Index r = 0; r < moved_.rows(); ++r) {
-    double* row = next_row(freed_);
+    double* row = feed_.next_row(freed_);
     for (int c = 0; c < others; ++c) row[c] = moved_(r, c < own ? c : c + kUsualErrors);
     estimates.triangle_row(static_cast<int>(r), input, row + others);
     row[others + shape_.block()] = estimates.rotated()(r);
   }
-  flush(freed_);
+  feed_.flush(freed_);
   return {freed_, others};
-}
-
-double* JointErrors::next_row(GivensQr& factor) {
-  if (waiting_ == kBatchRows) flush(factor);
-  return batch_.row(waiting_++);
-}
-
-void JointErrors::flush(GivensQr& factor) {
-  if (waiting_ > 0) factor.update_batch(batch_, waiting_, 1.0);
-  waiting_ = 0;
 }
 
 }  // namespace mpm

@@ -8,7 +8,7 @@
 #include "core/mismatch/estimate_noise.hpp"
 #include "core/mismatch/input_estimates.hpp"
 #include "core/mismatch/signature.hpp"
-#include "core/regression/givens_qr.hpp"
+#include "core/regression/row_feed.hpp"
 
 namespace mpm {
 
@@ -59,8 +59,6 @@ class JointErrors {
   void move(int cv, const InputEstimates& estimates,
             const std::vector<ChannelSignatures>& signatures);
   void learn_own_lags(const GivensQr& factor);
-  [[nodiscard]] double* next_row(GivensQr& factor);
-  void flush(GivensQr& factor);
 
   RegressionShape shape_;
   bool adequate_ = false;
@@ -71,8 +69,7 @@ class JointErrors {
   Eigen::VectorXd sizes_;    // of the errors of all inputs
   Eigen::VectorXd lead_in_;  // coefficients
   Eigen::VectorXd own_lags_;
-  RowBatch batch_;
-  int waiting_ = 0;
+  RowFeed feed_;
   GivensQr all_;    // [R_t X | z, R_t s]
   GivensQr last_;   // [R_t X, one input's last | z, R_t s of that input]
   GivensQr freed_;  // [R_t X of all but one | R_t of its block | z]

@@ -43,6 +43,7 @@ void MismatchDetector::evaluate(int cv, int memory) {
 }
 
 Rival MismatchDetector::rival(int cv, const FollowedSignal& followed) const {
+  if (followed.signal < 0) return {};
   const ChannelEvaluator::Explained& by = explained_[static_cast<std::size_t>(cv)];
   const double margin = calibration::confounding::kMargin * by.variance;
   // Without what so many coefficients explain by chance.

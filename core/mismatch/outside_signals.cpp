@@ -6,12 +6,6 @@
 #include <utility>
 
 namespace mpm {
-namespace {
-
-// Rows that a factor takes together: speed only.
-constexpr int kBatchRows = 32;
-
-}  // namespace
 
 OutsideSignals::OutsideSignals(const RegressionShape& shape, int signals, std::vector<double> poles,
                                int depth)
@@ -22,7 +16,7 @@ OutsideSignals::OutsideSignals(const RegressionShape& shape, int signals, std::v
       origin_(static_cast<std::size_t>(signals), std::numeric_limits<double>::quiet_NaN()),
       last_(static_cast<std::size_t>(signals), 0.0),
       unknown_(Eigen::VectorXd::Constant(signals, std::numeric_limits<double>::quiet_NaN())),
-      batch_(shape.lead_in() + block() + 1, kBatchRows),
+      feed_(shape.lead_in() + block() + 1),
       factor_(shape.lead_in() + block(), 1) {
   for (int w = 0; w < signals * block(); ++w) windows_.emplace_back(depth);
 }
@@ -50,7 +44,6 @@ void OutsideSignals::skip(std::int64_t missing) {
 FollowedSignal OutsideSignals::followed(int cv, const RegressionHistory& history,
                                         const ResidualRegression& regression) {
   FollowedSignal best;
-  best.freedom = block();
   for (int i = 0; i < signals_; ++i) {
     const double explained = explained_by(i, cv, history, regression);
     if (explained <= best.explained) continue;
@@ -64,23 +57,17 @@ double OutsideSignals::explained_by(int signal, int cv, const RegressionHistory&
                                     const ResidualRegression& regression) {
   factor_.clear();
   const double lambda = regression.memory(0).length.lambda;
-  int waiting = 0;
-  const auto flush = [&] {
-    if (waiting > 0) factor_.update_batch(batch_, waiting, lambda);
-    waiting = 0;
-  };
   for (int age = std::min(regression.span(), depth_) - 1; age >= 0; --age) {
     const double weight = regression.row_weight(age);
     if (!(weight > 0.0)) continue;
-    double* row = batch_.row(waiting);
+    double* row = feed_.next_row(factor_, lambda);
     history.fill_lead_in(age, row);
     for (int w = 0; w < block(); ++w)
       row[lead_in_ + w] = windows_[static_cast<std::size_t>(signal * block() + w)].window()[age];
     row[factor_.columns()] = history.residual(cv, age);
     for (int c = 0; c <= factor_.columns(); ++c) row[c] *= weight;
-    if (++waiting == kBatchRows) flush();
   }
-  flush();
+  feed_.flush(factor_, lambda);
   double explained = 0.0;
   for (int c = lead_in_; c < factor_.columns(); ++c) explained += std::pow(factor_.z(c, 0), 2);
   return explained;

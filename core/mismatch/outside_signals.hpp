@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/mismatch/residual_regression.hpp"
-#include "core/regression/givens_qr.hpp"
+#include "core/regression/row_feed.hpp"
 #include "core/signal/lag_window.hpp"
 
 namespace mpm {
@@ -14,7 +14,6 @@ namespace mpm {
 struct FollowedSignal {
   int signal = -1;         ///< -1: none
   double explained = 0.0;  ///< of the weighted residual square, beyond its own past
-  int freedom = 0;         ///< coefficients that this took
 };
 
 /// Signals that are measured but no inputs of the model (set-points, auxiliary ones), and how well
@@ -26,7 +25,6 @@ class OutsideSignals {
   /// `depth`: samples remembered.
   OutsideSignals(const RegressionShape& shape, int signals, std::vector<double> poles, int depth);
 
-  [[nodiscard]] int signals() const { return signals_; }
   /// Takes the signals' values at k, NaN where unknown: unchanged.
   void push(const Eigen::Ref<const Eigen::VectorXd>& values);
   void skip(std::int64_t missing);
@@ -47,7 +45,7 @@ class OutsideSignals {
   std::vector<double> origin_, last_;
   std::vector<LagWindow> windows_;  // signal-major: value, means
   Eigen::VectorXd unknown_;         // all NaN
-  RowBatch batch_;
+  RowFeed feed_;
   GivensQr factor_;  // [lead-in | signal]
 };
 

@@ -11,14 +11,15 @@ namespace mpm::calibration {
 namespace visibility {
 /// S.d. of the gain estimate that an error must be worth to be seen: root of the noncentrality at
 /// which a chi-square test of 6 degrees of freedom at level 0.01 / 9 has 94 % power. Derived
-/// (tests/core/calibration_test.cpp; 95 % would be 5.88).
+/// (tests/core/identify/diagnosis/calibration_test.cpp; 95 % would be 5.88).
 inline constexpr double kSeenDeviations = 5.8;
 /// Relative gain error beyond which nothing is said: where even that would not show, no data speak.
 /// Chosen.
 inline constexpr double kBlindGainError = 100.0;
 /// Where the excitation is poor, only evidence counts whose p-value is below the usual rate times
-/// this. Chosen: of 1230 healthy channels of loops made elsewhere that were not excited none was
-/// below (tests/foreign/power.py --seeds 100003-100014 --model-error 0).
+/// this. Chosen: of some 1200 healthy channels of loops made elsewhere that were not excited none
+/// was below (docs/validation.md, "Beside the best possible test"); where a disturbance that nobody
+/// measures moves with an input, excited and other channels are accused alike.
 inline constexpr double kConvincing = 0.1;
 }  // namespace visibility
 
@@ -138,7 +139,7 @@ namespace simulation {
 inline constexpr double kSettlingTimeConstants = 5.0;
 /// At its start it need not be forgotten: what it leaves behind are decays, which the regression
 /// takes out. Slowest time constants after which decays with these shares of the slowest time
-/// constant are all that is left. Chosen (tests/sim/wrong_start_test.cpp).
+/// constant are all that is left. Chosen (tests/core/monitor/wrong_start_test.cpp).
 inline constexpr double kStartingTimeConstants = 0.7;
 inline constexpr std::array kStartPoles = {1.0, 0.6, 0.3};
 /// Samples behind its dead time in which a channel that acts at all has moved. Chosen.

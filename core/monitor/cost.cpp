@@ -29,7 +29,9 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   MonitorCost cost;
   cost.columns = 1.0 + cvs * derived.residual_order + inputs * block;
   cost.remembered = derived.remembered;
-  const double history = kTwice * cost.remembered * (inputs * (1.0 + tails) + kPerCv * cvs);
+  const auto means = static_cast<double>(derived.outside_poles.size());  // of set-points
+  const double history =
+      kTwice * cost.remembered * (inputs * (1.0 + tails) + (kPerCv + 1.0 + means) * cvs);
   const double factors = cvs * memories * cost.columns * cost.columns;
   const double evaluation = std::pow(inputs * block, 2);
   const double own = inputs * (derived.controlling_lags + 1.0);  // of the reported correlations

@@ -26,9 +26,10 @@ struct DerivedSettings {
   int fir_lags = 0;
   int residual_order = 0;
   std::vector<double> tail_poles;
-  std::vector<double> start_poles;  ///< of what a simulation's wrong start leaves behind
-  int starting_samples = 0;         ///< until these poles are all that is left of it
-  int settling_samples = 0;         ///< until a simulation has forgotten where it started
+  std::vector<double> outside_poles;  ///< of the means of signals that are no inputs
+  std::vector<double> start_poles;    ///< of what a simulation's wrong start leaves behind
+  int starting_samples = 0;           ///< until these poles are all that is left of it
+  int settling_samples = 0;           ///< until a simulation has forgotten where it started
   Condition::Limits alarm;
 };
 

@@ -91,15 +91,6 @@ int answering_samples(const LinearModel& model, const DerivedSettings& derived) 
                                    dead_time + calibration::simulation::kBeginsToAnswer));
 }
 
-// Of means over the slowest time constant and ever shorter times.
-std::vector<double> outside_poles(const DerivedSettings& derived) {
-  std::vector<double> poles;
-  for (double time = -1.0 / std::log(derived.tail_poles.front()); time > 1.0;
-       time /= calibration::confounding::kPoleRatio)
-    poles.push_back(std::exp(-1.0 / time));
-  return poles;
-}
-
 // Some CV, from the first sample on and for good.
 bool simulates(const std::vector<bool>& may_predict) {
   return std::find(may_predict.begin(), may_predict.end(), false) != may_predict.end();
@@ -127,7 +118,7 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
                 simulates(may_predict) ? settings.start_poles : std::vector<double>{}},
                settings.memories, settings.remembered, settings.evaluation_stride, model,
                settings.materiality),
-      outside(detector.shape(), counts.cv + counts.aux, outside_poles(settings),
+      outside(detector.shape(), counts.cv + counts.aux, settings.outside_poles,
               settings.remembered),
       outside_values(Eigen::VectorXd::Zero(counts.cv + counts.aux)),
       scan(detector.shape()),
@@ -143,7 +134,11 @@ void Monitor::State::begin_anew() {
   State fresh(model, counts, expected, settings);
   fresh.screen = std::move(screen);
   fresh.cvs = std::move(cvs);
-  for (Cv& cv : fresh.cvs) cv.judged = false;
+  for (Cv& cv : fresh.cvs) {
+    cv.judged = false;
+    cv.settled = cv.followed_next = 0;
+    cv.rival = {};
+  }
   fresh.status = std::move(status);
   fresh.transitions = std::move(transitions);
   fresh.counters = counters;

@@ -9,7 +9,8 @@ loop.py makes the recordings, and says of each error how much the best possible 
 go by (noncentrality, all that errors of the other channels could do taken out). Each plant runs
 with each effect (default: none, gain, dead_time, time_constant) at each seed. Seeds below 1000 are
 for scores, from 100001 on for tuning. --model-error 0: channels that are not wrong are exactly
-what the model says, so that every one called a mismatch is an error of the test. Tables, shares with Wilson's 95 % interval (1927):
+what the model says, so that every one called a mismatch is an error of the test. Tables, shares
+with Wilson's 95 % interval (1927):
 * per noncentrality: found = a channel that is wrong called a mismatch; undetermined = none found,
   and the wrong channel undetermined; missed = it is called a match.
 * per plant: healthy channels called a mismatch, undetermined, and their alarms.
@@ -39,7 +40,8 @@ def one(mpm, regime, plant, effect, seed, samples, model_error, keep):
         code, output, seconds = run(mpm, ["detect", "--config", folder / "unit.yaml", "--data",
                                           folder / "data.csv", "--json"])
     case = {"regime": regime, "plant": plant, "effect": effect, "seed": seed,
-            "noncentrality": truth["noncentrality"], "seconds": seconds, "failed": code not in (0, 1)}
+            "noncentrality": truth["noncentrality"], "seconds": seconds,
+            "failed": code not in (0, 1)}
     if case["failed"]:
         return case
     answer = json.loads(output)

@@ -182,7 +182,7 @@ Study short_study() {
   add("shell3x3", "s3_delay", 20, kShort, wrong(kShort, 0.98));
   add("shell3x3", "s4_gain40", 20, kShort, wrong(kShort, 0.98));
   add("shell3x3", "constant_setpoints", 20, kSamples,
-      {{"healthy_match", kSamples, Side::kAtMost, 0.01},
+      {{"healthy_match", kSamples, Side::kAtMost, 1e-4},
        {"healthy_mismatch", kSamples, Side::kAtMost, 1e-4},
        {"false_alarm_runs", 0, Side::kAtMost, 1e-4}});
   study.tables = {

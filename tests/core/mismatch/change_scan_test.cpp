@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
 namespace mpm {
@@ -12,15 +13,9 @@ namespace {
 // samples.
 MismatchDetector run(std::uint64_t seed, int samples, int from, int until, double size,
                      double noise_ratio = 1.0) {
-  ModelSpec spec;
-  spec.input_count = 2;
-  spec.cv_count = 1;
-  spec.input_blocks.resize(2);
-  spec.output_blocks.resize(1);
-  spec.input_origin = Eigen::VectorXd::Zero(2);
-  spec.output_origin = Eigen::VectorXd::Zero(1);
-  spec.channels = {{0, 0, TransferFunction{1.0, {15.0}, 0, 1, false}},
-                   {0, 1, TransferFunction{1.0, {15.0}, 0, 1, false}}};
+  const ModelSpec spec = test::channel_model(2, 1,
+                                             {{0, 0, TransferFunction{1.0, {15.0}, 0, 1, false}},
+                                              {0, 1, TransferFunction{1.0, {15.0}, 0, 1, false}}});
   const LinearModel model(spec);
   MismatchDetector detector({2, 1, 12, 4, {std::exp(-1.0 / 15.0)}}, {{0.9995, 0}}, 3000, 10, model);
   LinearModel hidden(spec);

@@ -8,6 +8,7 @@
 
 #include "core/mismatch/mismatch_detector.hpp"
 #include "tests/allocation_counter.hpp"
+#include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
 namespace mpm {
@@ -16,20 +17,10 @@ namespace {
 // Two inputs that mostly move as one to one CV; `error`: plant minus model, per input.
 struct Loop {
   static constexpr int kSamples = 1500;
-  ModelSpec spec;
+  ModelSpec spec = test::channel_model(2, 1,
+                                       {{0, 0, TransferFunction{2.0, {20.0}, 0, 4, false}},
+                                        {0, 1, TransferFunction{1.0, {8.0}, 0, 2, false}}});
   RegressionShape shape{2, 1, 12, 2, {std::exp(-1.0 / 20.0)}};
-
-  Loop() {
-    spec.sample_time_s = 1.0;
-    spec.input_count = 2;
-    spec.cv_count = 1;
-    spec.input_blocks.resize(2);
-    spec.output_blocks.resize(1);
-    spec.input_origin = Eigen::VectorXd::Zero(2);
-    spec.output_origin = Eigen::VectorXd::Zero(1);
-    spec.channels = {{0, 0, TransferFunction{2.0, {20.0}, 0, 4, false}},
-                     {0, 1, TransferFunction{1.0, {8.0}, 0, 2, false}}};
-  }
 
   [[nodiscard]] ChannelEvidence evidence(const ModelSpec& error, int input,
                                          std::uint64_t seed) const {

@@ -2,10 +2,12 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/statistics/f_distribution.hpp"
 #include "tests/allocation_counter.hpp"
+#include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 #include "tests/core/oracle.hpp"
 
@@ -13,18 +15,11 @@ namespace mpm {
 namespace {
 
 ModelSpec first_order(int inputs, int cvs, double time_constant_s) {
-  ModelSpec spec;
-  spec.input_count = inputs;
-  spec.cv_count = cvs;
-  spec.input_blocks.resize(static_cast<std::size_t>(inputs));
-  spec.output_blocks.resize(static_cast<std::size_t>(cvs));
-  spec.input_origin = Eigen::VectorXd::Zero(inputs);
-  spec.output_origin = Eigen::VectorXd::Zero(cvs);
+  std::vector<ChannelSpec> channels;
   for (int j = 0; j < cvs; ++j)
     for (int i = 0; i < inputs; ++i)
-      spec.channels.push_back(
-          {j, i, TransferFunction{1.0 + i + j, {time_constant_s}, 0, 1, false}});
-  return spec;
+      channels.push_back({j, i, TransferFunction{1.0 + i + j, {time_constant_s}, 0, 1, false}});
+  return test::channel_model(inputs, cvs, std::move(channels));
 }
 
 void evaluate_all(MismatchDetector& detector) {

@@ -6,6 +6,7 @@
 
 #include "core/mismatch/mismatch_detector.hpp"
 #include "tests/allocation_counter.hpp"
+#include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
 namespace mpm {
@@ -22,20 +23,9 @@ struct Loop {
   OutsideSignals outside;
 
   Loop()
-      : spec(first_order()),
+      : spec(test::channel_model(1, 1, {{0, 0, TransferFunction{2.0, {20.0}, 0, 2, false}}})),
         detector(shape, {{0.999, 0}}, 1500, 10, LinearModel(spec)),
         outside(shape, 2, {std::exp(-1.0 / 20.0), std::exp(-1.0 / 7.0)}, 1500) {}
-
-  static ModelSpec first_order() {
-    ModelSpec spec;
-    spec.sample_time_s = 1.0;
-    spec.input_count = spec.cv_count = 1;
-    spec.input_blocks.resize(1);
-    spec.output_blocks.resize(1);
-    spec.input_origin = spec.output_origin = Eigen::VectorXd::Zero(1);
-    spec.channels = {{0, 0, TransferFunction{2.0, {20.0}, 0, 2, false}}};
-    return spec;
-  }
 
   // `of_input`: gain error, relative; `of_signal`: what a lag of 10 samples of signal 1 adds.
   Rival run(double of_input, double of_signal) {

@@ -5,19 +5,15 @@
 
 #include "core/monitor/unit_residuals.hpp"
 
+#include "tests/core/channel_model.hpp"
+
 namespace mpm {
 namespace {
 
 constexpr int kSettling = 20;
 
 ModelSpec first_order() {
-  ModelSpec spec;
-  spec.input_count = spec.cv_count = 1;
-  spec.input_blocks.resize(1);
-  spec.output_blocks.resize(1);
-  spec.input_origin = spec.output_origin = Eigen::VectorXd::Zero(1);
-  spec.channels = {{0, 0, TransferFunction{2.0, {4.0}, 0, 1, false}}};
-  return spec;
+  return test::channel_model(1, 1, {{0, 0, TransferFunction{2.0, {4.0}, 0, 1, false}}});
 }
 
 // One input, one CV; the frames go through a screen as in the monitor.
