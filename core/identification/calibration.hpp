@@ -6,7 +6,10 @@
 /// where nothing else is said; what they give together is scored by tests/identify_score.
 namespace mpm {
 
-inline constexpr int kFewestRows = 30;  ///< fewer tell nothing
+inline constexpr int kFewestRows = 30;            ///< fewer tell nothing
+inline constexpr double kStill = 1e-9;            ///< of its level: rounding, not movement
+inline constexpr double kNumbersOfChannel = 3.0;  ///< gain, time constant, dead time
+inline constexpr double kNotZero = 1e-300;        ///< to divide by
 
 // The regression of high order (high_order.hpp).
 inline constexpr int kDenseLags = 12;          ///< single lags of an input before the blocks
@@ -37,16 +40,21 @@ inline constexpr double kSetConverged = 0.05;  ///< variances
 // Prediction errors (prediction_error.hpp).
 inline constexpr int kNoiseOrder = 10;
 inline constexpr double kRowsPerNoiseLag = 20.0;
-inline constexpr double kDeadTimeStep = 0.25;  ///< samples: of a finite difference
-inline constexpr double kLogStep = 0.01;       ///< likewise, of the log of a time constant
-inline constexpr double kConverged = 0.01;     ///< fall of -2 ln likelihood
-inline constexpr int kMostSteps = 25;          ///< of Gauss-Newton
-inline constexpr int kMostCuts = 5;            ///< of a step, each to a third
-inline constexpr double kFastest = 0.05;       ///< samples: of a time constant
-inline constexpr double kStartState = 3.0;     ///< s.d. of the CV: of a first state
-inline constexpr int kMostDecays = 3;          ///< time constants of a first state
-inline constexpr double kOtherTime = 1.3;      ///< ratio of two that differ
-inline constexpr double kNoWhitening = 1e-9;   ///< bound of an autoregression that does nothing
+inline constexpr double kDeadTimeStep = 0.25;    ///< samples: of a finite difference
+inline constexpr double kLogStep = 0.01;         ///< likewise, of the log of a time constant
+inline constexpr double kConverged = 0.01;       ///< fall of -2 ln likelihood
+inline constexpr int kMostSteps = 25;            ///< of Gauss-Newton
+inline constexpr int kMostCuts = 5;              ///< of a step
+inline constexpr double kCut = 3.0;              ///< each by so much
+inline constexpr double kDamping = 1e-6;         ///< to the size of a column
+inline constexpr double kLeastVariance = 1e-24;  ///< of the CV's
+inline constexpr double kFreePrior = 1e-9;       ///< of a level or a drift: none
+inline constexpr double kNoLimit = 1e6;          ///< samples
+inline constexpr double kFastest = 0.05;         ///< samples: of a time constant
+inline constexpr double kStartState = 3.0;       ///< s.d. of the CV: of a first state
+inline constexpr int kMostDecays = 3;            ///< time constants of a first state
+inline constexpr double kOtherTime = 1.3;        ///< ratio of two that differ
+inline constexpr double kNoWhitening = 1e-9;     ///< bound of an autoregression that does nothing
 inline constexpr double kMostAutocorrelation = 0.98;
 inline constexpr double kStepOfTimes = 1.5;     ///< most that a step changes the log of a time
 inline constexpr double kStepOfDeadTime = 4.0;  ///< samples, likewise
@@ -81,6 +89,7 @@ inline constexpr double kUsualTimeShare = 0.1;          ///< of the last lag: a 
 inline constexpr double kLeastGainOfPrediction = 0.01;  ///< of the unseen innovations' variance
 inline constexpr int kStepPoints = 60;                  ///< of a step response that is drawn
 inline constexpr double kStepTimes = 5.0;               ///< time constants that it lasts
+inline constexpr double kLeastValue = 1e-12;            ///< of a number that is changed by a share
 inline constexpr int kWhitenessLags = 20;
 inline constexpr int kLongestTestedLag = 200;  ///< samples: of an input against innovations
 
@@ -91,6 +100,7 @@ inline constexpr double kMoreThanBefore = 3.0;     ///< times the s.d. that did 
 inline constexpr double kSettlingTimes = 5.0;      ///< time constants
 inline constexpr double kSwitchShare = 1.0 / 3.0;  ///< of the settling time: mean time of a level
 inline constexpr double kFewestSettlings = 6.0;    ///< that a test lasts
+inline constexpr double kStepsOfTest = 4.0;        ///< up, down, up, back
 inline constexpr double kStepSettlings = 4.0;      ///< as long as so many, steps will do
 inline constexpr double kWantedSd = 5.0;           ///< an effect that matters, in its own s.d.
 inline constexpr double kLeastReturn = 0.02;       ///< of the noise to its level, per sample

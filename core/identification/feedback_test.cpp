@@ -31,7 +31,7 @@ double feedback_p_value(const IdentificationData& data, int first_lag) {
       system.row(r).segment(own + (l - first_lag) * cvs, cvs) = data.cvs.row(k - l);
     system.row(r).tail(inputs) = data.inputs.row(k);
   }
-  const VectorXd sizes = system.colwise().norm().cwiseMax(1e-300);
+  const VectorXd sizes = system.colwise().norm().cwiseMax(kNotZero);
   system *= sizes.cwiseInverse().asDiagonal();
   const Eigen::HouseholderQR<MatrixXd> qr(system);
   const Index columns = own + asked;

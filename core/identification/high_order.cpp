@@ -110,7 +110,7 @@ HighOrderModel high_order_model(const IdentificationData& data, int cv, int past
   const double left = triangle(levels + columns, levels + columns);
   model.rows = static_cast<double>(count);
   model.variance = left * left / static_cast<double>(count - columns - levels);
-  const VectorXd sizes = model.factor.colwise().norm().cwiseMax(1e-300);
+  const VectorXd sizes = model.factor.colwise().norm().cwiseMax(kNotZero);
   const MatrixXd scaled = model.factor * sizes.cwiseInverse().asDiagonal();
   Eigen::ColPivHouseholderQR<MatrixXd> solver(scaled);
   solver.setThreshold(kDependent);

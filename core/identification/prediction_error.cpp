@@ -27,7 +27,7 @@ class CvFitting {
         noise_(noise.model),
         inflation_(noise.inflation),
         known_(data.known.col(cv)) {
-    spread_ = std::max(1e-300, spread_of(data.cvs.col(cv), known_));
+    spread_ = std::max(kNotZero, spread_of(data.cvs.col(cv), known_));
     weights_ = known_;
     for (const auto& [first, count] : data.runs) {
       Index since = 0;
@@ -76,7 +76,7 @@ class CvFitting {
       State next;
       double size = 1.0;
       bool better = false;
-      for (int cut = 0; cut <= kMostCuts && !better; ++cut, size /= 3.0) {
+      for (int cut = 0; cut <= kMostCuts && !better; ++cut, size /= kCut) {
         next = at(moved(state.channels, move.free, size * move.direction, longest), &state.noise);
         better = next.cost < state.cost;
       }
@@ -160,7 +160,8 @@ class CvFitting {
       state.noise = fit_whitening(state.residual, weights_, noise_);
       state.noise.borders = data_.borders;
       state.innovations = state.noise.apply(state.residual).cwiseProduct(weights_);
-      state.variance = std::max(state.innovations.squaredNorm() / rows_, 1e-24 * spread_ * spread_);
+      state.variance =
+          std::max(state.innovations.squaredNorm() / rows_, kLeastVariance * spread_ * spread_);
     }
     state.cost = rows_ / inflation_ * std::log(state.variance);
     return state;
@@ -191,7 +192,7 @@ class CvFitting {
     const double sd = state.variance > 0.0 ? std::sqrt(state.variance) : 1.0;
     for (Index c = fixed; c < columns; ++c)
       prior(c, c) = std::min(1.0, sd / (kStartState * spread_));
-    for (Index c = 0; c < fixed; ++c) prior(c, c) = 1e-9;
+    for (Index c = 0; c < fixed; ++c) prior(c, c) = kFreePrior;
     return prior;
   }
 
@@ -219,11 +220,11 @@ class CvFitting {
     double step = number.which == ShapeNumber::kDeadTime ? kDeadTimeStep : kLogStep;
     if (number.which == ShapeNumber::kLead) step *= std::max(1.0, shape.time_constant);
     const double value = number_of(shape, number.which);
-    set_number(other, number.which, value + step, 1e6);
+    set_number(other, number.which, value + step, kNoLimit);
     if (number.which != ShapeNumber::kDeadTime)
       return (response(other, data_.inputs.col(shape.input), data_.runs) - now) / step;
     ChannelShape earlier = shape;  // the slope changes at whole samples: the mean of both sides
-    set_number(earlier, number.which, value - step, 1e6);
+    set_number(earlier, number.which, value - step, kNoLimit);
     return (response(other, data_.inputs.col(shape.input), data_.runs) -
             response(earlier, data_.inputs.col(shape.input), data_.runs)) /
            (other.dead_time - earlier.dead_time);
@@ -268,12 +269,12 @@ class CvFitting {
     step.slopes /= sd;
     if (count == 0) return step;
     stacked /= sd;
-    const VectorXd sizes = stacked.leftCols(count).colwise().norm().cwiseMax(1e-300);
+    const VectorXd sizes = stacked.leftCols(count).colwise().norm().cwiseMax(kNotZero);
     // A little damping keeps directions that the data do not know where they are.
     MatrixXd system(stacked.rows() + count, count);
     system.topRows(stacked.rows()) = stacked.leftCols(count) * sizes.cwiseInverse().asDiagonal();
     system.bottomRows(count).setZero();
-    system.bottomRows(count).diagonal().setConstant(1e-6);
+    system.bottomRows(count).diagonal().setConstant(kDamping);
     VectorXd right = VectorXd::Zero(system.rows());
     right.head(stacked.rows()) = stacked.col(count);
     const Eigen::HouseholderQR<MatrixXd> qr(system);

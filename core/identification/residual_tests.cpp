@@ -42,7 +42,7 @@ double past_input_p_value(const IdentificationData& data, const PredictionErrorF
   for (Index b = 0; b < added; ++b)
     system.col(1 + known + b) = fit.noise.apply(sums.col(b)).cwiseProduct(fit.weights);
   system.rightCols(1) = fit.innovations;
-  const VectorXd sizes = system.colwise().norm().cwiseMax(1e-300);
+  const VectorXd sizes = system.colwise().norm().cwiseMax(kNotZero);
   system *= sizes.cwiseInverse().asDiagonal();
   const Eigen::HouseholderQR<MatrixXd> qr(system);
   const VectorXd rotated = qr.matrixQR().col(system.cols() - 1).head(system.cols());

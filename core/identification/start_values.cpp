@@ -174,7 +174,7 @@ StartSearch::Set StartSearch::fitted(std::vector<ChannelShape> channels) const {
       set_number(other, which, number_of(other, which) + by, 2.0 * longest);
       slopes.col(n) = other.gain * (column(other) - now) / by;
     }
-    const VectorXd sizes = slopes.colwise().norm().cwiseMax(1e-300);
+    const VectorXd sizes = slopes.colwise().norm().cwiseMax(kNotZero);
     MatrixXd system = MatrixXd::Zero(left.size() + count, count);
     system.topRows(left.size()) = slopes * sizes.cwiseInverse().asDiagonal();
     system.bottomRows(count).diagonal().setConstant(kSetDamping);
@@ -183,7 +183,7 @@ StartSearch::Set StartSearch::fitted(std::vector<ChannelShape> channels) const {
     const VectorXd move = Eigen::HouseholderQR<MatrixXd>(system).solve(target).cwiseQuotient(sizes);
     const double before = set.left;
     double size = 1.0;
-    for (int cut = 0; cut <= kMostCuts; ++cut, size /= 3.0) {
+    for (int cut = 0; cut <= kMostCuts; ++cut, size /= kCut) {
       std::vector<ChannelShape> next = set.channels;
       for (Index n = 0; n < count; ++n) {
         const auto& [c, which] = numbers[static_cast<std::size_t>(n)];
@@ -206,7 +206,7 @@ StartSearch::Set StartSearch::fitted(std::vector<ChannelShape> channels) const {
 
 double StartSearch::bic(const Set& set) const {
   return set.left / model_.variance +
-         3.0 * static_cast<double>(set.channels.size()) * std::log(model_.rows);
+         kNumbersOfChannel * static_cast<double>(set.channels.size()) * std::log(model_.rows);
 }
 
 std::vector<bool> StartSearch::inputs_of(const Set& set) const {

@@ -87,7 +87,7 @@ std::vector<PlannedTest> test_plan(const Identification& identification, const T
     if (wanted_s <= kStepSettlings * test.settling_s) {
       test.signal = TestSignal::kSteps;
       test.hold_s = test.settling_s;
-      test.duration_s = 4.0 * test.settling_s;  // up, down, up, back
+      test.duration_s = kStepsOfTest * test.settling_s;
     } else {
       test.signal = TestSignal::kBinary;
       test.hold_s = kSwitchShare * test.settling_s;

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <set>
 
 #include "config/finding.hpp"
 #include "core/text/printable.hpp"
+#include "daemon/files/csv/csv_line.hpp"
 #include "daemon/history/digest_json.hpp"
 #include "daemon/history/journal_files.hpp"
 
@@ -23,13 +23,6 @@ constexpr std::string_view kChannel = R"({"record":"channel")", kHealth = R"({"r
 [[noreturn]] void fail(const std::string& path, const std::string& message, int line = 0,
                        int column = 0) {
   throw config::InputError({path, line, column, config::Severity::kError, "", message});
-}
-
-std::ifstream open_text(const std::string& path) {
-  if (fs::is_directory(path)) fail(path, "is a folder");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(path, "cannot be opened");
-  return file;
 }
 
 Json parse(const std::string& path, int line, const std::string& text) {
@@ -60,11 +53,9 @@ UnitHead head_at(const std::string& path, int line, const Json& json) {
 
 /// Nothing where the file is empty, or was cut before its first line ended.
 std::optional<UnitHead> first_head(const std::string& path) {
-  std::ifstream file = open_text(path);
-  std::string text;
-  std::getline(file, text);
-  if (file.eof()) return std::nullopt;
-  const Json json = parse(path, 1, text);
+  files::LineReader lines(files::open_file(path), path);
+  if (!lines.next() || !lines.complete()) return std::nullopt;
+  const Json json = parse(path, lines.number(), lines.text());
   if (json["record"] != "journal")
     fail(path,
          "does not begin as a journal does (with --journal-every-sample none is written that a "
@@ -122,9 +113,10 @@ std::vector<std::string> journal_of(const std::vector<std::string>& paths,
 }
 
 void read_journal(const std::string& path, const JournalReader& reader) {
-  std::ifstream file = open_text(path);
-  std::string text;
-  for (int line = 1; std::getline(file, text) && !file.eof(); ++line) {
+  files::LineReader lines(files::open_file(path), path);
+  while (lines.next() && lines.complete()) {
+    const std::string& text = lines.text();
+    const int line = lines.number();
     if (text.starts_with(kChannel) || text.starts_with(kHealth)) continue;
     const Json json = parse(path, line, text);
     const std::string record = json["record"];

@@ -95,7 +95,7 @@ report/diagnosis
 report/page report/diagnosis
 report/closed_loop files/csv report/diagnosis
 report files/times files report/diagnosis report/page
-history report
+history files/csv report
 history/trend files/times report history
 report/identification report
 bus

@@ -53,8 +53,7 @@ std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answe
     case LeftOut::kOnlyFeedback:
       return "only feedback moves " + input +
              ": what is seen is the controller as much as the process; move it, or a set-point, "
-             "from "
-             "outside";
+             "from outside";
     case LeftOut::kHidden:
       if (!std::isfinite(answer.visible_gain))
         return "the movements of " + input + " follow from the other signals";

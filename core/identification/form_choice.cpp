@@ -1,0 +1,130 @@
+#include "core/identification/form_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/identification/calibration.hpp"
+#include "core/identification/feedback_test.hpp"
+#include "core/identification/start_values.hpp"
+#include "core/identification/structure.hpp"
+#include "core/identify/evidence/outside_movement.hpp"
+#include "core/identify/fit/split.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+Material material(const Recording& recording) {
+  const Index rows = fitted_rows(recording, 1.0 - kValidationShare);
+  Material result{recording,
+                  identification_data(recording),
+                  identification_data(part(recording, 0, rows)),
+                  identification_data(part(recording, rows, recording.samples() - rows)),
+                  {},
+                  {},
+                  {}};
+  const IdentificationData& all = result.all;
+  const VectorXd everywhere = VectorXd::Ones(all.samples());
+  result.input_spread.resize(all.inputs.cols());
+  for (Index i = 0; i < all.inputs.cols(); ++i) {
+    const double spread = spread_of(all.inputs.col(i), everywhere);
+    result.input_spread(i) = spread > kStill * std::abs(all.input_mean(i)) ? spread : 0.0;
+  }
+  result.outside = outside_shares(recording, recording.cvs);
+  result.feedback_p_value = feedback_p_value(all, 0);
+  result.open_loop = feedback_p_value(all, 1) > kFeedback;
+  return result;
+}
+
+NoiseAssumption noise_model(const IdentificationData& data, int cv) {
+  const double rows = data.known.col(cv).sum() / static_cast<double>(data.runs.size());
+  return {{std::clamp(static_cast<int>(rows / kRowsPerNoiseLag), 1, kNoiseOrder), 0.0}, 1.0};
+}
+
+namespace {
+
+/// The simplest of some structures that does best on rows that none was fitted to.
+Choice best_unseen(const Material& material, int cv, const std::vector<PredictionErrorFit>& grown,
+                   const NoiseAssumption& noise) {
+  Choice choice;
+  choice.noise = noise;
+  double least = std::numeric_limits<double>::infinity();
+  for (const PredictionErrorFit& fit : grown) {
+    const double now = fit_prediction_error(material.unseen, cv, fit.channels, noise, 0).cost;
+    if (now < least) least = now, choice.channels = fit.channels;
+  }
+  const PredictionErrorFit nothing = fit_prediction_error(material.unseen, cv, {}, noise, 0);
+  choice.confirmed = least < nothing.cost - kLeastGainOfPrediction * nothing.rows;
+  choice.unseen_square =
+      fit_prediction_error(material.unseen, cv, choice.channels, output_error(), 0).variance;
+  return choice;
+}
+
+/// Without a noise model, from a regression without the CV's own past.
+std::optional<Choice> by_output_error(const Material& material,
+                                      const std::vector<ChannelHint>& hints, int cv) {
+  const HighOrderModel model = high_order_model(material.first, cv, 0);
+  if (!model.sound) return std::nullopt;
+  const StartSearch search(model, hints, material.all.sample_time_s);
+  const NoiseAssumption noise = output_error(fit_prediction_error(
+      material.first, cv, search.best_sets().front(), output_error(), kMostSteps));
+  const std::vector<PredictionErrorFit> grown = grown_structures(
+      material.first, cv, simplest_structure(material.first, cv, search, noise), noise);
+  Choice choice = best_unseen(material, cv, grown, noise);
+  choice.output_error = true;
+  return choice;
+}
+
+/// The inputs that act are picked on all rows; their forms are to carry over from the first rows to
+/// the unseen.
+Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
+              const HighOrderModel& all, int cv) {
+  const StartSearch search(all, hints, material.all.sample_time_s);
+  const NoiseAssumption usual = noise_model(material.all, cv),
+                        noise = noise_model(material.first, cv);
+  PredictionErrorFit simplest = simplest_structure(material.all, cv, search, usual);
+  const std::vector<PredictionErrorFit> grown = grown_structures(
+      material.first, cv,
+      fit_prediction_error(material.first, cv, std::move(simplest.channels), noise, kMostSteps),
+      noise);
+  Choice choice = best_unseen(material, cv, grown, noise);
+  if (!material.open_loop) return choice;
+  // What the noise model takes for noise may be what a poor form leaves.
+  std::optional<Choice> other = by_output_error(material, hints, cv);
+  if (other && other->confirmed &&
+      (!choice.confirmed || other->unseen_square < kClearlyBetter * choice.unseen_square))
+    return std::move(*other);
+  return choice;
+}
+
+Chosen choose_and_fit(const Material& material, const std::vector<ChannelHint>& hints,
+                      const HighOrderModel& model, int cv) {
+  Choice choice = choose(material, hints, model, cv);
+  if (!choice.output_error) choice.noise = noise_model(material.all, cv);
+  PredictionErrorFit fit =
+      pruned(material.all, cv,
+             fit_prediction_error(material.all, cv, choice.channels, choice.noise, kMostSteps),
+             choice.noise);
+  return {std::move(choice), std::move(fit)};
+}
+
+}  // namespace
+
+Chosen choose_form(const Material& material, const std::vector<ChannelHint>& hints,
+                   const HighOrderModel& model, int cv) {
+  Chosen given = choose_and_fit(material, hints, model, cv);
+  std::vector<ChannelHint> free = hints;
+  for (ChannelHint& hint : free) hint.sign = 0;
+  if (free == hints) return given;
+  Chosen other = choose_and_fit(material, free, model, cv);
+  const NoiseAssumption noise = noise_model(material.all, cv);
+  const auto cost = [&](const Chosen& chosen) {
+    return fit_prediction_error(material.all, cv, chosen.fit.channels, noise, 0).cost;
+  };
+  return cost(other) + kBeyondDoubt < cost(given) ? std::move(other) : std::move(given);
+}
+
+}  // namespace mpm
