@@ -71,7 +71,9 @@ TEST_CASE("what is no journal is refused at its line") {
   CHECK(error_of(path) == path + ":2:1: error: is no digest of a journal");
   test::write_file(path, head + digest_line(0) + "{\"record\":\"alarm\",\"mv\":1}\n");
   CHECK(error_of(path) == path + ":3:1: error: is no alarm of a journal");
-  CHECK(error_of(folder.file("none")) == folder.file("none") + ": error: cannot be opened");
+  CHECK(error_of(folder.file("none")) == folder.file("none") + ": error: no such file");
+  test::write_file(path, head + std::string(5 << 20, 'x') + "\n");
+  CHECK(error_of(path) == path + ":2:1: error: a line of more than 4 MiB");
 }
 
 TEST_CASE("the files of a journal are found, in the order of their time") {
