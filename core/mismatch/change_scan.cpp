@@ -92,8 +92,12 @@ double ChangeScan::gain_of(const Part& after, const Part& before, double least) 
 void ChangeScan::name_input(const Rows& rows, ChangePoint& change) {
   const InputFit lenient = best_input(rows, change.samples, false);
   const InputFit strict = best_input(rows, change.samples, true);
+  const InputFit& told = lenient.p_value > strict.p_value ? lenient : strict;
   change.input = lenient.input;
-  change.p_value = std::max(lenient.p_value, strict.p_value);
+  change.p_value = told.p_value;
+  change.statistic = told.statistic;
+  change.numerator = told.numerator;
+  change.denominator = told.denominator;
 }
 
 ChangeScan::InputFit ChangeScan::best_input(const Rows& rows, int samples, bool strict) {
@@ -110,8 +114,10 @@ ChangeScan::InputFit ChangeScan::best_input(const Rows& rows, int samples, bool 
   const int block = shape_.block();
   const int freedom = count - shape_.lead_in() - block;
   if (freedom < calibration::change_scan::kFewestFreedom || !(least > 0.0)) return best;
-  const double statistic = (nothing - least) / block / (least / freedom);
-  best.p_value = std::min(1.0, shape_.inputs * f_upper_tail(statistic, block, freedom));
+  best.numerator = block;
+  best.denominator = freedom;
+  best.statistic = (nothing - least) / block / (least / freedom);
+  best.p_value = std::min(1.0, shape_.inputs * f_upper_tail(best.statistic, block, freedom));
   return best;
 }
 

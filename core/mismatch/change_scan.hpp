@@ -15,10 +15,12 @@ enum class ChangeKind : unsigned char { kBegan, kEnded, kOther };
 
 struct ChangePoint {
   ChangeKind kind = ChangeKind::kBegan;
-  int samples = 0;       ///< since the change
-  double gain = 0.0;     ///< by how much it beats "no change", in residual variances
-  int input = -1;        ///< that explains the rows since then best, were it alone
-  double p_value = 1.0;  ///< of no change in any input, from these rows; kEnded: 1
+  int samples = 0;         ///< since the change
+  double gain = 0.0;       ///< by how much it beats "no change", in residual variances
+  int input = -1;          ///< that explains the rows since then best, were it alone
+  double p_value = 1.0;    ///< of no change in any input, from these rows; kEnded: 1
+  double statistic = 0.0;  ///< the F of that input's block; kEnded: 0
+  double numerator = 0.0, denominator = 0.0;  ///< its degrees of freedom
 };
 
 /// Looks for the moment at which a CV's mismatch began, ended or became another one, in the rows
@@ -72,6 +74,7 @@ class ChangeScan {
   struct InputFit {
     int input = -1;
     double p_value = 1.0;
+    double statistic = 0.0, numerator = 0.0, denominator = 0.0;
   };
   void name_input(const Rows& rows, ChangePoint& change);
   [[nodiscard]] InputFit best_input(const Rows& rows, int samples, bool strict);

@@ -18,6 +18,7 @@ enum class Reason : std::uint8_t {
   kCollinear,       ///< the input moved only together with another one (`confounder`)
   kConfounded,      ///< what is off in this CV follows a signal that is no input (`confounder`)
   kBadData,         ///< too many of the values needed are missing, bad or implausible
+  kCompressed,      ///< a historian has compressed the CV: what it held or drew is no measurement
   kControllerOff,   ///< no manipulated variable moves: the controller is off or in manual
   kConstrained,     ///< the input sits at a limit
   kIsolating,       ///< something in this CV changed; samples since then are still too few
@@ -29,8 +30,9 @@ enum class Reason : std::uint8_t {
 }
 
 [[nodiscard]] constexpr auto words_of(Reason) {
-  return std::array{"",         "warming_up",     "not_excited", "collinear", "confounded",
-                    "bad_data", "controller_off", "constrained", "isolating", "weak_excitation"};
+  return std::array{
+      "",           "warming_up",     "not_excited", "collinear", "confounded",     "bad_data",
+      "compressed", "controller_off", "constrained", "isolating", "weak_excitation"};
 }
 
 /// The numbers behind a verdict that an alarm repeats.

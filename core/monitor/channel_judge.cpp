@@ -19,6 +19,7 @@ bool alarmed(const JudgedChannel& channel) {
 
 ChannelJudge::ChannelJudge(const SignalCounts& counts, const DerivedSettings& settings)
     : mvs_(counts.mv),
+      inputs_(counts.inputs()),
       gain_error_of_interest_(settings.gain_error_of_interest),
       mean_line_(settings.threshold == ThresholdKind::kMeanLine),
       channel_rate_(settings.false_alarm_rate / (counts.inputs() * counts.cv)) {}
@@ -47,8 +48,8 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
 }
 
 bool ChannelJudge::has_evidence(const JudgedChannel& channel, ChannelStatus& status) {
-  if (channel.bad_data) {
-    status.reason = Reason::kBadData;
+  if (channel.bad_data != Reason::kNone) {
+    status.reason = channel.bad_data;
     return false;
   }
   const bool isolating = channel.alarms.isolating();
@@ -56,11 +57,22 @@ bool ChannelJudge::has_evidence(const JudgedChannel& channel, ChannelStatus& sta
   const double effective_samples = status.effective_samples;
   status = ChannelStatus{};  // what was known before says nothing now
   status.effective_samples = effective_samples;
-  if (isolating && alarmed(channel)) status.p_value = channel.alarms.change_p_value();
+  if (isolating && alarmed(channel)) read_change(channel, status);
   status.reason = isolating         ? Reason::kIsolating
                   : channel.overdue ? Reason::kBadData
                                     : Reason::kWarmingUp;
   return false;
+}
+
+// That something changed is beyond doubt, by how much is not known yet.
+void ChannelJudge::read_change(const JudgedChannel& channel, ChannelStatus& status) {
+  const ChangePoint& change = channel.alarms.change();
+  status.p_value = change.p_value;
+  status.statistic = change.statistic;
+  status.threshold = thresholds_.at(change.numerator, change.denominator, inputs_, channel_rate_);
+  status.model_gain = channel.evidence.reference_gain;
+  status.effect_high = visibility::kBlindGainError * std::abs(status.model_gain);
+  status.effect_low = -status.effect_high;
 }
 
 void ChannelJudge::read_evidence(const JudgedChannel& channel, ChannelStatus& status) {

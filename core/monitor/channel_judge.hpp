@@ -14,9 +14,9 @@ namespace mpm {
 /// What a verdict on one channel rests on, after one sample.
 struct JudgedChannel {
   int input = 0;
-  bool bad_data = false;           ///< no verdict can be drawn of these data
-  bool overdue = false;            ///< there ought to be rows enough by now
-  const RegressionMemory& memory;  ///< the CV's long one
+  Reason bad_data = Reason::kNone;  ///< why no verdict can be drawn of these data, if none can
+  bool overdue = false;             ///< there ought to be rows enough by now
+  const RegressionMemory& memory;   ///< the CV's long one
   const ChannelEvidence& evidence;
   const CvAlarms& alarms;  ///< the CV's
   bool mvs_still = false;  ///< no MV moves
@@ -41,12 +41,13 @@ class ChannelJudge {
   void judge(const JudgedChannel& channel, ChannelStatus& status);
 
  private:
-  [[nodiscard]] static bool has_evidence(const JudgedChannel& channel, ChannelStatus& status);
+  [[nodiscard]] bool has_evidence(const JudgedChannel& channel, ChannelStatus& status);
+  void read_change(const JudgedChannel& channel, ChannelStatus& status);
   void read_evidence(const JudgedChannel& channel, ChannelStatus& status);
   [[nodiscard]] bool exceeds(const JudgedChannel& channel, ChannelStatus& status) const;
   [[nodiscard]] Reason why_not_excited(const JudgedChannel& channel) const;
 
-  int mvs_;
+  int mvs_, inputs_;
   double gain_error_of_interest_;
   bool mean_line_;
   double channel_rate_;  // false alarms of one channel

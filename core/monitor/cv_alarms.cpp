@@ -86,7 +86,7 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
   if (!change) return;
   detector.start_afresh(cv, change->samples);
   isolating_ = true;
-  change_p_value_ = change->p_value;
+  change_ = *change;
   if (!quiet || change->kind == ChangeKind::kEnded) return;
   // Of a change from quiet only the likeliest channel is blamed until the CV is isolated.
   for (std::size_t i = 0; i < conditions_.size(); ++i)

@@ -55,8 +55,8 @@ class CvAlarms {
   }
   [[nodiscard]] bool any() const;
   [[nodiscard]] bool isolating() const { return isolating_; }
-  /// Of no change, while isolating.
-  [[nodiscard]] double change_p_value() const { return change_p_value_; }
+  /// Since which the CV is isolating.
+  [[nodiscard]] const ChangePoint& change() const { return change_; }
 
  private:
   void step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
@@ -72,7 +72,7 @@ class CvAlarms {
   std::vector<Condition> conditions_;
   std::vector<AlarmState> before_;
   bool isolating_ = false;
-  double change_p_value_ = 1.0;
+  ChangePoint change_;
   std::int64_t since_scan_ = 0;
 };
 

@@ -53,7 +53,7 @@ struct Monitor::State {
   void follow(int cv);
   void move_alarms();
   void judge_channels();
-  [[nodiscard]] bool bad_data(int cv, int input);
+  [[nodiscard]] Reason bad_data(int cv, int input) const;
 
   LinearModel model;
   SignalCounts counts;
@@ -250,7 +250,7 @@ void Monitor::State::move_alarms() {
     };
     if (cv.rival.wins)
       cv.alarms.clear(changed);
-    else if (cv.quality.implausible() || !cv.rival.loses)
+    else if (cv.quality.implausible() || screen.compressed(j) || !cv.rival.loses)
       cv.alarms.hold();
     else
       cv.alarms.update(j, cv.evaluated, detector, scan, settings.alarm, changed);
@@ -283,13 +283,16 @@ void Monitor::State::judge_channels() {
   }
 }
 
-// Lost: for as long as an input's pulse lags.
-bool Monitor::State::bad_data(int cv, int input) {
-  const CvQuality& quality = of(cv).quality;
+// Why no verdict can be drawn, if none can. Lost: for as long as an input's pulse lags.
+Reason Monitor::State::bad_data(int cv, int input) const {
+  if (screen.compressed(cv)) return Reason::kCompressed;
+  const CvQuality& quality = cvs[static_cast<std::size_t>(cv)].quality;
   const bool cv_lost = quality.without_row() > settings.fir_lags &&
                        residuals.unknown_run(cv) > settings.fir_lags && !predictions.settling(cv);
   const bool input_lost = inputs.unknown_run(input) > settings.fir_lags;
-  return cv_lost || input_lost || quality.mostly_unknown() || quality.implausible();
+  return cv_lost || input_lost || quality.mostly_unknown() || quality.implausible()
+             ? Reason::kBadData
+             : Reason::kNone;
 }
 
 Monitor::Monitor(const ModelSpec& spec, const SignalCounts& counts,

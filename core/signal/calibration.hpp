@@ -23,6 +23,31 @@ inline constexpr double kPriorValues = 50.0;
 inline constexpr int kEndHits = 3;
 }  // namespace repeats
 
+/// What a historian's compression leaves (`Compression`), as shares of a batch of changes.
+namespace compression {
+/// A sensor's own resolution shows where more changes than this are the smallest there is, or go
+/// right back by the same size. Chosen, between none and what is said next.
+inline constexpr double kResolved = 0.03;
+/// Held: so many values are repetitions, a run counting for no more than so many of them. Of a
+/// sensor whose resolution is a third of its noise or more so many values repeat as well, but a
+/// sixth of its changes or more are the smallest (two differences of normal values); a deadband
+/// leaves none.
+inline constexpr double kRepeated = 0.1;
+inline constexpr int kCountedOfRun = 5;
+/// A change is the smallest below so many times it; changes are the same size within this share of
+/// it. Chosen: between one step and two; what printing leaves of a few digits.
+inline constexpr double kOneStep = 1.5;
+inline constexpr double kSame = 1e-3;
+/// Interpolated: two changes in a row are one line where they differ by less than this share, and
+/// a bend where by more than that. Chosen: what single precision leaves of a line; what no slow
+/// answer does in a sample.
+inline constexpr double kStraight = 1e-3;
+inline constexpr double kBend = 0.2;
+/// So many changes go straight on, and so many end a line. Chosen: a noisy signal has hardly any.
+inline constexpr double kStraightShare = 0.15;
+inline constexpr double kBends = 0.015;
+}  // namespace compression
+
 /// Values that jump away and right back (`Screen`).
 namespace spikes {
 /// So many times the usual difference it leaves and comes back. Chosen

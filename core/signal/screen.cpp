@@ -72,7 +72,8 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
       since_rest_(static_cast<std::size_t>(counts.inputs()), 0),
       ring_(kDelay + 1, Frame(counts)),
       marked_(kDelay + 1),
-      jumps_(static_cast<std::size_t>(counts.cv)) {
+      jumps_(static_cast<std::size_t>(counts.cv)),
+      compression_(static_cast<std::size_t>(counts.cv)) {
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
     const auto count = static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind)));
     repeats_.emplace_back(count);
@@ -94,6 +95,9 @@ const Frame* Screen::push(const Frame& frame) {
       if (block.usable(i))
         repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)].take(block.values(i));
   }
+  const SignalBlock& measured = ago(0)[SignalKind::kCv];
+  for (int j = 0; j < counts_.cv; ++j)
+    if (measured.usable(j)) compression_[static_cast<std::size_t>(j)].take(measured.values(j));
   if (inputs_matter_) follow_predictions(frame[SignalKind::kPrediction]);
   follow_inputs();
   if (inputs_matter_) {

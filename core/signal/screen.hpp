@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/signal/calibration.hpp"
+#include "core/signal/compression.hpp"
 #include "core/signal/extent.hpp"
 #include "core/signal/frame.hpp"
 
@@ -48,6 +49,10 @@ class Screen {
   [[nodiscard]] bool anew() const { return anew_; }
   /// Whether a prediction of the CV has come at all.
   [[nodiscard]] bool predicted(int cv) const { return predicted_[static_cast<std::size_t>(cv)]; }
+  /// A historian has compressed the CV.
+  [[nodiscard]] bool compressed(int cv) const {
+    return compression_[static_cast<std::size_t>(cv)].found();
+  }
   /// Spikes of one CV so far.
   [[nodiscard]] std::uint64_t spikes(int cv) const {
     return jumps_[static_cast<std::size_t>(cv)].spikes;
@@ -114,6 +119,7 @@ class Screen {
   std::vector<std::vector<Repeats>> repeats_;  // per kind
   std::vector<std::vector<Range>> ranges_;     // per kind
   std::vector<Jumps> jumps_;                   // per CV
+  std::vector<Compression> compression_;       // per CV
   ScreenCounters counters_;
 };
 

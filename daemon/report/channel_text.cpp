@@ -126,6 +126,9 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
              printable(channel.cv);
     case Reason::kBadData:
       return "too much of what it needs is missing or bad";
+    case Reason::kCompressed:
+      return "a historian has compressed " + printable(channel.cv) +
+             "; turn that off for this tag, or let it send changes from a tenth of the noise on";
     case Reason::kControllerOff:
       return "no manipulated variable moves: the controller is off or in manual";
     case Reason::kConstrained:
@@ -142,7 +145,8 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
 
 std::string gain_text(const AlarmRecord& alarm, const ChannelRecord* channel) {
   if (channel == nullptr || channel->model_gain == 0.0)
-    return "gain off by " + number_text(alarm.effect_size);
+    return alarm.effect_size == 0.0 ? "size not known yet"
+                                    : "gain off by " + number_text(alarm.effect_size);
   if (!channel->gain_resolved()) return "gain --";
   return "gain " + signed_text(channel->percent_of_gain(alarm.effect_size)) + " %";
 }

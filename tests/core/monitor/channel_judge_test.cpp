@@ -47,7 +47,8 @@ struct Bench {
   RegressionMemory memory;
   ChannelEvidence evidence;
   CvAlarms alarms;
-  bool bad_data = false, overdue = false, mvs_still = false, at_limit = false;
+  Reason bad_data = Reason::kNone;
+  bool overdue = false, mvs_still = false, at_limit = false;
   int confounder = -1;
   CorrelationPeak peak;
   double line = 0.0;
@@ -108,9 +109,9 @@ TEST_CASE("what follows a signal that is no input is no channel's mismatch") {
 
 TEST_CASE("without rows or with bad data there is no verdict") {
   Bench bench;
-  bench.bad_data = true;
+  bench.bad_data = Reason::kBadData;
   CHECK(bench.judge().reason == Reason::kBadData);
-  bench.bad_data = false;
+  bench.bad_data = Reason::kNone;
   bench.memory.clear();
   CHECK(bench.judge().reason == Reason::kWarmingUp);
   CHECK(bench.judge().p_value == 1.0);

@@ -82,7 +82,13 @@ TEST_CASE(
       for (const AlarmTransition& transition : monitor.transitions()) {
         CHECK(transition.cv == 0);
         CHECK(transition.input == 1);
-        if (transition.to == AlarmState::kActive) raised = frame.interval;
+        if (transition.to == AlarmState::kActive) {
+          raised = frame.interval;  // and the record says why
+          const ChannelStatus& status = monitor.channel(0, 1);
+          CHECK(status.p_value < 1e-3);
+          CHECK(status.statistic > status.threshold);
+          CHECK(status.threshold > 1.0);
+        }
         if (transition.to == AlarmState::kCleared) cleared = frame.interval;
       }
       CHECK(monitor.channel(1, 0).reason != Reason::kIsolating);
