@@ -179,14 +179,17 @@ void ChannelEvaluator::estimate_free_gain(double model_gain, int input, const Es
   evidence.gain_error = {sum / own / model_gain, std::sqrt(variance) / own / std::abs(model_gain)};
 }
 
+// Of a channel that the model lacks, the smaller of two: what would move the CV as much as its
+// strongest input has, and what the model's other channels make usual.
 double ChannelEvaluator::reference_gain(int cv, int input) const {
-  const double own = signatures_[index(cv, input)].gain;
-  if (own != 0.0) return own;
+  const ChannelSignatures& channel = signatures_[index(cv, input)];
+  if (channel.gain != 0.0) return channel.gain;
   double largest = 0.0;
   for (int i = 0; i < shape_.inputs; ++i)
     largest = std::max(largest, std::abs(signatures_[index(cv, i)].gain) * estimates_.norms(i)(0));
   if (largest == 0.0) largest = estimates_.residual_norm();
-  return largest / estimates_.norms(input)(0);
+  const double strongest = largest / estimates_.norms(input)(0);
+  return channel.usual_gain > 0.0 ? std::min(strongest, channel.usual_gain) : strongest;
 }
 
 }  // namespace mpm

@@ -1,5 +1,6 @@
 #include "core/mismatch/channel_signatures.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +12,22 @@ Eigen::VectorXd lag_with_slowest_tail(const BlockBasis& basis) {
   const double pole = std::exp(-1.0 / basis.slowest());
   for (int l = 1; l < basis.length(); ++l) pulse(l) = (1.0 - pole) * std::pow(pole, l - 1);
   return pulse;
+}
+
+double usual_gain(const std::vector<ChannelSignatures>& channels, int cvs, int cv, int input) {
+  const auto inputs = static_cast<int>(channels.size()) / cvs;
+  const auto gain = [&](int j, int i) {
+    return std::abs(channels[static_cast<std::size_t>(i * cvs + j)].gain);
+  };
+  std::vector<double> products;
+  for (int i = 0; i < inputs; ++i)
+    for (int j = 0; j < cvs; ++j)
+      if (gain(j, input) > 0.0 && gain(cv, i) > 0.0 && gain(j, i) > 0.0)
+        products.push_back(gain(j, input) * gain(cv, i) / gain(j, i));
+  if (products.empty()) return 0.0;
+  const auto middle = products.begin() + static_cast<std::ptrdiff_t>((products.size() - 1) / 2);
+  std::nth_element(products.begin(), middle, products.end());
+  return *middle;
 }
 
 }  // namespace
@@ -35,6 +52,12 @@ std::vector<ChannelSignatures> channel_signatures(const RegressionShape& shape,
         channel.errors.emplace_back(basis, lag_with_slowest_tail(basis), shape.residual_order);
       }
       channels.push_back(std::move(channel));
+    }
+  }
+  for (int i = 0; i < shape.inputs; ++i) {
+    for (int j = 0; j < shape.cvs; ++j) {
+      ChannelSignatures& channel = channels[static_cast<std::size_t>(i * shape.cvs + j)];
+      if (channel.gain == 0.0) channel.usual_gain = usual_gain(channels, shape.cvs, j, i);
     }
   }
   return channels;

@@ -17,6 +17,10 @@ struct ChannelSignatures {
   std::vector<Signature> shifts;  ///< one sample later, one earlier, minus the response itself
   /// Steady gain (integrating: rise in the slowest tail's time constant); 0 = no channel.
   double gain = 0.0;
+  /// Where the model has no channel, the gain that one would have if the model's gains were
+  /// products of what each input and each CV is like: the median of |g(j',i) g(j,i') / g(j',i')|,
+  /// so free of units. 0 where its other channels do not say.
+  double usual_gain = 0.0;
 };
 
 /// Of all channels of the model, input-major.

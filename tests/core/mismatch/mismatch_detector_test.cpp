@@ -198,6 +198,23 @@ TEST_CASE("excitation: silent, weak and inseparable inputs are told apart") {
     CHECK(weak.evidence(0, 1).excitation_index ==
           Approx(10.0 * strong.evidence(0, 1).excitation_index).epsilon(1e-6));
   }
+  SECTION("of a channel that the model lacks a usual gain counts, not one that would show") {
+    // What is left of the gains is 1, 2 and 2: products would make the missing one 2 * 2 / 1.
+    ModelSpec lacking = spec;
+    lacking.channels.pop_back();
+    MismatchDetector detector = make_test(lacking);
+    OpenLoop loop(10);
+    loop.input_scale = {1.0, 0.01};
+    loop.run(detector, lacking, 1000);
+    CHECK(detector.evidence(1, 1).reference_gain == Approx(4.0));
+    CHECK(detector.evidence(1, 1).excitation_index > 0.25);
+    // Where the input moves a hundred times as much, what the other one has done to the CV is less.
+    MismatchDetector moved = make_test(lacking);
+    loop.input_scale = {1.0, 1.0};
+    loop.run(moved, lacking, 1000);
+    CHECK(moved.evidence(1, 1).reference_gain == Approx(2.0).epsilon(0.1));
+    CHECK(moved.evidence(1, 1).excitation_index < 0.1);
+  }
   SECTION("two inputs that move as one name each other") {
     MismatchDetector detector = make_test(spec);
     OpenLoop loop(9);
