@@ -60,6 +60,10 @@ Choice best_unseen(const Material& material, int cv, const std::vector<Predictio
   choice.confirmed = least < nothing.cost - kLeastGainOfPrediction * nothing.rows;
   choice.unseen_square =
       fit_prediction_error(material.unseen, cv, choice.channels, output_error(), 0).variance;
+  if (material.open_loop) {
+    const double spread = fit_prediction_error(material.unseen, cv, {}, output_error(), 0).variance;
+    choice.confirmed = choice.confirmed && choice.unseen_square < spread;
+  }
   return choice;
 }
 
