@@ -82,7 +82,9 @@ inline constexpr double kSecondShare = 0.2;  ///< of the time constant: where a 
 
 // Whether feedback moves the inputs (feedback_test.hpp).
 inline constexpr int kFeedbackLags = 6;
-inline constexpr double kFeedback = 1e-3;      ///< p-value below which it does
+inline constexpr double kFeedback = 1e-3;  ///< p-value below which it does
+/// Free run of a richer form on unseen rows, where no feedback is: most times the simplest one's.
+inline constexpr double kMostWorse = 1.3;
 inline constexpr double kClearlyBetter = 0.9;  ///< of the unseen squared error
 
 // What is said (identification.hpp).
