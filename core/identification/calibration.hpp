@@ -58,29 +58,40 @@ inline constexpr double kNoWhitening = 1e-9;     ///< bound of an autoregression
 inline constexpr double kMostAutocorrelation = 0.98;
 inline constexpr double kStepOfTimes = 1.5;     ///< most that a step changes the log of a time
 inline constexpr double kStepOfDeadTime = 4.0;  ///< samples, likewise
+inline constexpr double kStepOfDamping = 0.2;   ///< likewise
 
 // Which channels, of which form (structure.hpp).
 inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.
-inline constexpr double kNeeded = 25.0;       ///< fall of -2 ln likelihood: p = 1.5e-5 of 3 numbers
 inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
 inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
 /// Where a channel with lead begins, times the time constant that it had: slow tail, overshoot,
-/// inverse response.
+/// inverse response, a quick answer that mostly goes back.
 struct LeadStart {
   double first, second, lead;
 };
-inline constexpr LeadStart kLeadStarts[] = {{3.0, 0.7, 2.0}, {1.0, 0.5, 1.5}, {1.0, 0.5, -0.5}};
+inline constexpr LeadStart kLeadStarts[] = {
+    {3.0, 0.7, 2.0}, {1.0, 0.5, 1.5}, {1.0, 0.5, -0.5}, {20.0, 0.7, 26.0}};
+/// Where a damped pair begins.
+inline constexpr double kDampedStart = 0.4;
+inline constexpr double kPairTime = 0.7;       ///< of half the dead time and the time constant
+inline constexpr double kLeastDamping = 0.03;  ///< less does not settle
+inline constexpr double kMostDamping = 0.8;    ///< more hardly overshoots: two lags
+/// Of the longest run: a form with a slower time constant is not told from a drift.
+inline constexpr double kSlowestShare = 0.5;
 inline constexpr double kSecondShare = 0.2;  ///< of the time constant: where a second begins
 
 // Whether feedback moves the inputs (feedback_test.hpp).
 inline constexpr int kFeedbackLags = 6;
-inline constexpr double kFeedback = 1e-3;      ///< p-value below which it does
+inline constexpr double kFeedback = 1e-3;  ///< p-value below which it does
+/// Free run of a richer form on unseen rows, where no feedback is: most times the simplest one's.
+inline constexpr double kMostWorse = 1.3;
 inline constexpr double kClearlyBetter = 0.9;  ///< of the unseen squared error
 
 // What is said (identification.hpp).
 inline constexpr double kValidationShare = 0.25;  ///< of the rows, left out of the choice of forms
-inline constexpr double kOnlyFeedback = 0.2;      ///< share of an input's movement from outside
+inline constexpr double kOnlyFeedback = 0.3;      ///< share of an input's movement from outside
 inline constexpr double kFamilyError = 0.01;      ///< of any invented relation in a unit
+inline constexpr double kSure = 2e-5;             ///< p-value of each relation in a model, besides
 inline constexpr double kLeastContribution = 0.02;      ///< s.d. of a channel to that of its CV
 inline constexpr double kVagueGain = 0.25;              ///< s.d. of a gain to the gain
 inline constexpr double kEntangled = 0.8;               ///< correlation of two gains' estimates

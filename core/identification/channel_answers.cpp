@@ -51,6 +51,8 @@ void state_numbers(const Material& material, const PredictionErrorFit& fit, std:
   const VectorXd sd = sd_of(fit, which);
   answer.form = shape.form;
   answer.dynamics = transfer_function(shape, dt);
+  if (shape.form == ChannelForm::kDamped)
+    answer.pair = DampedPair{shape.time_constant * dt, shape.damping};
   answer.dead_time_s = {shape.dead_time * dt, shape.dead_time * dt};
   for (std::size_t n = 0; n < numbers.size(); ++n) {
     const double value = number_of(shape, numbers[n]);
@@ -72,6 +74,9 @@ void state_numbers(const Material& material, const PredictionErrorFit& fit, std:
       case ShapeNumber::kLead:
         answer.lead_s = {interval.low * dt, interval.high * dt};
         break;
+      case ShapeNumber::kDamping:
+        answer.damping = {std::max(0.0, interval.low), interval.high};
+        break;
     }
   }
 }
@@ -79,8 +84,10 @@ void state_numbers(const Material& material, const PredictionErrorFit& fit, std:
 void state_step(const PredictionErrorFit& fit, std::size_t which, double sample_time_s,
                 ChannelAnswer& answer) {
   const ChannelShape& shape = fit.channels[which];
+  const bool two =
+      shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead;
   const double times =
-      shape.time_constant + (shape.form == ChannelForm::kFirstOrder ? 0.0 : shape.second);
+      two ? shape.time_constant + shape.second : std::max(1.0, slowest_time(shape));
   const auto stride = static_cast<Index>(
       std::max(1.0, std::ceil((shape.dead_time + kStepTimes * times) / kStepPoints)));
   VectorXd input = VectorXd::Ones(stride * kStepPoints + 2);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/identification/calibration.hpp"
+#include "core/identification/damped_pair.hpp"
 #include "core/model/zero_order_hold.hpp"
 
 namespace mpm {
@@ -22,6 +23,7 @@ std::vector<ShapeNumber> free_numbers(const ChannelShape& shape) {
   if (shape.form != ChannelForm::kIntegrator) numbers.push_back(ShapeNumber::kLogTime);
   if (shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead)
     numbers.push_back(ShapeNumber::kLogSecond);
+  if (shape.form == ChannelForm::kDamped) numbers.push_back(ShapeNumber::kDamping);
   if (shape.form == ChannelForm::kSecondOrderLead) numbers.push_back(ShapeNumber::kLead);
   return numbers;
 }
@@ -38,6 +40,8 @@ double number_of(const ChannelShape& shape, ShapeNumber which) {
       return std::log(shape.second);
     case ShapeNumber::kLead:
       return shape.lead;
+    case ShapeNumber::kDamping:
+      return shape.damping;
   }
   return 0.0;
 }
@@ -61,7 +65,26 @@ void set_number(ChannelShape& shape, ShapeNumber which, double value, double lon
       // Who gives a gain's sign means that of the answer: no inverse response.
       shape.lead = std::clamp(value, shape.sign != 0 ? 0.0 : -longest, longest);
       break;
+    case ShapeNumber::kDamping:
+      shape.damping = std::clamp(value, kLeastDamping, kMostDamping);
+      break;
   }
+}
+
+double slowest_time(const ChannelShape& shape) {
+  switch (shape.form) {
+    case ChannelForm::kIntegrator:
+      return 0.0;
+    case ChannelForm::kDamped:
+      return shape.time_constant / shape.damping;
+    case ChannelForm::kSecondOrder:
+    case ChannelForm::kSecondOrderLead:
+      return std::max(shape.time_constant, shape.second);
+    case ChannelForm::kFirstOrder:
+    case ChannelForm::kIntegratorLag:
+      break;
+  }
+  return shape.time_constant;
 }
 
 TransferFunction transfer_function(const ChannelShape& shape, double sample_time_s) {
@@ -69,7 +92,7 @@ TransferFunction transfer_function(const ChannelShape& shape, double sample_time
   tf.integrating = integrates(shape.form);
   tf.gain = tf.integrating ? shape.gain / sample_time_s : shape.gain;
   tf.dead_time_s = shape.dead_time * sample_time_s;
-  if (shape.form != ChannelForm::kIntegrator)
+  if (shape.form != ChannelForm::kIntegrator && shape.form != ChannelForm::kDamped)
     tf.time_constants_s.push_back(shape.time_constant * sample_time_s);
   if (shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead)
     tf.time_constants_s.push_back(shape.second * sample_time_s);
@@ -77,8 +100,33 @@ TransferFunction transfer_function(const ChannelShape& shape, double sample_time
   return tf;
 }
 
+namespace {
+
+VectorXd damped_response(const ChannelShape& shape, const Eigen::Ref<const VectorXd>& input,
+                         const std::vector<Run>& runs) {
+  const DiscreteFilter filter =
+      sampled({shape.time_constant, shape.damping}, shape.gain, shape.dead_time, 1.0);
+  VectorXd output(input.size());
+  for (const auto& [first, count] : runs) {
+    const double before = input(first), rest = shape.gain * before;
+    const auto moved = [&](Index k) { return k > 0 ? output(first + k) - rest : 0.0; };
+    for (Index k = 0; k < count; ++k) {
+      double sum = -filter.denominator[1] * moved(k - 1) - filter.denominator[2] * moved(k - 2);
+      for (std::size_t n = 0; n < filter.numerator.size(); ++n) {
+        const Index then = k - 1 - filter.delay_samples - static_cast<Index>(n);
+        if (then > 0) sum += filter.numerator[n] * (input(first + then) - before);
+      }
+      output(first + k) = rest + sum;
+    }
+  }
+  return output;
+}
+
+}  // namespace
+
 VectorXd response(const ChannelShape& shape, const Eigen::Ref<const VectorXd>& input,
                   const std::vector<Run>& runs) {
+  if (shape.form == ChannelForm::kDamped) return damped_response(shape, input, runs);
   const SampledLag lag = sample_transfer_function(transfer_function(shape, 1.0), 1.0);
   const Index order = lag.transition.rows();
   VectorXd output(input.size());

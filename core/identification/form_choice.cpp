@@ -46,13 +46,32 @@ NoiseAssumption noise_model(const IdentificationData& data, int cv) {
 
 namespace {
 
+/// Mean square of the free run on the unseen rows, with the level of the first ones. Inputs are
+/// about their mean, at which a CV that integrates and stays where it is stands still.
+double carried_square(const Material& material, int cv, const std::vector<ChannelShape>& channels) {
+  const IdentificationData& data = material.all;
+  const Index first = material.first.samples(), rest = data.samples() - first;
+  const VectorXd known = data.known.col(cv);
+  VectorXd left = data.cvs.col(cv);
+  for (const ChannelShape& shape : channels)
+    left -= response(shape, data.inputs.col(shape.input), data.runs);
+  left = left.cwiseProduct(known);
+  const double level = left.head(first).sum() / std::max(1.0, known.head(first).sum());
+  left = (left.array() - level) * known.array();
+  return left.tail(rest).squaredNorm() / std::max(1.0, known.tail(rest).sum());
+}
+
 /// The simplest of some structures that does best on rows that none was fitted to.
 Choice best_unseen(const Material& material, int cv, const std::vector<PredictionErrorFit>& grown,
                    const NoiseAssumption& noise) {
   Choice choice;
   choice.noise = noise;
   double least = std::numeric_limits<double>::infinity();
+  const double most = material.open_loop ? kMostWorse * kMostWorse *
+                                               carried_square(material, cv, grown.front().channels)
+                                         : std::numeric_limits<double>::infinity();
   for (const PredictionErrorFit& fit : grown) {
+    if (&fit != &grown.front() && carried_square(material, cv, fit.channels) > most) continue;
     const double now = fit_prediction_error(material.unseen, cv, fit.channels, noise, 0).cost;
     if (now < least) least = now, choice.channels = fit.channels;
   }
@@ -60,6 +79,10 @@ Choice best_unseen(const Material& material, int cv, const std::vector<Predictio
   choice.confirmed = least < nothing.cost - kLeastGainOfPrediction * nothing.rows;
   choice.unseen_square =
       fit_prediction_error(material.unseen, cv, choice.channels, output_error(), 0).variance;
+  if (material.open_loop) {
+    const double spread = fit_prediction_error(material.unseen, cv, {}, output_error(), 0).variance;
+    choice.confirmed = choice.confirmed && choice.unseen_square < spread;
+  }
   return choice;
 }
 

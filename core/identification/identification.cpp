@@ -81,7 +81,8 @@ CvOutcome identify_cv(const Material& material, const IdentificationSettings& se
   return outcome;
 }
 
-/// Holm (1979): which p-values are below what a family error allows.
+/// Holm (1979): which p-values are below what a family error allows, and each by itself below what
+/// makes sure. One that BIC asks for and that is not sure stays in the fit, for the others' sake.
 void correct_for_many(std::vector<ChannelAnswer>& channels) {
   std::vector<std::size_t> order(channels.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -91,29 +92,35 @@ void correct_for_many(std::vector<ChannelAnswer>& channels) {
   bool rejected = true;
   for (std::size_t n = 0; n < order.size(); ++n) {
     ChannelAnswer& answer = channels[order[n]];
-    rejected = rejected && answer.p_value * static_cast<double>(order.size() - n) < kFamilyError;
-    if (!rejected && answer.left_out == LeftOut::kIdentified)
-      answer.left_out = LeftOut::kNoRelation;
+    rejected = rejected && answer.p_value < kSure &&
+               answer.p_value * static_cast<double>(order.size() - n) < kFamilyError;
+    if (!rejected && answer.left_out == LeftOut::kIdentified) answer.left_out = LeftOut::kHidden;
   }
 }
 
 /// The inputs at which the integrating CVs stand still, nearest to the mean in s.d. of each: what a
 /// CV drifts by beside its inputs is then no drift.
 VectorXd balanced_inputs(const Material& material, const std::vector<CvOutcome>& outcomes,
-                         const ModelSpec& model) {
+                         const std::vector<ChannelAnswer>& channels) {
   const IdentificationData& data = material.all;
-  MatrixXd slopes = MatrixXd::Zero(model.cv_count, model.input_count);
-  VectorXd drift = VectorXd::Zero(model.cv_count);
-  for (const ChannelSpec& channel : model.channels) {
-    const auto& tf = std::get<TransferFunction>(channel.dynamics);
-    if (!tf.integrating) continue;
-    slopes(channel.cv, channel.input) =
-        tf.gain * data.sample_time_s * material.input_spread(channel.input);
-    drift(channel.cv) = outcomes[static_cast<std::size_t>(channel.cv)].fit->drift;
+  MatrixXd slopes = MatrixXd::Zero(data.cvs.cols(), data.inputs.cols());
+  VectorXd drift = VectorXd::Zero(data.cvs.cols());
+  for (const ChannelAnswer& answer : channels) {
+    if (answer.left_out != LeftOut::kIdentified || !answer.dynamics->integrating) continue;
+    slopes(answer.cv, answer.input) =
+        answer.dynamics->gain * data.sample_time_s * material.input_spread(answer.input);
+    drift(answer.cv) = outcomes[static_cast<std::size_t>(answer.cv)].fit->drift;
   }
   if (slopes.isZero()) return data.input_mean;
   const VectorXd moves = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(slopes).solve(-drift);
   return data.input_mean + moves.cwiseProduct(material.input_spread);
+}
+
+ChannelSpec channel_of(const ChannelAnswer& answer, double sample_time_s) {
+  const TransferFunction& tf = *answer.dynamics;
+  if (!answer.pair) return {answer.cv, answer.input, tf, {}};
+  return {
+      answer.cv, answer.input, sampled(*answer.pair, tf.gain, tf.dead_time_s, sample_time_s), {}};
 }
 
 ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome>& outcomes,
@@ -128,8 +135,8 @@ ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome
   model.output_origin = data.cv_mean;
   for (const ChannelAnswer& answer : channels)
     if (answer.left_out == LeftOut::kIdentified)
-      model.channels.push_back({answer.cv, answer.input, *answer.dynamics, {}});
-  model.input_origin = balanced_inputs(material, outcomes, model);
+      model.channels.push_back(channel_of(answer, data.sample_time_s));
+  model.input_origin = balanced_inputs(material, outcomes, channels);
   for (const CvOutcome& outcome : outcomes) {
     if (!outcome.fit) continue;
     for (std::size_t r = 0; r < data.runs.size(); ++r)
@@ -137,12 +144,10 @@ ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome
                                                 static_cast<double>(data.runs[r].count) /
                                                 static_cast<double>(data.samples());
   }
-  for (const ChannelSpec& channel : model.channels) {
-    const auto& tf = std::get<TransferFunction>(channel.dynamics);
-    if (!tf.integrating)
-      model.output_origin(channel.cv) +=
-          tf.gain * (model.input_origin(channel.input) - data.input_mean(channel.input));
-  }
+  for (const ChannelAnswer& answer : channels)
+    if (answer.left_out == LeftOut::kIdentified && !answer.dynamics->integrating)
+      model.output_origin(answer.cv) += answer.dynamics->gain * (model.input_origin(answer.input) -
+                                                                 data.input_mean(answer.input));
   return model;
 }
 

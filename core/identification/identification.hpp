@@ -6,6 +6,7 @@
 
 #include "core/identification/channel_hint.hpp"
 #include "core/identification/channel_shape.hpp"
+#include "core/identification/damped_pair.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
 
@@ -44,10 +45,11 @@ struct ChannelAnswer {
   LeftOut left_out = LeftOut::kNoRelation;
   /// Where something was fitted, whether or not it is in the model. Seconds.
   std::optional<TransferFunction> dynamics = {};
+  std::optional<DampedPair> pair = {};  ///< instead of time constants; s
   ChannelForm form = ChannelForm::kFirstOrder;
   Interval95 gain, dead_time_s;            ///< 95 %
-  std::vector<Interval95> time_constants;  ///< 95 %, s
-  std::optional<Interval95> lead_s = {};
+  std::vector<Interval95> time_constants;  ///< 95 %, s; of a damped pair its time
+  std::optional<Interval95> lead_s = {}, damping = {};
   /// Answer to a unit step, and its s.d.; times in s. Empty where nothing was fitted.
   std::vector<double> step_times_s, step, step_sd;
   double p_value = 1.0;       ///< of there being no relation

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/identification/calibration.hpp"
+#include "core/identification/restricted_noise.hpp"
 
 namespace mpm {
 
@@ -48,7 +49,7 @@ class CvFitting {
     do {
       descend(state, steps, longest);
     } while (steps > 0 && try_other_dead_times(state, longest));
-    return finished(state);
+    return finished(std::move(state));
   }
 
  private:
@@ -109,9 +110,9 @@ class CvFitting {
   [[nodiscard]] std::vector<double> decays(const std::vector<ChannelShape>& channels) const {
     std::vector<double> times;
     for (const ChannelShape& shape : channels) {
-      if (shape.form != ChannelForm::kIntegrator) times.push_back(shape.time_constant);
+      times.push_back(slowest_time(shape));
       if (shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead)
-        times.push_back(shape.second);
+        times.push_back(std::min(shape.time_constant, shape.second));
     }
     std::sort(times.rbegin(), times.rend());
     std::vector<double> picked;
@@ -230,32 +231,52 @@ class CvFitting {
            (other.dead_time - earlier.dead_time);
   }
 
+  [[nodiscard]] static std::vector<FreeNumber> free_numbers_of(const State& state) {
+    std::vector<FreeNumber> free;
+    for (std::size_t c = 0; c < state.channels.size(); ++c)
+      for (const ShapeNumber which : free_numbers(state.channels[c])) free.push_back({c, which});
+    return free;
+  }
+
+  /// Per run: what its level, drift and first state and all free numbers do.
+  [[nodiscard]] std::vector<FittedColumns> fitted_columns(
+      const State& state, const std::vector<FreeNumber>& free) const {
+    MatrixXd slopes(data_.samples(), static_cast<Index>(free.size()));
+    for (std::size_t i = 0; i < free.size(); ++i)
+      slopes.col(static_cast<Index>(i)) = slope(state, free[i]);
+    std::vector<FittedColumns> result;
+    for (const Run& run : data_.runs) {
+      FittedColumns columns;
+      columns.own = beside(state, run);
+      columns.own_white.resize(run.count + columns.own.cols(), columns.own.cols());
+      columns.own_white << whitened(state, run, columns.own), ridge(state, columns.own.cols());
+      columns.shared = slopes.middleRows(run.first, run.count);
+      columns.shared_white = whitened(state, run, columns.shared);
+      result.push_back(std::move(columns));
+    }
+    return result;
+  }
+
   Step linearise(const State& state) const {
     Step step;
-    for (std::size_t c = 0; c < state.channels.size(); ++c)
-      for (const ShapeNumber which : free_numbers(state.channels[c]))
-        step.free.push_back({c, which});
+    step.free = free_numbers_of(state);
     const auto count = static_cast<Index>(step.free.size());
-    MatrixXd slopes(data_.samples(), count + 1);
-    for (Index i = 0; i < count; ++i)
-      slopes.col(i) = slope(state, step.free[static_cast<std::size_t>(i)]);
-    slopes.col(count) = state.residual;
+    const std::vector<FittedColumns> columns = fitted_columns(state, step.free);
     step.slopes.resize(data_.samples(), count);
     std::vector<MatrixXd> kept;
-    for (const Run& run : data_.runs) {
-      const MatrixXd columns = beside(state, run);
-      MatrixXd system(run.count + columns.cols(), columns.cols() + count + 1);
-      system.topRows(run.count) << whitened(state, run, columns),
-          whitened(state, run, slopes.middleRows(run.first, run.count));
-      system.bottomRows(columns.cols()).setZero();
-      system.bottomLeftCorner(columns.cols(), columns.cols()) = ridge(state, columns.cols());
-      step.slopes.middleRows(run.first, run.count) =
-          system.block(0, columns.cols(), run.count, count);
+    for (std::size_t r = 0; r < columns.size(); ++r) {
+      const Run& run = data_.runs[r];
+      const FittedColumns& mine = columns[r];
+      step.slopes.middleRows(run.first, run.count) = mine.shared_white;
+      const Index own = mine.own.cols();
+      MatrixXd system = MatrixXd::Zero(run.count + own, own + count + 1);
+      system.leftCols(own) = mine.own_white;
+      system.block(0, own, run.count, count) = mine.shared_white;
+      system.col(own + count).head(run.count) = state.innovations.segment(run.first, run.count);
       const Eigen::HouseholderQR<MatrixXd> qr(system);
       const Index height = std::min(system.rows(), system.cols());
       const MatrixXd triangle = qr.matrixQR().topRows(height).triangularView<Eigen::Upper>();
-      if (height > columns.cols())
-        kept.push_back(triangle.bottomRightCorner(height - columns.cols(), count + 1));
+      if (height > own) kept.push_back(triangle.bottomRightCorner(height - own, count + 1));
     }
     Index height = 0;
     for (const MatrixXd& part : kept) height += part.rows();
@@ -286,10 +307,11 @@ class CvFitting {
     step.direction = qr.solve(right).cwiseQuotient(sizes);
     for (Index i = 0; i < count; ++i) {
       const ShapeNumber which = step.free[static_cast<std::size_t>(i)].which;
-      const double most = which == ShapeNumber::kDeadTime ? kStepOfDeadTime : kStepOfTimes;
-      if (which == ShapeNumber::kDeadTime || which == ShapeNumber::kLogTime ||
-          which == ShapeNumber::kLogSecond)
-        step.direction(i) = std::clamp(step.direction(i), -most, most);
+      if (which == ShapeNumber::kGain || which == ShapeNumber::kLead) continue;
+      const double most = which == ShapeNumber::kDeadTime  ? kStepOfDeadTime
+                          : which == ShapeNumber::kDamping ? kStepOfDamping
+                                                           : kStepOfTimes;
+      step.direction(i) = std::clamp(step.direction(i), -most, most);
     }
     return step;
   }
@@ -305,7 +327,8 @@ class CvFitting {
     return channels;
   }
 
-  PredictionErrorFit finished(const State& state) const {
+  PredictionErrorFit finished(State state) const {
+    if (noise_.bound == 0.0) take_restricted_noise(state);
     const Step step = linearise(state);
     PredictionErrorFit fit;
     fit.channels = state.channels;
@@ -326,6 +349,15 @@ class CvFitting {
     return fit;
   }
 
+  /// Intervals are those of the noise of most restricted likelihood; the cost stays.
+  void take_restricted_noise(State& state) const {
+    state.noise = restricted_noise(fitted_columns(state, free_numbers_of(state)), state.residual,
+                                   weights_, state.noise, state.variance);
+    state.innovations = state.noise.apply(state.residual).cwiseProduct(weights_);
+    state.variance =
+        std::max(state.innovations.squaredNorm() / rows_, kLeastVariance * spread_ * spread_);
+  }
+
   const IdentificationData& data_;
   int cv_;
   NoiseModel noise_;
@@ -341,6 +373,8 @@ PredictionErrorFit fit_prediction_error(const IdentificationData& data, int cv,
                                         const NoiseAssumption& noise, int most_steps) {
   return CvFitting(data, cv, noise).run(std::move(channels), most_steps);
 }
+
+double needed_of_channel(double rows) { return kNumbersOfChannel * std::log(std::max(2.0, rows)); }
 
 NoiseAssumption output_error() { return {{1, kNoWhitening}, 1.0}; }
 

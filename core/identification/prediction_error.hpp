@@ -42,6 +42,10 @@ struct PredictionErrorFit {
                                                       std::vector<ChannelShape> channels,
                                                       const NoiseAssumption& noise, int most_steps);
 
+/// Fall of -2 ln likelihood that a channel has to be worth in so many rows: what BIC takes for its
+/// numbers (Schwarz 1978).
+[[nodiscard]] double needed_of_channel(double rows);
+
 /// Innovations are the errors of the free run: sound only where no feedback moves the inputs.
 [[nodiscard]] NoiseAssumption output_error();
 /// The same with the inflation that a fit's errors show.

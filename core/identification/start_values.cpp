@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/identification/calibration.hpp"
+#include "core/identification/prediction_error.hpp"
 
 namespace mpm {
 
@@ -206,7 +207,7 @@ StartSearch::Set StartSearch::fitted(std::vector<ChannelShape> channels) const {
 
 double StartSearch::bic(const Set& set) const {
   return set.left / model_.variance +
-         kNumbersOfChannel * static_cast<double>(set.channels.size()) * std::log(model_.rows);
+         needed_of_channel(model_.rows) * static_cast<double>(set.channels.size());
 }
 
 std::vector<bool> StartSearch::inputs_of(const Set& set) const {
@@ -313,19 +314,24 @@ std::vector<std::vector<ChannelShape>> StartSearch::best_sets() const {
   return sets;
 }
 
-std::optional<ChannelShape> StartSearch::addition(const std::vector<ChannelShape>& channels) const {
+std::optional<std::vector<ChannelShape>> StartSearch::enlarged(
+    const std::vector<ChannelShape>& channels) const {
   const MatrixXd there = columns(channels);
   std::vector<bool> taken(hints_.size(), false);
   for (const ChannelShape& shape : channels) taken[static_cast<std::size_t>(shape.input)] = true;
-  std::size_t which = taken.size();
-  Found most;
+  const double before = fitted(channels).left;
+  std::optional<Set> most;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (taken[i] || choices_[i].shapes.empty()) continue;
     const Found found = best(i, there);
-    if (found.explained > most.explained) most = found, which = i;
+    if (found.explained < 0.0) continue;
+    std::vector<ChannelShape> more = channels;
+    more.push_back(best_shape(i, found));
+    Set set = fitted(std::move(more));
+    if (!most || set.left < most->left) most = std::move(set);
   }
-  if (!(most.explained > kWorthTrying * model_.variance)) return std::nullopt;
-  return best_shape(which, most);
+  if (!most || !(before - most->left > kWorthTrying * model_.variance)) return std::nullopt;
+  return std::move(most->channels);
 }
 
 double gain_sd(const HighOrderModel& model, int input, double time_constant) {

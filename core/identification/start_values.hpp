@@ -23,8 +23,9 @@ class StartSearch {
   /// time, a few of each size are kept, and whenever one grew all its numbers are fitted anew.
   /// Where inputs move alike, the right ones may show only together.
   [[nodiscard]] std::vector<std::vector<ChannelShape>> best_sets() const;
-  /// The input that explains most beside these channels; nothing where none is worth it.
-  [[nodiscard]] std::optional<ChannelShape> addition(
+  /// With the input more that explains most, all numbers fitted anew; nothing where none is worth
+  /// it.
+  [[nodiscard]] std::optional<std::vector<ChannelShape>> enlarged(
       const std::vector<ChannelShape>& channels) const;
 
  private:

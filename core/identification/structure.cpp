@@ -46,6 +46,13 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
         const double delay = next.dead_time_known ? 0.0 : std::min(next.dead_time, next.second);
         next.dead_time -= delay;
       });
+      add(ChannelForm::kDamped, [](ChannelShape& next) {
+        // What a first order takes for dead time is half the slow beginning of a pair.
+        const double given = next.dead_time_known ? 0.0 : 0.5 * next.dead_time;
+        next.dead_time -= given;
+        next.time_constant = std::max(kFastest, kPairTime * (given + next.time_constant));
+        next.damping = kDampedStart;
+      });
       for (const LeadStart& start : kLeadStarts) {
         if (start.lead < 0.0 && shape.sign != 0) continue;
         add(ChannelForm::kSecondOrderLead, [&](ChannelShape& next) {
@@ -57,6 +64,12 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
       add(ChannelForm::kIntegrator, integrating);
       break;
     case ChannelForm::kSecondOrder:
+      add(ChannelForm::kDamped, [](ChannelShape& next) {
+        const double product = next.time_constant * next.second;
+        next.damping =
+            std::min(kMostDamping, 0.5 * (next.time_constant + next.second) / std::sqrt(product));
+        next.time_constant = std::sqrt(product);
+      });
       add(ChannelForm::kSecondOrderLead, [](ChannelShape&) {});
       add(ChannelForm::kIntegratorLag, [&](ChannelShape& next) {
         const auto [fast, slow] = std::minmax(next.time_constant, next.second);
@@ -67,11 +80,18 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
     case ChannelForm::kIntegrator:
       add(ChannelForm::kIntegratorLag, [](ChannelShape& next) { next.time_constant = 1.0; });
       break;
+    case ChannelForm::kDamped:
     case ChannelForm::kSecondOrderLead:
     case ChannelForm::kIntegratorLag:
       break;
   }
   return result;
+}
+
+double longest_run(const IdentificationData& data) {
+  Index longest = 0;
+  for (const Run& run : data.runs) longest = std::max(longest, run.count);
+  return static_cast<double>(longest);
 }
 
 PredictionErrorFit without(const IdentificationData& data, int cv, const PredictionErrorFit& fit,
@@ -103,7 +123,7 @@ PredictionErrorFit pruned(const IdentificationData& data, int cv, PredictionErro
       PredictionErrorFit rest = without(data, cv, fit, c, noise);
       if (!best || rest.cost < best->cost) best = std::move(rest);
     }
-    if (!best || best->cost - fit.cost > kNeeded) return fit;
+    if (!best || best->cost - fit.cost > needed_of_channel(fit.rows)) return fit;
     fit = std::move(*best);
   }
 }
@@ -124,11 +144,9 @@ PredictionErrorFit simplest_structure(const IdentificationData& data, int cv,
   for (std::vector<ChannelShape>& start : search.best_sets()) {
     PredictionErrorFit fit = pruned(
         data, cv, fit_prediction_error(data, cv, std::move(start), noise, kMostSteps), noise);
-    while (const std::optional<ChannelShape> missing = search.addition(fit.channels)) {
-      std::vector<ChannelShape> more = fit.channels;
-      more.push_back(*missing);
+    while (std::optional<std::vector<ChannelShape>> more = search.enlarged(fit.channels)) {
       PredictionErrorFit fuller = pruned(
-          data, cv, fit_prediction_error(data, cv, std::move(more), noise, kMostSteps), noise);
+          data, cv, fit_prediction_error(data, cv, std::move(*more), noise, kMostSteps), noise);
       if (bic(fuller) + kWorthRicher > bic(fit)) break;
       fit = std::move(fuller);
     }
@@ -154,7 +172,8 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
         changed[c] = shape;
         PredictionErrorFit fit =
             fit_prediction_error(data, cv, std::move(changed), noise, kTrialSteps);
-        if (bic(fit) + kWorthRicher > bic(now)) {
+        if (bic(fit) + kWorthRicher > bic(now) ||
+            slowest_time(fit.channels[c]) > kSlowestShare * longest_run(data)) {
           closed.push_back(trial);
           continue;
         }

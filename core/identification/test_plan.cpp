@@ -25,7 +25,9 @@ bool wants_movement(LeftOut left_out) {
 
 double settling_of(const ChannelAnswer& answer, double sample_time_s) {
   const TransferFunction& tf = *answer.dynamics;
-  const double times = std::accumulate(tf.time_constants_s.begin(), tf.time_constants_s.end(), 0.0);
+  const double times =
+      answer.pair ? answer.pair->time / answer.pair->damping
+                  : std::accumulate(tf.time_constants_s.begin(), tf.time_constants_s.end(), 0.0);
   return tf.dead_time_s + kSettlingTimes * std::max(times, sample_time_s);
 }
 

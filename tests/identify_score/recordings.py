@@ -21,7 +21,7 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "cases"))
 import fit_first  # noqa: E402
-from score import step_of  # noqa: E402
+from responses import step_of  # noqa: E402
 from units import UNITS  # noqa: E402
 
 
@@ -83,6 +83,8 @@ def free_run(unit, cv, channels, origin, episode):
 def error_of(unit, cv, channels, origin, episodes):
     found = []
     lags = [t for c in channels if c["cv"] == cv for t in c["time_constants"]]
+    lags += [c["damped_pair"]["time"] / c["damped_pair"]["damping"] for c in channels
+             if c["cv"] == cv and "damped_pair" in c]
     lags = sorted(set(lags), reverse=True)[:2] or [unit.sample_time]
     for episode in episodes:
         error = episode.output - free_run(unit, cv, channels, origin, episode)
@@ -118,7 +120,7 @@ def main():
             mine = [c for c in report["channels"] if c["cv"] == cv]
             kept = [c for c in mine if c["in_model"]]
             said = "; ".join(
-                f"{c['mv']}: " + (f"{c['gain']:.3g}, T {[round(t, 1) for t in c['time_constants']]}"
+                f"{c['mv']}: " + (f"{c['gain']:.3g}, {c['form']} T {[round(t, 1) for t in c['time_constants']]}"
                                   f" L {c['dead_time']:.3g}" + (" lead" if c["lead"] else "") +
                                   (" integrates" if c["integrating"] else "")
                                   if c["in_model"] else c["reason"]) for c in mine)

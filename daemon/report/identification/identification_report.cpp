@@ -26,6 +26,8 @@ std::string form_word(ChannelForm form) {
       return "first_order";
     case ChannelForm::kSecondOrder:
       return "second_order";
+    case ChannelForm::kDamped:
+      return "damped";
     case ChannelForm::kSecondOrderLead:
       return "second_order_lead";
     case ChannelForm::kIntegrator:
@@ -55,6 +57,8 @@ Json channel_json(const IdentificationRun& run, const ChannelAnswer& answer) {
   json["form"] = form_word(answer.form);
   json["gain"] = tf.gain;
   json["time_constants"] = tf.time_constants_s;
+  if (answer.pair)
+    json["damped_pair"] = {{"time", answer.pair->time}, {"damping", answer.pair->damping}};
   json["lead"] = tf.lead_s;
   json["dead_time"] = tf.dead_time_s;
   json["integrating"] = tf.integrating;
@@ -65,6 +69,7 @@ Json channel_json(const IdentificationRun& run, const ChannelAnswer& answer) {
   for (const Interval95& each : answer.time_constants)
     interval["time_constants"].push_back(interval_json(each));
   if (answer.lead_s) interval["lead"] = interval_json(*answer.lead_s);
+  if (answer.damping) interval["damping"] = interval_json(*answer.damping);
   json["step_response"] = {
       {"time", answer.step_times_s}, {"values", answer.step}, {"sd", answer.step_sd}};
   return json;
@@ -97,6 +102,8 @@ Row row_of(const IdentificationRun& run, const ChannelAnswer& answer) {
   const TransferFunction& tf = *answer.dynamics;
   std::string times = joined_numbers(tf.time_constants_s);
   if (tf.integrating) times = times.empty() ? "integrates" : "integrates, " + times;
+  if (answer.pair)
+    times = number_text(answer.pair->time) + ", damping " + number_text(answer.pair->damping);
   if (tf.lead_s != 0.0) times += ", lead " + number_text(tf.lead_s);
   return {cv_tag(run, answer.cv),
           run.unit.input_tag(answer.input),

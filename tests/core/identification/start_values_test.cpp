@@ -31,8 +31,8 @@ TEST_CASE("the search finds which inputs act, about how fast and how late") {
   CHECK(best[0].dead_time == Approx(4.0).margin(1.0));
   CHECK(best[1].input == 2);
   CHECK(best[1].gain == Approx(-0.5).epsilon(0.15));
-  CHECK_FALSE(search.addition(best));
-  CHECK(search.addition({best[0]})->input == 2);
+  CHECK_FALSE(search.enlarged(best));
+  CHECK(search.enlarged({best[0]})->back().input == 2);
 }
 
 }  // namespace mpm::test
