@@ -2,7 +2,9 @@
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
@@ -44,10 +46,8 @@ std::string rows(double gain) {
     back += 0.05 * (320.0 - back) + draw();
     const double heat = 500.0 + lag + 1.0 * draw();
     char line[160];
-    // A sensor that fails now and then, and a meter that shows no flow.
-    const bool bad = k % 200 == 150, still = k % 400 == 250;
-    std::snprintf(line, sizeof line, "%d,%.10g,%.10g,%s,%.10g\n", 10 * k, 50.0 + valve,
-                  still ? 0.0 : flow,
+    const bool bad = k % 200 == 150;  // a sensor that fails now and then
+    std::snprintf(line, sizeof line, "%d,%.10g,%.10g,%s,%.10g\n", 10 * k, 50.0 + valve, flow,
                   bad ? "Bad" : std::to_string(back + heat / (4.19 * flow)).c_str(), back);
     text += line;
   }
@@ -118,12 +118,25 @@ TEST_CASE("a model of a calculated CV is identified from its measurements and th
   // The other way: with the model of another gain it does not.
   write_file(folder.file("other.yaml"), kUnit + kModel);
   CHECK(bench.detect("other.yaml", "run.csv")["channels"][0]["verdict"] == "mismatch");
-  // The heat itself, for a spreadsheet: 4.19 x 3 x rise, 500 kW about.
+  // The heat itself, for a spreadsheet.
   bench.must({"mpm", "convert", folder.file("run.csv"), folder.file("heat.csv"), "--config",
-              folder.file("unit.yaml"), "--time-zone", "seconds"});
+              folder.file("other.yaml"), "--time-zone", "seconds"});
   const std::vector<std::string> lines = lines_of(read_file(folder.file("heat.csv")));
   REQUIRE(lines.size() == kSamples + 1);
-  CHECK(lines[0].find("heat") != std::string::npos);
+  CHECK(lines[0].find("time,valve,heat,") == 0);
+  CHECK(lines[0].find("flow,T_supply,TI-102.PV") != std::string::npos);
+  const auto numbers = [](const std::string& line) {
+    std::vector<double> values;
+    std::stringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');)
+      if (!cell.empty() && cell.find_first_not_of("0123456789.e-") == std::string::npos)
+        values.push_back(std::stod(cell));
+    return values;
+  };
+  const std::vector<double> row = numbers(lines[1]);
+  REQUIRE(row.size() == 6);  // time, valve, heat, flow and two temperatures
+  CHECK(row[2] == Approx(4.19 * row[3] * (row[4] - row[5])));
+  CHECK(row[2] == Approx(500.0).margin(2.0));
 
   // Without the measurements it is said what for they are wanted.
   write_file(folder.file("short.csv"), "time,valve,flow,heat\n0,50,3,500\n10,50,3,500\n");
