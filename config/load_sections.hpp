@@ -17,6 +17,8 @@ namespace mpm::config {
 inline constexpr std::size_t kLongestTag = 128;
 
 void load_signals(const Value* section, UnitConfig& config);
+/// After all other signals: what is calculated from them.
+void load_calculated(const Map& signals, UnitConfig& config);
 void load_model(const Value& root, const Value* section, const Value* top_level_origin,
                 ModelNeed need, UnitConfig& config);
 /// Overwrites in `monitor` what the section gives.

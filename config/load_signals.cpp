@@ -76,13 +76,15 @@ void read_list(const Map& section, std::string_view key, const std::vector<std::
 
 void load_signals(const Value* section, UnitConfig& config) {
   if (section == nullptr) return;
-  const Map map = section->map({"mv", "dv", "cv", "aux"});
+  const Map map = section->map({"mv", "dv", "cv", "aux", "raw", "calc"});
   TagReader tags;
   const std::vector<std::string> input_keys = {"tag", "unit", "description"};
   read_list(map, "mv", input_keys, tags, config.mv);
   read_list(map, "dv", input_keys, tags, config.dv);
   read_list(map, "cv", {"tag", "unit", "description", "prediction", "setpoint"}, tags, config.cv);
   read_list(map, "aux", input_keys, tags, config.aux);
+  read_list(map, "raw", input_keys, tags, config.raw);
+  load_calculated(map, config);
   if (config.mv.empty()) section->error("`mv` needs at least one manipulated variable");
   if (config.cv.empty()) section->error("`cv` needs at least one controlled variable");
 }

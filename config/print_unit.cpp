@@ -61,6 +61,19 @@ void print_signals(std::string_view kind, const std::vector<Signal>& signals, st
   }
 }
 
+void print_calculated(const UnitConfig& config, std::ostream& out) {
+  if (config.calc.empty()) return;
+  out << "  calc:\n";
+  for (const CalculatedSignal& signal : config.calc) {
+    out << "    " << yaml_text(signal.tag) << ": ";
+    if (signal.unit.empty())
+      out << yaml_text(signal.expression) << '\n';
+    else
+      out << "{expression: " << yaml_text(signal.expression) << ", unit: " << yaml_text(signal.unit)
+          << "}\n";
+  }
+}
+
 template <class Settings, class Text>
 void print_each(std::string_view key, const std::vector<std::string>& tags,
                 const std::vector<Settings>& settings, Text text, std::ostream& out) {
@@ -160,6 +173,8 @@ void print_unit(const UnitConfig& config, std::ostream& out) {
   print_signals("dv", config.dv, out);
   print_signals("cv", config.cv, out);
   print_signals("aux", config.aux, out);
+  if (!config.raw.empty()) print_signals("raw", config.raw, out);
+  print_calculated(config, out);
   print_model(config, out);
   out << "monitor:\n";
   print_fields(monitor_fields(), config.monitor, out);

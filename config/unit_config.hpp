@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/identification/channel_hint.hpp"
@@ -24,6 +25,14 @@ struct CvSignal {
   std::string description;
   std::string prediction;  ///< tag; empty = simulate from the model
   std::string setpoint;    ///< tag; may be empty
+};
+
+/// A tag whose values are computed from those of others.
+struct CalculatedSignal {
+  std::string tag;
+  std::string expression;           ///< as `Formula` reads it
+  std::string unit;                 ///< engineering unit; may be empty
+  std::vector<std::string> inputs;  ///< tags in the expression, each once, in its order
 };
 
 struct DdsSettings {
@@ -76,6 +85,8 @@ struct UnitConfig {
   double sample_time_s = 1.0;
   std::vector<InputSignal> mv, dv, aux;
   std::vector<CvSignal> cv;
+  std::vector<InputSignal> raw;        ///< measured, only to calculate with
+  std::vector<CalculatedSignal> calc;  ///< each behind those that it uses
   ModelSpec model;
   MonitorSettings monitor;
   AlarmSettings alarms;
@@ -85,7 +96,13 @@ struct UnitConfig {
 
   [[nodiscard]] SignalCounts counts() const {
     return {static_cast<int>(mv.size()), static_cast<int>(dv.size()), static_cast<int>(cv.size()),
-            static_cast<int>(aux.size())};
+            static_cast<int>(aux.size()), static_cast<int>(raw.size())};
+  }
+  /// How this tag is calculated; null for one that is measured.
+  [[nodiscard]] const CalculatedSignal* calculation_of(std::string_view tag) const {
+    for (const CalculatedSignal& signal : calc)
+      if (signal.tag == tag) return &signal;
+    return nullptr;
   }
   /// Tag of model input `index`: MVs first, then DVs.
   [[nodiscard]] const std::string& input_tag(int index) const {

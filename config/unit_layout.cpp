@@ -24,6 +24,8 @@ std::vector<std::string> tags_of(const UnitConfig& unit, SignalKind kind) {
       return each(unit.dv, &InputSignal::tag);
     case SignalKind::kAux:
       return each(unit.aux, &InputSignal::tag);
+    case SignalKind::kRaw:
+      return each(unit.raw, &InputSignal::tag);
     case SignalKind::kCv:
       return each(unit.cv, &CvSignal::tag);
     case SignalKind::kPrediction:
@@ -42,9 +44,27 @@ std::vector<std::string> engineering_units_of(const UnitConfig& unit, SignalKind
       return each(unit.dv, &InputSignal::unit);
     case SignalKind::kAux:
       return each(unit.aux, &InputSignal::unit);
+    case SignalKind::kRaw:
+      return each(unit.raw, &InputSignal::unit);
     default:
       return each(unit.cv, &CvSignal::unit);
   }
+}
+
+std::vector<std::string> measured_tags_of(const UnitConfig& unit, SignalKind kind) {
+  std::vector<std::string> tags = tags_of(unit, kind);
+  for (std::string& tag : tags)
+    if (unit.calculation_of(tag) != nullptr) tag.clear();
+  return tags;
+}
+
+bool is_layout_of(const UnitConfig& unit, SignalKind kind, const std::vector<std::string>& tags) {
+  const std::vector<std::string> all = tags_of(unit, kind);
+  const std::vector<std::string> measured = measured_tags_of(unit, kind);
+  if (tags.size() != all.size()) return false;
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    if (tags[i] != all[i] && tags[i] != measured[i]) return false;
+  return true;
 }
 
 UnitLayout unit_layout(const UnitConfig& unit) {
@@ -52,8 +72,8 @@ UnitLayout unit_layout(const UnitConfig& unit) {
   layout.unit = unit.unit;
   layout.sample_time_s = unit.sample_time_s;
   for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
-                                SignalKind::kPrediction, SignalKind::kSetpoint}) {
-    std::vector<std::string> tags = tags_of(unit, kind);
+                                SignalKind::kPrediction, SignalKind::kSetpoint, SignalKind::kRaw}) {
+    std::vector<std::string> tags = measured_tags_of(unit, kind);
     if (std::all_of(tags.begin(), tags.end(), [](const std::string& tag) { return tag.empty(); }))
       continue;
     layout[kind] = {std::move(tags), engineering_units_of(unit, kind)};

@@ -88,6 +88,27 @@ YAML::Mark mark_of(const std::string& text, std::size_t at) {
 
 }  // namespace
 
+YAML::Mark Report::mark_in(const YAML::Mark& start, std::string_view scalar,
+                           std::size_t offset) const {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
+  const auto stands_for_none = [&](char c) {
+    return is_blank(c) || c == '"' || c == '\'' || c == '\\';
+  };
+  auto at = static_cast<std::size_t>(std::max(start.pos, 0));
+  if (at >= text_.size()) return start;
+  if (text_[at] == '|' || text_[at] == '>') at = std::min(text_.find('\n', at), text_.size());
+  for (std::size_t i = 0;; ++i) {
+    if (i < scalar.size()) {
+      const bool blank = is_blank(scalar[i]);
+      while (at < text_.size() && text_[at] != scalar[i] && stands_for_none(text_[at]) &&
+             !(blank && is_blank(text_[at])))
+        ++at;
+    }
+    if (i >= offset || at >= text_.size()) return mark_of(text_, std::min(at, text_.size()));
+    ++at;
+  }
+}
+
 void Report::add(Severity severity, const YAML::Mark& mark, std::string key, std::string message) {
   const bool placed = !mark.is_null();
   findings_.push_back({file_, placed ? mark.line + 1 : 0, placed ? mark.column + 1 : 0, severity,
@@ -120,6 +141,11 @@ std::string Value::kind() const {
 
 void Value::error(std::string message) const {
   report_->add(Severity::kError, mark_, path_, std::move(message));
+}
+
+void Value::error_at(std::size_t offset, std::string message) const {
+  report_->add(Severity::kError, report_->mark_in(mark_, node_.Scalar(), offset), path_,
+               std::move(message));
 }
 
 void Value::warning(std::string message) const {
@@ -243,6 +269,12 @@ std::vector<double> Value::numbers(const Range& range) const {
 }
 
 Map Value::map(const std::vector<std::string>& known, std::string_view noun) const {
+  return read_map(&known, noun);
+}
+
+Map Value::map_of_any() const { return read_map(nullptr, "key"); }
+
+Map Value::read_map(const std::vector<std::string>* known, std::string_view noun) const {
   std::vector<Map::Entry> entries;
   if (node_.IsNull()) return {*this, {}};  // `monitor:` with nothing below
   if (!node_.IsMap()) {
@@ -258,8 +290,8 @@ Map Value::map(const std::vector<std::string>& known, std::string_view noun) con
     const std::string& key = pair.first.Scalar();
     const std::string path = path_.empty() ? key : path_ + '.' + key;
     const Value key_at(pair.first, at, path, *report_);
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      key_at.error("unknown " + std::string(noun) + suggestion(key, known));
+    if (known != nullptr && std::find(known->begin(), known->end(), key) == known->end()) {
+      key_at.error("unknown " + std::string(noun) + suggestion(key, *known));
       continue;
     }
     const auto same = [&key](const Map::Entry& entry) { return entry.key == key; };
@@ -305,6 +337,7 @@ std::optional<Value> parse_yaml(const std::string& text, Report& report) {
       return std::nullopt;
     }
     check_single_document(text, report);
+    report.set_text(text);
     return Value(root, root.Mark(), "", report);
   } catch (const YAML::Exception& error) {
     report.add(Severity::kError, error.mark.is_null() ? start : error.mark, "",

@@ -20,6 +20,12 @@ class Report {
   explicit Report(std::string file) : file_(std::move(file)) {}
 
   [[nodiscard]] const std::string& file() const { return file_; }
+  /// The file's content, for places within a scalar.
+  void set_text(std::string text) { text_ = std::move(text); }
+  /// Where byte `offset` of the scalar that begins at `start` stands in the file: quotes, escapes
+  /// and folds are stepped over.
+  [[nodiscard]] YAML::Mark mark_in(const YAML::Mark& start, std::string_view scalar,
+                                   std::size_t offset) const;
   void add(Severity severity, const YAML::Mark& mark, std::string key, std::string message);
   [[nodiscard]] bool has_error() const;
   /// Sorted by place, one per place and message.
@@ -27,6 +33,7 @@ class Report {
 
  private:
   std::string file_;
+  std::string text_;
   std::vector<Finding> findings_;
 };
 
@@ -72,12 +79,18 @@ class Value {
   /// A map in which only `known` keys may occur; empty where the value is none. `noun` says in
   /// messages what a key is.
   [[nodiscard]] Map map(const std::vector<std::string>& known, std::string_view noun = "key") const;
+  /// A map whose keys are the user's own words.
+  [[nodiscard]] Map map_of_any() const;
 
   void error(std::string message) const;
+  /// Of a text: at one of its bytes.
+  void error_at(std::size_t offset, std::string message) const;
   void warning(std::string message) const;
 
  private:
   [[nodiscard]] std::string kind() const;
+  /// `known` null: any key.
+  [[nodiscard]] Map read_map(const std::vector<std::string>* known, std::string_view noun) const;
 
   YAML::Node node_;
   YAML::Mark mark_;

@@ -8,13 +8,13 @@
 
 namespace mpm::idl {
 
-/// Reads the five input topics of all units of one participant.
+/// Reads the input topics of all units of one participant.
 class SampleReaders {
  public:
   explicit SampleReaders(const Participant& participant)
       : readers_{make(participant, kTopicKinds[0]), make(participant, kTopicKinds[1]),
                  make(participant, kTopicKinds[2]), make(participant, kTopicKinds[3]),
-                 make(participant, kTopicKinds[4])} {}
+                 make(participant, kTopicKinds[4]), make(participant, kTopicKinds[5])} {}
 
   void attach_to(WaitSet& wait_set) const {
     for (const auto& reader : readers_) wait_set.attach(reader.readable());

@@ -40,6 +40,7 @@ constexpr auto topics(const std::tuple<Record...>*) {
       input("mpm/cv"),
       input("mpm/prediction"),
       input("mpm/setpoint"),
+      input("mpm/raw"),
       known<mpm_Layout>(kLayoutTopic, late_joiner_reader_qos, layout_writer),
       known<SampleOf<Record>>(OutputTopic<Record>::kName, OutputTopic<Record>::kEveryChangeQos,
                               output_writer<Record>)...};

@@ -16,10 +16,10 @@ struct KnownTopic {
   const dds_topic_descriptor_t* type;  ///< its first member is the key `string unit`
   Qos (*reader_qos)();                 ///< keeps all that comes
   Qos (*writer_qos)(WriterPace pace);  ///< the profile of the topic, for who plays its writer
-  bool input;                          ///< one of the five that the monitor only reads
+  bool input;                          ///< one of those that the monitor only reads
 };
 
-/// All topics of mpm.idl, the five inputs first.
+/// All topics of mpm.idl, the inputs first.
 [[nodiscard]] std::span<const KnownTopic> known_topics();
 /// Null for any other topic.
 [[nodiscard]] const KnownTopic* find_known_topic(std::string_view name);

@@ -14,6 +14,8 @@ const char* sample_topic(SignalKind kind) {
       return "mpm/prediction";
     case SignalKind::kSetpoint:
       return "mpm/setpoint";
+    case SignalKind::kRaw:
+      return "mpm/raw";
     default:
       return nullptr;
   }

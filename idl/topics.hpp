@@ -19,8 +19,9 @@ inline constexpr const char* kAlarmEventTopic = "mpm/alarm_event";
 inline constexpr const char* kHealthTopic = "mpm/health";
 
 /// The kinds of signals that have a DDS topic; kAux comes from files only.
-inline constexpr std::array kTopicKinds = {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
-                                           SignalKind::kPrediction, SignalKind::kSetpoint};
+inline constexpr std::array kTopicKinds = {SignalKind::kMv,       SignalKind::kDv,
+                                           SignalKind::kCv,       SignalKind::kPrediction,
+                                           SignalKind::kSetpoint, SignalKind::kRaw};
 
 /// "mpm/mv" ...
 [[nodiscard]] const char* sample_topic(SignalKind kind);

@@ -13,7 +13,7 @@
 
 namespace mpm::idl {
 
-/// Plays the control system of one unit: writes its layout once and then each frame as up to five
+/// Plays the control system of one unit: writes its layout once and then each frame as up to six
 /// samples. For simulation and replay; the monitor never makes one.
 class UnitPublisher {
  public:

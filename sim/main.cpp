@@ -42,6 +42,9 @@ config::UnitConfig load_unit(const std::string& file) {
   config::LoadResult loaded = config::load_unit(file);
   report(loaded.findings);
   if (!loaded.config.has_model()) throw BadInput(file + ": error: the unit has no model");
+  if (!loaded.config.calc.empty())
+    throw BadInput(file + ": error: '" + loaded.config.calc.front().tag +
+                   "' is calculated from other tags, and a simulation has no values of those");
   return std::move(loaded.config);
 }
 

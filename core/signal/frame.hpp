@@ -15,9 +15,10 @@ namespace mpm {
 /// that `Screen` finds implausible.
 enum class Quality : std::uint8_t { kGood = 0, kUncertain = 1, kBad = 2, kImplausible = 3 };
 
-/// The groups of signals of a unit; one DDS topic each (aux: files only).
-enum class SignalKind : std::uint8_t { kMv, kDv, kCv, kPrediction, kSetpoint, kAux };
-inline constexpr std::size_t kSignalKindCount = 6;
+/// The groups of signals of a unit; one DDS topic each (aux: files only). Raw ones are there for
+/// others to be calculated from, and no statistic uses them.
+enum class SignalKind : std::uint8_t { kMv, kDv, kCv, kPrediction, kSetpoint, kAux, kRaw };
+inline constexpr std::size_t kSignalKindCount = 7;
 
 /// Number of signals of each kind; predictions and set-points count one per CV.
 struct SignalCounts {
@@ -25,6 +26,7 @@ struct SignalCounts {
   int dv = 0;
   int cv = 0;
   int aux = 0;
+  int raw = 0;
 
   [[nodiscard]] int of(SignalKind kind) const {
     switch (kind) {
@@ -34,6 +36,8 @@ struct SignalCounts {
         return dv;
       case SignalKind::kAux:
         return aux;
+      case SignalKind::kRaw:
+        return raw;
       default:
         return cv;
     }

@@ -9,6 +9,7 @@
 #include "daemon/bag/contents.hpp"
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/files/aligning.hpp"
+#include "idl/layout_sample.hpp"
 
 namespace mpm::bag {
 namespace {
@@ -23,10 +24,12 @@ McapFrames::McapFrames(const std::vector<std::string>& paths, const config::Unit
                        files::Purpose purpose)
     : unit_(unit),
       purpose_(purpose),
+      calculator_(unit),
       aligner_(unit.counts(), look_into(paths, purpose),
                [this](const Frame& frame) {
                  last_frame_ns_ = now_ns_;
                  ready_.push_back(frame);
+                 calculator_.fill(ready_.back());
                }),
       samples_(paths),
       patience_ns_(files::frame_patience(unit).count()) {}
@@ -59,22 +62,30 @@ std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::
 }
 
 void McapFrames::check_needed(const std::string& path, const RecordedUnit& recorded) {
-  const SignalCounts counts = unit_.counts();
-  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kDv})
-    if (counts.of(kind) > 0 && !recorded[kind].seen)
+  const std::array<bool, kSignalKindCount> needed = files::needed_kinds(unit_);
+  const auto lacks = [&](SignalKind kind) {
+    return needed[static_cast<std::size_t>(kind)] && !recorded[kind].seen;
+  };
+  for (const SignalKind kind :
+       {SignalKind::kMv, SignalKind::kCv, SignalKind::kDv, SignalKind::kRaw})
+    if (lacks(kind))
       refuse(path, std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
-  const bool predicted =
-      files::needed_kinds(unit_)[static_cast<std::size_t>(SignalKind::kPrediction)];
-  if (!recorded[SignalKind::kPrediction].seen) {
+  if (!recorded[SignalKind::kPrediction].seen && !predictions_calculated()) {
     if (!unit_.has_model())
       refuse(path, "holds no mpm/prediction of unit '" + unit_.unit +
                        "', and its unit file has no model to simulate them");
-    if (predicted)
+    if (lacks(SignalKind::kPrediction))
       notices_.emplace_back(
           "no predictions in the file, so the unit file's model simulates them instead");
   }
-  if (counts.aux > 0 && !recorded[SignalKind::kAux].seen)
+  if (!unit_.aux.empty() && !recorded[SignalKind::kAux].seen)
     notices_.emplace_back("no aux signals in the file");
+}
+
+bool McapFrames::predictions_calculated() const {
+  return std::any_of(unit_.cv.begin(), unit_.cv.end(), [this](const config::CvSignal& cv) {
+    return unit_.calculation_of(cv.prediction) != nullptr;
+  });
 }
 
 void McapFrames::check_layout(const mpm_Layout& layout) {
@@ -82,10 +93,7 @@ void McapFrames::check_layout(const mpm_Layout& layout) {
   for (std::size_t k = 0; k < kSignalKindCount; ++k) {
     const auto kind = static_cast<SignalKind>(k);
     if (std::string_view(layout.kind) != name_of(kind)) continue;
-    const std::vector<std::string> tags = tags_of(unit_, kind);
-    if (std::equal(tags.begin(), tags.end(), layout.tags._buffer,
-                   layout.tags._buffer + layout.tags._length))
-      continue;
+    if (config::is_layout_of(unit_, kind, idl::texts_of(layout.tags))) continue;
     std::string notice = std::string("the recorded ") + name_of(kind) +
                          " layout has other tags, or another order, than the unit file; its order "
                          "is taken";

@@ -10,6 +10,7 @@
 #include "core/signal/aligner.hpp"
 #include "daemon/bag/contents.hpp"
 #include "daemon/bag/sample_stream.hpp"
+#include "daemon/files/calculator.hpp"
 #include "daemon/files/csv/tag_table.hpp"
 #include "daemon/files/frame_source.hpp"
 
@@ -35,6 +36,7 @@ class McapFrames : public files::FrameSource {
   std::array<bool, kSignalKindCount> look_into(const std::vector<std::string>& paths,
                                                files::Purpose purpose);
   void check_needed(const std::string& path, const RecordedUnit& recorded);
+  [[nodiscard]] bool predictions_calculated() const;
   void check_layout(const mpm_Layout& layout);
   void push(const idl::SampleView& sample, std::int64_t now_ns);
   void tell_counters();
@@ -43,6 +45,7 @@ class McapFrames : public files::FrameSource {
   files::Purpose purpose_;
   std::vector<std::string> notices_;
   std::deque<Frame> ready_;
+  files::Calculator calculator_;
   Aligner aligner_;
   SampleStream samples_;
   std::int64_t patience_ns_;

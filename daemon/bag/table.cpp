@@ -23,8 +23,9 @@ namespace {
 template <class Holds>
 std::vector<files::Column> columns_of(const config::UnitConfig& unit, Holds holds) {
   std::vector<files::Column> columns;
-  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
-                                SignalKind::kPrediction, SignalKind::kSetpoint, SignalKind::kAux}) {
+  for (const SignalKind kind :
+       {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction,
+        SignalKind::kSetpoint, SignalKind::kAux, SignalKind::kRaw}) {
     const std::vector<std::string> tags = tags_of(unit, kind);
     for (std::size_t i = 0; i < tags.size(); ++i)
       if (!tags[i].empty() && holds(kind, i, tags[i]))
@@ -52,6 +53,7 @@ config::UnitConfig unit_of(const std::string& path, const std::string& name,
   inputs(SignalKind::kMv, unit.mv);
   inputs(SignalKind::kDv, unit.dv);
   inputs(SignalKind::kAux, unit.aux);
+  inputs(SignalKind::kRaw, unit.raw);
   const std::vector<std::string> cvs = tags(SignalKind::kCv);
   const std::vector<std::string> predictions = tags(SignalKind::kPrediction);
   const std::vector<std::string> setpoints = tags(SignalKind::kSetpoint);
@@ -76,8 +78,9 @@ Table open_mcap(const std::string& path, const TableOptions& options) {
   const RecordedUnit& recorded = found->second;
   Table table;
   table.unit = options.unit != nullptr ? *options.unit : unit_of(path, found->first, recorded);
-  table.columns = columns_of(table.unit, [&](SignalKind kind, std::size_t index, const auto&) {
+  table.columns = columns_of(table.unit, [&](SignalKind kind, std::size_t index, const auto& tag) {
     const RecordedKind& known = recorded[kind];
+    if (table.unit.calculation_of(tag) != nullptr) return true;
     return known.seen && (index >= known.tags.size() || !known.tags[index].empty());
   });
   for (std::size_t k = 0; k < kSignalKindCount; ++k) {
@@ -96,13 +99,16 @@ Table open_csv(const std::string& path, const TableOptions& options) {
     table.unit = *options.unit;
     auto reader =
         std::make_unique<files::CsvReader>(path, table.unit, options.times, files::Purpose::kKeep);
+    // As a bus would have it: what reads the recording calculates the rest.
     table.columns = columns_of(table.unit, [&](SignalKind, std::size_t, const std::string& tag) {
-      return reader->holds(tag);
+      return reader->holds(tag) && table.unit.calculation_of(tag) == nullptr;
     });
     table.frames = std::move(reader);
     return table;
   }
-  auto rows = std::make_unique<files::CsvRows>(path, options.times);
+  auto rows = std::make_unique<files::CsvRows>(
+      path, options.times,
+      options.unit != nullptr ? options.unit->calc : std::vector<config::CalculatedSignal>());
   table.columns = rows->columns();
   table.frames = std::move(rows);
   if (options.unit == nullptr) return table;

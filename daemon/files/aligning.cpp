@@ -1,22 +1,28 @@
 #include "daemon/files/aligning.hpp"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include "config/unit_layout.hpp"
 #include "core/signal/aligner.hpp"
 
 namespace mpm::files {
 
 std::array<bool, kSignalKindCount> needed_kinds(const config::UnitConfig& unit) {
   std::array<bool, kSignalKindCount> needed{};
-  const auto need = [&](SignalKind kind, bool yes) {
-    needed[static_cast<std::size_t>(kind)] = yes;
+  const auto calculates_with = [&unit](const std::string& tag) {
+    return std::any_of(unit.calc.begin(), unit.calc.end(), [&](const auto& signal) {
+      return std::find(signal.inputs.begin(), signal.inputs.end(), tag) != signal.inputs.end();
+    });
   };
-  need(SignalKind::kMv, true);
-  need(SignalKind::kCv, true);
-  need(SignalKind::kDv, !unit.dv.empty());
-  need(SignalKind::kPrediction,
-       std::any_of(unit.cv.begin(), unit.cv.end(),
-                   [](const config::CvSignal& cv) { return !cv.prediction.empty(); }));
+  for (std::size_t k = 0; k < kSignalKindCount; ++k) {
+    const auto kind = static_cast<SignalKind>(k);
+    if (kind == SignalKind::kAux) continue;
+    for (const std::string& tag : measured_tags_of(unit, kind))
+      needed[k] =
+          needed[k] || (!tag.empty() && (kind != SignalKind::kSetpoint || calculates_with(tag)));
+  }
   return needed;
 }
 

@@ -8,8 +8,9 @@
 /// How the samples of a unit become frames: the same for the daemon and for a recording.
 namespace mpm::files {
 
-/// Which kinds a frame of the unit waits for. No statistic uses set-points, so they are not among
-/// them.
+/// Which kinds a frame of the unit waits for. A kind of which all
+/// is calculated does not come. No statistic uses set-points, so they are among them only where
+/// something is calculated from one; aux signals are in files only.
 [[nodiscard]] std::array<bool, kSignalKindCount> needed_kinds(const config::UnitConfig& unit);
 
 /// How long a frame may be awaited while something else of the unit is there.

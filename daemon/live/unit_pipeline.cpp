@@ -12,6 +12,7 @@
 #include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
 #include "daemon/report/channel_text.hpp"
+#include "idl/layout_sample.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::live {
@@ -67,14 +68,28 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       outputs_(outputs),
       samples_(samples),
       monitor_(config),
+      calculator_(config),
+      calculated_(config.counts()),
       aligner_(config.counts(), files::needed_kinds(config),
-               [this](const Frame& frame) { on_frame(frame); }),
+               [this](const Frame& frame) {
+                 calculated_ = frame;
+                 calculator_.fill(calculated_);
+                 on_frame(calculated_);
+               }),
       patience_(files::frame_patience(config)),
       inputs_(expected_of(config), now),
       now_(now),
       last_frame_(now),
       next_health_(now) {
   health_.unit = config.unit;
+  for (const config::InputSignal& aux : config.aux)
+    for (const config::CalculatedSignal& signal : config.calc)
+      if (config.calculation_of(aux.tag) == nullptr &&
+          std::find(signal.inputs.begin(), signal.inputs.end(), aux.tag) != signal.inputs.end())
+        spdlog::warn(
+            "{}: '{}' has no value here: it is calculated from '{}', and aux signals are in files "
+            "only; in signals.raw it would come on {}",
+            config.unit, signal.tag, aux.tag, idl::sample_topic(SignalKind::kRaw));
   publish_initial_alarms();
 }
 
@@ -189,13 +204,7 @@ void UnitPipeline::publish_diagnosis() {
 void UnitPipeline::check_layout(const mpm_Layout& layout) {
   const std::optional<SignalKind> known = kind_of(layout.kind);
   const std::string kind = known ? layout.kind : "unknown kind";
-  const std::vector<std::string> expected =
-      known ? config::tags_of(config_, *known) : std::vector<std::string>();
-  const bool same = known && std::equal(expected.begin(), expected.end(), layout.tags._buffer,
-                                        layout.tags._buffer + layout.tags._length,
-                                        [](const std::string& a, const char* b) {
-                                          return b != nullptr && a == b;
-                                        });
+  const bool same = known && config::is_layout_of(config_, *known, idl::texts_of(layout.tags));
   if (same && layout.sample_time_s == config_.sample_time_s) return;
   if (wrong_layout_.find(kind) != std::string::npos) return;
   wrong_layout_ += (wrong_layout_.empty() ? "" : ", ") + kind;

@@ -9,6 +9,7 @@
 #include "config/unit_config.hpp"
 #include "core/signal/aligner.hpp"
 #include "daemon/bus/unit_inputs.hpp"
+#include "daemon/files/calculator.hpp"
 #include "daemon/history/journal.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/live_diagnosis.hpp"
@@ -20,8 +21,9 @@
 
 namespace mpm::live {
 
-/// One unit from samples to outputs: aligner -> monitor -> records -> DDS and journal; what its
-/// alarms are diagnosed to come from; and what is wrong with its data, its neighbours and its disk.
+/// One unit from samples to outputs: aligner -> calculated signals -> monitor -> records -> DDS and
+/// journal; what its alarms are diagnosed to come from; and what is wrong with its data, its
+/// neighbours and its disk.
 class UnitPipeline {
  public:
   using Clock = std::chrono::steady_clock;
@@ -69,6 +71,8 @@ class UnitPipeline {
   SampleJournal* samples_;
   std::optional<history::Journal> journal_;
   report::UnitMonitor monitor_;
+  files::Calculator calculator_;
+  Frame calculated_;  // a copy of the aligner's, with what is calculated
   Aligner aligner_;
   std::optional<LiveDiagnosis> diagnosis_;
   Clock::duration patience_;  // without a frame while something waits

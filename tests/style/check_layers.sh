@@ -12,11 +12,11 @@ forbid() {
   fi
 }
 
-forbid core 'dds/|yaml-cpp|spdlog|CLI/|nlohmann|systemd|iostream|fstream|filesystem|chrono|ctime|thread|config/|idl/|sim/|daemon/|tests/'
+forbid core 'dds/|yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|iostream|fstream|filesystem|chrono|ctime|thread|config/|idl/|sim/|daemon/|tests/'
 forbid config 'dds/|spdlog|CLI/|systemd|idl/|sim/|daemon/|tests/'
-forbid idl 'yaml-cpp|spdlog|CLI/|nlohmann|systemd|config/|sim/|daemon/|tests/'
-forbid sim 'yaml-cpp|dds/|systemd|daemon/|tests/'
-forbid daemon 'yaml-cpp|dds/|sim/|tests/'
+forbid idl 'yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|config/|sim/|daemon/|tests/'
+forbid sim 'yaml-cpp|muParser|dds/|systemd|daemon/|tests/'
+forbid daemon 'yaml-cpp|muParser|dds/|sim/|tests/'
 for folder in files mcap report history; do forbid daemon/$folder 'idl/|mpm\.h|spdlog|systemd'; done
 
 if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \

@@ -2,8 +2,8 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,35 +38,46 @@ Clock::duration duration_of(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-bool same_place(const idl::DomainOptions& a, const idl::DomainOptions& b) {
-  return idl::domain_xml(a) == idl::domain_xml(b);
-}
+/// Where to look, and what should be there; no units: whatever is.
+struct Place {
+  idl::DomainOptions domain;
+  std::vector<bus::ExpectedInputs> units;
+};
 
 bool ignores_environment(const idl::DomainOptions& domain) {
   return !domain.use_environment && std::getenv("CYCLONEDDS_URI") != nullptr;
 }
 
-// 0, or 1 if something is wrong.
-int examine(const DoctorOptions& options, const std::vector<bus::ExpectedInputs>& units,
-            host::StopSignal& stop) {
-  double seconds = options.seconds;
+bus::Findings examine(const Place& place, double seconds, host::StopSignal& stop) {
   if (seconds == 0.0) {
     seconds = kShortestS;
-    for (const bus::ExpectedInputs& unit : units)
+    for (const bus::ExpectedInputs& unit : place.units)
       seconds = std::max(seconds, kSampleTimes * unit.sample_time_s);
     seconds = std::min(seconds, kLongestS);
   }
-  const idl::Participant participant(options.domain);
+  const idl::Participant participant(place.domain);
   bus::Examination examination(participant,
-                               bus::place_text(options.domain.domain, options.domain.partition),
-                               units, duration_of(seconds));
+                               bus::place_text(place.domain.domain, place.domain.partition),
+                               place.units, duration_of(seconds));
   const Clock::time_point end = Clock::now() + duration_of(seconds);
   while (!stop.received() && Clock::now() < end) examination.listen(kLongestWait);
   examination.listen(kLongestWait);
   bus::Findings findings = examination.findings();
-  if (ignores_environment(options.domain))
+  if (ignores_environment(place.domain))
     findings.notes.emplace_back(
         "CYCLONEDDS_URI is set and was not used; --dds-from-environment takes it");
+  return findings;
+}
+
+// One after the other. 0, or 1 if something is wrong.
+int examine(const DoctorOptions& options, const std::vector<Place>& places,
+            host::StopSignal& stop) {
+  std::vector<bus::Findings> found;
+  for (const Place& place : places) {
+    found.push_back(examine(place, options.seconds, stop));
+    if (stop.received()) break;
+  }
+  const bus::Findings findings = bus::joined(std::move(found));
   if (options.json)
     std::cout << to_json(findings).dump(-1, ' ', false,
                                         nlohmann::ordered_json::error_handler_t::replace)
@@ -76,28 +87,25 @@ int examine(const DoctorOptions& options, const std::vector<bus::ExpectedInputs>
   return findings.all_well() ? 0 : 1;
 }
 
-int doctor(DoctorOptions options) {
+int doctor(const DoctorOptions& options) {
   host::StopSignal stop;  // before any thread
   host::set_up_logging("error");
-  std::vector<bus::ExpectedInputs> units;
+  std::vector<Place> places = {{options.domain, {}}};
   if (!options.config.empty()) {
     const config::LoadUnitsResult loaded = config::load_units(options.config);
     for (const config::Finding& finding : loaded.findings) std::cerr << format(finding) << '\n';
     if (!loaded.ok() || loaded.units.empty()) return 3;
-    std::optional<idl::DomainOptions> place;
+    places.clear();
+    std::map<std::string, std::size_t> known;  // by network settings
     for (const config::UnitConfig& unit : loaded.units) {
-      const idl::DomainOptions here =
+      const idl::DomainOptions domain =
           with_flags(*options.command, bus::domain_options(unit.dds), options.domain);
-      if (place && !same_place(*place, here)) {
-        std::cerr << "mpm: error: the units are on different domains; examine them one by one\n";
-        return 3;
-      }
-      place = here;
-      units.push_back(bus::expected_inputs(unit, files::needed_kinds(unit)));
+      const auto [place, is_new] = known.try_emplace(idl::domain_xml(domain), places.size());
+      if (is_new) places.push_back({domain, {}});
+      places[place->second].units.push_back(bus::expected_inputs(unit, files::needed_kinds(unit)));
     }
-    options.domain = *place;
   }
-  return examine(options, units, stop);
+  return examine(options, places, stop);
 }
 
 }  // namespace
@@ -107,13 +115,15 @@ void add_doctor(CLI::App& app, int& exit_code) {
       app.add_subcommand("doctor", "say what is wrong between gateway, bus and monitor");
   const auto options = std::make_shared<DoctorOptions>();
   options->command = command;
-  command->add_option("-c,--config", options->config,
-                      "unit file, or folder of unit files: what should be there, and where; "
-                      "without it, whatever is on the domain");
+  command->add_option(
+      "-c,--config", options->config,
+      "unit file, or folder of unit files: what should be there, and on which domain; "
+      "without it, whatever is on the domain");
   add_bus_flags(*command, options->domain);
   command
       ->add_option("--seconds", options->seconds,
-                   "how long to look, as 90 or 1.5h (default: three sample times, 5 s to 180 s)")
+                   "how long to look on each domain, as 90 or 1.5h (default: three sample times, 5 "
+                   "s to 180 s)")
       ->transform(positive_time_value());
   command->add_flag("--json", options->json, "print one JSON object");
   command->footer(

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "core/model/reduce_step_response.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/commands.hpp"
+#include "daemon/files/csv/state_space_folder.hpp"
 #include "daemon/files/csv/step_table.hpp"
 #include "daemon/files/replacement_file.hpp"
 
@@ -82,8 +84,10 @@ bool tell(const std::vector<config::Finding>& findings) {
 
 /// False where the file is no model, which has then been told.
 bool read_model(const ImportOptions& options, config::UnitConfig& unit, Story& story) {
-  if (options.table.ends_with(".json")) {
-    if (!tell(config::import_state_space(options.table, unit))) return false;
+  const bool folder = std::filesystem::is_directory(options.table);
+  if (folder) unit.model.state_space = files::read_state_space_folder(options.table, unit);
+  if (folder || options.table.ends_with(".json")) {
+    if (!folder && !tell(config::import_state_space(options.table, unit))) return false;
     story.push_back("a state space of " +
                     counted(static_cast<std::uint64_t>(unit.model.state_space->a.rows()), "state"));
     return true;
@@ -137,11 +141,16 @@ void add_import(CLI::App& app, int& exit_code) {
   command
       ->add_option("table", options->table,
                    "step responses as CSV, a row cv,mv,<coefficients per sample> for each channel; "
-                   "or a discrete state space as .json, {\"A\", \"B\", \"C\", \"D\", \"x0\"}")
+                   "or a discrete state space: .json, {\"A\", \"B\", \"C\", \"D\", \"x0\"}, or a "
+                   "folder with "
+                   "A.csv, B.csv, C.csv and perhaps D.csv and x0.csv")
       ->required();
   command->add_option("-c,--config", options->config, "unit file; needs no model")->required();
   command->add_option("--out", options->out, "unit file to write, with the model")->required();
-  command->footer("Example:\n  mpm import dmc_model.csv --config unit.yaml --out imported.yaml");
+  command->footer(
+      "Examples:\n"
+      "  mpm import dmc_model.csv --config unit.yaml --out imported.yaml\n"
+      "  mpm import matrices/ --config unit.yaml --out imported.yaml");
   command->callback([options, &exit_code] { exit_code = import_model(*options); });
 }
 

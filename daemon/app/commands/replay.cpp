@@ -247,7 +247,7 @@ void add_replay(CLI::App& app, int& exit_code) {
                     "begin again at the end; interval numbers and times go on");
   command->add_flag("-p,--start-paused", player.start_paused, "wait for the space bar");
   add_topic_choice(*command, options->topics,
-                   "these topics, as mpm/mv,mpm/cv (default: the five inputs, so that a monitor "
+                   "these topics, as mpm/mv,mpm/cv (default: the inputs, so that a monitor "
                    "judges anew)");
   command->add_option("--unit", player.unit, "only this unit");
   command->add_option("--remap", options->remap, "publish unit FROM as TO: FROM:=TO; repeatable")

@@ -132,6 +132,8 @@ void Examination::hear(const mpm_Layout& layout) {
     expected.counts.mv = count;
   else if (*kind == SignalKind::kDv)
     expected.counts.dv = count;
+  else if (*kind == SignalKind::kRaw)
+    expected.counts.raw = count;
   else
     expected.counts.cv = count;
   expected.needed[static_cast<std::size_t>(*kind)] = count > 0 && *kind != SignalKind::kSetpoint;
@@ -174,6 +176,7 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
   UnitFindings findings;
   findings.unit = unit.inputs.expected().unit;
   for (const SignalKind kind : idl::kTopicKinds) {
+    if (kind == SignalKind::kRaw && unit.inputs.expected().counts.raw == 0) continue;
     findings.topics.push_back(topic_of(unit, kind, around, now));
     for (const WriterFindings& writer : findings.topics.back().writers) {
       const double off_s = std::abs(writer.clock_offset_s);

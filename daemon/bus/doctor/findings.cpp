@@ -49,7 +49,7 @@ std::vector<Line> lines_of(const Findings& findings) {
   return lines;
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
@@ -61,7 +61,7 @@ std::string row(const std::string& topic, const std::string& text) {
 
 std::string writer_text(const WriterFindings& writer) {
   std::string text = idl::name_of(writer.process);
-  if (!writer.mismatch.empty()) return text + ": does not match, " + joined(writer.mismatch);
+  if (!writer.mismatch.empty()) return text + ": does not match, " + listed(writer.mismatch);
   text += ": QoS matches, ";
   if (writer.samples == 0) return text + "nothing of this unit";
   text += writer.rate_hz > 0.0 ? fmt::format("{:.3g}/s", writer.rate_hz) : "one sample";
@@ -76,7 +76,8 @@ std::string monitor_text(const MonitorFindings& monitor) {
 }
 
 std::string unit_text(const UnitFindings& unit) {
-  std::string text = printable(unit.unit) + (unit.troubles.empty() ? ": well\n" : ": trouble\n");
+  std::string text = printable(unit.unit) + (unit.place.empty() ? "" : " on " + unit.place) +
+                     (unit.troubles.empty() ? ": well\n" : ": trouble\n");
   if (unit.monitors.empty()) text += row("monitor", "none");
   for (const MonitorFindings& monitor : unit.monitors)
     text += row("monitor", monitor_text(monitor));
@@ -127,7 +128,10 @@ Json json_of(const UnitFindings& unit) {
     topics.push_back(
         {{"topic", topic.topic}, {"needed", topic.needed}, {"writers", std::move(writers)}});
   }
-  return {{"unit", unit.unit}, {"monitors", std::move(monitors)}, {"topics", std::move(topics)}};
+  Json json = {{"unit", unit.unit}};
+  if (!unit.place.empty()) json["place"] = unit.place;
+  json.update({{"monitors", std::move(monitors)}, {"topics", std::move(topics)}});
+  return json;
 }
 
 }  // namespace
@@ -136,6 +140,24 @@ bool Findings::all_well() const {
   return troubles.empty() && std::all_of(units.begin(), units.end(), [](const UnitFindings& unit) {
            return unit.troubles.empty();
          });
+}
+
+Findings joined(std::vector<Findings> of_places) {
+  if (of_places.size() == 1) return std::move(of_places.front());
+  Findings all;
+  for (Findings& one : of_places) {
+    all.place += (all.place.empty() ? "" : "; ") + one.place;
+    for (UnitFindings& unit : one.units) {
+      unit.place = one.place;
+      all.units.push_back(std::move(unit));
+    }
+    for (Trouble& trouble : one.troubles) {
+      trouble.text = one.place + ": " + trouble.text;
+      all.troubles.push_back(std::move(trouble));
+    }
+    for (const std::string& note : one.notes) all.notes.push_back(one.place + ": " + note);
+  }
+  return all;
 }
 
 std::string advice(const Trouble& trouble) {

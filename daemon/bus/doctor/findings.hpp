@@ -38,6 +38,7 @@ struct MonitorFindings {
 
 struct UnitFindings {
   std::string unit;
+  std::string place;  ///< as in Findings, where those are of several; else empty
   std::vector<MonitorFindings> monitors;
   std::vector<TopicFindings> topics;
   std::vector<Trouble> troubles;  ///< the worst first
@@ -52,6 +53,9 @@ struct Findings {
 
   [[nodiscard]] bool all_well() const;
 };
+
+/// What was found on several places as one; each unit and what is of no unit tell theirs.
+[[nodiscard]] Findings joined(std::vector<Findings> of_places);
 
 /// What to do about a trouble, as a sentence.
 [[nodiscard]] std::string advice(const Trouble& trouble);

@@ -8,6 +8,7 @@
 
 #include "config/finding.hpp"
 #include "daemon/files/csv/averaged_rows.hpp"
+#include "daemon/files/csv/calculated_rows.hpp"
 
 namespace mpm::files {
 namespace {
@@ -49,15 +50,17 @@ CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& nam
       purpose_(purpose),
       lines_(std::move(input), name),
       tags_(unit, purpose) {
-  open(unit.counts(), times);
+  open(unit, times);
 }
 
-void CsvReader::open(const SignalCounts& counts, const TimeStyle& times) {
+void CsvReader::open(const config::UnitConfig& unit, const TimeStyle& times) {
+  const SignalCounts counts = unit.counts();
   std::vector<Cell> header;
   const CsvFormat format = find_format(lines_, times, sample_time_s_, &tags_, header, row_notices_);
   const int header_line = lines_.number();
   rows_ = format.layout.is_long ? read_long(lines_, format, tags_, counts, row_notices_)
                                 : read_wide(lines_, format, header, tags_, counts, row_notices_);
+  if (!unit.calc.empty()) rows_ = std::make_unique<CalculatedRows>(std::move(rows_), unit);
   notices_ = tags_.notices();
 
   for (std::size_t i = 0; i < kRowsAhead; ++i) {

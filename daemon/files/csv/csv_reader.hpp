@@ -18,7 +18,8 @@ namespace mpm::files {
 /// file that is not sorted by time.
 ///
 /// To judge a unit, rows at least twice as dense as its sample_time are averaged down to it
-/// (`AveragedRows`), which is noted.
+/// (`AveragedRows`), which is noted. Calculated signals are computed in each row
+/// (`CalculatedRows`).
 ///
 /// Frame k of a file is numbered round((t - t_first) / sample_time); rows whose time does not grow
 /// keep their number, for the monitor to judge.
@@ -42,7 +43,7 @@ class CsvReader : public FrameSource {
   [[nodiscard]] bool holds(const std::string& tag) const { return tags_.seen(tag); }
 
  private:
-  void open(const SignalCounts& counts, const TimeStyle& times);
+  void open(const config::UnitConfig& unit, const TimeStyle& times);
   void fit_sample_time(int first_line);
   void average(double step_s);
   [[nodiscard]] bool read(Frame& frame);

@@ -1,7 +1,10 @@
 #include "daemon/files/csv/csv_rows.hpp"
 
+#include <algorithm>
 #include <unordered_set>
 #include <utility>
+
+#include "daemon/files/csv/calculated_rows.hpp"
 
 namespace mpm::files {
 namespace {
@@ -28,7 +31,9 @@ std::vector<std::string> long_tags(LineReader& lines, const CsvFormat& format) {
 
 }  // namespace
 
-CsvRows::CsvRows(const std::string& path, const TimeStyle& times) : lines_(open_file(path), path) {
+CsvRows::CsvRows(const std::string& path, const TimeStyle& times,
+                 const std::vector<config::CalculatedSignal>& calc)
+    : lines_(open_file(path), path) {
   std::vector<Cell> header;
   format_ = find_format(lines_, times, 0.0, nullptr, header, notices_);
   const int header_line = lines_.number();
@@ -39,12 +44,26 @@ CsvRows::CsvRows(const std::string& path, const TimeStyle& times) : lines_(open_
     columns_.push_back({tag, SignalKind::kAux, static_cast<int>(unit.aux.size())});
     unit.aux.push_back({tag, "", ""});
   }
+  for (const config::CalculatedSignal& signal : calc) {
+    const auto has = [&unit](const std::string& tag) {
+      return unit.calculation_of(tag) != nullptr ||
+             std::any_of(unit.aux.begin(), unit.aux.end(),
+                         [&](const config::InputSignal& aux) { return aux.tag == tag; });
+    };
+    if (!std::all_of(signal.inputs.begin(), signal.inputs.end(), has)) continue;
+    if (!has(signal.tag)) {
+      columns_.push_back({signal.tag, SignalKind::kAux, static_cast<int>(unit.aux.size())});
+      unit.aux.push_back({signal.tag, "", ""});
+    }
+    unit.calc.push_back(signal);
+  }
   return_to(lines_, header_line);
   lines_.split(format_.delimiter, header);
   tags_ = std::make_unique<TagTable>(unit);
   const SignalCounts counts = unit.counts();
   rows_ = format_.layout.is_long ? read_long(lines_, format_, *tags_, counts, notices_)
                                  : read_wide(lines_, format_, header, *tags_, counts, notices_);
+  if (!unit.calc.empty()) rows_ = std::make_unique<CalculatedRows>(std::move(rows_), unit);
 }
 
 bool CsvRows::next(Frame& frame) {

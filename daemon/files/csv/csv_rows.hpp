@@ -15,12 +15,14 @@ namespace mpm::files {
 /// its rows. The frames have no interval numbers.
 class CsvRows : public FrameSource {
  public:
-  /// All tags of the file, as aux signals. Throws config::InputError where it cannot be read.
-  explicit CsvRows(const std::string& path, const TimeStyle& times = {});
+  /// All tags of the file, as aux signals, and those of `calc` whose inputs it has. Throws
+  /// config::InputError where it cannot be read.
+  explicit CsvRows(const std::string& path, const TimeStyle& times = {},
+                   const std::vector<config::CalculatedSignal>& calc = {});
 
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
-  /// In the order of the file.
+  /// In the order of the file, then what is calculated.
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] bool is_long() const { return format_.layout.is_long; }
   [[nodiscard]] char delimiter() const { return format_.delimiter; }

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include "tests/system/process.hpp"
 
@@ -26,9 +27,6 @@ TEST_CASE("mpm doctor tells trouble from wrong use by its exit code") {
   CHECK(run({"mpm", "doctor", "--config", folder.file("none.yaml")}, out, err) == 3);
   CHECK(run({"mpm", "doctor", "--config", folder.file("bad.yaml")}, out, err) == 3);
   CHECK(read_file(err).find(folder.file("bad.yaml") + ":6:1: error: ") == 0);
-  CHECK(run({"mpm", "doctor", "--config", folder.file("one.yaml"), "--config",
-             folder.file("other.yaml")},
-            out, err) == 3);
   CHECK(run({"mpm", "doctor", "--interface", "nosuchnic0"}, out, err) == 2);
   CHECK(run({"mpm", "doctor", "--config", folder.file("one.yaml"), "--seconds", "0.3"}, out, err) ==
         1);
@@ -38,6 +36,35 @@ TEST_CASE("mpm doctor tells trouble from wrong use by its exit code") {
   CHECK(text.find("nobody else is on " + place) != std::string::npos);
   CHECK(text.find("one: no data has come (mpm/mv ...: nobody writes it on " + place + ")") !=
         std::string::npos);
+}
+
+TEST_CASE("mpm doctor looks at every unit where its file says") {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out"), err = folder.file("err");
+  write_file(folder.file("one.yaml"), unit_yaml("one", 7));
+  write_file(folder.file("other.yaml"), unit_yaml("other", 8));
+  const std::vector<std::string> look = {"mpm",       "doctor",
+                                         "--config",  folder.file("one.yaml"),
+                                         "--config",  folder.file("other.yaml"),
+                                         "--seconds", "0.3"};
+  CHECK(run(look, out, err) == 1);
+  const std::string text = read_file(out);
+  INFO(text);
+  const std::string first = "domain 7, partition 'doctor-test-nobody'";
+  const std::string second = "domain 8, partition 'doctor-test-nobody'";
+  CHECK(text.find("one on " + first + ": trouble\n") == 0);
+  CHECK(text.find("other on " + second + ": trouble\n") != std::string::npos);
+  CHECK(text.find("nobody writes it on " + first + ")") != std::string::npos);
+  CHECK(text.find("nobody writes it on " + second + ")") != std::string::npos);
+
+  std::vector<std::string> as_json = look;
+  as_json.emplace_back("--json");
+  CHECK(run(as_json, out, err) == 1);
+  const nlohmann::json json = nlohmann::json::parse(read_file(out));
+  REQUIRE(json["units"].size() == 2);
+  CHECK(json["units"][0]["place"] == first);
+  CHECK(json["units"][1]["place"] == second);
+  CHECK(json["all_well"] == false);
 }
 
 }  // namespace mpm::test

@@ -13,7 +13,8 @@ struct Bench {
 
   Bench() {
     write_file(file("unit.yaml"),
-               "unit: small\nsample_time: 10\nsignals: {mv: [u, v], dv: d, cv: [y, z]}\n"
+               "unit: small\nsample_time: 10\n"
+               "signals: {mv: [{tag: u, unit: m3/h}, v], dv: d, cv: [{tag: y, unit: degC}, z]}\n"
                "operating_point: {u: 5, y: 70}\n");
   }
   std::string file(const std::string& name) const { return folder.file(name); }
@@ -99,6 +100,66 @@ TEST_CASE("a table that does not fit the unit is refused with its place") {
   said("y,u\n", "1:1: the coefficients");
   said("cv,mv\n", "2:1: holds no step response");
   said("y,u,0,0\n", " all coefficients are 0");
+}
+
+TEST_CASE("units in a table of step responses are compared with the unit file's") {
+  const Bench bench;
+  const std::string head = "cv,mv,cv_unit,mv_unit,0,10,20,30\n";
+  REQUIRE(bench.import("dmc.csv", head + "y,u,degC,m^3/h,0,1,2,2\nz,v,,,0,1,1,1\n") == 0);
+  CHECK(bench.model().channels.size() == 2);
+  REQUIRE(bench.import("dmc.csv", head + "z,v,bar,%,0,1,2,2\n") == 0);
+  CHECK(read_file(bench.file("err")).find("the unit of 'z', bar, is not compared") !=
+        std::string::npos);
+  std::filesystem::remove(bench.file("new.yaml"));
+  CHECK(bench.refusal("dmc.csv", head + "y,u,degC,t/h,0,1,2,2\n")
+            .find("2:10: error: 'u' is in m3/h in the unit file, not in t/h") == 0);
+  CHECK(bench.refusal("dmc.csv", "cv,mv,mv_unit,0,5\ny,u,m3/h,0,1\n")
+            .find("1:17: error: should be 10 s: the unit's sample_time is 10 s") == 0);
+}
+
+TEST_CASE("a state space may come as a folder of matrices") {
+  const Bench bench;
+  std::filesystem::create_directory(bench.file("m"));
+  const auto put = [&](const std::string& name, const std::string& text) {
+    write_file(bench.file("m/" + name + ".csv"), text);
+  };
+  const auto import = [&] {
+    return run({"mpm", "import", bench.file("m"), "--config", bench.file("unit.yaml"), "--out",
+                bench.file("new.yaml")},
+               bench.file("out"), bench.file("err"))
+        .value_or(-1);
+  };
+  put("A", "# sample_time: 10 s\n0.9,0\n0.1,8e-1\n");
+  put("B", "u;v;d\n1;0;0\n0;2,5;1\n");
+  put("C", "y,1,0\nz,0,1\n");
+  put("x0", "0\n1\n");
+  REQUIRE(import() == 0);
+  const ModelSpec model = bench.model();
+  REQUIRE(model.state_space);
+  CHECK(model.state_space->a(1, 0) == 0.1);
+  CHECK(model.state_space->b(1, 1) == 2.5);
+  CHECK(model.state_space->c(1, 1) == 1.0);
+  CHECK(model.state_space->d.isZero(0.0));
+  CHECK(model.state_space->x0(1) == 1.0);
+  std::filesystem::remove(bench.file("new.yaml"));
+
+  const auto said = [&](const std::string& part) {
+    CHECK(import() == 3);
+    CHECK_FALSE(std::filesystem::exists(bench.file("new.yaml")));
+    INFO(read_file(bench.file("err")));
+    CHECK(read_file(bench.file("err")).find(part) != std::string::npos);
+  };
+  put("B", "v;u;d\n1;0;0\n0;2,5;1\n");
+  said("B.csv:1:1: error: 'v' stands where the unit file has 'u'");
+  put("B", "1,0\n0,2\n");
+  said("B.csv: error: must be 2 x 3 (states x MVs and DVs), not 2 x 2");
+  put("B", "1,0,0\n0,two,1\n");
+  said("B.csv:2:3: error: 'two' is no number");
+  put("B", "1,0,0\n0,2,1\n");
+  put("A", "# sample_time: 1 s\n0.9,0\n0.1,0.8\n");
+  said("A.csv:1:1: error: the unit's sample_time is 10 s");
+  std::filesystem::remove(bench.file("m/A.csv"));
+  said("A.csv");
 }
 
 TEST_CASE("a state space becomes the model, checked against the unit") {

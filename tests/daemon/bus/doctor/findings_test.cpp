@@ -50,6 +50,22 @@ TEST_CASE("the doctor's JSON holds the same") {
   CHECK(json["troubles"].size() == 2);
 }
 
+TEST_CASE("findings of several places are told as one, each with its place") {
+  Findings other = sick();
+  other.place = "domain 4";
+  other.units[0].unit = "toy2";
+  CHECK(to_text(joined({sick()})) == to_text(sick()));
+  const Findings both = joined({sick(), other});
+  CHECK(both.place == "domain 3; domain 4");
+  CHECK_FALSE(both.all_well());
+  const std::string text = to_text(both);
+  CHECK(text.find("toy on domain 3: trouble\n") == 0);
+  CHECK(text.find("toy2 on domain 4: trouble\n") != std::string::npos);
+  CHECK(text.find("domain 4: hmi reads mpm/alarm") != std::string::npos);
+  CHECK(text.find("note: domain 3: CYCLONEDDS_URI") != std::string::npos);
+  CHECK(to_json(both)["units"][1]["place"] == "domain 4");
+}
+
 TEST_CASE("where nothing is wrong the doctor says so") {
   Findings findings = sick();
   findings.troubles.clear();
