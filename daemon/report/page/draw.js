@@ -151,7 +151,7 @@ function extras(plot, lines) {
     }
     ctx.restore();
   };
-  return {drawAxes: [shade], draw: [over]};
+  return {drawClear: [shade], draw: [over]};  // under the grid, over the lines
 }
 
 function fillBand(u, band) {
