@@ -2,8 +2,10 @@
 
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
 #include "daemon/report/diagnosis/extended_unit.hpp"
+#include "daemon/report/identification/identification_report.hpp"
+#include "daemon/report/page/diagnosis_page.hpp"
+#include "daemon/report/page/identification_page.hpp"
 #include "daemon/report/page/page.hpp"
-#include "daemon/report/page/page_data.hpp"
 #include "daemon/report/record_json.hpp"
 
 namespace mpm::report {
@@ -14,6 +16,11 @@ std::string write_reports(const DiagnosisRun& run, files::OutputFolder& folder) 
   folder.write("report.json", json);
   folder.write("report.html", page_html(page_data(run)));
   return json;
+}
+
+void write_reports(const IdentificationRun& run, files::OutputFolder& folder) {
+  folder.write("model.json", json_text(to_json(run), 2) + "\n");
+  folder.write("report.html", page_html(page_data(run)));
 }
 
 }  // namespace mpm::report

@@ -129,7 +129,7 @@ std::vector<Kept> diagnosis(const Case& item, const TemporaryFolder& folder) {
   const std::string place = "diagnoses/" + item.name + '/';
   return {{place + "report.json", without_version(laid_out(report)), json_difference},
           {place + "extended.yaml", without_version(extended), line_difference},
-          {place + "page.json", condensed_page(page, report), json_difference}};
+          {place + "page.json", condensed_page(without_version(page)), json_difference}};
 }
 
 /// False, and a loud word, where the recordings are not at hand.

@@ -87,6 +87,7 @@ report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig 
     run.validation_run_files = std::move(unseen.files);
     run.validation_file = std::move(unseen.name);
   }
+  run.zone = times.zone;
   run.program = idl::version_text("mpm");
   run.command_line = command_line();
   run.config_file = options.config;

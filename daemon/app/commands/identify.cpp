@@ -20,6 +20,7 @@
 #include "daemon/report/identification/new_unit.hpp"
 #include "daemon/report/identification/plan_report.hpp"
 #include "daemon/report/record_json.hpp"
+#include "daemon/report/report_files.hpp"
 #include "idl/version.hpp"
 
 namespace mpm::app {
@@ -63,6 +64,7 @@ report::IdentificationRun prepare(const IdentifyOptions& options, config::UnitCo
                           run.notices);
   run.recording = std::move(data.recording);
   run.data_file = std::move(data.name);
+  run.zone = times.zone;
   run.program = idl::version_text("mpm");
   run.command_line = command_line();
   run.config_file = options.config;
@@ -95,13 +97,12 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
     out.write(yaml);
     out.commit();
   }
-  const std::string json = report::json_text(to_json(run), 2) + "\n";
   if (folder) {
-    folder->write("model.json", json);
+    report::write_reports(run, *folder);
     folder->commit();
   }
   if (options.json)
-    std::cout << json << std::flush;
+    std::cout << report::json_text(to_json(run), 2) << '\n' << std::flush;
   else if (!options.quiet)
     std::cout << to_text(run) << outcome(options, found) << std::flush;
   return found ? 0 : 1;
@@ -135,8 +136,8 @@ void add_identify(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out,
                       "the unit file with the identified model (required, but for --plan)");
   command->add_option("--report", options->report,
-                      "folder for model.json: all that is printed, with step responses and their "
-                      "bands; made if need be");
+                      "folder for report.html, which shows the model, and model.json: all that is "
+                      "printed, with step responses and their bands; made if need be");
   command
       ->add_option("--threads", options->threads,
                    "that work at once; nothing in the model depends on how many")

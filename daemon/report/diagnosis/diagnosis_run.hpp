@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "config/unit_config.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/identify/fit/recording.hpp"
+#include "daemon/files/times/time_zone.hpp"
 
 /// All that the reports of `mpm diagnose` are made from.
 namespace mpm::report {
@@ -47,7 +49,8 @@ struct DiagnosisRun {
   bool time_chosen = false;  ///< not all of the data file was wanted
   double fit_share = 0.0;
   std::uint64_t seed = 0;
-  std::vector<std::string> notices;  ///< on the data
+  std::vector<std::string> notices;                  ///< on the data
+  std::shared_ptr<const files::TimeZone> zone = {};  ///< of the data's times; null = UTC
 };
 
 }  // namespace mpm::report

@@ -14,8 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kSuspicious = 0.001;  ///< p-value of a residual test that is said aloud
-
 Json interval_json(const Interval95& interval) {
   return Json::array({interval.low, interval.high});
 }

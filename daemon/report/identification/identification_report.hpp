@@ -7,6 +7,9 @@
 
 namespace mpm::report {
 
+/// p-value of a residual test below which it is said aloud.
+inline constexpr double kSuspicious = 0.001;
+
 /// What `mpm identify --json` prints and model.json holds.
 [[nodiscard]] nlohmann::ordered_json to_json(const IdentificationRun& run);
 /// What it prints otherwise.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/identification/identification.hpp"
 #include "core/identification/test_plan.hpp"
 #include "core/identify/fit/recording.hpp"
+#include "daemon/files/times/time_zone.hpp"
 
 namespace mpm::report {
 
@@ -19,9 +21,10 @@ struct IdentificationRun {
   std::string program;  ///< with its version
   std::string command_line;
   std::string config_file, data_file;
-  std::string out_file;                          ///< empty where none is to be written
-  std::optional<std::vector<PlannedTest>> plan;  ///< where one was asked for
-  std::vector<std::string> notices;              ///< on the data
+  std::string out_file;                              ///< empty where none is to be written
+  std::optional<std::vector<PlannedTest>> plan;      ///< where one was asked for
+  std::vector<std::string> notices;                  ///< on the data
+  std::shared_ptr<const files::TimeZone> zone = {};  ///< of the data's times; null = UTC
 };
 
 }  // namespace mpm::report

@@ -37,6 +37,10 @@ Range usual_range(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return {quantile(0.01), quantile(0.99)};
 }
 
+std::string with_unit(const SignalName& name) {
+  return name.unit.empty() ? name.tag : name.tag + ", " + name.unit;
+}
+
 /// Input `input` of the extended model, in the data.
 Range input_range(const DiagnosisRun& run, int input) {
   const auto own = static_cast<int>(run.recording.inputs.cols());
@@ -65,14 +69,6 @@ std::vector<double> step_response(const ModelSpec& spec, int cv, int input, doub
     still.advance(rest);
   }
   return response;
-}
-
-bool has_channel(const ModelSpec& spec, int cv, int input) {
-  if (input >= spec.input_count) return false;
-  if (spec.state_space) return true;
-  return std::any_of(spec.channels.begin(), spec.channels.end(), [&](const ChannelSpec& channel) {
-    return channel.cv == cv && channel.input == input;
-  });
 }
 
 double at(const std::vector<double>& values, double index) {
@@ -104,17 +100,30 @@ double dead_samples(const std::vector<double>& response) {
   return moves == response.end() ? 0.0 : std::max(0.0, count - 1.0);
 }
 
-/// All that the 95 % intervals of the channel allow, corner by corner.
-void add_band(const ChannelEstimate& estimate, double sample_time_s, StepView& view) {
-  const double dead = dead_samples(view.before);
-  for (const double gain : {estimate.gain_ratio.low, estimate.gain_ratio.high})
-    for (const double slower :
-         {estimate.time_constant_ratio.low, estimate.time_constant_ratio.high})
-      for (const double later_s : {estimate.dead_time_error.low, estimate.dead_time_error.high}) {
-        if (!std::isfinite(gain) || !std::isfinite(slower) || !std::isfinite(later_s)) return;
-        const std::vector<double> corner =
-            changed(view.before, gain, slower, later_s / sample_time_s, dead);
-        if (view.low.empty()) view.low = view.high = corner;
+/// Factors of the new value at the ends of its interval; none where that is not known.
+std::vector<double> factors(const OldAndNew& number) {
+  if (!std::isfinite(number.low) || number.new_value == 0.0) return {1.0};
+  return {number.low / number.new_value, 1.0, number.high / number.new_value};
+}
+
+/// The hull of `after` and of each corner of the intervals.
+void add_band(const ChannelNumbers& channel, double sample_time_s, StepView& view) {
+  const OldAndNew& late = channel.dead_time;
+  const bool one_lag = channel.time_constants.size() == 1;
+  const std::vector<double> slowness =
+      one_lag ? factors(channel.time_constants.front()) : std::vector<double>{1.0};
+  std::vector<double> shifts = {0.0};
+  if (std::isfinite(late.low))
+    shifts = {(late.low - late.new_value) / sample_time_s, 0.0,
+              (late.high - late.new_value) / sample_time_s};
+  const std::vector<double> gains = factors(channel.gain);
+  if (gains.size() * slowness.size() * shifts.size() == 1) return;
+  const double dead = dead_samples(view.after);
+  view.low = view.high = view.after;
+  for (const double gain : gains)
+    for (const double slower : slowness)
+      for (const double later : shifts) {
+        const std::vector<double> corner = changed(view.after, gain, slower, later, dead);
         for (std::size_t i = 0; i < corner.size(); ++i) {
           view.low[i] = std::min(view.low[i], corner[i]);
           view.high[i] = std::max(view.high[i], corner[i]);
@@ -165,10 +174,12 @@ std::vector<double> sweep(const std::optional<InputBlock>& block, double origin,
   return y;
 }
 
-void add_input_curve(const DiagnosisRun& run, int input, const std::string& title,
+void add_input_curve(const DiagnosisRun& run, int cv, int input, const std::string& title,
                      const std::optional<InputBlock>& before,
                      const std::optional<InputBlock>& after, std::vector<CurveView>& curves) {
   CurveView curve;
+  curve.cv = cv;
+  curve.input = input;
   curve.x = spaced(widened(input_range(run, input)));
   if (curve.x.front() == curve.x.back()) return;
   if (remembers(before) || remembers(after)) {
@@ -181,8 +192,8 @@ void add_input_curve(const DiagnosisRun& run, int input, const std::string& titl
   if (curve.before == curve.after) return;
   const SignalNames names = names_of(run);
   curve.title = title;
-  curve.x_label = names.input(input).tag;
-  curve.y_label = "acts like";
+  curve.x_label = with_unit(names.input(input));
+  curve.y_label = with_unit({"acts like", names.input(input).unit});
   curves.push_back(std::move(curve));
 }
 
@@ -194,16 +205,17 @@ void add_output_curve(const DiagnosisRun& run, int cv, std::vector<CurveView>& c
   const ModelSpec& extended = run.diagnosis.extended;
   const double at_rest = extended.output_origin.size() > cv ? extended.output_origin(cv) : 0.0;
   CurveView curve;
+  curve.cv = cv;
   curve.x = spaced(widened(usual_range(run.recording.cvs.col(cv))));
   for (const double x : curve.x) {
     curve.before.push_back(apply_output_block(block(run.unit.model), at_rest, x - at_rest));
     curve.after.push_back(apply_output_block(block(extended), at_rest, x - at_rest));
   }
   if (curve.before == curve.after || curve.x.front() == curve.x.back()) return;
-  const std::string tag = names_of(run).cv(cv).tag;
-  curve.title = "what " + tag + " reads";
-  curve.x_label = tag + " of the linear part";
-  curve.y_label = tag;
+  const SignalName name = names_of(run).cv(cv);
+  curve.title = "what " + name.tag + " reads";
+  curve.x_label = with_unit({name.tag + " without it", name.unit});
+  curve.y_label = with_unit(name);
   curves.push_back(std::move(curve));
 }
 
@@ -238,14 +250,16 @@ void add_steady_curve(const DiagnosisRun& run, int cv, int input, std::vector<Cu
   if (!nonlinear_state(extended, cv, input) && !nonlinear_state(run.unit.model, cv, input)) return;
   if (input >= run.unit.model.input_count || LinearModel(extended).integrating()(cv, input)) return;
   CurveView curve;
+  curve.cv = cv;
+  curve.input = input;
   curve.x = spaced(input_range(run, input));
   if (curve.x.front() == curve.x.back()) return;
   curve.before = steady_curve(run.unit.model, cv, input, curve.x);
   curve.after = steady_curve(extended, cv, input, curve.x);
   const SignalNames names = names_of(run);
   curve.title = names.cv(cv).tag + " at rest";
-  curve.x_label = names.input(input).tag;
-  curve.y_label = names.cv(cv).tag;
+  curve.x_label = with_unit(names.input(input));
+  curve.y_label = with_unit(names.cv(cv));
   curves.push_back(std::move(curve));
 }
 
@@ -263,32 +277,42 @@ const ChannelSpec* channel_of(const ModelSpec& spec, int cv, int input) {
 
 }  // namespace
 
-std::vector<StepView> step_views(const DiagnosisRun& run, int cv) {
+StepView step_view(const DiagnosisRun& run, const ChannelNumbers& channel) {
   const ModelSpec& model = run.unit.model;
   const ModelSpec& extended = run.diagnosis.extended;
   const int settling = std::max(LinearModel(model).settling_samples(0.01, kLongestStep),
                                 LinearModel(extended).settling_samples(0.01, kLongestStep));
   const int samples = std::min(kLongestStep, settling + settling / 5 + 5);
   const int every = (samples + kPoints - 1) / kPoints;
-  std::vector<StepView> views;
-  for (int input = 0; input < extended.input_count; ++input) {
-    if (!has_channel(model, cv, input) && !has_channel(extended, cv, input)) continue;
-    StepView view;
-    view.cv = cv;
-    view.input = input;
-    const Range range = input_range(run, input);
-    if (range.high > range.low) view.size = (range.high - range.low) / 2.0;
-    view.spacing_s = model.sample_time_s * every;
-    view.before = step_response(model, cv, input, view.size, samples);
-    view.after = step_response(extended, cv, input, view.size, samples);
-    for (const ChannelEstimate& estimate : run.diagnosis.channels)
-      if (estimate.cv == cv && estimate.input == input)
-        add_band(estimate, model.sample_time_s, view);
-    for (auto* values : {&view.before, &view.after, &view.low, &view.high})
-      keep_every(*values, every);
-    views.push_back(std::move(view));
+  StepView view;
+  view.cv = channel.cv;
+  view.input = channel.input;
+  const Range range = input_range(run, channel.input);
+  if (range.high > range.low) view.size = (range.high - range.low) / 2.0;
+  view.spacing_s = model.sample_time_s * every;
+  view.before = step_response(model, channel.cv, channel.input, view.size, samples);
+  view.after = step_response(extended, channel.cv, channel.input, view.size, samples);
+  add_band(channel, model.sample_time_s, view);
+  for (auto* values : {&view.before, &view.after, &view.low, &view.high})
+    keep_every(*values, every);
+  return view;
+}
+
+std::vector<double> seen_of_command(const ModelSpec& spec, int cv, int input,
+                                    const std::vector<double>& command) {
+  std::optional<InputBlock> block = block_of(spec.input_blocks, input);
+  const ChannelSpec* channel = cv < 0 ? nullptr : channel_of(spec, cv, input);
+  if (channel != nullptr && channel->input_block) block = channel->input_block;
+  const double at_rest = origin(spec)(input);
+  InputElement element(block, at_rest);
+  std::vector<double> seen;
+  double last = at_rest;
+  for (const double value : command) {
+    if (std::isfinite(value)) last = value;
+    if (seen.empty()) element.reset(last);
+    seen.push_back(at_rest + element.apply(last, kAfterAll));
   }
-  return views;
+  return seen;
 }
 
 std::vector<CurveView> curve_views(const DiagnosisRun& run) {
@@ -297,7 +321,7 @@ std::vector<CurveView> curve_views(const DiagnosisRun& run) {
   const SignalNames names = names_of(run);
   std::vector<CurveView> curves;
   for (int input = 0; input < extended.input_count; ++input)
-    add_input_curve(run, input, "what " + names.input(input).tag + " does",
+    add_input_curve(run, -1, input, "what " + names.input(input).tag + " does",
                     block_of(model.input_blocks, input), block_of(extended.input_blocks, input),
                     curves);
   for (const ChannelSpec& channel : extended.channels) {
@@ -305,7 +329,7 @@ std::vector<CurveView> curve_views(const DiagnosisRun& run) {
     const std::optional<InputBlock> before = own == nullptr ? std::nullopt : own->input_block;
     if (before || channel.input_block)
       add_input_curve(
-          run, channel.input,
+          run, channel.cv, channel.input,
           "what " + names.input(channel.input).tag + " does to " + names.cv(channel.cv).tag, before,
           channel.input_block, curves);
   }

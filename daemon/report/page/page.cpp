@@ -7,8 +7,11 @@ namespace mpm::report {
 // Written by page/embed.cmake from the files of the same names.
 extern const std::string_view kPageHtml;
 extern const std::string_view kPageCss;
-extern const std::string_view kPlotJs;
+extern const std::string_view kDrawJs;
 extern const std::string_view kPageJs;
+extern const std::string_view kUplotJs;
+extern const std::string_view kUplotCss;
+extern const std::string_view kUplotLicense;
 
 namespace {
 
@@ -46,7 +49,6 @@ std::string escaped(const std::string& plain) {
 }  // namespace
 
 std::string page_html(const nlohmann::ordered_json& data) {
-  const auto& report = data["report"];
   std::string page;
   std::string_view rest = kPageHtml;
   // Places in the template look like <!--name--> and stand for one text each.
@@ -55,12 +57,13 @@ std::string page_html(const nlohmann::ordered_json& data) {
     page += rest.substr(0, open);
     const auto close = rest.find(kClose, open);
     const std::string_view name = rest.substr(open + kOpen.size(), close - open - kOpen.size());
-    if (name == "unit") page += escaped(report["unit"].get<std::string>());
-    if (name == "headline") page += escaped(report["headline"].get<std::string>());
-    if (name == "style") page += kPageCss;
+    if (name == "title") page += escaped(data["title"].get<std::string>());
+    if (name == "kicker") page += escaped(data["kicker"].get<std::string>());
+    if (name == "sentence") page += escaped(data["sentence"].get<std::string>());
+    if (name == "style") page.append(kUplotCss).append("\n").append(kPageCss);
     if (name == "data") page += safe_json(data);
-    if (name == "plot") page += kPlotJs;
-    if (name == "script") page += kPageJs;
+    if (name == "licence") page += kUplotLicense;
+    if (name == "script") page.append(kUplotJs).append(kDrawJs).append(kPageJs);
     rest.remove_prefix(close + kClose.size());
   }
   return page.append(rest);

@@ -68,31 +68,4 @@ LevelView over_levels(const LevelBins& bins, const std::vector<double>& values) 
   return view;
 }
 
-std::size_t thinning(std::size_t samples, std::size_t points) {
-  if (samples <= points) return 1;
-  const std::size_t runs = std::max<std::size_t>(1, points / 2);
-  return (samples + runs - 1) / runs;
-}
-
-std::vector<double> thinned(const std::vector<double>& values, std::size_t every) {
-  if (every <= 1) return values;
-  std::vector<double> result;
-  for (std::size_t start = 0; start < values.size(); start += every) {
-    const std::size_t end = std::min(values.size(), start + every);
-    std::size_t low = end, high = end;
-    for (std::size_t i = start; i < end; ++i) {
-      if (!std::isfinite(values[i])) continue;
-      if (low == end || values[i] < values[low]) low = i;
-      if (high == end || values[i] > values[high]) high = i;
-    }
-    if (low == end) {
-      result.insert(result.end(), {kNaN, kNaN});
-    } else {
-      result.push_back(values[std::min(low, high)]);
-      result.push_back(values[std::max(low, high)]);
-    }
-  }
-  return result;
-}
-
 }  // namespace mpm::report

@@ -23,10 +23,4 @@ struct LevelView {
 };
 [[nodiscard]] LevelView over_levels(const LevelBins& bins, const std::vector<double>& values);
 
-/// All values (`every` = 1), or the smallest and the largest of each run of `every` samples in the
-/// order in which they came. NaN where nothing of a run is known.
-[[nodiscard]] std::vector<double> thinned(const std::vector<double>& values, std::size_t every);
-/// The `every` that keeps `samples` values within `points`; 1 = all.
-[[nodiscard]] std::size_t thinning(std::size_t samples, std::size_t points);
-
 }  // namespace mpm::report

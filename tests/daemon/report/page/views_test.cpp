@@ -4,7 +4,9 @@
 
 #include "daemon/report/diagnosis/clock_text.hpp"
 #include "daemon/report/page/model_views.hpp"
+#include "daemon/report/page/plot_json.hpp"
 #include "daemon/report/page/residual_views.hpp"
+#include "daemon/report/page/telling_window.hpp"
 #include "tests/daemon/report/sample_run.hpp"
 
 namespace mpm::test {
@@ -32,28 +34,64 @@ TEST_CASE("a thinned series keeps its spikes and stays within its points") {
   std::vector<double> values(100'000, 0.0);
   values[50'123] = 8.0;
   values[50'124] = -8.0;
-  const std::size_t every = thinning(values.size(), 4'000);
-  const std::vector<double> thin = thinned(values, every);
-  CHECK(thin.size() <= 4'000);
-  CHECK(*std::max_element(thin.begin(), thin.end()) == 8.0);
-  CHECK(*std::min_element(thin.begin(), thin.end()) == -8.0);
-  CHECK(thinned(values, 1) == values);
+  const std::size_t every = thinning(values.size(), 400);
+  const Envelope thin = envelope_of(values, every);
+  CHECK(thin.low.size() <= 400);
+  CHECK(*std::max_element(thin.high.begin(), thin.high.end()) == 8.0);
+  CHECK(*std::min_element(thin.low.begin(), thin.low.end()) == -8.0);
+  CHECK(means_of({1.0, 3.0, kNaN, 5.0, kNaN, kNaN, 7.0}, 2).at(0) == 2.0);
+  CHECK(means_of({1.0, 3.0, kNaN, 5.0, kNaN, kNaN, 7.0}, 2).at(1) == 5.0);
+  CHECK(std::isnan(means_of({1.0, 3.0, kNaN, 5.0, kNaN, kNaN, 7.0}, 2).at(2)));
+  CHECK(means_of(values, 1) == values);
 }
 
-TEST_CASE("step responses are of the models as they are, with a band around the refitted channel") {
+TEST_CASE("digits that cannot be seen are not written") {
+  CHECK(visible_digits({0.123456, 10.0, kNaN, -1e-9}).dump() == "[0.12,10.0,null,0.0]");
+  CHECK(visible_digits({123456.0, 123456.0}).dump() == "[123456.0,123456.0]");
+}
+
+TEST_CASE("the telling window lies inside a run, beside those that were shown") {
+  std::vector<double> weights(100, 0.0);
+  weights[30] = weights[70] = 5.0;
+  weights[72] = kNaN;
+  weights[75] = 1.0;
+  const std::vector<Run> one = {{0, 100}};
+  const Run best = telling_window(weights, one, 10, {});
+  CHECK(best.count == 10);
+  CHECK(best.first == 66);  // the first that holds 70 and 75
+  const Run second = telling_window(weights, one, 10, {best});
+  CHECK(second.first == 21);
+  const Run cut = telling_window(weights, {{0, 72}, {72, 28}}, 10, {});
+  CHECK(cut.first + cut.count <= 72);
+  CHECK(telling_window(weights, one, 60, {{20, 60}}).count == 0);
+  CHECK(window_around(40, one, 20).first == 35);
+  CHECK(window_around(2, one, 20).first == 0);
+  CHECK(window_around(99, one, 20).first == 80);
+}
+
+TEST_CASE("step responses are of the models as they are, in a band that holds the extended one's") {
   const DiagnosisRun run = sample_run();
-  const std::vector<StepView> views = step_views(run, 2);
-  REQUIRE(views.size() == 3);
-  CHECK(views[2].before.back() == Approx(7.20).epsilon(0.01));
-  CHECK(views[2].after.back() == Approx(1.4 * 7.20).epsilon(0.01));
-  CHECK(views[2].low.back() == Approx(1.37 * 7.20).epsilon(0.01));
-  CHECK(views[2].high.back() == Approx(1.43 * 7.20).epsilon(0.01));
+  const std::vector<ChannelNumbers> channels = channel_numbers(run);
+  const auto view = [&](int cv, int input) {
+    const auto at = std::find_if(channels.begin(), channels.end(), [&](const ChannelNumbers& each) {
+      return each.cv == cv && each.input == input;
+    });
+    REQUIRE(at != channels.end());
+    return step_view(run, *at);
+  };
+  const StepView gain = view(2, 2);
+  CHECK(gain.before.back() == Approx(7.20).epsilon(0.01));
+  CHECK(gain.after.back() == Approx(1.4 * 7.20).epsilon(0.01));
+  CHECK(gain.low.back() == Approx(1.381 * 7.20).epsilon(0.01));
+  CHECK(gain.high.back() == Approx(1.424 * 7.20).epsilon(0.01));
+  for (std::size_t i = 0; i < gain.after.size(); ++i) {
+    CHECK(gain.low[i] <= gain.after[i]);
+    CHECK(gain.after[i] <= gain.high[i]);
+  }
   // The input that is new has no channel before.
-  const std::vector<StepView> first = step_views(run, 0);
-  REQUIRE(first.size() == 4);
-  CHECK(first[3].before == std::vector<double>(first[3].before.size(), 0.0));
-  CHECK(first[3].after.back() == Approx(1.5).epsilon(0.01));
-  CHECK(first[3].low.empty());
+  const StepView fresh = view(0, 3);
+  CHECK(fresh.before == std::vector<double>(fresh.before.size(), 0.0));
+  CHECK(fresh.after.back() == Approx(1.5).epsilon(0.01));
 }
 
 TEST_CASE("curves are drawn of what differs") {

@@ -6,8 +6,8 @@
 
 namespace mpm::report {
 
-/// Everything that report.html shows, computed: its script only draws. Keys are listed at the head
-/// of page/page.js. Long series are thinned so that the page stays below 5 MB.
+/// Everything that a diagnosis's report.html shows, said and computed: its script only draws. The
+/// parts stand in the order of the page; page.js lists them.
 [[nodiscard]] nlohmann::ordered_json page_data(const DiagnosisRun& run);
 
 }  // namespace mpm::report

@@ -1,0 +1,105 @@
+// node check.mjs DIAGNOSIS.html IDENTIFICATION.html [PICTURES]: what an engineer sees of the two pages.
+import assert from "node:assert/strict";
+import path from "node:path";
+import { chromium } from "playwright-core";
+import YAML from "yaml";
+
+const [diagnosis, identification, pictures] = process.argv.slice(2);
+const kScreen = 900; // height of a window, pixels
+const quiet = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+  "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: quiet });
+
+async function open(file, width, colorScheme) {
+  const context = await browser.newContext({ viewport: { width, height: kScreen }, colorScheme });
+  const page = await context.newPage();
+  page.troubles = [];
+  page.on("console", (message) => page.troubles.push(message.text()));
+  page.on("pageerror", (error) => page.troubles.push(error.stack));
+  page.on("request", (request) => {
+    if (!request.url().startsWith("file:")) page.troubles.push(`asks for ${request.url()}`);
+  });
+  await page.goto(`file://${path.resolve(file)}`);
+  await page.waitForSelector("canvas", { state: "attached" });
+  return page;
+}
+
+const overflow = (page) =>
+  page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+
+// Whether each drawn plot holds more than its ground.
+const empty = (page) => page.evaluate(() => [...document.querySelectorAll("canvas")].filter((canvas) => {
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  return !data.some((value) => value !== data[0]);
+}).length);
+
+async function copied(page, name) {
+  await page.evaluate(() => {
+    navigator.clipboard.writeText = async (text) => { window.copied = text; };
+  });
+  await page.click(`button[data-copy=${name}]`);
+  return page.evaluate(() => window.copied);
+}
+
+for (const [name, file] of [["diagnosis", diagnosis], ["identification", identification]])
+  for (const width of [1280, 400])
+    for (const scheme of ["light", "dark"]) {
+      const what = `${name}, ${width} px, ${scheme}`;
+      const page = await open(file, width, scheme);
+      assert.ok(await overflow(page) <= 0, `${what}: wider than the window`);
+      assert.equal(await page.locator("#matrix td").count() > 9, true, `${what}: no matrix`);
+      assert.equal(await page.locator("#numbers table").count() > 0, true, `${what}: no table`);
+      const first = await page.locator("#views canvas").first().boundingBox();
+      if (width === 1280)
+        assert.ok(first.y + first.height < 1.5 * kScreen, `${what}: first plot ends at ${first.y + first.height} px`);
+      console.log(`${what}: first plot from ${Math.round(first.y)} to ${Math.round(first.y + first.height)} px`);
+      await page.evaluate(() => document.querySelectorAll("details").forEach((each) => { each.open = true; }));
+      await page.waitForTimeout(150);
+      assert.equal(await empty(page), 0, `${what}: empty plots`);
+      assert.ok(await overflow(page) <= 0, `${what}: all open, wider than the window`);
+      assert.deepEqual(page.troubles, [], what);
+      if (pictures) {
+        await page.reload();
+        await page.waitForSelector("canvas", { state: "attached" });
+        await page.screenshot({ path: `${pictures}/${name}_${width}_${scheme}.png`, fullPage: width < 1280 });
+      }
+      await page.context().close();
+    }
+
+const page = await open(diagnosis, 1280, "dark");
+const model = YAML.parse(await copied(page, "YAML")).model;
+assert.equal(model.channels.length, 9);
+assert.ok(model.channels.every((each) => Number.isFinite(each.gain)));
+const rows = (await copied(page, "CSV")).trimEnd().split("\n").map((line) => line.split(","));
+assert.deepEqual(rows[0], ["cv", "input", "number", "unit", "old", "new", "low", "high"]);
+assert.equal(rows.length, 28); // 9 channels of three numbers
+const gain = rows.find((row) => row[0] === "y3" && row[1] === "u3" && row[2] === "gain");
+assert.equal(gain[4], "7.2");
+const typed = model.channels.find((each) => each.cv === "y3" && each.mv === "u3");
+assert.ok(Math.abs(gain[5] / typed.gain - 1) < 1e-5, "the table and the YAML differ");
+
+// The cursor tells time and values; a drag zooms both plots of a finding.
+const over = page.locator("#views .u-over").first();
+await over.hover({ position: { x: 120, y: 60 } });
+assert.match(await page.locator("#views .readout").first().textContent(), /measured .*simulated .*extended/);
+const box = await over.boundingBox();
+await page.mouse.move(box.x + 100, box.y + 50);
+await page.mouse.down();
+await page.mouse.move(box.x + 200, box.y + 50);
+await page.mouse.up();
+const ranges = await page.evaluate(() => [...document.querySelectorAll("#views .view:first-child figure")]
+  .map((each) => [each.plot.scales.x.min, each.plot.scales.x.max, each.plot.data[0].at(-1) - each.plot.data[0][0]]));
+assert.ok(ranges[0][1] - ranges[0][0] < 0.5 * ranges[0][2], "a drag does not zoom");
+for (const range of ranges) assert.deepEqual(range.slice(0, 2), ranges[0].slice(0, 2), "one plot is zoomed alone");
+
+// Paper is white, everything is open, nothing is cut off.
+await page.emulateMedia({ media: "print", colorScheme: "dark" });
+await page.setViewportSize({ width: 718, height: 1000 });
+await page.waitForTimeout(200);
+assert.equal(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), "rgb(255, 255, 255)");
+assert.equal(await page.locator("details:not([open])").count(), 0);
+assert.ok(await overflow(page) <= 0, "wider than the paper");
+assert.ok((await page.pdf({ format: "A4" })).length > 50_000);
+assert.deepEqual(page.troubles, []);
+await browser.close();
+console.log("all as it should be");
