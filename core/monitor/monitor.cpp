@@ -248,9 +248,9 @@ void Monitor::State::move_alarms() {
     const auto changed = [&](int input) {
       transitions.push_back({j, input, cv.alarms.state(input)});
     };
-    if (cv.rival.wins)
+    if (cv.rival.wins || screen.compressed(j))  // what spoke against a channel was never evidence
       cv.alarms.clear(changed);
-    else if (cv.quality.implausible() || screen.compressed(j) || !cv.rival.loses)
+    else if (cv.quality.implausible() || !cv.rival.loses)
       cv.alarms.hold();
     else
       cv.alarms.update(j, cv.evaluated, detector, scan, settings.alarm, changed);

@@ -18,6 +18,10 @@ inline constexpr int kReturns = 3;
 /// values. Chosen.
 inline constexpr double kPriorRepeated = 0.5;
 inline constexpr double kPriorValues = 50.0;
+/// Of an input, half of these are presumed to be repetitions, and no rest longer than so many
+/// samples is a fault of the instrument. Chosen.
+inline constexpr double kPriorRepeatedOfInput = 25.0;
+inline constexpr int kLongestOfInput = 60;
 /// Values exactly at the end of a signal's range that make that end a limit of the instrument.
 /// Chosen.
 inline constexpr int kEndHits = 3;
@@ -28,12 +32,13 @@ namespace compression {
 /// A sensor's own resolution shows where more changes than this are the smallest there is, or go
 /// right back by the same size. Chosen, between none and what is said next.
 inline constexpr double kResolved = 0.03;
-/// Held: so many values are repetitions, a run counting for no more than so many of them. Of a
-/// sensor whose resolution is a third of its noise or more so many values repeat as well, but a
-/// sixth of its changes or more are the smallest (two differences of normal values); a deadband
-/// leaves none.
-inline constexpr double kRepeated = 0.1;
-inline constexpr int kCountedOfRun = 5;
+/// Held: so many changes follow a rest. Of a sensor whose resolution is a third of its noise or
+/// more so many do as well, but a sixth of its changes or more are the smallest (two differences of
+/// normal values); a deadband leaves none.
+inline constexpr double kRested = 0.1;
+/// Where changes are rare so many are enough, once so many values have come. Chosen.
+inline constexpr int kFewestChanges = 30;
+inline constexpr int kMostValues = 1000;
 /// A change is the smallest below so many times it; changes are the same size within this share of
 /// it. Chosen: between one step and two; what printing leaves of a few digits.
 inline constexpr double kOneStep = 1.5;
@@ -43,9 +48,11 @@ inline constexpr double kSame = 1e-3;
 /// answer does in a sample.
 inline constexpr double kStraight = 1e-3;
 inline constexpr double kBend = 0.2;
-/// So many changes go straight on, and so many end a line. Chosen: a noisy signal has hardly any.
+/// So many changes go straight on, and so many end a line; where most are straight one is enough.
+/// Chosen: a noisy signal has hardly any.
 inline constexpr double kStraightShare = 0.15;
 inline constexpr double kBends = 0.015;
+inline constexpr double kMostlyStraight = 0.5;
 }  // namespace compression
 
 /// Values that jump away and right back (`Screen`).

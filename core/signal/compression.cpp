@@ -21,8 +21,8 @@ void Compression::take(double value) {
   run_ = change == 0.0 ? run_ + 1 : 0;
   if (run_ == 0)
     take_change(change);
-  else if (run_ <= compression::kCountedOfRun)
-    ++batch_.repeats;
+  else if (run_ == 1)
+    ++batch_.rests;
 }
 
 void Compression::take_change(double change) {
@@ -42,23 +42,28 @@ void Compression::take_change(double change) {
   if (last_size > 0.0) at_most(std::abs(size - last_size));
   last_change_ = change;
   jumps_[static_cast<std::size_t>(batch_.changes)] = size;
-  if (++batch_.changes < kChanges) return;
+  ++batch_.changes;
+  const bool rare =
+      batch_.changes >= compression::kFewestChanges && batch_.values >= compression::kMostValues;
+  if (batch_.changes < kChanges && !rare) return;
   found_ = held() || interpolated();
   batch_ = {};
 }
 
 bool Compression::held() const {
-  if (batch_.repeats < compression::kRepeated * batch_.values) return false;
-  const auto smallest = std::count_if(jumps_.begin(), jumps_.end(), [&](double jump) {
-    return jump < compression::kOneStep * batch_.smallest;
-  });
-  return static_cast<double>(smallest) < compression::kResolved * kChanges;
+  if (batch_.rests < compression::kRested * batch_.changes) return false;
+  const auto smallest =
+      std::count_if(jumps_.begin(), jumps_.begin() + batch_.changes,
+                    [&](double jump) { return jump < compression::kOneStep * batch_.smallest; });
+  return static_cast<double>(smallest) < compression::kResolved * batch_.changes;
 }
 
 bool Compression::interpolated() const {
-  return batch_.straight > compression::kStraightShare * kChanges &&
-         batch_.bends > compression::kBends * kChanges &&
-         batch_.returns < compression::kResolved * kChanges;
+  const double bends =
+      batch_.straight > compression::kMostlyStraight * batch_.changes ? 0.0 : compression::kBends;
+  return batch_.straight > compression::kStraightShare * batch_.changes &&
+         batch_.bends > bends * batch_.changes &&
+         batch_.returns < compression::kResolved * batch_.changes;
 }
 
 }  // namespace mpm

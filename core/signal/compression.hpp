@@ -8,7 +8,8 @@ namespace mpm {
 /// until they have left a deadband, or straight lines between the few that were kept (interpolated
 /// retrieval). A sensor of coarse resolution repeats values and changes as well, but its changes
 /// are often the smallest there is, and after a deadband they never are; one that is stuck rests
-/// seldom and long. Told anew after each kChanges changes; straight lines from a noise-free
+/// seldom and long. Told anew after each kChanges changes, or
+/// fewer where they are rare; straight lines from a noise-free
 /// simulation with a bend every few samples would look the same. No allocation.
 class Compression {
  public:
@@ -20,7 +21,7 @@ class Compression {
   /// Since the batch began.
   struct Batch {
     int values = 0, changes = 0;
-    int repeats = 0;        // of one run only the first few
+    int rests = 0;
     double smallest = 0.0;  // jump, or difference between the sizes of two in a row
     int straight = 0, bends = 0, returns = 0;  // changes; back by the same size
   };

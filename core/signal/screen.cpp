@@ -29,7 +29,7 @@ void Screen::Repeats::take(double value) {
   }
   const bool same = value == last;
   // Of a long run only its beginning tells of the resolution.
-  if (!coarse() || !frozen()) {
+  if (may_be_held || !coarse() || !frozen()) {
     counted += 1.0;
     repeated += same ? 1.0 : 0.0;
   }
@@ -53,7 +53,8 @@ void Screen::Repeats::take(double value) {
 }
 
 bool Screen::Repeats::frozen() const {
-  if (!coarse()) return run > 0;
+  if (!coarse() && !may_be_held) return run > 0;
+  if (may_be_held && run > calibration::repeats::kLongestOfInput) return false;
   return run > 0 && run * std::log(repeated / counted) < std::log(calibration::repeats::kChance);
 }
 
@@ -78,6 +79,11 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
     const auto count = static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind)));
     repeats_.emplace_back(count);
     ranges_.emplace_back(count);
+    if (!is_input(static_cast<SignalKind>(kind))) continue;
+    for (Repeats& repeats : repeats_.back()) {
+      repeats.may_be_held = true;
+      repeats.repeated = calibration::repeats::kPriorRepeatedOfInput;
+    }
   }
 }
 
@@ -223,6 +229,11 @@ void Screen::screen_far(SignalKind kind) {
   for (int i = 0; i < ago(0)[kind].size(); ++i) {
     if (!ago(0)[kind].usable(i)) continue;
     Range& range = ranges_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    if (range.left && range.former.beyond(ago(0)[kind].values(i)) <= 0.0) {
+      range = Range{.extent = range.former};
+      anew_ = true;  // it was not there in truth
+      continue;
+    }
     const bool far = range.extent.known() && range.extent.width() > 0.0 &&
                      range.extent.beyond(ago(0)[kind].values(i)) > calibration::extent::kTooFar;
     range.far = far ? range.far + 1 : 0;
@@ -231,7 +242,7 @@ void Screen::screen_far(SignalKind kind) {
       mark(kind, i, 0, &ScreenCounters::spikes);
       continue;
     }
-    range = Range{};
+    range = Range{.former = range.extent, .left = true};
     anew_ = true;
   }
 }

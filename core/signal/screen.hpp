@@ -23,13 +23,14 @@ struct ScreenCounters {
 /// ever been (wild, counted with the spikes). To judge a value by what follows it,
 /// frames pass with a delay of `kDelay`.
 ///
-/// Inputs may rest: a controller in manual or at a limit holds them. They count as frozen only
-/// where `inputs_matter` (predictions are simulated from them), inside their range, and while
-/// another MV moves; predictions only where an input that acts on them has moved all the time of
-/// its dead time. What a signal's resolution explains is learnt: a coarse signal also returns to
-/// the value before the last, a fine one never does. Of a fine one any repetition is frozen; of a
-/// coarse one, with a share r of repetitions, a run is frozen once r^length falls below one in a
-/// million. No allocation after construction.
+/// Inputs may rest: a controller in manual or at a limit holds them, and some move only now and
+/// then. They count as frozen only where `inputs_matter` (predictions are simulated from them),
+/// inside their range, while another MV moves, for longer than they usually rest, and not for long:
+/// who stands still for good is held; predictions only where an input that acts on them has moved
+/// all the time of its dead time. What a signal's resolution explains is learnt: a coarse signal
+/// also returns to the value before the last, a fine one never does. Of a fine one any repetition
+/// is frozen; of a coarse one, with a share r of repetitions, a run is frozen once r^length falls
+/// below one in a million. No allocation after construction.
 class Screen {
  public:
   static constexpr int kDelay = 3;
@@ -69,6 +70,7 @@ class Screen {
     double low = 0.0, high = 0.0;
     int at_low = 0, at_high = 0;  // how often exactly there
     int taken = 0;
+    bool may_be_held = false;  // an input
     void take(double value);
     [[nodiscard]] bool coarse() const { return returns >= calibration::repeats::kReturns; }
     [[nodiscard]] bool frozen() const;
@@ -85,7 +87,9 @@ class Screen {
   /// One signal's range.
   struct Range {
     Extent extent;
-    int far = 0;       // values in a row that are absurdly far outside
+    int far = 0;    // values in a row that are absurdly far outside
+    Extent former;  // where it was before it stayed there
+    bool left = false;
     int rejected = 0;  // that came back
   };
   [[nodiscard]] std::size_t place(int frames) const {

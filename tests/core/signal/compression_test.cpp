@@ -70,7 +70,7 @@ TEST_CASE("values held by a deadband are known to be compressed, also of a coars
     for (const double colour : {0.0, 0.7}) {
       const std::vector<double> raw = measured(colour, seed);
       CAPTURE(seed, colour);
-      for (const double deadband : {0.3, 0.5, 1.0}) {
+      for (const double deadband : {0.3, 0.5, 1.0, 2.5}) {
         CHECK(found_share(held(raw, deadband)) > 0.8);
         CHECK(found_share(held(quantised(raw, 0.217), deadband + 0.11)) > 0.8);
       }
@@ -80,7 +80,7 @@ TEST_CASE("values held by a deadband are known to be compressed, also of a coars
 
 TEST_CASE("straight lines between the values that were kept are known to be compressed") {
   for (unsigned seed = 1; seed <= 20; ++seed)
-    for (const double deadband : {1.0, 2.0}) {
+    for (const double deadband : {1.0, 2.0, 3.0}) {
       CAPTURE(seed, deadband);
       CHECK(found_share(interpolated(measured(0.7, seed), deadband)) > 0.8);
     }
