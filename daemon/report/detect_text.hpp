@@ -5,7 +5,7 @@
 #include "config/unit_config.hpp"
 #include "daemon/files/times/time_zone.hpp"
 #include "daemon/report/detect_report.hpp"
-#include "daemon/report/terminal_text.hpp"
+#include "daemon/report/terminal/terminal_text.hpp"
 
 namespace mpm::report {
 

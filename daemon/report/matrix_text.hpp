@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/report/terminal_text.hpp"
+#include "daemon/report/terminal/terminal_text.hpp"
 
 namespace mpm::report {
 

@@ -91,15 +91,16 @@ mcap/format
 mcap/read mcap/format
 mcap/write mcap/format
 mcap mcap/format mcap/read mcap/write
-report/diagnosis
-report/page report/diagnosis
+report/terminal
+report/diagnosis files/times
+report/identification files/times report/terminal
+report/page files/times report/diagnosis report/identification
 report/closed_loop files/csv report/diagnosis
-report files/times files report/diagnosis report/page
+report files/times files report/terminal report/diagnosis report/identification report/page
 history files/csv report
-history/trend files/times report history
-report/identification report
+history/trend files/times report/terminal report history
 bus
-bus/watch files/times report bus
+bus/watch files/times report/terminal report bus
 bus/doctor bus
 bag files/times files files/csv mcap/format mcap/read mcap/write
 bag/record host files/times files mcap/read mcap/write mcap bag

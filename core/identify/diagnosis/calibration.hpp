@@ -31,6 +31,13 @@ inline constexpr double kStrongEvidence = 30.0;
 inline constexpr double kNormalReach = 1.96;
 inline constexpr double kFittedNoiseReach = 2.05;
 
+/// A repaired state space: deviation of a channel's step response, as a share of its largest value;
+/// states of one channel's repair, and of the whole; rows of the Hankel matrix that they come from.
+inline constexpr double kStateSpaceDeviation = 1e-3;
+inline constexpr int kMostStatesOfChannel = 60;
+inline constexpr int kMostStates = 500;
+inline constexpr int kLargestHankel = 400;
+
 /// Gauss-Newton steps of a channel's estimate beside all that was found.
 inline constexpr int kEstimateSteps = 4;
 

@@ -12,6 +12,7 @@
 #include "core/identify/diagnosis/late.hpp"
 #include "core/identify/diagnosis/nameable.hpp"
 #include "core/identify/diagnosis/selection.hpp"
+#include "core/identify/diagnosis/state_space_form.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/diagnosis/verdict.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
@@ -125,6 +126,13 @@ ModelSpec extended_model(const Problem& problem, const SearchResult& found,
   return extend(problem, found, in, keep, judges.open);
 }
 
+/// What was given as a state space is one again where it can be.
+ModelSpec in_form_of(const ModelSpec& given, const ModelSpec& base, ModelSpec extended) {
+  if (!given.state_space) return extended;
+  std::optional<ModelSpec> system = in_state_space(given, base, extended);
+  return system ? std::move(*system) : extended;
+}
+
 /// Whether something was named in a CV, and nothing of that is in the extended model.
 bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
   const SearchResult& found = kept.found;
@@ -228,7 +236,7 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
   }
   const std::vector<bool> in = repaired(kept.selection);
   if (std::find(in.begin(), in.end(), true) != in.end())
-    diagnosis.extended = finish(extended, base, diagnosis.new_inputs);
+    diagnosis.extended = in_form_of(given, base, finish(extended, base, diagnosis.new_inputs));
   if (validation) {
     diagnosis.validation_before = std::move(diagnosis.before);
     diagnosis.validation_after = std::move(diagnosis.after);

@@ -9,7 +9,7 @@
 #include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/history/trend/trend_words.hpp"
-#include "daemon/report/terminal_text.hpp"
+#include "daemon/report/terminal/terminal_text.hpp"
 
 namespace mpm::history {
 namespace {

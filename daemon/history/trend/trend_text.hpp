@@ -3,7 +3,7 @@
 #include <string>
 
 #include "daemon/history/trend/changes.hpp"
-#include "daemon/report/terminal_text.hpp"
+#include "daemon/report/terminal/terminal_text.hpp"
 
 namespace mpm::history {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
 
 namespace mpm::report {
@@ -38,6 +39,18 @@ std::string header(const DiagnosisRun& run) {
       comment("What was found, most important first; what could be repaired is in `model`:", "");
   for (const Finding& finding : diagnosis.findings)
     text += comment("- " + explain(run, finding), "  ");
+  const auto& was = run.unit.model.state_space;
+  const auto& is = diagnosis.extended.state_space;
+  if (was && is && is->a.rows() > was->a.rows())
+    text += comment("The state space is the unit file's own, with " +
+                        counted(static_cast<std::uint64_t>(is->a.rows() - was->a.rows()), "state") +
+                        " added for what the repaired channels give more or less than before.",
+                    "");
+  if (was && !is)
+    text += comment(
+        "The state space is given as the step responses of its channels: the repair is not linear, "
+        "or would take too many states.",
+        "");
   for (const int aux : diagnosis.new_inputs)
     text += comment("- " + run.unit.aux.at(static_cast<std::size_t>(aux)).tag +
                         " was under `aux`; the model takes it now as a DV.",
@@ -80,6 +93,11 @@ std::string own_inputs_yaml(const config::UnitConfig& unit, const Diagnosis& dia
   own.model.input_count = inputs;
   own.model.input_blocks.resize(static_cast<std::size_t>(inputs));
   own.model.input_origin.conservativeResize(inputs);
+  if (own.model.state_space) {
+    StateSpaceSpec& system = *own.model.state_space;
+    system.b.conservativeResize(Eigen::NoChange, inputs);
+    system.d.conservativeResize(Eigen::NoChange, inputs);
+  }
   const auto is_new = [inputs](const auto& part) { return part.input >= inputs; };
   std::erase_if(own.model.channels, is_new);
   std::erase_if(own.model.state_terms, is_new);

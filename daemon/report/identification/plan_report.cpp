@@ -2,7 +2,7 @@
 
 #include "core/text/number_text.hpp"
 #include "daemon/report/identification/reasons.hpp"
-#include "daemon/report/terminal_text.hpp"
+#include "daemon/report/terminal/terminal_text.hpp"
 
 namespace mpm::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/report/terminal_text.hpp"
+#include "daemon/report/terminal/terminal_text.hpp"
 
 #include <algorithm>
 
