@@ -63,7 +63,7 @@ struct ChannelVerdict : AlarmEvidence {
 
 /// Judgement on one channel (one input to one CV) after one sample.
 struct ChannelStatus : ChannelVerdict {
-  /// For kCollinear and kConfounded: of the inputs, the CVs' set-points and the auxiliary signals,
+  /// For kCollinear and kConfounded, and for kBadData where it is another input's: of the inputs, the CVs' set-points and the auxiliary signals,
   /// counted in this order; -1 otherwise.
   int confounder = -1;
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`

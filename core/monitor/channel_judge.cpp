@@ -50,6 +50,7 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
 bool ChannelJudge::has_evidence(const JudgedChannel& channel, ChannelStatus& status) {
   if (channel.bad_data != Reason::kNone) {
     status.reason = channel.bad_data;
+    if (channel.bad_data == Reason::kBadData) status.confounder = channel.missing;
     return false;
   }
   const bool isolating = channel.alarms.isolating();

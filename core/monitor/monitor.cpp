@@ -54,6 +54,7 @@ struct Monitor::State {
   void move_alarms();
   void judge_channels();
   [[nodiscard]] Reason bad_data(int cv, int input) const;
+  [[nodiscard]] int missing_input(int cv, int input) const;
 
   LinearModel model;
   SignalCounts counts;
@@ -269,6 +270,7 @@ void Monitor::State::judge_channels() {
                            calibration::bad_data::kWarmUps * memory.needed_rows();
       judge.judge({.input = i,
                    .bad_data = bad_data(j, i),
+                   .missing = missing_input(j, i),
                    .overdue = overdue,
                    .memory = memory,
                    .evidence = detector.evidence(j, i),
@@ -290,9 +292,18 @@ Reason Monitor::State::bad_data(int cv, int input) const {
   const bool cv_lost = quality.without_row() > settings.fir_lags &&
                        residuals.unknown_run(cv) > settings.fir_lags && !predictions.settling(cv);
   const bool input_lost = inputs.unknown_run(input) > settings.fir_lags;
-  return cv_lost || input_lost || quality.mostly_unknown() || quality.implausible()
+  return cv_lost || input_lost || missing_input(cv, input) >= 0 || quality.mostly_unknown() ||
+                 quality.implausible()
              ? Reason::kBadData
              : Reason::kNone;
+}
+
+// Another input that the prediction cannot be simulated without, and that is lost; else -1.
+int Monitor::State::missing_input(int cv, int input) const {
+  if (predictions.given(cv)) return -1;
+  for (int i = 0; i < counts.inputs(); ++i)
+    if (i != input && acts[index(cv, i)] && inputs.unknown_run(i) > settings.fir_lags) return i;
+  return -1;
 }
 
 Monitor::Monitor(const ModelSpec& spec, const SignalCounts& counts,

@@ -20,7 +20,7 @@ struct ChannelRecord : ChannelVerdict {
   std::string unit, mv, cv;  ///< tags; `mv` may be a DV's
   std::int64_t interval = 0;
   std::int64_t source_time_ns = 0;
-  std::string confounder;  ///< tag of the signal that this input moved with, for Reason::kCollinear
+  std::string confounder;  ///< tag of the other signal that the reason names, else empty
                            ///< and kConfounded
   /// Where the data do not resolve them NaN, as on the topic.
   double time_constant_ratio = 1.0, time_constant_low = 1.0, time_constant_high = 1.0;

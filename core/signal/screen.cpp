@@ -230,7 +230,9 @@ void Screen::screen_far(SignalKind kind) {
     if (!ago(0)[kind].usable(i)) continue;
     Range& range = ranges_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
     if (range.left && range.former.beyond(ago(0)[kind].values(i)) <= 0.0) {
-      range = Range{.extent = range.former};
+      const Extent home = range.former;
+      range = Range{};
+      range.extent = home;
       anew_ = true;  // it was not there in truth
       continue;
     }
@@ -242,7 +244,10 @@ void Screen::screen_far(SignalKind kind) {
       mark(kind, i, 0, &ScreenCounters::spikes);
       continue;
     }
-    range = Range{.former = range.extent, .left = true};
+    const Extent former = range.extent;
+    range = Range{};
+    range.former = former;
+    range.left = true;
     anew_ = true;
   }
 }

@@ -13,7 +13,12 @@ namespace mpm::host {
 AwaitedSignal::AwaitedSignal(std::initializer_list<int> signals) {
   sigset_t set;
   sigemptyset(&set);
-  for (const int signal : signals) sigaddset(&set, signal);
+  for (const int signal : signals) {
+    struct sigaction now {};
+    sigaction(signal, nullptr, &now);
+    // Who started the program may want it left alone (nohup), and a blocked signal would come.
+    if (now.sa_handler != SIG_IGN) sigaddset(&set, signal);
+  }
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   fd_ = signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
   if (fd_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
@@ -26,7 +31,7 @@ bool AwaitedSignal::take() {
   return read(fd_, &info, sizeof info) == sizeof info;
 }
 
-StopSignal::StopSignal() : signal_({SIGTERM, SIGINT}) {}
+StopSignal::StopSignal() : signal_({SIGTERM, SIGINT, SIGHUP}) {}
 
 bool StopSignal::received() {
   received_ = received_ || signal_.take();

@@ -8,6 +8,7 @@ namespace mpm::host {
 /// blocked signals and none is interrupted.
 class AwaitedSignal {
  public:
+  /// But for those that are ignored already.
   explicit AwaitedSignal(std::initializer_list<int> signals);
   AwaitedSignal(const AwaitedSignal&) = delete;
   AwaitedSignal& operator=(const AwaitedSignal&) = delete;
@@ -20,7 +21,7 @@ class AwaitedSignal {
   int fd_;
 };
 
-/// SIGTERM and SIGINT.
+/// SIGTERM, SIGINT and SIGHUP.
 class StopSignal {
  public:
   StopSignal();

@@ -18,6 +18,8 @@ struct OpenLoopUnit {
   double gain_ratio = 1.0, time_constant_ratio = 1.0, later = 0.0;
   int from = 0, until = 1000000;  ///< samples
   std::uint64_t seed = 0;
+  bool graded = false;       ///< inputs move to any value, not to one of two
+  int still_from = 1000000;  ///< input 1 stays where it was, samples
   SignalCounts counts{2, 0, 2, 0};
 
   OpenLoopUnit() {
@@ -51,7 +53,9 @@ struct OpenLoopUnit {
     for (int k = 0; k < samples; ++k) {
       for (int i = 0; i < 2; ++i) {
         const auto s = static_cast<std::uint64_t>(i);
-        u(i) = model.input_origin(i) + (uniform(700 + 10 * seed + s, k / 20) > 0 ? 1.0 : -1.0);
+        const double level = uniform(700 + 10 * seed + s, k / 20);
+        if (i == 0 || k == 0 || k < still_from)
+          u(i) = model.input_origin(i) + (graded ? 2.0 * level : level > 0 ? 1.0 : -1.0);
         noise(i) = 0.7 * noise(i) + 0.1 * uniform(800 + 10 * seed + s, k);
       }
       Frame frame(counts);

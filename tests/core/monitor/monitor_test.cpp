@@ -410,6 +410,48 @@ TEST_CASE("inputs that move as one name each other") {
     }
 }
 
+TEST_CASE("an input that stands still leaves the others their verdicts") {
+  for (const bool predictions : {true, false}) {
+    for (const int from : {0, 500}) {
+      CAPTURE(from, predictions);
+      Experiment experiment;
+      experiment.predictions = predictions;
+      experiment.graded = true;
+      experiment.still_from = from;
+      Monitor monitor = experiment.monitor();
+      experiment.run(4000, [&](const Frame& frame) { monitor.push(frame); });
+      for (int j = 0; j < 2; ++j) CHECK(monitor.channel(j, 0).verdict == Verdict::kMatch);
+      if (from == 0)
+        for (int j = 0; j < 2; ++j) CHECK(monitor.channel(j, 1).reason == Reason::kNotExcited);
+    }
+  }
+}
+
+TEST_CASE("inputs that are moved now and then are not frozen in between") {
+  Experiment experiment;
+  experiment.predictions = false;
+  experiment.graded = true;  // every 20 samples
+  Monitor monitor = experiment.monitor();
+  experiment.run(4000, [&](const Frame& frame) { monitor.push(frame); });
+  CHECK(monitor.counters().implausible.frozen < 20);
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
+}
+
+TEST_CASE("an input that is missing is named where a CV cannot be simulated without it") {
+  Experiment experiment;
+  experiment.predictions = false;
+  Monitor monitor = experiment.monitor();
+  experiment.run(1000, [&](Frame frame) {
+    frame[SignalKind::kMv].quality[1] = Quality::kBad;
+    monitor.push(frame);
+  });
+  CHECK(monitor.channel(0, 0).reason == Reason::kBadData);
+  CHECK(monitor.channel(0, 0).confounder == 1);
+  CHECK(monitor.channel(0, 1).reason == Reason::kBadData);
+  CHECK(monitor.channel(0, 1).confounder == -1);
+}
+
 TEST_CASE("implausible values are a part of the bad ones at every moment") {
   Experiment experiment;
   experiment.predictions = GENERATE(true, false);
