@@ -35,6 +35,11 @@ class Channel:
     def has_time(self):
         return bool(self.lags or self.damped)
 
+    @property
+    def time_scale(self):
+        """Grows as with_time() says, where there is anything to grow."""
+        return self.damped[0] if self.damped else sum(self.lags)
+
     def settling(self):
         slow = 4 * self.damped[0] / self.damped[1] if self.damped else 4 * sum(self.lags)
         return self.dead + slow + (40 if self.integrating else 0)

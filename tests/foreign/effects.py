@@ -1,4 +1,6 @@
 """What may be wrong in a foreign plant, drawn from the seed, in the words of `mpm diagnose`."""
+import math
+
 import numpy as np
 
 from channels import Channel
@@ -34,10 +36,17 @@ def either(rng, low, high):
     return float(rng.uniform(*(low if rng.random() < 0.5 else high)))
 
 
-def draw(effect, plant, channels, pilot_sd, noise_sd, samples, rng):
+def any_ratio(rng):
+    """5 to 100 % more, or its inverse; each doubling of the size as likely as the others."""
+    size = math.exp(rng.uniform(math.log(0.05), math.log(1.0)))
+    return float((1 + size)**rng.choice([-1, 1]))
+
+
+def draw(effect, plant, channels, pilot_sd, noise_sd, samples, rng, any_size=False):
     """What the plant is then: channels; valve (mv -> function of sample and command); sensor (cv ->
     ratio); added (samples x CVs); aux_channel (cv, gain in its s.d. by the noise's, lag); and the
-    truth. `pilot_sd`: of the MVs in a healthy run."""
+    truth. `pilot_sd`: of the MVs in a healthy run. `any_size`: a gain, time constant or dead time
+    (with the sample that holds the input) is off by 5 to 100 %, not by what one would notice."""
     hidden = {"channels": list(channels), "valve": {}, "sensor": np.ones(plant.cv_count),
               "added": np.zeros((samples, plant.cv_count)), "aux": None}
     truth = {"cause": None, "cv": None, "mv": None, "tag": None, "parameters": {}, "onset": None}
@@ -54,15 +63,17 @@ def draw(effect, plant, channels, pilot_sd, noise_sd, samples, rng):
     if effect in ("gain", "dead_time", "time_constant"):
         truth.update(cv=cv, mv=mv)
         if effect == "gain":
-            value = either(rng, (0.6, 0.85), (1.15, 1.5))
+            value = any_ratio(rng) if any_size else either(rng, (0.6, 0.85), (1.15, 1.5))
             hidden["channels"][at] = channels[at].with_gain(value)
             truth["parameters"] = {"gain_ratio": value}
         elif effect == "dead_time":
-            value = float(rng.integers(2, 6))
+            dead = channels[at].dead
+            value = (any_ratio(rng) - 1) * (dead + 1) if any_size else float(rng.integers(2, 6))
+            value = value if dead + value >= 0 else -value
             hidden["channels"][at] = channels[at].with_dead(value)
             truth["parameters"] = {"dead_time_error": value * plant.sample_time}
         else:
-            value = either(rng, (0.5, 0.75), (1.35, 2.0))
+            value = any_ratio(rng) if any_size else either(rng, (0.5, 0.75), (1.35, 2.0))
             hidden["channels"][at] = channels[at].with_time(value)
             truth["parameters"] = {"time_constant_ratio": value}
     elif effect == "input_scale":

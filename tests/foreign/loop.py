@@ -6,18 +6,20 @@ order channels behind dead times, sampled exactly; dynamic matrix control with a
 channel of the plant is off the controller's model by up to 2 % of gain and 3 % of time even where
 nothing is wrong.
 
-Usage: loop.py --regime R --plant P --effect E --seed N [--samples 3000] --out DIR
+Usage: loop.py --regime R --plant P --effect E --seed N [--samples 3000] [--model-error 1]
+               [--any-size] --out DIR
 
 Regimes: regimes.py; plants: plants.py; effects: effects.py. Seeds below 1000 are for scores, from
 100001 on for tuning, from 90001 on for the test that it writes the same bytes again.
 
 truth.json: what is wrong in the words of `mpm diagnose`; `others`: what the regime itself does that
-may rightly be named; the step responses of plant and model; `input_gains`: slope of each valve's
-position on its command; and the noncentrality: the sum of squares of the effect in the CVs, with
-the inputs as applied, after whitening by the noise's true model and taking out all that errors of
-gain, time and dead time of the channels that are not wrong could do, and a constant. It is what the
-best possible test would have to go by. It does not count what a regime hides besides (feed-forward,
-a disturbance that moves with a set-point, a late change), so there it flatters.
+may rightly be named; by how much each channel is off; the step responses of plant and model;
+`input_gains`: slope of each valve's position on its command; and the noncentrality: the sum of
+squares of the effect in the CVs, with the inputs as applied, after whitening by the noise's true
+model and taking out all that errors of gain, time and dead time of the channels that are not wrong
+could do, and a constant. It is what the best possible test would have to go by. It does not count
+what a regime hides besides (feed-forward, a disturbance that moves with a set-point, a late
+change), so there it flatters.
 * gain, dead_time, time_constant: of the CV.
 * input_scale: over the CVs but the one with the most, since a gain there would explain that one.
 * output_scale: what no gain of a single channel of the CV explains.
@@ -175,7 +177,7 @@ def tags(plant, item):
     return named
 
 
-def make(regime, name, effect, seed, samples, model_error):
+def make(regime, name, effect, seed, samples, model_error, any_size):
     plant = PLANTS[name]()
     key = [seed, regimes.REGIMES.index(regime), list(PLANTS).index(name),
            effects.EFFECTS.index(effect)]
@@ -191,7 +193,7 @@ def make(regime, name, effect, seed, samples, model_error):
             continue
         noise = [regimes.noise_sd(model) for model in outside.noise_models]
         hidden, truth = effects.draw(effect, plant, healthy, pilot[1].std(axis=0), noise,
-                                     samples, rng)
+                                     samples, rng, any_size)
         cvs, mvs, positions = (pilot if effect == "none" else
                                simulate(plant, outside, hidden, samples))
         if stays_put(plant, cvs, mvs, truth["mv"] if hidden["valve"] else None):
@@ -211,7 +213,11 @@ def make(regime, name, effect, seed, samples, model_error):
     for model, true in zip(plant.channels, hidden["channels"]):
         tag = f"u{true.input + 1}" if true.input < plant.dv else "d1"
         true = true.with_gain(float(hidden["sensor"][true.cv]))
-        steps.append({"cv": f"y{true.cv + 1}", "input": tag,
+        steps.append({"cv": f"y{true.cv + 1}", "input": tag, "gain_ratio": true.gain / model.gain,
+                      "time_constant_ratio": (true.time_scale / model.time_scale if true.has_time
+                                              else None),
+                      "dead_time": model.dead * plant.sample_time,
+                      "dead_time_error": (true.dead - model.dead) * plant.sample_time,
                       "plant": step_response(true, horizon + 1)[::stride].tolist(),
                       "model": step_response(model, horizon + 1)[::stride].tolist()})
     truth = tags(plant, truth)
@@ -225,10 +231,11 @@ def make(regime, name, effect, seed, samples, model_error):
     return plant, outside, cvs, mvs, truth, rng
 
 
-def write(regime, name, effect, seed, samples, out, model_error=1.0):
+def write(regime, name, effect, seed, samples, out, model_error=1.0, any_size=False):
     """Writes the three files and returns the truth. `model_error` scales what every model is off
-    by."""
-    plant, outside, cvs, mvs, truth, rng = make(regime, name, effect, seed, samples, model_error)
+    by; `any_size`: effects.draw."""
+    plant, outside, cvs, mvs, truth, rng = make(regime, name, effect, seed, samples, model_error,
+                                                any_size)
     cvs, mvs = regimes.logged(regime, plant, outside.noise_models, cvs, mvs, rng)
     header = (["time"] + [f"u{j + 1}" for j in range(plant.mv_count)] + ["d1"] +
               [f"y{i + 1}" for i in range(plant.cv_count)] +
@@ -253,9 +260,12 @@ def main():
     parser.add_argument("--effect", choices=effects.EFFECTS, required=True)
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--samples", type=int, default=3000)
+    parser.add_argument("--model-error", type=float, default=1.0)
+    parser.add_argument("--any-size", action="store_true")
     parser.add_argument("--out", required=True)
     args = parser.parse_args()
-    truth = write(args.regime, args.plant, args.effect, args.seed, args.samples, args.out)
+    truth = write(args.regime, args.plant, args.effect, args.seed, args.samples, args.out,
+                  args.model_error, args.any_size)
     print(f"{args.regime} {args.plant} {args.effect} {args.seed}: "
           f"noncentrality {truth['noncentrality']:.0f}")
 

@@ -2,61 +2,101 @@
 """What `mpm detect` finds on foreign plants, beside what the best possible test could.
 
 Usage: power.py --mpm build/release/bin/mpm --seeds 100001-100004 [--regime R ...] [--plant P ...]
-                [--effect E ...] [--samples 3000] [--model-error 1] [--jobs 1] [--keep DIR]
-                [--json FILE]
+                [--effect E ...] [--samples 3000] [--model-error 0] [--jobs 1] [--keep DIR]
+                [--json FILE] [--markdown FILE] [--bounds]
 
 loop.py makes the recordings, and says of each error how much the best possible test would have to
 go by (noncentrality, all that errors of the other channels could do taken out). Each plant runs
-with each effect (default: none, gain, dead_time, time_constant) at each seed. Seeds below 1000 are
-for scores, from 100001 on for tuning. --model-error 0: channels that are not wrong are exactly
-what the model says, so that every one called a mismatch is an error of the test. Tables, shares
-with Wilson's 95 % interval (1927):
-* per noncentrality: found = a channel that is wrong called a mismatch; undetermined = none found,
-  and the wrong channel undetermined; missed = it is called a match.
-* per plant: healthy channels called a mismatch, undetermined, and their alarms.
+with each effect (default: none, gain, dead_time, time_constant, of any size) at each seed. Seeds
+below 1000 are for scores, from 100001 on for tuning, from 90001 on for the short test. Channels
+that are not wrong are exactly what the model says, so that every one called a mismatch is an error
+of the test; --model-error 1: they are off by as much as in score.py. Tables, shares with Wilson's
+95 % interval (1927), rewritten in the file given as --markdown:
+* power: per plant and noncentrality the runs with a wrong channel; found = it is called a mismatch;
+  undetermined = not found, and undetermined; missed = it is called a match.
+* coverage: of the 95 % intervals of gain, time constants and dead time that `mpm detect` gives, how
+  many hold the truth, by the size of the channel's error: of gain and time constant the larger of
+  ratio and inverse, of the dead time by the dead time and one sample.
+--bounds: exit 1 where a share lies so far beyond what is claimed that a true share there would come
+in one of 1000 runs of this program.
 """
 import argparse
 import concurrent.futures
 import json
 import pathlib
+import re
 import sys
 import tempfile
+import time
 
 import loop
 from effects import EFFECTS
 from judge import judge
 from plants import PLANTS
 from regimes import REGIMES
-from score import run
-from tables import wilson
+from score import run, seed_list
+from tables import most, wilson
 
-BINS = ((0, 20), (20, 40), (40, 100), (100, 400), (400, float("inf")))
+BANDS = ((0, 20), (20, 40), (40, 100), (100, float("inf")))
+SIZES = ((0, 0.05), (0.05, 0.1), (0.1, 0.2), (0.2, 0.5), (0.5, 1.0))
+QUANTITIES = {"gain": "gain_error_percent_interval",
+              "time constant": "time_constant_ratio_interval",
+              "dead time": "dead_time_error_interval"}
+# Shares at most: what holds, which for the first two is less than what is wanted.
+BOUNDS = {"not found from 40 to 100": 0.30, "not found above 100": 0.08,
+          "healthy channels called a mismatch": 0.002, "gain not in its interval": 0.07,
+          "time constants not in their interval": 0.07, "dead time not in its interval": 0.07}
+
+
+def is_wrong(channel, truth):
+    finding = {"cause": "gain", "cv": channel["cv"], "mv": channel["mv"], "parameters": {}}
+    return judge(finding, {**truth, "others": []}) in ("right", "place")
+
+
+def intervals(channel, true, sample_time):
+    """Of each quantity of which the channel has an interval: its key, the size of what is wrong
+    with it, the truth, the interval."""
+    def size(ratio):
+        return max(ratio, 1 / ratio) - 1
+
+    gain, late, lag = (true[key] for key in ("gain_ratio", "dead_time_error",
+                                             "time_constant_ratio"))
+    values = [("gain_error_percent_interval", 100 * (gain - 1), size(gain)),
+              ("dead_time_error_interval", late, abs(late) / (true["dead_time"] + sample_time))]
+    if lag is not None:
+        values.append(("time_constant_ratio_interval", lag, size(lag)))
+    for key, value, error in values:
+        if key in channel:
+            yield key, error, value, *channel[key]
 
 
 def one(mpm, regime, plant, effect, seed, samples, model_error, keep):
+    began = time.process_time()
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(keep or temporary) / f"{regime}-{plant}-{effect}-{seed}"
-        truth = loop.write(regime, plant, effect, seed, samples, folder, model_error)
+        truth = loop.write(regime, plant, effect, seed, samples, folder, model_error, True)
         code, output, seconds = run(mpm, ["detect", "--config", folder / "unit.yaml", "--data",
                                           folder / "data.csv", "--json"])
     case = {"regime": regime, "plant": plant, "effect": effect, "seed": seed,
-            "noncentrality": truth["noncentrality"], "seconds": seconds,
-            "failed": code not in (0, 1)}
+            "noncentrality": truth["noncentrality"],
+            "seconds": seconds + time.process_time() - began, "failed": code not in (0, 1)}
     if case["failed"]:
         return case
     answer = json.loads(output)
-    wrong, healthy, accused = [], [], set()
+    true = {(c["input"], c["cv"]): c for c in truth["channels"]}
+    wrong, healthy, accused, covered = [], [], set(), []
     for channel in answer["channels"]:
-        finding = {"cause": "gain", "cv": channel["cv"], "mv": channel["mv"], "parameters": {}}
-        guilty = judge(finding, {**truth, "others": []}) in ("right", "place")
+        at = channel["mv"], channel["cv"]
+        guilty = is_wrong(channel, truth)
         (wrong if guilty else healthy).append(
-            [channel["mv"], channel["cv"], channel["verdict"], channel.get("reason", ""),
-             channel["p_value"]])
+            [*at, channel["verdict"], channel.get("reason", ""), channel["p_value"]])
         if not guilty:
-            accused.add((channel["mv"], channel["cv"]))
+            accused.add(at)
+        if at in true:
+            covered += [[*at, *c] for c in intervals(channel, true[at], truth["sample_time"])]
     alarms = {(a["mv"], a["cv"]) for a in answer["alarms"] if a["to"] == "active"}
-    case.update(wrong=wrong, healthy=healthy, false_alarms=sorted(alarms & accused),
-                right_alarms=sorted(alarms - accused))
+    case.update(wrong=wrong, healthy=healthy, covered=covered,
+                false_alarms=sorted(alarms & accused), right_alarms=sorted(alarms - accused))
     return case
 
 
@@ -64,68 +104,138 @@ def share(part, whole):
     if whole == 0:
         return "-"
     low, high = wilson(part, whole)
-    return f"{part}/{whole} ({100 * low:.0f}-{100 * high:.0f} %)"
+    return f"{part} of {whole} ({100 * low:.0f}-{100 * high:.0f} %)"
 
 
-def power_rows(cases):
-    yield "| noncentrality | found | undetermined | missed | in an alarm |"
-    yield "|---|---|---|---|---|"
-    for low, high in BINS:
-        chosen = [c for c in cases if c["effect"] != "none" and low <= c["noncentrality"] < high]
-        count = len(chosen)
-        found = [any(w[2] == "mismatch" for w in c["wrong"]) for c in chosen]
-        open_ = [not f and any(w[2] == "undetermined" for w in c["wrong"])
-                 for f, c in zip(found, chosen)]
-        alarmed = sum(bool(c["right_alarms"]) for c in chosen)
-        yield (f"| {low:g} to {high:g} | {share(sum(found), count)} | {share(sum(open_), count)} | "
-               f"{share(count - sum(found) - sum(open_), count)} | {share(alarmed, count)} |")
+def verdicts(cases):
+    """Runs with a wrong channel: in all, found, undetermined, missed."""
+    wrong = [[w[2] for w in c["wrong"]] for c in cases if c["effect"] != "none"]
+    found = sum("mismatch" in w for w in wrong)
+    open_ = sum("mismatch" not in w and "undetermined" in w for w in wrong)
+    return len(wrong), found, open_, len(wrong) - found - open_
 
 
-def false_rows(cases, key):
-    yield f"| {key} | healthy channels | called a mismatch | undetermined | false alarms | runs |"
-    yield "|---|---|---|---|---|---|"
-    for name in dict.fromkeys(c[key] for c in cases):
-        chosen = [c for c in cases if c[key] == name]
-        healthy = [h for c in chosen for h in c["healthy"]]
-        false = sum(h[2] == "mismatch" for h in healthy)
-        open_ = sum(h[2] == "undetermined" for h in healthy)
-        alarms = sum(len(c["false_alarms"]) for c in chosen)
-        yield (f"| {name} | {len(healthy)} | {share(false, len(healthy))} | "
-               f"{share(open_, len(healthy))} | {alarms} | {len(chosen)} |")
+def within(cases, low, high):
+    return [c for c in cases if c["effect"] != "none" and low <= c["noncentrality"] < high]
+
+
+def groups(cases, key):
+    names = list(dict.fromkeys(c[key] for c in cases))
+    for name in names:
+        yield name, [c for c in cases if c[key] == name]
+    if len(names) > 1:
+        yield "all", cases
+
+
+def power_rows(cases, key):
+    yield (f"| {key} | noncentrality | found | undetermined | missed | in an alarm | "
+           "healthy channels called a mismatch | false alarms |")
+    yield "|---|---|---|---|---|---|---|---|"
+    for name, of_name in groups(cases, key):
+        bands = [(f"below {high:g}" if low == 0 else f"above {low:g}" if high == float("inf") else
+                  f"{low:g} to {high:g}", within(of_name, low, high)) for low, high in BANDS]
+        bands.insert(0, ("nothing wrong", [c for c in of_name if c["effect"] == "none"]))
+        for band, chosen in bands:
+            if not chosen:
+                continue
+            count, found, open_, missed = verdicts(chosen)
+            alarmed = sum(bool(c["right_alarms"]) for c in chosen if c["effect"] != "none")
+            healthy = [h[2] == "mismatch" for c in chosen for h in c["healthy"]]
+            of_wrong = (f"{share(found, count)} | {open_} | {missed} | {alarmed}" if count else
+                        " | | |")
+            yield (f"| {name} | {band} | {of_wrong} | {sum(healthy)} of {len(healthy)} | "
+                   f"{sum(len(c['false_alarms']) for c in chosen)} |")
+
+
+def held(cases, key, low=0.0, high=float("inf")):
+    """Of the intervals of a quantity, for errors of that size, whether each holds the truth."""
+    return [c[5] <= c[4] <= c[6] for case in cases for c in case["covered"]
+            if c[2] == key and low <= c[3] < high]
+
+
+def coverage_rows(cases):
+    sizes = ["not wrong"] + [f"{100 * low:g} to {100 * high:g} %" for low, high in SIZES[1:]]
+    yield "| quantity | plant | " + " | ".join(sizes) + " | all that are wrong |"
+    yield "|---|---|" + "---|" * (len(sizes) + 1)
+    for quantity, key in QUANTITIES.items():
+        for name, chosen in groups(cases, "plant"):
+            of = [held(chosen, key, *size) for size in SIZES + ((SIZES[1][0], float("inf")),)]
+            cells = " | ".join(share(sum(h), len(h)) for h in of)
+            yield f"| {quantity} | {name} | {cells} |"
+
+
+def beyond(cases):
+    """Lines that say of each bound whether it holds."""
+    healthy = [h[2] == "mismatch" for c in cases for h in c["healthy"]]
+    counts = [(sum(healthy), len(healthy))]
+    for low, high in reversed(BANDS[2:]):
+        count, found, _, _ = verdicts(within(cases, low, high))
+        counts.insert(0, (count - found, count))
+    for key in QUANTITIES.values():
+        of = held(cases, key)
+        counts.append((len(of) - sum(of), len(of)))
+    for (what, bound), (count, of) in zip(BOUNDS.items(), counts):
+        kept = count <= most(of, bound)
+        yield kept, (f"{'holds' if kept else 'BROKEN'}: {what}: {count} of {of}, "
+                     f"at most {100 * bound:g} %")
+
+
+def replace_part(text, name, lines):
+    """What stands between the markers `study:begin NAME` and `study:end NAME`."""
+    begin, end = f"<!-- study:begin {name} -->", f"<!-- study:end {name} -->"
+    if begin not in text or end not in text:
+        sys.exit(f"power.py: no markers for the table {name}")
+    before, rest = text.split(begin)
+    return before + begin + "\n\n" + "\n".join(lines) + "\n\n" + end + rest.split(end)[1]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--mpm", required=True)
-    parser.add_argument("--seeds", default="100001-100004")
+    parser.add_argument("--seeds", type=seed_list, default=seed_list("1-60"))
     parser.add_argument("--regime", nargs="+", choices=REGIMES, default=["stationary"])
     parser.add_argument("--plant", nargs="+", choices=list(PLANTS), default=list(PLANTS))
     parser.add_argument("--effect", nargs="+", choices=EFFECTS,
                         default=["none", "gain", "dead_time", "time_constant"])
     parser.add_argument("--samples", type=int, default=3000)
-    parser.add_argument("--model-error", type=float, default=1.0)
+    parser.add_argument("--model-error", type=float, default=0.0)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep")
     parser.add_argument("--json")
+    parser.add_argument("--markdown")
+    parser.add_argument("--bounds", action="store_true")
     args = parser.parse_args()
-    first, _, last = args.seeds.partition("-")
-    wanted = [(args.mpm, regime, plant, effect, seed, args.samples, args.model_error,
-               args.keep)
-              for seed in range(int(first), int(last or first) + 1) for regime in args.regime
-              for plant in args.plant for effect in args.effect
+    wanted = [(args.mpm, regime, plant, effect, seed, args.samples, args.model_error, args.keep)
+              for seed in args.seeds for regime in args.regime for plant in args.plant
+              for effect in args.effect
               if not (effect == "aux" and regime == "aux_disturbance")]
+    cases = []
     with concurrent.futures.ProcessPoolExecutor(args.jobs) as pool:
-        cases = list(pool.map(one, *zip(*wanted)))
+        for case in pool.map(one, *zip(*wanted)):
+            cases.append(case)
+            print(f"\rforeign plants: {len(cases)} of {len(wanted)} runs", end="", file=sys.stderr)
+    print(file=sys.stderr)
     failed = [c for c in cases if c["failed"]]
-    cases = [c for c in cases if not c["failed"]]
+    good = [c for c in cases if not c["failed"]]
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps(cases, indent=1) + "\n")
-    lines = list(power_rows(cases)) + [""]
-    lines += list(false_rows(cases, "plant")) + [""] + list(false_rows(cases, "regime"))
-    print("\n".join(lines))
+    tables = {"power": list(power_rows(good, "plant")), "coverage": list(coverage_rows(good))}
+    shown = [*tables.values()] + ([list(power_rows(good, "regime"))] if len(args.regime) > 1 else [])
+    print("\n\n".join("\n".join(rows) for rows in shown))
+    print(f"\n{sum(c['seconds'] for c in cases):.0f} s of CPU time")
+    if args.markdown:
+        text = pathlib.Path(args.markdown).read_text()
+        for name, rows in tables.items():
+            text = replace_part(text, name, rows)
+        pathlib.Path(args.markdown).write_text(text)
+    kept = True
+    for holds, line in beyond(good) if args.bounds else ():
+        print(line)
+        kept = kept and holds
     if failed:
         sys.exit(f"power.py: {len(failed)} runs failed, the first: {failed[0]}")
+    sys.exit(not kept)
 
 
 if __name__ == "__main__":

@@ -92,9 +92,13 @@ def reliability(results):
 
 def most(runs, share_of_runs):
     """The most that a binomial with that share gives in all but one of 1000 times."""
+    if share_of_runs <= 0:
+        return 0
     left, count = 1.0, 0
     while True:
-        left -= math.comb(runs, count) * share_of_runs**count * (1 - share_of_runs)**(runs - count)
+        left -= math.exp(math.lgamma(runs + 1) - math.lgamma(count + 1) -
+                         math.lgamma(runs - count + 1) + count * math.log(share_of_runs) +
+                         (runs - count) * math.log1p(-share_of_runs))
         if left < 1e-3 or count == runs:
             return count
         count += 1
