@@ -63,8 +63,8 @@ struct ChannelVerdict : AlarmEvidence {
 
 /// Judgement on one channel (one input to one CV) after one sample.
 struct ChannelStatus : ChannelVerdict {
-  /// For kCollinear and kConfounded, and for kBadData where it is another input's: of the inputs, the CVs' set-points and the auxiliary signals,
-  /// counted in this order; -1 otherwise.
+  /// For kCollinear, kConfounded, and kBadData where another input is lost: of the inputs, the CVs'
+  /// set-points and the auxiliary signals, counted in this order; -1 otherwise.
   int confounder = -1;
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
   Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`

@@ -298,11 +298,12 @@ Reason Monitor::State::bad_data(int cv, int input) const {
              : Reason::kNone;
 }
 
-// Another input that the prediction cannot be simulated without, and that is lost; else -1.
+// Another input that is lost, where the CV has no rows for so long: simulated or not, no row goes
+// without it. Else -1.
 int Monitor::State::missing_input(int cv, int input) const {
-  if (predictions.given(cv)) return -1;
+  if (cvs[static_cast<std::size_t>(cv)].quality.without_row() <= settings.fir_lags) return -1;
   for (int i = 0; i < counts.inputs(); ++i)
-    if (i != input && acts[index(cv, i)] && inputs.unknown_run(i) > settings.fir_lags) return i;
+    if (i != input && inputs.unknown_run(i) > settings.fir_lags) return i;
   return -1;
 }
 

@@ -36,7 +36,9 @@ inline constexpr double kResolved = 0.03;
 /// more so many do as well, but a sixth of its changes or more are the smallest (two differences of
 /// normal values); a deadband leaves none.
 inline constexpr double kRested = 0.1;
-/// Where changes are rare so many are enough, once so many values have come. Chosen.
+/// Changes in a batch; where they are rare so many are enough, once so many values have come.
+/// Chosen.
+inline constexpr int kChanges = 200;
 inline constexpr int kFewestChanges = 30;
 inline constexpr int kMostValues = 1000;
 /// A change is the smallest below so many times it; changes are the same size within this share of

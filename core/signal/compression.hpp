@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core/signal/calibration.hpp"
+
 namespace mpm {
 
 /// Recognises in one signal's values what a historian's compression leaves of them: values held
@@ -29,7 +31,7 @@ class Compression {
   [[nodiscard]] bool held() const;
   [[nodiscard]] bool interpolated() const;
 
-  static constexpr int kChanges = 200;
+  static constexpr int kChanges = calibration::compression::kChanges;
   Batch batch_;
   std::array<double, kChanges> jumps_{};  // sizes
   int taken_ = 0;                         // values, up to 2

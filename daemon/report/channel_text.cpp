@@ -128,7 +128,7 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
       return channel.confounder.empty()
                  ? "too much of what it needs is missing or bad"
                  : printable(channel.confounder) + " is missing or bad, and " +
-                       printable(channel.cv) + " cannot be simulated without it";
+                       printable(channel.cv) + " cannot be judged without it";
     case Reason::kCompressed:
       return "a historian has compressed " + printable(channel.cv) +
              "; turn that off for this tag, or let it send changes from a tenth of the noise on";

@@ -20,5 +20,10 @@ cmp "$source/idl/mpm.idl" "$prefix/share/mpm/mpm.idl"
 # Plants find their scenarios, and `mpm` the simulator beside it.
 "$prefix/bin/mpmsim" --config "$prefix/share/mpm/plants/shell3x3.yaml" --scenario hidden_gain \
   --samples 50 --csv "$prefix/run.csv" || fail "no scenarios"
-[ "$(find "$prefix" -name '*.cpp' -o -name '*.a' -o -name 'CMakeLists.txt' | wc -l)" -eq 0 ] ||
+documents=$prefix/share/doc/mpm
+for file in docs/hmi.md tests/hmi/gateway.c; do
+  cmp "$source/$file" "$documents/$file" || fail "no $file"
+done
+[ "$(find "$prefix" -path "$documents" -prune -o \
+  \( -name '*.cpp' -o -name '*.a' -o -name 'CMakeLists.txt' \) -print | wc -l)" -eq 0 ] ||
   fail "what nobody asked for is installed"
