@@ -116,6 +116,9 @@ inline constexpr int kFewestFirLags = 20;
 inline constexpr int kMostFirLags = 60;
 /// An error in the dead time must stay inside the pulse lags: this many samples beyond the longest.
 inline constexpr int kDeadTimeMargin = 13;
+/// So must the swings of a response that oscillates, which no tail can follow, down to this share
+/// of the largest.
+inline constexpr double kSwingThatMatters = 0.05;
 inline constexpr int kResidualOrder = 8;
 /// One tail with the slowest time constant, and further ones, each this many times faster, as long
 /// as they are slower than the pulse lags can show (so many times their number).

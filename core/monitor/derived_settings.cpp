@@ -23,6 +23,27 @@ double forgetting(double effective_samples) {
   return (effective_samples - 1.0) / (effective_samples + 1.0);
 }
 
+// Lags until every swing that matters has ended: a pulse response's next change of sign.
+int swinging_lags(const ModelSpec& spec, const LinearModel& model) {
+  int lags = 0;
+  for (int cv = 0; cv < spec.cv_count; ++cv) {
+    for (int input = 0; input < spec.input_count; ++input) {
+      const Eigen::VectorXd pulse =
+          model.impulse_response(cv, input, 2 * regression_shape::kMostFirLags);
+      const double matters = regression_shape::kSwingThatMatters * pulse.cwiseAbs().maxCoeff();
+      double swing = 0.0;  // the farthest since the last change of sign
+      for (int l = 1; l < static_cast<int>(pulse.size()); ++l) {
+        if (swing * pulse(l) < 0.0) {
+          if (std::abs(swing) > matters) lags = std::max(lags, l);
+          swing = 0.0;
+        }
+        if (std::abs(pulse(l)) > std::abs(swing)) swing = pulse(l);
+      }
+    }
+  }
+  return lags;
+}
+
 void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
                      DerivedSettings& derived) {
   const double columns =
@@ -81,7 +102,8 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
   derived.fir_lags =
       monitor.fir_lags > 0
           ? monitor.fir_lags
-          : std::clamp(whole(std::ceil(dead_time)) + regression_shape::kDeadTimeMargin,
+          : std::clamp(std::max(whole(std::ceil(dead_time)) + regression_shape::kDeadTimeMargin,
+                                swinging_lags(spec, model)),
                        regression_shape::kFewestFirLags, regression_shape::kMostFirLags);
   derived.residual_order =
       monitor.residual_order > 0 ? monitor.residual_order : regression_shape::kResidualOrder;
