@@ -92,13 +92,13 @@ def reliability(results):
 
 def most(runs, share_of_runs):
     """The most that a binomial with that share gives in all but one of 1000 times."""
-    if share_of_runs <= 0:
+    if share_of_runs == 0.0:
         return 0
+    log_in, log_out = math.log(share_of_runs), math.log1p(-share_of_runs)  # no power overflows
     left, count = 1.0, 0
     while True:
-        left -= math.exp(math.lgamma(runs + 1) - math.lgamma(count + 1) -
-                         math.lgamma(runs - count + 1) + count * math.log(share_of_runs) +
-                         (runs - count) * math.log1p(-share_of_runs))
+        ways = math.lgamma(runs + 1) - math.lgamma(count + 1) - math.lgamma(runs - count + 1)
+        left -= math.exp(ways + count * log_in + (runs - count) * log_out)
         if left < 1e-3 or count == runs:
             return count
         count += 1
