@@ -15,8 +15,8 @@ BlockBasis::BlockBasis(int fir_lags, std::vector<double> tail_poles)
     : fir_lags_(fir_lags), tail_poles_(std::move(tail_poles)) {
   const double slowest_pole = *std::max_element(tail_poles_.begin(), tail_poles_.end());
   slowest_ = -1.0 / std::log(slowest_pole);
-  beyond_ =
-      std::clamp(static_cast<int>(kTailFitTimeConstants * slowest_), kTailFitFewest, kTailFitMost);
+  beyond_ = static_cast<int>(std::clamp<double>(kTailFitTimeConstants * slowest_, kTailFitFewest,
+                                                kTailFitMost));  // an int need not hold slowest_
   Eigen::MatrixXd steps(beyond_, static_cast<Eigen::Index>(tail_poles_.size()));
   for (Eigen::Index t = 0; t < steps.cols(); ++t)
     for (int l = 0; l < beyond_; ++l)

@@ -35,6 +35,7 @@ struct Monitor::State {
     CvQuality quality;
     bool evaluated = false;    // in this sample
     bool judged = false;       // there is evidence from the present memory
+    bool compressed = false;   // its values
     std::int64_t settled = 0;  // samples
     Rival rival;
     std::int64_t followed_next = 0;  // sample
@@ -46,6 +47,7 @@ struct Monitor::State {
   [[nodiscard]] Cv& of(int cv) { return cvs[static_cast<std::size_t>(cv)]; }
 
   void take_frame(const Frame& frame);
+  void follow_compression();
   void take_outside(const Frame& frame);
   void pass_gap(std::int64_t missing);
   void take_sample(const Frame& frame);
@@ -157,6 +159,7 @@ void Monitor::State::take_frame(const Frame& frame) {
     predictions.follow(screen, [&](int cv) {
       if (samples > 0) detector.start_afresh(cv, 0);
     });
+  follow_compression();
   counters.bad_values += static_cast<std::uint64_t>(inputs.read(frame));
   predictions.begin(frame, inputs);
   counters.bad_values += static_cast<std::uint64_t>(residuals.read(frame, predictions));
@@ -172,6 +175,16 @@ void Monitor::State::take_frame(const Frame& frame) {
     readings[static_cast<std::size_t>(j)] = {
         measured.usable(j) ? measured.values(j) : std::numeric_limits<double>::quiet_NaN(),
         residuals.values()(j)};
+}
+
+// What was learnt of held values and drawn lines says nothing once the CV is measured again.
+void Monitor::State::follow_compression() {
+  for (int j = 0; j < counts.cv; ++j) {
+    const bool was = std::exchange(of(j).compressed, screen.compressed(j));
+    if (!was || of(j).compressed) continue;
+    detector.start_afresh(j, 0);
+    of(j).settled = 0;
+  }
 }
 
 void Monitor::State::pass_gap(std::int64_t missing) {
@@ -249,7 +262,7 @@ void Monitor::State::move_alarms() {
     const auto changed = [&](int input) {
       transitions.push_back({j, input, cv.alarms.state(input)});
     };
-    if (cv.rival.wins || screen.compressed(j))  // what spoke against a channel was never evidence
+    if (cv.rival.wins || cv.compressed)  // what spoke against a channel was never evidence
       cv.alarms.clear(changed);
     else if (cv.quality.implausible() || !cv.rival.loses)
       cv.alarms.hold();
@@ -287,8 +300,9 @@ void Monitor::State::judge_channels() {
 
 // Why no verdict can be drawn, if none can. Lost: for as long as an input's pulse lags.
 Reason Monitor::State::bad_data(int cv, int input) const {
-  if (screen.compressed(cv)) return Reason::kCompressed;
-  const CvQuality& quality = cvs[static_cast<std::size_t>(cv)].quality;
+  const Cv& judged = cvs[static_cast<std::size_t>(cv)];
+  if (judged.compressed) return Reason::kCompressed;
+  const CvQuality& quality = judged.quality;
   const bool cv_lost = quality.without_row() > settings.fir_lags &&
                        residuals.unknown_run(cv) > settings.fir_lags && !predictions.settling(cv);
   const bool input_lost = inputs.unknown_run(input) > settings.fir_lags;

@@ -21,7 +21,6 @@ struct ChannelRecord : ChannelVerdict {
   std::int64_t interval = 0;
   std::int64_t source_time_ns = 0;
   std::string confounder;  ///< tag of the other signal that the reason names, else empty
-                           ///< and kConfounded
   /// Where the data do not resolve them NaN, as on the topic.
   double time_constant_ratio = 1.0, time_constant_low = 1.0, time_constant_high = 1.0;
   double dead_time_error_s = 0.0, dead_time_low_s = 0.0, dead_time_high_s = 0.0;

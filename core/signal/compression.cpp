@@ -10,9 +10,9 @@ namespace mpm {
 namespace compression = calibration::compression;
 
 void Compression::take(double value) {
-  if (taken_ == 0) {
+  if (!begun_) {
     last_ = value;
-    taken_ = 1;
+    begun_ = true;
     return;
   }
   ++batch_.values;
@@ -45,7 +45,7 @@ void Compression::take_change(double change) {
   ++batch_.changes;
   const bool rare =
       batch_.changes >= compression::kFewestChanges && batch_.values >= compression::kMostValues;
-  if (batch_.changes < kChanges && !rare) return;
+  if (batch_.changes < compression::kChanges && !rare) return;
   found_ = held() || interpolated();
   batch_ = {};
 }

@@ -78,7 +78,8 @@ Suffixes suffixes_of(const Outlook& outlook, int input, const VectorXd& move, bo
       const Index count = std::min<Index>(length, rows - k);
       fall(k) = response.head(count).dot(slope.segment(k, count));
     }
-    const VectorXd whitened = fit.noise.apply(response) / std::sqrt(fit.variance);
+    const Whitening noise{fit.noise.coefficients, {}};  // the recording's runs are not a response's
+    const VectorXd whitened = noise.apply(response) / std::sqrt(fit.variance);
     VectorXd correlation(length);
     for (Index l = 0; l < length; ++l)
       correlation(l) = whitened.head(length - l).dot(whitened.tail(length - l));

@@ -40,8 +40,8 @@ bool holds(const Estimate& estimate, double truth) {
 // 95 % intervals of 15 seeds miss the truth five times or more in 1 of 1600 tries. As long as the
 // errors were taken for small ones, those of a time constant that is twice as long, or of a dead
 // time that is 3 samples longer, held the truth in none.
-TEST_CASE(
-    "the intervals of a gain, a time constant and a dead time hold the truth, small or large") {
+TEST_CASE("the intervals of a gain, a time constant and a dead time hold the truth, small or large",
+          "[trials]") {
   for (const Hidden& hidden :
        {Hidden{1.05, 1.0, 0.0}, Hidden{1.3, 1.0, 0.0}, Hidden{2.0, 1.0, 0.0}, Hidden{0.4, 1.0, 0.0},
         Hidden{1.0, 1.5, 0.0}, Hidden{1.0, 2.0, 0.0}, Hidden{1.0, 0.5, 0.0}, Hidden{1.0, 1.0, 3.0},

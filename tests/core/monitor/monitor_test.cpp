@@ -153,7 +153,7 @@ TEST_CASE("an error within the materiality limits is a mismatch but no alarm") {
   CHECK(channel.effect_high > 0.03);
 }
 
-TEST_CASE("sizes: the intervals of gain, time constant and dead time hold the truth") {
+TEST_CASE("sizes: the intervals of gain, time constant and dead time hold the truth", "[trials]") {
   // 40 seeds x 3 parameters with 95 % intervals: 120 trials, expected 6 misses, s.d. 2.4; at most
   // 15 (four s.d.).
   int missed = 0;
@@ -450,6 +450,30 @@ TEST_CASE("an input that is missing is named where a CV cannot be simulated with
   CHECK(monitor.channel(0, 0).confounder == 1);
   CHECK(monitor.channel(0, 1).reason == Reason::kBadData);
   CHECK(monitor.channel(0, 1).confounder == -1);
+}
+
+TEST_CASE("a compressed CV has no verdict, and what was learnt of it is forgotten") {
+  Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  double held = 0.0;
+  Reason before = Reason::kNone;
+  double remembered = 1e9;  // when it is no longer compressed
+  experiment.run(7000, [&](Frame frame) {
+    double& value = frame[SignalKind::kCv].values(0);
+    if (std::abs(value - held) > 0.3) held = value;
+    if (frame.interval < 3000) value = held;
+    monitor.push(frame);
+    CHECK(monitor.transitions().empty());
+    if (frame.interval == 2900)
+      for (int i = 0; i < 2; ++i) CHECK(monitor.channel(0, i).reason == Reason::kCompressed);
+    if (frame.interval == 2900) CHECK(monitor.channel(1, 0).verdict == Verdict::kMatch);
+    const Reason reason = monitor.channel(0, 0).reason;
+    if (before == Reason::kCompressed && reason != before)
+      remembered = monitor.channel(0, 0).effective_samples;
+    before = reason;
+  });
+  CHECK(remembered < 10.0);
+  for (int i = 0; i < 2; ++i) CHECK(monitor.channel(0, i).verdict == Verdict::kMatch);
 }
 
 TEST_CASE("implausible values are a part of the bad ones at every moment") {

@@ -58,7 +58,7 @@ void check_healed(double gain_ratio, bool predictions, const Injury& injury) {
           injured.transitions.find("1 ") == injured.transitions.find("01 ") + 1)));
 }
 
-TEST_CASE("a single wild value leaves no trace") {
+TEST_CASE("a single wild value leaves no trace", "[trials]") {
   for (const double value : {300.0, -1e5, 1e9, 1e60, 1e153, -1e200, 1e308})
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kPrediction})
       check_healed(1.0, true, {kind, value, 1500, 1});
@@ -66,7 +66,7 @@ TEST_CASE("a single wild value leaves no trace") {
   check_healed(0.75, true, {SignalKind::kCv, 1e60, 1500, 1});
 }
 
-TEST_CASE("a burst of wild values is forgotten within two memories") {
+TEST_CASE("a burst of wild values is forgotten within two memories", "[trials]") {
   for (const double value : {1e9, -1e60, 1e153, 1e200})
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kPrediction})
       check_healed(1.0, true, {kind, value, 1500, 7});
