@@ -29,7 +29,7 @@ config::UnitConfig slow_unit() {
 // A slow channel without dead time, of which the gain is wrong, under moves that are short beside
 // its time constant: gain and time constant are known only together. A number is stated within what
 // the model's form can be, or it is not.
-TEST_CASE("no number is wild: what the data do not resolve is left out") {
+TEST_CASE("no number is wild: what the data do not resolve is left out", "[trials]") {
   const config::UnitConfig unit = slow_unit();
   for (const double ratio : {1.0, 1.4, 3.0}) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {

@@ -54,7 +54,7 @@ Json change_of(const Json& trend, const std::string& mv, const std::string& cv) 
 /// Of weeks since the start.
 double weeks(const Json& since) { return (since.get<double>() - 1767571200.0) / (7 * 86400.0); }
 
-TEST_CASE("a gain that decays over weeks is found, in its channel and with its week") {
+TEST_CASE("a gain that decays over weeks is found, in its channel and with its week", "[trials]") {
   const History history;
   std::string scenario = "changes:\n";
   for (int week = 3; week < 9; ++week)  // 4 % a week from week 3 on
@@ -82,7 +82,7 @@ TEST_CASE("a gain that decays over weeks is found, in its channel and with its w
   CHECK(weeks(trend["changes"][0]["since"]) <= 4.0);
 }
 
-TEST_CASE("a gain that jumps is told with the moment of its alarm") {
+TEST_CASE("a gain that jumps is told with the moment of its alarm", "[trials]") {
   const History history;
   write_file(history.file("jump.yaml"),
              "changes:\n  - {cv: xb, mv: steam, gain_ratio: 0.7, from: 20160 samples}\n");
@@ -99,7 +99,7 @@ TEST_CASE("a gain that jumps is told with the moment of its alarm") {
 }
 
 // The stated rate is 1 of 100 histories; of a few none.
-TEST_CASE("of healthy histories nothing is told beyond chance") {
+TEST_CASE("of healthy histories nothing is told beyond chance", "[trials]") {
   const History history;
   const int count = runs(4);
   int told = 0;
@@ -115,7 +115,7 @@ TEST_CASE("of healthy histories nothing is told beyond chance") {
 }
 
 // The negative control: what is larger is the noise, and no gain is blamed for it.
-TEST_CASE("noise that grows is told of the prediction errors, with its day and size") {
+TEST_CASE("noise that grows is told of the prediction errors, with its day and size", "[trials]") {
   const History history;
   history.simulate("noise_x3", 4 * kWeek, 1, "noise.csv");  // from the middle of the run on
   const Json trend = history.of_data("noise.csv", "day");
@@ -127,7 +127,7 @@ TEST_CASE("noise that grows is told of the prediction errors, with its day and s
   }
 }
 
-TEST_CASE("the trend of data and that of the journal of the same data agree") {
+TEST_CASE("the trend of data and that of the journal of the same data agree", "[trials]") {
   const History history;
   write_file(history.file("jump.yaml"),
              "changes:\n  - {cv: xb, mv: steam, gain_ratio: 0.7, from: 20160 samples}\n");
