@@ -27,36 +27,6 @@ inline constexpr int kLongestOfInput = 60;
 inline constexpr int kEndHits = 3;
 }  // namespace repeats
 
-/// What a historian's compression leaves (`Compression`), as shares of a batch of changes.
-namespace compression {
-/// A sensor's own resolution shows where more changes than this are the smallest there is, or go
-/// right back by the same size. Chosen, between none and what is said next.
-inline constexpr double kResolved = 0.03;
-/// Held: so many changes follow a rest. Of a sensor whose resolution is a third of its noise or
-/// more so many do as well, but a sixth of its changes or more are the smallest (two differences of
-/// normal values); a deadband leaves none.
-inline constexpr double kRested = 0.1;
-/// Changes in a batch; where they are rare so many are enough, once so many values have come.
-/// Chosen.
-inline constexpr int kChanges = 200;
-inline constexpr int kFewestChanges = 30;
-inline constexpr int kMostValues = 1000;
-/// A change is the smallest below so many times it; changes are the same size within this share of
-/// it. Chosen: between one step and two; what printing leaves of a few digits.
-inline constexpr double kOneStep = 1.5;
-inline constexpr double kSame = 1e-3;
-/// Interpolated: two changes in a row are one line where they differ by less than this share, and
-/// a bend where by more than that. Chosen: what single precision leaves of a line; what no slow
-/// answer does in a sample.
-inline constexpr double kStraight = 1e-3;
-inline constexpr double kBend = 0.2;
-/// So many changes go straight on, and so many end a line; where most are straight one is enough.
-/// Chosen: a noisy signal has hardly any.
-inline constexpr double kStraightShare = 0.15;
-inline constexpr double kBends = 0.015;
-inline constexpr double kMostlyStraight = 0.5;
-}  // namespace compression
-
 /// Values that jump away and right back (`Screen`).
 namespace spikes {
 /// So many times the usual difference it leaves and comes back. Chosen

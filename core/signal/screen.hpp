@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/signal/calibration.hpp"
-#include "core/signal/compression.hpp"
 #include "core/signal/extent.hpp"
 #include "core/signal/frame.hpp"
+#include "core/statistics/compression.hpp"
 
 namespace mpm {
 
@@ -52,7 +52,7 @@ class Screen {
   [[nodiscard]] bool predicted(int cv) const { return predicted_[static_cast<std::size_t>(cv)]; }
   /// A historian has compressed the CV.
   [[nodiscard]] bool compressed(int cv) const {
-    return compression_[static_cast<std::size_t>(cv)].found();
+    return compression_[static_cast<std::size_t>(cv)].kind() != Compression::Kind::kNone;
   }
   /// Spikes of one CV so far.
   [[nodiscard]] std::uint64_t spikes(int cv) const {

@@ -2,27 +2,47 @@
 
 #include <cstddef>
 
-/// Numbers that decide what a historian is accused of (historian.hpp).
+/// Numbers that decide what a historian is accused of (compression.hpp, historian.hpp).
 namespace mpm {
 
-// Chosen by hand from what they mean; the rates that they give are in historian_test.cpp.
+// Chosen by hand from what they mean; the rates that they give are in compression_test.cpp and
+// historian_test.cpp.
+namespace compression {
+/// Changes in a batch; where they are rare so many are enough, once so many values have come.
+inline constexpr int kChanges = 200;
+inline constexpr int kFewestChanges = 30;
+inline constexpr int kMostValues = 1000;
+/// Held: so many changes follow a rest, fewer than this share of them are small beside the median
+/// one (of normal changes 13 % are, of the wider measure for few changes 26 %; after a deadband,
+/// which is coarse where changes are rare, none), and fewer are the smallest there is. Of a sensor
+/// whose resolution is a third of its noise or more a sixth of the changes or more are that, and a
+/// seventh follow a rest.
+inline constexpr double kRested = 0.1;
+inline constexpr double kSmallMove = 0.25;
+inline constexpr double kSmallOfRare = 0.5;
+inline constexpr double kFewSmall = 0.02;
+inline constexpr double kFewResolved = 0.03;
+/// A change is the smallest below so many times it; changes are the same size within this share of
+/// it: between one step and two; what printing leaves of a few digits.
+inline constexpr double kOneStep = 1.5;
+inline constexpr double kSame = 1e-3;
+/// Interpolated: two changes in a row are one line where they differ by less than this share, and a
+/// bend where by more than that: what single precision leaves of a line; what no slow answer does
+/// in a sample. So many changes go straight on, and so many end a line; where most are straight one
+/// is enough.
+inline constexpr double kStraight = 1e-3;
+inline constexpr double kBend = 0.2;
+inline constexpr double kStraightShare = 0.15;
+inline constexpr double kBends = 0.015;
+inline constexpr double kMostlyStraight = 0.5;
+}  // namespace compression
+
 inline constexpr std::size_t kFewestRows = 100;
-inline constexpr std::size_t kFewestMoves = 30;  ///< that a smallest one can be told from
-inline constexpr double kHeld = 0.3;             ///< share of the rows
-/// The smallest move beside the median one: of 30 normal ones it is as large in 1 of 200 columns.
-inline constexpr double kSmallestMove = 0.3;
-/// Archived values hardly ever come again; levels of a test signal or of a converter do.
-inline constexpr double kNewValues = 0.5;
+inline constexpr std::size_t kFewestMoves = 30;  ///< that a quantum can be told from
+inline constexpr double kHeldShare = 0.3;        ///< of the rows
 inline constexpr std::size_t kFewestLevels = 5;  ///< of a converter; a test signal has fewer
 inline constexpr double kNeighbours = 0.8;       ///< share of the moves that are of one quantum
 inline constexpr double kOfLattice = 1e-3;  ///< a multiple is one to within this share of a quantum
-/// A line is straight to within this share of the range, and a corner beyond a hundred times it.
-inline constexpr double kStraight = 1e-7;
-inline constexpr double kCorner = 100.0;
-inline constexpr double kStraightShare = 0.5;
-inline constexpr double kBetween =
-    0.05;  ///< share of the rows that are neither; a smooth signal has many
-inline constexpr std::size_t kFewestCorners = 20;
 inline constexpr double kTie = 1e-9;        ///< of the range: values that differ by less are one
 inline constexpr double kOneQuantum = 1.5;  ///< quanta: moves below are of one
 inline constexpr double kMuch = 0.5;        ///< of the signal's s.d., of the rows

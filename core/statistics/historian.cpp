@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/statistics/calibration.hpp"
+#include "core/statistics/compression.hpp"
 
 namespace mpm {
 namespace {
@@ -47,10 +48,16 @@ HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {
   for (const double value : known) square += (value - mean) * (value - mean) / rows;
   traits.sd = std::sqrt(square);
 
-  const double tie = kTie * range, straight = kStraight * range;
+  Compression compression;
+  for (const double value : known) compression.take(value);
+  compression.conclude();
+  traits.interpolated = compression.kind() == Compression::Kind::kInterpolated;
+  if (compression.kind() == Compression::Kind::kHeld)
+    traits.deadband = compression.smallest_change();
+
+  const double tie = kTie * range;
   std::vector<double> moves;
-  double held = 0.0, on_line = 0.0, between = 0.0;
-  std::size_t corners = 0;
+  double held = 0.0, on_line = 0.0, last = 0.0;
   for (Index k = 1; k < values.size(); ++k) {
     const double move = values(k) - values(k - 1);
     if (!std::isfinite(move)) continue;
@@ -58,33 +65,21 @@ HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {
       ++held;
     else
       moves.push_back(std::abs(move));
-    if (k + 1 == values.size() || !std::isfinite(values(k + 1))) continue;
-    const double bend = std::abs(values(k + 1) - values(k) - move);
-    if (bend > kCorner * straight)
-      ++corners;
-    else if (bend > straight)
-      ++between;
-    else if (std::abs(move) > straight)
-      ++on_line;
+    on_line += Compression::straight(move, last) ? 1.0 : 0.0;
+    last = move;
   }
   traits.held_share = held / rows;
   traits.straight_share = on_line / rows;
-  traits.interpolated = traits.straight_share >= kStraightShare && corners >= kFewestCorners &&
-                        between <= kBetween * rows;
-  if (traits.held_share < kHeld || moves.size() < kFewestMoves) return traits;
+  if (traits.compressed() || traits.held_share < kHeldShare || moves.size() < kFewestMoves)
+    return traits;
 
-  std::sort(moves.begin(), moves.end());
   const std::vector<double> levels = levels_of(known, tie);
-  if (static_cast<double>(levels.size()) >= kNewValues * static_cast<double>(moves.size())) {
-    if (moves.front() >= kSmallestMove * moves[moves.size() / 2]) traits.deadband = moves.front();
-  } else if (levels.size() >= kFewestLevels) {
-    const double quantum = lattice(levels, range);
-    const auto of_one = std::count_if(moves.begin(), moves.end(), [quantum](double move) {
-      return move < kOneQuantum * quantum;
-    });
-    if (static_cast<double>(of_one) >= kNeighbours * static_cast<double>(moves.size()))
-      traits.quantum = quantum;
-  }
+  if (levels.size() < kFewestLevels) return traits;
+  const double quantum = lattice(levels, range);
+  const auto of_one = std::count_if(
+      moves.begin(), moves.end(), [quantum](double move) { return move < kOneQuantum * quantum; });
+  if (static_cast<double>(of_one) >= kNeighbours * static_cast<double>(moves.size()))
+    traits.quantum = quantum;
   return traits;
 }
 

@@ -65,9 +65,9 @@ floors() {
 floors core <<'TABLE'
 parallel
 text
-signal
-regression
 statistics
+signal statistics
+regression
 model
 alarm text
 mismatch text signal regression statistics model
