@@ -324,6 +324,21 @@ const Value* Map::require(std::string_view key) const {
   return value;
 }
 
+/// What yaml-cpp says of a file, and in words what is usually wrong where it says that.
+std::string syntax_error(const std::string& text, const YAML::Exception& error) {
+  std::string message = "not valid YAML: " + error.msg;
+  const auto at = static_cast<std::size_t>(std::max(0, error.mark.pos));
+  const std::size_t line = text.rfind('\n', at) + 1;  // 0 where there is none
+  const std::size_t begin = text.find_first_not_of(' ', line);
+  if (begin != std::string::npos && text[begin] == '\t')
+    return message + "; a tab begins this line, and only blanks may";
+  namespace says = YAML::ErrorMsg;
+  if (error.msg == says::END_OF_MAP || error.msg == says::END_OF_SEQ ||
+      error.msg == says::MAP_VALUE)
+    return message + "; this line or one above it begins too far left or right";
+  return message;
+}
+
 std::optional<Value> parse_yaml(const std::string& text, Report& report) {
   const YAML::Mark start;
   if (const std::size_t at = find_invalid_utf8(text); at != std::string::npos) {
@@ -341,7 +356,7 @@ std::optional<Value> parse_yaml(const std::string& text, Report& report) {
     return Value(root, root.Mark(), "", report);
   } catch (const YAML::Exception& error) {
     report.add(Severity::kError, error.mark.is_null() ? start : error.mark, "",
-               "not valid YAML: " + error.msg);
+               syntax_error(text, error));
   } catch (const std::exception& error) {
     report.add(Severity::kError, start, "", std::string("not valid YAML: ") + error.what());
   }

@@ -166,7 +166,7 @@ void UnitPipeline::on_frame(const Frame& frame) {
     spdlog::log(alarm.to == AlarmChange::kActive ? spdlog::level::warn : spdlog::level::info,
                 "{}: {} -> {}: alarm {} at interval {} ({}, p {:.1e})", alarm.unit, alarm.mv,
                 alarm.cv, to_string(alarm.to), alarm.interval,
-                report::gain_text(alarm, modelled_channel(config_, monitor_.channels(), alarm)),
+                report::error_text(alarm, modelled_channel(config_, monitor_.channels(), alarm)),
                 alarm.p_value);
   }
   if (!written && output_limit_.admit(now_))

@@ -32,6 +32,14 @@ std::string with_units(const std::string& effect, const ChannelFile& file) {
   return effect + " " + printable(file.cv_unit) + " per " + printable(file.mv_unit);
 }
 
+Interval gain_percent(const ChannelRecord& channel) {
+  const double a = channel.percent_of_gain(channel.effect_low);
+  const double b = channel.percent_of_gain(channel.effect_high);
+  return {std::min(a, b), std::max(a, b)};
+}
+
+double percent_of_ratio(double ratio) { return 100.0 * (ratio - 1.0); }
+
 std::string gain_part(const ChannelRecord& channel, const ChannelFile& file) {
   if (!file.modelled) {
     const std::string effect = number_text(channel.effect_size);
@@ -40,9 +48,7 @@ std::string gain_part(const ChannelRecord& channel, const ChannelFile& file) {
            " (" + interval_text(channel.effect_low, channel.effect_high) + ")";
   }
   if (!channel.gain_resolved()) return "gain --";
-  const double a = channel.percent_of_gain(channel.effect_low);
-  const double b = channel.percent_of_gain(channel.effect_high);
-  const Interval percent{std::min(a, b), std::max(a, b)};
+  const Interval percent = gain_percent(channel);
   if (percent.holds(0.0) && percent.within(-kOkPercent, kOkPercent)) return "gain ok";
   const std::string in_units = with_units(signed_text(channel.effect_size, 3), file);
   return "gain " + signed_text(channel.percent_of_gain(channel.effect_size)) + " % (" +
@@ -53,9 +59,8 @@ std::string time_constant_part(const ChannelRecord& channel) {
   if (!channel.time_constant_resolved()) return "time constant --";
   const Interval ratio{channel.time_constant_low, channel.time_constant_high};
   if (ratio.holds(1.0) && ratio.within(1.0 / kOkTimeRatio, kOkTimeRatio)) return "time constant ok";
-  const auto percent = [](double of) { return 100.0 * (of - 1.0); };
-  return "time constant " + signed_text(percent(channel.time_constant_ratio)) + " % (" +
-         Interval{percent(ratio.low), percent(ratio.high)}.text() + ")";
+  return "time constant " + signed_text(percent_of_ratio(channel.time_constant_ratio)) + " % (" +
+         Interval{percent_of_ratio(ratio.low), percent_of_ratio(ratio.high)}.text() + ")";
 }
 
 std::string dead_time_part(const ChannelRecord& channel, const ChannelFile& file) {
@@ -126,7 +131,9 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
              printable(channel.cv);
     case Reason::kBadData:
       return channel.confounder.empty()
-                 ? "too much of what it needs is missing or bad"
+                 ? printable(channel.cv) + " or " + printable(channel.mv) +
+                       " is too often missing, bad, or the same for several samples; if it is read "
+                       "only now and then, let sample_time be as long"
                  : printable(channel.confounder) + " is missing or bad, and " +
                        printable(channel.cv) + " cannot be judged without it";
     case Reason::kCompressed:
@@ -146,10 +153,18 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
   return "not known";
 }
 
-std::string gain_text(const AlarmRecord& alarm, const ChannelRecord* channel) {
+std::string error_text(const AlarmRecord& alarm, const ChannelRecord* channel) {
   if (channel == nullptr || channel->model_gain == 0.0)
     return alarm.effect_size == 0.0 ? "size not known yet"
                                     : "gain off by " + number_text(alarm.effect_size);
+  if (!channel->gain_resolved() || gain_percent(*channel).holds(0.0)) {
+    if (channel->time_constant_resolved() &&
+        !Interval{channel->time_constant_low, channel->time_constant_high}.holds(1.0))
+      return "time constant " + signed_text(percent_of_ratio(channel->time_constant_ratio)) + " %";
+    if (channel->dead_time_resolved() &&
+        !Interval{channel->dead_time_low_s, channel->dead_time_high_s}.holds(0.0))
+      return "dead time " + signed_text(channel->dead_time_error_s) + " s";
+  }
   if (!channel->gain_resolved()) return "gain --";
   return "gain " + signed_text(channel->percent_of_gain(alarm.effect_size)) + " %";
 }

@@ -22,7 +22,8 @@ std::string head(const DetectReport& report, const MomentText& moment) {
     text += " at " + moment.with_year(report.last_ns) + moment.zone();
   else
     text += " from " + moment.with_year(report.first_ns) + " to " +
-            moment.with_year(report.last_ns) + moment.zone();
+            moment.with_year(report.last_ns) + moment.zone() +
+            (report.last_ns < report.first_ns ? ", the clock went back" : "");
   if (report.used.size() > 1) text += ", in " + std::to_string(report.used.size()) + " stretches";
   text += "; " + std::to_string(report.used_samples) + " used";
   if (report.missing > 0) text += ", " + std::to_string(report.missing) + " missing";

@@ -1,6 +1,7 @@
 #include "daemon/report/matrix_text.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace mpm::report {
 namespace {
@@ -42,17 +43,36 @@ std::string table(const std::vector<std::string>& columns, const std::vector<Mat
   return text;
 }
 
+/// At least `width`, and so many columns that tags which differ still do when cut to it, as far as
+/// `most` allows.
+std::size_t telling_width(const std::vector<std::string>& tags, std::size_t width,
+                          std::size_t most) {
+  const std::set<std::string> different(tags.begin(), tags.end());
+  const auto told_apart = [&different](std::size_t columns) {
+    std::set<std::string> cut;
+    for (const std::string& tag : different) cut.insert(shortened(tag, columns));
+    return cut.size() == different.size();
+  };
+  while (width < most && !told_apart(width)) ++width;
+  return width;
+}
+
 }  // namespace
 
 std::string matrix_text(const std::vector<std::string>& columns, const std::vector<MatrixRow>& rows,
                         const Layout& layout) {
   const std::size_t room = std::max(layout.width, 2 * (kShortestTag + kGap)) - kIndent;
+  const std::size_t most = room - kShortestTag - kGap;
+  std::vector<std::string> row_tags;
   std::size_t tag_width = 0;
-  for (const MatrixRow& row : rows) tag_width = std::max(tag_width, columns_of(row.tag));
-  tag_width = std::min(tag_width, std::max(kShortestTag, room / 3));
+  for (const MatrixRow& row : rows) {
+    row_tags.push_back(row.tag);
+    tag_width = std::max(tag_width, columns_of(row.tag));
+  }
+  tag_width = std::min(tag_width, telling_width(row_tags, std::max(kShortestTag, room / 3), most));
 
   // A column may be as wide as a sixth of the line for its tag, and wider for what it says.
-  const std::size_t widest = std::max(kShortestTag, room / 6);
+  const std::size_t widest = telling_width(columns, std::max(kShortestTag, room / 6), most);
   std::vector<std::size_t> widths;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     std::size_t width = std::min(widest, columns_of(columns[i]));

@@ -220,6 +220,15 @@ TEST_CASE("Mistakes in the head of a file are told at their place") {
       {"# nothing\n", "u.yaml:1:1: error: the file is empty"},
       {"unit: [1, 2\nfoo: }\n",
        "u.yaml:2:4: error: not valid YAML: end of sequence flow not found"},
+      {"unit: t\nsignals:\n mv: u1\n  cv: y1\n",
+       "u.yaml:4:5: error: not valid YAML: illegal map value; this line or one above it begins too "
+       "far left or right"},
+      {"unit: t\nsignals:\n  mv: u1\n cv: y1\n",
+       "u.yaml:4:2: error: not valid YAML: end of map not found; this line or one above it begins "
+       "too far left or right"},
+      {"unit: t\nsignals:\n\tmv: u1\n",
+       "u.yaml:3:4: error: not valid YAML: illegal map value; a tab begins this line, and only "
+       "blanks may"},
       {kHead + kModel + "---\nunit: b\n",
        "u.yaml:8:1: error: text after the end of the document; give one document per file"},
   }));

@@ -78,7 +78,7 @@ std::string head(const std::string& name, const UnitBoard& board, const report::
 std::string alarm_text(const UnitBoard& board, const AlarmRecord& alarm) {
   return fmt::format("{} -> {}  since {}  {}  p {:.1e}", alarm.mv, alarm.cv,
                      utc(alarm.source_time_ns),
-                     report::gain_text(alarm, find(board, alarm.mv, alarm.cv)), alarm.p_value);
+                     report::error_text(alarm, find(board, alarm.mv, alarm.cv)), alarm.p_value);
 }
 
 /// "gain_ratio 0.7 (0.68 to 0.72)", all of them.
@@ -129,7 +129,7 @@ std::string change_line(const AlarmRecord& change, const ChannelRecord* channel)
                        change.cv, cause_text(change.named), change.named.text);
   return fmt::format("{} {} {} -> {}: alarm {} ({}, p {:.1e})", utc(change.source_time_ns),
                      change.unit, change.mv, change.cv, to_string(change.to),
-                     report::gain_text(change, channel), change.p_value);
+                     report::error_text(change, channel), change.p_value);
 }
 
 std::string change_line(const HealthRecord& before, const HealthRecord& after) {

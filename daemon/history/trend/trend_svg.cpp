@@ -15,6 +15,8 @@ namespace mpm::history {
 namespace {
 
 constexpr double kMargin = 16.0, kLabels = 110.0, kTop = 78.0;
+constexpr std::size_t kLongestLabel = 40;  // characters
+constexpr double kCharacter = 8.0;         // of a label, at most, nearly always
 constexpr double kPanelWidth = 250.0, kPanelHeight = 84.0, kGap = 34.0, kRowGap = 26.0;
 constexpr double kStrip = 5.0;  // of the verdicts, under a panel
 constexpr double kLine = 17.0;  // of text
@@ -207,9 +209,6 @@ class Panels {
   double periods_;
 };
 
-double column(std::size_t index) {
-  return kMargin + kLabels + static_cast<double>(index) * (kPanelWidth + kGap);
-}
 double row(std::size_t index) {
   return kTop + static_cast<double>(index) * (kPanelHeight + kRowGap);
 }
@@ -240,6 +239,16 @@ std::string to_svg(const Trend& trend, const Findings& findings, const files::Ti
   Panels panels(trend, findings, picture);
   const std::size_t cvs = trend.head.cvs.size();
   const std::size_t inputs = cvs == 0 ? 0 : trend.head.channels.size() / cvs;
+  std::vector<std::string> labels;
+  double labels_width = kLabels;
+  for (std::size_t i = 0; i < inputs; ++i) {
+    labels.push_back(report::shortened(printable(trend.head.channels[i * cvs].mv), kLongestLabel));
+    labels_width =
+        std::max(labels_width, kCharacter * static_cast<double>(report::columns_of(labels[i])));
+  }
+  const auto column = [labels_width](std::size_t index) {
+    return kMargin + labels_width + static_cast<double>(index) * (kPanelWidth + kGap);
+  };
   const std::string title =
       printable(trend.head.unit) + ", by " + std::string(to_string(trend.step)) + moment.zone();
   picture.text(kMargin, 28.0, title, kInk, 16, "start", true);
@@ -262,9 +271,7 @@ std::string to_svg(const Trend& trend, const Findings& findings, const files::Ti
     panels.axis(column(j), row(inputs) + kPanelHeight + kStrip + 16.0);
   }
   for (std::size_t i = 0; i < inputs; ++i)
-    picture.text(kMargin, row(i + 1) + 0.5 * kPanelHeight,
-                 report::shortened(printable(trend.head.channels[i * cvs].mv), 12), kInk, 12,
-                 "start", true);
+    picture.text(kMargin, row(i + 1) + 0.5 * kPanelHeight, labels[i], kInk, 12, "start", true);
   double y = row(inputs) + kPanelHeight + kStrip + 44.0;
   for (const std::string& line : lines_of(trend, findings, moment)) {
     picture.text(kMargin, y, line);

@@ -8,6 +8,7 @@
 #include "core/model/linear_model.hpp"
 #include "core/model/static_blocks.hpp"
 #include "daemon/report/diagnosis/names_of.hpp"
+#include "daemon/report/page/series.hpp"
 
 namespace mpm::report {
 namespace {
@@ -37,9 +38,7 @@ Range usual_range(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return {quantile(0.01), quantile(0.99)};
 }
 
-std::string with_unit(const SignalName& name) {
-  return name.unit.empty() ? name.tag : name.tag + ", " + name.unit;
-}
+std::string with_unit(const SignalName& name) { return axis_text(name.tag, name.unit); }
 
 /// Input `input` of the extended model, in the data.
 Range input_range(const DiagnosisRun& run, int input) {

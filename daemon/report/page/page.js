@@ -202,7 +202,7 @@ function record() {
 function madeBy() {
   section('How this was made', element('div', {class: 'made'}, pairs(page.made_by)),
       element('p', {class: 'note'}, [page.odds ? `Odds in words: ${page.odds}.` : '',
-        page.zone ? `Times are in ${page.zone === 'UTC' ? 'UTC' : page.zone}.` : 'The data carry no dates: times are counted from their clock’s zero.',
+        page.zone ? `Times are in ${page.zone}.` : 'The data carry no dates: times are counted from their clock’s zero.',
         page.views.some(view => view.plots.some(plot => 'unseen' in plot)) || page.cvs.some(cv => cv.plots.some(plot => 'unseen' in plot))
           ? 'Shaded in plots: data that no fit has seen.' : '',
         page.findings ? '“How the error goes with” an input: their correlation at each lag, both filtered so that the input is white; grey is what chance leaves at one lag in twenty, left of 0 is feedback.' : ''].filter(Boolean).join(' ')));

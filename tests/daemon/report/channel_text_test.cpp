@@ -44,10 +44,29 @@ TEST_CASE("of a model whose gain is negative, more gain is more in its direction
         "gain -41 % (-51 to -31; +0.041 bar per %), time constant ok, dead time ok");
   AlarmRecord raised = alarm(channel, AlarmChange::kActive, 0);
   raised.effect_size = -0.037;
-  CHECK(gain_text(raised, &channel) == "gain +37 %");
-  CHECK(gain_text(raised, nullptr) == "gain off by -0.037");
+  CHECK(error_text(raised, &channel) == "gain +37 %");
+  CHECK(error_text(raised, nullptr) == "gain off by -0.037");
   channel.effect_high = 1.0;
-  CHECK(gain_text(raised, &channel) == "gain --");
+  CHECK(error_text(raised, &channel) == "gain --");
+}
+
+TEST_CASE("an alarm tells of the gain only where that may be what is wrong") {
+  ChannelRecord channel = mismatch("FIC-101", "AI-201");
+  AlarmRecord raised = alarm(channel, AlarmChange::kActive, 0);
+  raised.effect_size = channel.effect_size = 0.002;
+  channel.effect_low = -0.001;
+  channel.effect_high = 0.005;
+  CHECK(error_text(raised, &channel) == "gain +2 %");
+  channel.dead_time_error_s = 240.0;
+  channel.dead_time_low_s = 30.0;
+  channel.dead_time_high_s = 510.0;
+  CHECK(error_text(raised, &channel) == "dead time +240 s");
+  channel.time_constant_ratio = 2.0;
+  channel.time_constant_low = 1.5;
+  channel.time_constant_high = 2.5;
+  CHECK(error_text(raised, &channel) == "time constant +100 %");
+  channel.effect_low = 0.001;  // the gain is wrong as well
+  CHECK(error_text(raised, &channel) == "gain +2 %");
 }
 
 TEST_CASE("every reason has its words") {
@@ -61,7 +80,10 @@ TEST_CASE("every reason has its words") {
   CHECK(text(Reason::kNotExcited) == "needs a gain error of 50 % to show; move FIC-101");
   CHECK(text(Reason::kCollinear, "FIC-102") ==
         "moved only together with FIC-102; move one without the other");
-  CHECK(text(Reason::kBadData) == "too much of what it needs is missing or bad");
+  CHECK(
+      text(Reason::kBadData) ==
+      "AI-201 or FIC-101 is too often missing, bad, or the same for several samples; if it is read "
+      "only now and then, let sample_time be as long");
   CHECK(text(Reason::kControllerOff) ==
         "no manipulated variable moves: the controller is off or in manual");
   CHECK(text(Reason::kConstrained) == "FIC-101 rests at a limit; move it away from there");

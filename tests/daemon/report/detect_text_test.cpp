@@ -116,6 +116,9 @@ TEST_CASE("data without dates are told in their seconds, and one of a thing is s
         "  m match, ! in alarm\n\n"
         "Mismatch\n"
         "  FIC-101 -> AI-201: matches by now, still in alarm, since 4300.5 s\n");
+  report.last_ns = -2 * kSecond;
+  CHECK(to_text(report, column(), {100, false})
+            .starts_with("column: 200 samples from 0 s to -2 s, the clock went back; 1 used, "));
 }
 
 TEST_CASE("colour is only added where it is wanted") {

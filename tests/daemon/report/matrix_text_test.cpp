@@ -16,4 +16,11 @@ TEST_CASE("columns that find no room follow in a table of their own") {
         "  u1  m\n");
 }
 
+TEST_CASE("tags are cut no further than they can be told apart") {
+  const std::vector<MatrixRow> rows = {{"row", {{"m"}, {"m"}}}};
+  CHECK(matrix_text({"FIC-101.SP>AI-201.PV", "FIC-101.SP>TI-201.PV"}, rows, {60, false}) ==
+        "       FIC-101.SP>AI-201.PV  FIC-101.SP>TI-201.PV\n"
+        "  row  m                     m\n");
+}
+
 }  // namespace mpm::report

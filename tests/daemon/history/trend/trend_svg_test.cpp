@@ -34,6 +34,13 @@ TEST_CASE("the picture of a trend is an SVG of its own with all that is known") 
   }
 }
 
+TEST_CASE("an input is named in full beside its panels") {
+  Trend trend = test::changing_trend(30, 12, -20.0, 0.25);
+  for (ChannelHead& channel : trend.head.channels) channel.mv = "21-FIC-4711.SP_REMOTE";
+  const std::string svg = to_svg(trend, find_changes(trend), nullptr);
+  CHECK(svg.find(">21-FIC-4711.SP_REMOTE</text>") != std::string::npos);
+}
+
 TEST_CASE("what is not known is left open in a picture") {
   const Trend trend = test::sample_trend(
       96,
