@@ -10,6 +10,7 @@ aux_disturbance       a measured signal acts on a CV and, by feed-forward, on an
 setpoint_disturbance  a disturbance moves with a set-point
 quantised             CVs are logged in steps of 0.3 to 1 s.d. of the noise
 compressed            CVs and MVs are logged again only once they have moved by a deadband
+finely_compressed     CVs are logged again only once they have moved by a twentieth of the noise
 analyser              one CV is read every 2 to 12 samples, and the reading stands until the next
 late                  drift, step or noise x 2.9 from the last third on
 injected_steps        constant set-points, and load steps that the loop answers
@@ -20,7 +21,7 @@ import numpy as np
 
 REGIMES = ["stationary", "random_walk", "day_night", "constant_setpoints", "rare_moves",
            "hidden_feedforward", "aux_disturbance", "setpoint_disturbance", "quantised",
-           "compressed", "analyser", "late", "injected_steps"]
+           "compressed", "finely_compressed", "analyser", "late", "injected_steps"]
 STILL = ("constant_setpoints", "rare_moves", "injected_steps")  # neither set-points nor the DV move
 
 
@@ -210,6 +211,9 @@ def logged(regime, plant, models, cvs, mvs, rng):
             hold(cvs[:, i], rng.uniform(0.3, 1.0) * noise_sd(model))
         for j in range(plant.mv_count):
             hold(mvs[:, j], 0.5 * np.diff(mvs[:, j]).std())
+    elif regime == "finely_compressed":
+        for i, model in enumerate(models):
+            hold(cvs[:, i], 0.05 * noise_sd(model))
     elif regime == "analyser":
         # One CV is read seldom, and the reading stands until the next.
         cv, every = int(rng.integers(plant.cv_count)), int(rng.integers(2, 13))
