@@ -83,6 +83,8 @@ inline constexpr double kSecondShare = 0.2;  ///< of the time constant: where a 
 // Whether feedback moves the inputs (feedback_test.hpp).
 inline constexpr int kFeedbackLags = 6;
 inline constexpr double kFeedback = 1e-3;  ///< p-value below which it does
+/// A binary or ternary test signal has so many levels; what a controller moves has hundreds.
+inline constexpr std::size_t kTestLevels = 4;
 /// Free run of a richer form on unseen rows, where no feedback is: most times the simplest one's.
 inline constexpr double kMostWorse = 1.3;
 inline constexpr double kClearlyBetter = 0.9;  ///< of the unseen squared error

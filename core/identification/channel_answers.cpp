@@ -155,7 +155,8 @@ std::vector<ChannelAnswer> channel_answers(const Material& material, const HighO
       answer.left_out = LeftOut::kUnknownCv;
     else if (!model.sound)
       answer.left_out = LeftOut::kTooFewRows;
-    else if (outside && *outside < kOnlyFeedback && material.feedback_p_value < kFeedback)
+    else if (outside && *outside < kOnlyFeedback && material.feedback_p_value < kFeedback &&
+             !material.test_signals[i])
       answer.left_out = LeftOut::kOnlyFeedback;
     else if (answer.visible_gain * material.input_spread(input) > kMatters * spread)
       answer.left_out = LeftOut::kHidden;

@@ -34,6 +34,7 @@ Material material(const Recording& recording) {
     result.input_spread(i) = spread > kStill * std::abs(all.input_mean(i)) ? spread : 0.0;
   }
   result.outside = outside_shares(recording, recording.cvs);
+  result.test_signals = test_signals(all);
   result.feedback_p_value = feedback_p_value(all, 0);
   result.open_loop = feedback_p_value(all, 1) > kFeedback;
   return result;

@@ -17,6 +17,7 @@ struct Material {
   IdentificationData all, first, unseen;  ///< first: what forms are chosen on
   Eigen::VectorXd input_spread;
   std::vector<std::optional<double>> outside;
+  std::vector<bool> test_signals;  ///< inputs that no controller moves
   double feedback_p_value = 1.0;
   bool open_loop = false;  ///< as far as anything shows
 };

@@ -9,11 +9,13 @@
 
 #include "core/identification/calibration.hpp"
 #include "core/identification/channel_answers.hpp"
+#include "core/identification/feedback_test.hpp"
 #include "core/identification/form_choice.hpp"
 #include "core/identification/residual_tests.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/simulator.hpp"
 #include "core/identify/fit/split.hpp"
+#include "core/model/linear_model.hpp"
 #include "core/parallel/parallel.hpp"
 
 namespace mpm {
@@ -151,20 +153,74 @@ ModelSpec model_of_answers(const Material& material, const std::vector<CvOutcome
   return model;
 }
 
-/// How far the free run is off on rows that the choice of forms did not see.
-void measure_unseen(const Material& material, const ModelSpec& model, CvAnswer& answer) {
-  const Index rows = material.first.samples();
-  const Recording unseen = part(material.recording, rows, material.recording.samples() - rows);
-  Simulator simulator(unseen);
-  const VectorXd simulated = free_run(simulator, model, answer.cv);
+/// The level of a CV some of whose fitted channels the model leaves out: what the rest misses on
+/// average. A CV that integrates has none.
+void level_what_is_left(const Material& material, const CvOutcome& outcome, ModelSpec& model) {
+  const int cv = outcome.answer.cv;
+  std::size_t kept = 0;
+  for (const ChannelSpec& channel : model.channels) kept += channel.cv == cv ? 1 : 0;
+  if (!outcome.fit || kept == outcome.fit->channels.size() ||
+      LinearModel(model).integrating().row(cv).any())
+    return;
+  Simulator simulator(material.recording);
+  const VectorXd missed = material.recording.cvs.col(cv) - free_run(simulator, model, cv);
   double sum = 0.0, count = 0.0;
-  for (Index k = 0; k < simulated.size(); ++k) {
-    const double error = unseen.cvs(k, answer.cv) - simulated(k);
+  for (const double each : missed)
+    if (std::isfinite(each)) sum += each, count += 1.0;
+  if (count > 0.0) model.output_origin(cv) += sum / count;
+}
+
+/// How far the free run of the whole recording is off on rows that the choice of forms did not see.
+double unseen_rmse(const Material& material, const ModelSpec& model, int cv) {
+  Simulator simulator(material.recording);
+  const VectorXd simulated = free_run(simulator, model, cv);
+  double sum = 0.0, count = 0.0;
+  for (Index k = material.first.samples(); k < simulated.size(); ++k) {
+    const double error = material.recording.cvs(k, cv) - simulated(k);
     if (std::isfinite(error)) sum += error * error, count += 1.0;
   }
-  answer.unseen_rmse = count > 0.0 ? std::sqrt(sum / count) : 0.0;
-  answer.unseen_spread =
-      spread_of(material.unseen.cvs.col(answer.cv), material.unseen.known.col(answer.cv));
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+ModelSpec levelled_model(const Material& material, const std::vector<CvOutcome>& outcomes,
+                         const std::vector<ChannelAnswer>& channels) {
+  ModelSpec model = model_of_answers(material, outcomes, channels);
+  for (const CvOutcome& outcome : outcomes) level_what_is_left(material, outcome, model);
+  return model;
+}
+
+/// Channels of a sure sign and a vague gain (slow ones, of which little more than the slope is
+/// seen) stay where the free run of unseen rows is clearly worse without them. Where feedback moves
+/// the inputs, a free run does not tell.
+void keep_vague_that_matter(const Material& material, const std::vector<CvOutcome>& outcomes,
+                            std::vector<ChannelAnswer>& channels) {
+  if (!material.open_loop) return;
+  for (const CvOutcome& outcome : outcomes) {
+    const int cv = outcome.answer.cv;
+    std::vector<ChannelAnswer> kept = channels;
+    bool any = false;
+    for (ChannelAnswer& answer : kept)
+      if (answer.cv == cv && answer.left_out == LeftOut::kVague &&
+          answer.gain.low * answer.gain.high > 0.0) {
+        answer.left_out = LeftOut::kIdentified;
+        any = true;
+      }
+    if (!any) continue;
+    const double without = unseen_rmse(material, levelled_model(material, outcomes, channels), cv);
+    if (unseen_rmse(material, levelled_model(material, outcomes, kept), cv) <
+        std::sqrt(kClearlyBetter) * without)
+      channels = std::move(kept);
+  }
+}
+
+/// Whether a CV goes with a test signal of its own row.
+bool answers_within_row(const Material& material) {
+  const std::vector<double> p_values = feedback_p_values(material.all, 0);
+  bool within = false;
+  for (std::size_t i = 0; i < p_values.size(); ++i)
+    within = within || (material.test_signals[i] &&
+                        p_values[i] * static_cast<double>(p_values.size()) < kFeedback);
+  return within;
 }
 
 /// What too few rows say.
@@ -210,6 +266,7 @@ Identification identify(const Recording& recording, const IdentificationSettings
   Identification result;
   result.outside_shares = given.outside;
   result.feedback_p_value = given.feedback_p_value;
+  result.within_row = answers_within_row(given);
   result.input_spread.assign(given.input_spread.begin(), given.input_spread.end());
   for (const CvOutcome& outcome : outcomes)
     result.longest_lag_s =
@@ -217,10 +274,14 @@ Identification identify(const Recording& recording, const IdentificationSettings
   for (const CvOutcome& outcome : outcomes)
     result.channels.insert(result.channels.end(), outcome.channels.begin(), outcome.channels.end());
   correct_for_many(result.channels);
-  result.model = model_of_answers(given, outcomes, result.channels);
+  keep_vague_that_matter(given, outcomes, result.channels);
+  result.model = levelled_model(given, outcomes, result.channels);
   for (CvOutcome& outcome : outcomes) {
-    measure_unseen(given, result.model, outcome.answer);
-    result.cvs.push_back(outcome.answer);
+    CvAnswer& answer = outcome.answer;
+    answer.unseen_rmse = unseen_rmse(given, result.model, answer.cv);
+    answer.unseen_spread =
+        spread_of(given.unseen.cvs.col(answer.cv), given.unseen.known.col(answer.cv));
+    result.cvs.push_back(answer);
   }
   return result;
 }

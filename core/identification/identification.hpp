@@ -84,7 +84,9 @@ struct Identification {
   std::vector<std::optional<double>> outside_shares;  ///< of each input's movement
   std::vector<double> input_spread;                   ///< s.d. of each input; 0: it stands still
   double feedback_p_value = 1.0;                      ///< of no input depending on the CVs' past
-  double longest_lag_s = 0.0;                         ///< that was looked at
+  /// A CV goes with a test signal of its own row: it answers within the row.
+  bool within_row = false;
+  double longest_lag_s = 0.0;  ///< that was looked at
 };
 
 /// A model from data alone.

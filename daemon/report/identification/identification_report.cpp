@@ -128,6 +128,7 @@ std::string table(const std::vector<Row>& rows) {
 
 std::string doubts(const IdentificationRun& run) {
   std::string text;
+  for (const std::string& doubt : doubts_of_model(run)) text += wrapped(doubt, 2, kReasonWidth);
   for (const CvAnswer& answer : run.identification.cvs) {
     if (answer.rows == 0.0) continue;
     if (answer.whiteness_p_value < kSuspicious)

@@ -80,4 +80,25 @@ std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answe
   return {};
 }
 
+std::vector<std::string> doubts_of_model(const IdentificationRun& run) {
+  std::vector<std::string> doubts;
+  if (run.identification.within_row)
+    doubts.emplace_back(
+        "CVs answer inputs of their own row: values are averages, or the inputs' time stamps are "
+        "late. No model here can do that; move the inputs up by a row");
+  std::string worse;
+  for (const CvAnswer& answer : run.identification.cvs) {
+    const auto& channels = run.identification.model.channels;
+    const bool modelled = std::any_of(channels.begin(), channels.end(),
+                                      [&](const auto& each) { return each.cv == answer.cv; });
+    if (modelled && answer.unseen_rmse > answer.unseen_spread)
+      worse +=
+          (worse.empty() ? "" : ", ") + run.unit.cv.at(static_cast<std::size_t>(answer.cv)).tag;
+  }
+  if (!worse.empty())
+    doubts.push_back("On the last part the free run is off by more than the CV moves: " + worse +
+                     ". Either a disturbance is as large as that, or these channels are wrong");
+  return doubts;
+}
+
 }  // namespace mpm::report

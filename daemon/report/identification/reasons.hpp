@@ -16,4 +16,7 @@ inline constexpr std::size_t kReasonWidth = 96;
 /// Why a channel is not in the model, for a person; empty where it is.
 [[nodiscard]] std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answer);
 
+/// What makes one doubt the model as a whole, a sentence each.
+[[nodiscard]] std::vector<std::string> doubts_of_model(const IdentificationRun& run);
+
 }  // namespace mpm::report

@@ -139,6 +139,7 @@ Json warnings(const IdentificationRun& run) {
   const auto doubt = [&](const std::string& where, const char* what) {
     if (!where.empty()) json.push_back("In doubt: " + where + ". " + what);
   };
+  for (const std::string& text : doubts_of_model(run)) json.push_back("In doubt: " + text + ".");
   doubt(not_white(run), "What the model leaves there is not white: the intervals are too narrow.");
   doubt(
       left_with_inputs(run),

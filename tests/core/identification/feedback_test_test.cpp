@@ -20,4 +20,17 @@ TEST_CASE("feedback is seen where there is some, also one without dynamics") {
   CHECK(feedback_p_value(identification_data(still.run(1500)), 0) < 1e-9);
 }
 
+TEST_CASE("a test signal is told from what a controller moves") {
+  const std::vector<bool> loop = test_signals(identification_data(Loop().run(1500)));
+  CHECK_FALSE(loop[0]);
+  CHECK(loop[1]);  // a telegraph
+  Loop still;
+  still.setpoint_moves = false;
+  CHECK_FALSE(test_signals(identification_data(still.run(1500)))[0]);
+  MatrixXd inputs(1500, 1), cvs(1500, 1);
+  inputs.col(0) = white(911, 1500);
+  cvs.col(0) = first_order(inputs.col(0), 1.0, 5.0, 1);
+  CHECK(test_signals(identification_data(recording_of(inputs, cvs)))[0]);
+}
+
 }  // namespace mpm::test

@@ -58,6 +58,45 @@ TEST_CASE("an input that only feedback moves is left out and told so") {
   CHECK(found.model.channels.empty());
 }
 
+// A historian's averages, or time stamps at the end of an interval.
+TEST_CASE("a CV that answers within the row is told so, and not taken for feedback") {
+  constexpr Eigen::Index kRows = 1500;
+  Eigen::MatrixXd inputs(kRows, 2), cvs(kRows, 1);
+  inputs << white(730, kRows), white(731, kRows);
+  const Eigen::VectorXd answer =
+      first_order(inputs.col(0), 2.0, 8.0) + first_order(inputs.col(1), -1.0, 3.0);
+  cvs.col(0) = autoregressive(0.1 * white(732, kRows), 0.8);
+  cvs.col(0).head(kRows - 1) += answer.tail(kRows - 1);
+  const Identification late = identify(recording_of(inputs, cvs), {});
+  CHECK(late.within_row);
+  CHECK(answer_of(late, 0, 0).left_out != LeftOut::kOnlyFeedback);
+  CHECK(answer_of(late, 0, 1).left_out != LeftOut::kOnlyFeedback);
+  // As advised: with the inputs moved up by a row all is well.
+  const Identification moved =
+      identify(recording_of(inputs.bottomRows(kRows - 1), cvs.topRows(kRows - 1)), {});
+  CHECK_FALSE(moved.within_row);
+  CHECK(answer_of(moved, 0, 0).gain.low < 2.0);
+  CHECK(answer_of(moved, 0, 0).gain.high > 2.0);
+  CHECK(moved.cvs[0].unseen_rmse < 1.2 * 0.1 / std::sqrt(1.0 - 0.8 * 0.8));  // the noise
+  CHECK_FALSE(identify(Loop().run(1500), {}).within_row);
+}
+
+// Time constant half of the record: the slope is known well, the gain is not.
+TEST_CASE("a slow channel of vague gain stays where predictions are worse without it") {
+  constexpr Eigen::Index kRows = 1500;
+  int kept = 0;
+  for (std::uint64_t seed = 740; seed < 780; seed += 4) {
+    Eigen::MatrixXd inputs(kRows, 2), cvs(kRows, 1);
+    inputs << telegraph(seed, kRows, 60), telegraph(seed + 1, kRows, 20);
+    cvs.col(0) = first_order(inputs.col(0), 10.0, 700.0) + first_order(inputs.col(1), 0.5, 10.0) +
+                 autoregressive(0.03 * white(seed + 2, kRows), 0.9);
+    const Identification found = identify(recording_of(inputs, cvs), {});
+    kept += answer_of(found, 0, 0).left_out == LeftOut::kIdentified ? 1 : 0;
+    CHECK(found.cvs[0].unseen_rmse < 0.6 * found.cvs[0].unseen_spread);
+  }
+  CHECK(kept == 10);
+}
+
 TEST_CASE("hints are kept") {
   const Recording recording = open_loop(2000, 720);
   IdentificationSettings settings;
