@@ -19,9 +19,9 @@ std::string unit_yaml(const std::string& unit, int domain) {
 TEST_CASE("mpm doctor tells trouble from wrong use by its exit code") {
   const TemporaryFolder folder;
   const std::string out = folder.file("out"), err = folder.file("err");
-  write_file(folder.file("one.yaml"), unit_yaml("one", 7));
-  write_file(folder.file("other.yaml"), unit_yaml("other", 8));
-  write_file(folder.file("bad.yaml"), unit_yaml("bad", 7) + "no_such_key: 1\n");
+  write_file(folder.file("one.yaml"), unit_yaml("one", 11));
+  write_file(folder.file("other.yaml"), unit_yaml("other", 12));
+  write_file(folder.file("bad.yaml"), unit_yaml("bad", 11) + "no_such_key: 1\n");
 
   CHECK(run({"mpm", "doctor", "--seconds", "no"}, out, err) == 3);
   CHECK(run({"mpm", "doctor", "--config", folder.file("none.yaml")}, out, err) == 3);
@@ -32,7 +32,8 @@ TEST_CASE("mpm doctor tells trouble from wrong use by its exit code") {
         1);
   const std::string text = read_file(out);
   INFO(text);
-  const std::string place = "domain 7, partition 'doctor-test-nobody'";
+  // A domain that no other test uses: whoever else is on it would be told of.
+  const std::string place = "domain 11, partition 'doctor-test-nobody'";
   CHECK(text.find("nobody else is on " + place) != std::string::npos);
   CHECK(text.find("one: no data has come (mpm/mv ...: nobody writes it on " + place + ")") !=
         std::string::npos);

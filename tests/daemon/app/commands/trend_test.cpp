@@ -157,7 +157,7 @@ TEST_CASE("the trend of data and that of the journal of the same data agree", "[
   CHECK(history.trend({"--journal", history.file("journal"), "--fail-on-mismatch"}) == 1);
 }
 
-TEST_CASE("several data files give the trend of one") {
+TEST_CASE("several data files give the trend of one", "[trials]") {
   const History history;
   history.simulate("none", 2 * kWeek, 4, "whole.csv");
   const std::vector<std::string> lines = lines_of(read_file(history.file("whole.csv")));
