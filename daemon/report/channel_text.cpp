@@ -138,7 +138,8 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
                        printable(channel.cv) + " cannot be judged without it";
     case Reason::kCompressed:
       return "a historian has compressed " + printable(channel.cv) +
-             "; turn that off for this tag, or let it send changes from a twentieth of the noise on";
+             "; turn that off for this tag, or let it send changes from a twentieth of the noise "
+             "on";
     case Reason::kControllerOff:
       return "no manipulated variable moves: the controller is off or in manual";
     case Reason::kConstrained:

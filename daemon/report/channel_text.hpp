@@ -26,9 +26,9 @@ struct ChannelFile {
 /// Of what is undetermined: why, and what would help.
 [[nodiscard]] std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& file);
 
-/// Of an alarm, what is wrong with its channel: "gain +41 %", or where the gain is not or may not be
-/// wrong "time constant +50 %" or "dead time +12 s", whichever is. `channel`: null where it is not
-/// known, or the model lacks it.
+/// Of an alarm, what is wrong with its channel: "gain +41 %", or where the gain is not or may not
+/// be wrong "time constant +50 %" or "dead time +12 s", whichever is. `channel`: null where it is
+/// not known, or the model lacks it.
 [[nodiscard]] std::string error_text(const AlarmRecord& alarm, const ChannelRecord* channel);
 
 }  // namespace mpm::report
