@@ -22,6 +22,9 @@ inline DomainOptions test_domain(const std::string& test) {
 template <class Condition>
 [[nodiscard]] bool eventually(Condition&& done,
                               std::chrono::milliseconds timeout = std::chrono::seconds(10)) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  timeout *= 4;  // how long a thing takes is not what a sanitizer is asked
+#endif
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   while (!done()) {
     if (std::chrono::steady_clock::now() >= deadline) return false;
