@@ -20,8 +20,6 @@ std::vector<OptionalTag> read_tags(const Map& map, std::string_view key,
   return tags;
 }
 
-Place place_of(const Value& item) { return {item.file(), item.line(), item.column(), item.path()}; }
-
 /// `4`, `4 s` or `2 samples`, of either sign.
 double read_dead_time_error(const Value& value, const UnitConfig& unit) {
   const Quantity error = value.quantity({"samples", "s"}).value_or(Quantity{});
@@ -107,8 +105,9 @@ void load_root(const Value& document, const ScenarioContext& context, ScenarioCo
     document.error("a scenario is a map of keys such as `scenario:` and `changes:`");
     return;
   }
-  const Map root = document.map({"scenario", "description", "changes", "draw", "plant", "noise",
-                                 "disturbances", "setpoints", "controller", "bad_data", "monitor"});
+  const Map root =
+      document.map({"scenario", "description", "changes", "draw", "plant", "noise", "disturbances",
+                    "setpoints", "controller", "tests", "process", "bad_data", "monitor"});
   if (const Value* name = root.find("scenario"))
     scenario.name = name->text().value_or(scenario.name);
   if (const Value* text = root.find("description"))
@@ -123,6 +122,9 @@ void load_root(const Value& document, const ScenarioContext& context, ScenarioCo
     load_scenario_setpoints(*setpoints, context, scenario);
   if (const Value* controller = root.find("controller"))
     load_scenario_controller(*controller, context, scenario);
+  load_list(root, "tests", [&](const Value& item) { load_test(item, context, scenario); });
+  load_list(root, "process",
+            [&](const Value& item) { load_process_change(item, context, scenario); });
   load_list(root, "bad_data", [&](const Value& item) { load_bad_data(item, context, scenario); });
   scenario.monitor = context.unit.monitor;
   load_monitor(root.find("monitor"), context.unit, scenario.monitor);

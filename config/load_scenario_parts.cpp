@@ -197,6 +197,37 @@ void load_disturbance(const Value& item, const ScenarioContext& context, Scenari
   }
 }
 
+Place place_of(const Value& item) { return {item.file(), item.line(), item.column(), item.path()}; }
+
+void load_test(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario) {
+  const Map map = item.map({"mv", "size", "hold", "random", "from", "until"});
+  TestSignal test;
+  if (const Value* size = map.require("size")) test.size = size->number(kPositive).value_or(1.0);
+  if (const Value* hold = map.require("hold"))
+    test.hold_s = read_time(*hold, context, kPositive).value_or(1.0);
+  if (const Value* random = map.find("random")) test.random = random->boolean().value_or(true);
+  read_span(map, context, test.from_s, test.until_s);
+  const std::vector<std::string> mvs = mv_tags(context.unit);
+  for (const int mv : read_signals(map, "mv", mvs, "mv")) {
+    test.mv = mvs[static_cast<std::size_t>(mv)];
+    scenario.tests.push_back(test);
+  }
+}
+
+void load_process_change(const Value& item, const ScenarioContext& context,
+                         ScenarioConfig& scenario) {
+  const Map map = item.map({"quantity", "value", "from", "until"});
+  ProcessChange change;
+  change.place = place_of(item);
+  if (context.unit.simulation.process.empty())
+    item.error("the unit file names no `simulation: process:` whose numbers could change");
+  if (const Value* quantity = map.require("quantity"))
+    change.quantity = quantity->text().value_or("");
+  if (const Value* value = map.require("value")) change.value = value->number().value_or(0.0);
+  read_span(map, context, change.from_s, change.until_s);
+  scenario.process.push_back(change);
+}
+
 void load_scenario_setpoints(const Value& section, const ScenarioContext& context,
                              ScenarioConfig& scenario) {
   const Map map = section.map({"amplitude_ratio", "constant", "equal", "moving"});

@@ -115,11 +115,12 @@ void load_simulation(const Value* section, UnitConfig& config) {
   if (section == nullptr) return;
 
   std::vector<std::string> known = keys(simulation_fields());
-  for (const char* key : {"move_blocks", "cv_weights", "move_weights", "limits", "noise",
+  for (const char* key : {"process", "move_blocks", "cv_weights", "move_weights", "limits", "noise",
                           "dv_movement", "aux_movement", "setpoints"})
     known.emplace_back(key);
   const Map map = section->map(known);
   read_fields(map, simulation_fields(), simulation);
+  if (const Value* process = map.find("process")) simulation.process = process->text().value_or("");
   read_move_blocks(map, simulation);
   std::vector<std::string> mvs, dvs, auxiliaries;
   for (const InputSignal& mv : config.mv) mvs.push_back(mv.tag);

@@ -116,6 +116,7 @@ void print_simulation(const UnitConfig& config, std::ostream& out) {
     return inline_fields(setpoint_fields(), each);
   };
   out << "simulation:  # mpmsim only\n";
+  if (!simulation.process.empty()) out << "  process: " << yaml_text(simulation.process) << '\n';
   print_fields(simulation_fields(), simulation, out);
   out << "  move_blocks: "
       << yaml_text(

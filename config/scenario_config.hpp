@@ -114,6 +114,25 @@ enum class BadDataKind {
   kClockSteps,  ///< the clock jumps
 };
 
+/// A number of a plant of its own equations that is other than it was (`simulation: process:`).
+struct ProcessChange {
+  std::string quantity;  ///< such as `co_oxidation`; the process knows its own
+  double value = 0.0;
+  double from_s = 0.0;
+  double until_s = kForEver;
+  Place place = {};
+};
+
+/// A test of one MV while the controller is off: two levels around the operating point.
+struct TestSignal {
+  std::string mv;       ///< tag
+  double size = 0.0;    ///< to either side, MV units
+  double hold_s = 0.0;  ///< > 0; `random`: after each, either level by the toss of a coin
+  bool random = true;   ///< else one after the other, the upper one first
+  double from_s = 0.0;
+  double until_s = kForEver;
+};
+
 /// What goes wrong between the loop and whoever reads its data. The loop itself sees nothing of it.
 struct BadData {
   BadDataKind kind = BadDataKind::kMissing;
@@ -152,6 +171,8 @@ struct ScenarioConfig {
   bool integral_action = true;           ///< of the controller: offset-free control
   double disturbance_feedback = 1.0;     ///< 0..1, part of the output disturbance that is fed back
   std::vector<TimeSpan> controller_off;  ///< MVs stay where they are
+  std::vector<TestSignal> tests;         ///< off as well, while any of them lasts
+  std::vector<ProcessChange> process;
   std::vector<MvLimitChange> mv_limits;
   bool allow_unstable = false;  ///< run although integral action cannot hold the plant
   std::vector<BadData> bad_data;

@@ -67,6 +67,8 @@ struct SetpointSettings {
 
 /// The simulated controller and disturbances; used by mpmsim only.
 struct SimulationSettings {
+  /// The plant's own equations by name, such as `recovery_boiler`; empty = the unit's model.
+  std::string process;
   int prediction_horizon = 100;                      ///< samples
   std::vector<int> move_blocks = {5, 5, 5, 10, 25};  ///< samples; the last one holds on
   std::vector<double> cv_weights;                    ///< one per CV; empty = 1

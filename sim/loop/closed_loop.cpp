@@ -5,9 +5,12 @@
 #include <stdexcept>
 
 #include "sim/plant/hidden_plant.hpp"
+#include "sim/plant/recovery_boiler/boiler_process.hpp"
 
 namespace mpm::sim {
 namespace {
+
+const char* const kRecoveryBoiler = "recovery_boiler";
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -72,15 +75,31 @@ double feedback_share(const config::ScenarioConfig& scenario) {
   return scenario.disturbance_feedback;
 }
 
+std::unique_ptr<Process> make_process(const LoopSetup& setup) {
+  const std::string& name = setup.unit.simulation.process;
+  if (name.empty())
+    return std::make_unique<Plant>(plant_model(setup.unit, setup.scenario.plant), setup.changes);
+  if (name != kRecoveryBoiler)
+    throw std::invalid_argument("there is no process '" + name + "'; known: " + kRecoveryBoiler);
+  if (!setup.changes.empty() || !setup.scenario.plant.empty())
+    throw std::invalid_argument("`changes`, `draw` and `plant` alter a model; what the process '" +
+                                name + "' hides is under `process`");
+  return std::make_unique<boiler::BoilerProcess>(setup.unit, setup.scenario.process, setup.seed);
+}
+
 ClosedLoop::ClosedLoop(const LoopSetup& setup)
     : sample_time_s_(setup.unit.sample_time_s),
       start_time_ns_(setup.start_time_ns),
-      plant_(plant_model(setup.unit, setup.scenario.plant), setup.changes),
+      plant_(make_process(setup)),
       controller_(setup.controller_model, static_cast<int>(setup.unit.mv.size()),
                   limited_settings(setup.unit, setup.scenario), feedback_share(setup.scenario)),
       setpoints_(setpoint_sources(setup.unit, setup.scenario),
                  origin_of(setup.unit.model.output_origin, setup.unit.model.cv_count), setup.seed),
       output_disturbance_(setup.unit, setup.scenario, setup.seed),
+      tests_(setup.scenario.tests, setup.unit.input_tags(),
+             origin_of(setup.unit.model.input_origin, setup.unit.model.input_count)
+                 .head(static_cast<Index>(setup.unit.mv.size())),
+             setup.unit.sample_time_s, setup.seed),
       frame_(setup.unit.counts()) {
   const config::UnitConfig& unit = setup.unit;
   if (setup.controller_model.input_count != unit.model.input_count ||
@@ -89,13 +108,13 @@ ClosedLoop::ClosedLoop(const LoopSetup& setup)
   const VectorXd input_origin = origin_of(unit.model.input_origin, unit.model.input_count);
   disturbance_origin_ = input_origin.tail(static_cast<Index>(unit.dv.size()));
   const Index aux_count =
-      plant_.input_count() > unit.model.input_count ? static_cast<Index>(unit.aux.size()) : 0;
+      plant_->input_count() > unit.model.input_count ? static_cast<Index>(unit.aux.size()) : 0;
   input_ = VectorXd::Zero(input_origin.size() + aux_count);
   input_.head(input_origin.size()) = input_origin;
   const double start_s = 1e-9 * static_cast<double>(start_time_ns_);
-  plant_.set_time_s(start_s);
+  plant_->set_time_s(start_s);
   controller_.set_time_s(start_s);
-  true_output_ = plant_.output();
+  true_output_ = plant_->output();
 
   std::vector<config::NoiseSettings> movement = unit.simulation.dv_movement;
   movement.resize(unit.dv.size());
@@ -121,8 +140,9 @@ const Frame& ClosedLoop::step() {
   SignalBlock& aux = frame_[SignalKind::kAux];
   for (std::size_t i = 0; i < aux_movement_.size(); ++i)
     aux.values(static_cast<Index>(i)) = aux_movement_[i].next();
+  aux.values.head(plant_->measured_aux().size()) += plant_->measured_aux();
   SignalBlock& measured = frame_[SignalKind::kCv];
-  true_output_ = plant_.output();
+  true_output_ = plant_->output();
   measured.values = true_output_ + output_disturbance_.next();
   SignalBlock& setpoints = frame_[SignalKind::kSetpoint];
   setpoints.values = setpoints_.next();
@@ -130,14 +150,18 @@ const Frame& ClosedLoop::step() {
   SignalBlock& moved = frame_[SignalKind::kMv];
   const bool off = std::any_of(controller_off_.begin(), controller_off_.end(),
                                [this](const IntervalRange& r) { return r.contains(interval_); });
-  moved.values = off ? controller_.hold(disturbances.values)
-                     : controller_.control(measured.values, setpoints.values, disturbances.values);
+  if (tests_.advance(interval_))
+    moved.values = controller_.follow(tests_.values(), disturbances.values);
+  else if (off)
+    moved.values = controller_.hold(disturbances.values);
+  else
+    moved.values = controller_.control(measured.values, setpoints.values, disturbances.values);
 
   input_.head(moved.values.size()) = moved.values;
   input_.segment(moved.values.size(), disturbances.values.size()) = disturbances.values;
   const Index model_inputs = moved.values.size() + disturbances.values.size();
   if (input_.size() > model_inputs) input_.tail(aux.values.size()) = aux.values;
-  plant_.advance(input_);
+  plant_->advance(input_);
   finite_ = finite_ && measured.values.allFinite() && moved.values.allFinite();
 
   frame_.interval = interval_;

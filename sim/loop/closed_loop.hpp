@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -9,10 +10,12 @@
 #include "core/signal/frame.hpp"
 #include "sim/mpc/mpc.hpp"
 #include "sim/plant/plant.hpp"
+#include "sim/plant/process.hpp"
 #include "sim/signals/coloured_noise.hpp"
 #include "sim/signals/intervals.hpp"
 #include "sim/signals/output_disturbance.hpp"
 #include "sim/signals/setpoints.hpp"
+#include "sim/signals/test_signals.hpp"
 
 namespace mpm::sim {
 
@@ -48,18 +51,22 @@ class ClosedLoop {
   double sample_time_s_;
   std::int64_t start_time_ns_;
   std::int64_t interval_ = 0;
-  Plant plant_;
+  std::unique_ptr<Process> plant_;
   Mpc controller_;
   RandomBinarySetpoints setpoints_;
   OutputDisturbance output_disturbance_;
   std::vector<ColouredNoise> movement_, aux_movement_;
   std::vector<IntervalRange> controller_off_;
+  TestSignals tests_;
   Eigen::VectorXd disturbance_origin_;
   Eigen::VectorXd true_output_;
   Eigen::VectorXd input_;  ///< of the plant: MVs, DVs, and the aux signals where they act
   Frame frame_;
   bool finite_ = true;
 };
+
+/// The plant of a setup. Throws std::invalid_argument where there is no such process.
+[[nodiscard]] std::unique_ptr<Process> make_process(const LoopSetup& setup);
 
 /// The unit's simulation settings with the scenario's MV limits.
 [[nodiscard]] config::SimulationSettings limited_settings(const config::UnitConfig& unit,

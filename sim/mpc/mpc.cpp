@@ -168,6 +168,12 @@ const VectorXd& Mpc::hold(const Ref<const VectorXd>& disturbance) {
   return mv_;
 }
 
+const VectorXd& Mpc::follow(const Ref<const VectorXd>& mvs,
+                            const Ref<const VectorXd>& disturbance) {
+  input_.head(mv_count_) = mv_ = mvs;
+  return hold(disturbance);
+}
+
 void Mpc::compute_free_response(const Ref<const VectorXd>& measured) {
   forecast_ = model_;
   for (Index l = 0; l < horizon_; ++l) {

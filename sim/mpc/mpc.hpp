@@ -49,6 +49,9 @@ class Mpc {
 
   /// u(k) = u(k-1): the controller is off and only follows. It comes back without a bump.
   [[nodiscard]] const Eigen::VectorXd& hold(const Eigen::Ref<const Eigen::VectorXd>& disturbance);
+  /// u(k) is what somebody else gives the MVs.
+  [[nodiscard]] const Eigen::VectorXd& follow(const Eigen::Ref<const Eigen::VectorXd>& mvs,
+                                              const Eigen::Ref<const Eigen::VectorXd>& disturbance);
 
   /// Intervals in which some limit shaped the moves, and in which no solution was found.
   [[nodiscard]] std::int64_t limited_count() const { return limited_count_; }

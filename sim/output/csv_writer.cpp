@@ -41,7 +41,8 @@ CsvWriter::CsvWriter(std::ostream& out, const config::UnitConfig& unit, double s
   for (std::size_t i = 0; i < unit.cv.size(); ++i)
     add(unit.cv[i].prediction, SignalKind::kPrediction, i);
   for (std::size_t i = 0; i < unit.aux.size(); ++i)
-    if (i < unit.simulation.aux_movement.size() && unit.simulation.aux_movement[i].sigma > 0.0)
+    if (!unit.simulation.process.empty() ||
+        (i < unit.simulation.aux_movement.size() && unit.simulation.aux_movement[i].sigma > 0.0))
       add(unit.aux[i].tag, SignalKind::kAux, i);
   out_ << line_ << '\n';
 }

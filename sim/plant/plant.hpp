@@ -6,6 +6,7 @@
 
 #include "core/model/linear_model.hpp"
 #include "sim/plant/channel_change.hpp"
+#include "sim/plant/process.hpp"
 
 namespace mpm::sim {
 
@@ -15,19 +16,19 @@ namespace mpm::sim {
 /// output is that of the stage in force. So a change acts at once on what earlier inputs still do,
 /// as a changed process gain or pipe would, and every state is right. A CV on which a changed
 /// channel integrates keeps its level at the onset: only its further movement changes.
-class Plant {
+class Plant : public Process {
  public:
   Plant(const ModelSpec& model, std::vector<ChannelChange> changes);
 
-  [[nodiscard]] int input_count() const { return stages_.front().model.input_count(); }
+  [[nodiscard]] int input_count() const override { return stages_.front().model.input_count(); }
 
   /// Time of the present output on the clock of the data; see `LinearModel::set_time_s`.
-  void set_time_s(double time_s);
+  void set_time_s(double time_s) override;
 
   /// y(k) without noise.
-  [[nodiscard]] const Eigen::VectorXd& output() const { return output_; }
+  [[nodiscard]] const Eigen::VectorXd& output() const override { return output_; }
   /// Takes u(k), MVs, DVs, and aux signals where its model has them.
-  void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
+  void advance(const Eigen::Ref<const Eigen::VectorXd>& input) override;
 
  private:
   struct Stage {

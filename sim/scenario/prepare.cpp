@@ -60,6 +60,10 @@ std::vector<std::string> mv_tags(const config::UnitConfig& unit) {
 std::optional<std::string> why_not(const LoopSetup& setup) {
   const config::UnitConfig& unit = setup.unit;
   try {
+    if (!unit.simulation.process.empty()) {
+      static_cast<void>(make_process(setup));
+      return std::nullopt;
+    }
     const std::vector<PlantStage> stages =
         plant_stages(plant_model(unit, setup.scenario.plant), setup.changes);
     if (feedback_share(setup.scenario) != 1.0 || setup.scenario.allow_unstable) return std::nullopt;

@@ -18,6 +18,8 @@ enum class StreamPurpose : std::uint64_t {
   kSensorNoise,
   kBadData,
   kAux,
+  kTest,
+  kProcess,
 };
 
 /// Random numbers of one purpose and index under one seed. The same on every platform: the standard

@@ -26,6 +26,34 @@ ScenarioResult load(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("tests of MVs and changes of a process arrive, and their mistakes are told") {
+  UnitConfig boiler = unit();
+  boiler.simulation.process = "recovery_boiler";
+  const ScenarioResult result = load_scenario_text(
+      "tests: [{mv: u1, size: 2, hold: 3 samples, random: false, from: 10, until: 20}]\n"
+      "process: [{quantity: co_oxidation, value: 1.1, from: 5}]\n",
+      "s.yaml", boiler);
+  CHECK(result.findings.empty());
+  REQUIRE(result.scenario.tests.size() == 1);
+  CHECK(result.scenario.tests[0].mv == "u1");
+  CHECK(result.scenario.tests[0].size == 2.0);
+  CHECK(result.scenario.tests[0].hold_s == 3.0);
+  CHECK_FALSE(result.scenario.tests[0].random);
+  CHECK(result.scenario.tests[0].from_s == 10.0);
+  CHECK(result.scenario.tests[0].until_s == 20.0);
+  REQUIRE(result.scenario.process.size() == 1);
+  CHECK(result.scenario.process[0].quantity == "co_oxidation");
+  CHECK(result.scenario.process[0].value == 1.1);
+  CHECK(result.scenario.process[0].from_s == 5.0);
+
+  const ScenarioResult wrong = load(
+      "tests: [{mv: d1, size: -1, hold: 1}]\nprocess: [{quantity: co_oxidation, value: 1.1}]\n");
+  REQUIRE(wrong.findings.size() == 3);
+  CHECK(format(wrong.findings[0]).find("'d1' is no mv") != std::string::npos);
+  CHECK(format(wrong.findings[1]).find("size: must be > 0") != std::string::npos);
+  CHECK(format(wrong.findings[2]).find("names no `simulation: process:`") != std::string::npos);
+}
+
 TEST_CASE("Every key of a scenario arrives") {
   const ScenarioResult result = load(
       "scenario: many\n"
