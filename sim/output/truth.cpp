@@ -122,6 +122,10 @@ Json mv_limits_json(const LoopSetup& setup) {
   return json;
 }
 
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
 
 std::string truth_json(const LoopSetup& setup, const std::string& controller_file,
@@ -156,8 +160,24 @@ std::string truth_json(const LoopSetup& setup, const std::string& controller_fil
   truth["controller_off"] = Json::array();
   for (const config::TimeSpan& off : setup.scenario.controller_off)
     truth["controller_off"].push_back({{"from", off.from_s}, {"until", end_of(off.until_s)}});
+  for (const config::TestSignal& test : setup.scenario.tests)
+    truth["tests"].push_back({{"mv", test.mv},
+                              {"size", test.size},
+                              {"hold", test.hold_s},
+                              {"random", test.random},
+                              {"from", test.from_s},
+                              {"until", end_of(test.until_s)}});
+  if (!unit.simulation.process.empty()) {
+    truth["process"] = {{"name", unit.simulation.process}, {"changes", Json::array()}};
+    for (const config::ProcessChange& change : setup.scenario.process)
+      truth["process"]["changes"].push_back({{"quantity", change.quantity},
+                                             {"value", change.value},
+                                             {"from", change.from_s},
+                                             {"until", end_of(change.until_s)}});
+  }
   truth["mv_limits"] = mv_limits_json(setup);
   truth["bad_data"] = bad_data_json(setup, filter);
+  if (!unit.simulation.process.empty()) return text_of(truth);  // of its gains nothing is known
   const GainAgreement gains = compare_gains(
       operating_gain(setup.controller_model, mvs),
       operating_gain(
@@ -165,7 +185,7 @@ std::string truth_json(const LoopSetup& setup, const std::string& controller_fil
       unit.simulation.cv_weights);
   truth["determinant"] = {{"model", or_null(gains.model_determinant)},
                           {"plant", or_null(gains.plant_determinant)}};
-  return truth.dump(2, ' ', false, decltype(truth)::error_handler_t::replace) + "\n";
+  return text_of(truth);
 }
 
 }  // namespace mpm::sim

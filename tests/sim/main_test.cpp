@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 
 namespace {
@@ -45,6 +46,25 @@ class Folder {
 const std::string kShell = std::string(MPM_SOURCE_DIR) + "/config/plants/shell3x3.yaml";
 
 }  // namespace
+
+TEST_CASE("mpmsim runs a plant of its own equations, and tells what it hides there") {
+  const Folder folder;
+  const std::string unit = std::string(MPM_SOURCE_DIR) + "/config/plants/recovery_boiler.yaml";
+  REQUIRE(folder.run("--config " + unit + " --scenario co_oxidation --samples 50 --csv " +
+                     folder.file("run.csv") + " --truth " + folder.file("truth.json")) == 0);
+  const std::string csv = folder.read("run.csv"), header = csv.substr(0, csv.find('\n'));
+  CHECK(header.find("AI-602.PV") != std::string::npos);
+  CHECK(header.find("ZI-501.PV") != std::string::npos);  // aux that the boiler measures
+  const nlohmann::json told = nlohmann::json::parse(folder.read("truth.json"));
+  CHECK(told["process"]["name"] == "recovery_boiler");
+  REQUIRE(told["process"]["changes"].size() == 1);
+  CHECK(told["process"]["changes"][0]["quantity"] == "co_oxidation");
+  CHECK(told["process"]["changes"][0]["value"] == 1.1);
+  // What alters a model is refused where none is simulated.
+  CHECK(folder.run("--config " + unit + " --scenario hidden_gain --samples 50 --csv " +
+                   folder.file("run.csv")) == 3);
+  CHECK(folder.read("err").find("is under `process`") != std::string::npos);
+}
 
 TEST_CASE("mpmsim writes a run and its truth, the same for the same seed") {
   const Folder folder;

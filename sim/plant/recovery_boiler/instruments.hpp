@@ -2,7 +2,7 @@
 
 #include <deque>
 
-#include "sim/plant/recovery_boiler/pid.hpp"
+#include "sim/plant/recovery_boiler/control_blocks.hpp"
 #include "sim/plant/recovery_boiler/running_boiler.hpp"
 
 namespace mpm::sim::boiler {
