@@ -65,12 +65,15 @@ inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to it
 inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
 inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
 /// Where a channel with lead begins, times the time constant that it had: slow tail, overshoot,
-/// inverse response, a quick answer that mostly goes back.
+/// inverse response, a quick answer that mostly goes back, one that goes back further than it came.
 struct LeadStart {
-  double first, second, lead;
+  double first, second, lead, gain;  ///< the gain times its own
 };
-inline constexpr LeadStart kLeadStarts[] = {
-    {3.0, 0.7, 2.0}, {1.0, 0.5, 1.5}, {1.0, 0.5, -0.5}, {20.0, 0.7, 26.0}};
+inline constexpr LeadStart kLeadStarts[] = {{3.0, 0.7, 2.0, 1.0},
+                                            {1.0, 0.5, 1.5, 1.0},
+                                            {1.0, 0.5, -0.5, 1.0},
+                                            {20.0, 0.7, 26.0, 1.0},
+                                            {10.0, 1.0, -17.0, -0.5}};
 /// Where a damped pair begins.
 inline constexpr double kDampedStart = 0.4;
 inline constexpr double kPairTime = 0.7;       ///< of half the dead time and the time constant
@@ -116,6 +119,8 @@ inline constexpr double kFewestSettlings = 6.0;    ///< that a test lasts
 inline constexpr double kStepsOfTest = 4.0;        ///< up, down, up, back
 inline constexpr double kStepSettlings = 4.0;      ///< as long as so many, steps will do
 inline constexpr double kWantedSd = 5.0;           ///< an effect that matters, in its own s.d.
-inline constexpr double kLeastReturn = 0.02;       ///< of the noise to its level, per sample
+/// Dead time from which an inverse response is tried in its place, samples: shorter ones are told.
+inline constexpr double kLongDeadTime = 5.0;
+inline constexpr double kLeastReturn = 0.02;  ///< of the noise to its level, per sample
 
 }  // namespace mpm

@@ -59,8 +59,16 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
           next.second = start.second * next.time_constant;
           next.lead = start.lead * next.time_constant;
           next.time_constant *= start.first;
+          next.gain *= start.gain;
         });
       }
+      // An inverse response that was taken for dead time (Pade: half the delay as lead and as lag).
+      if (shape.dead_time > kLongDeadTime && !shape.dead_time_known && shape.sign == 0)
+        add(ChannelForm::kSecondOrderLead, [](ChannelShape& next) {
+          next.second = 0.5 * next.dead_time;
+          next.lead = -next.second;
+          next.dead_time = 0.0;
+        });
       add(ChannelForm::kIntegrator, integrating);
       break;
     case ChannelForm::kSecondOrder:
@@ -164,6 +172,7 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
   for (;;) {
     const PredictionErrorFit& now = grown.back();
     std::optional<PredictionErrorFit> best;
+    std::vector<Trial> paid, failed;  // a form may have several starts
     for (std::size_t c = 0; c < now.channels.size(); ++c)
       for (const ChannelShape& shape : richer(now.channels[c])) {
         const Trial trial{c, shape.form};
@@ -174,11 +183,14 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
             fit_prediction_error(data, cv, std::move(changed), noise, kTrialSteps);
         if (bic(fit) + kWorthRicher > bic(now) ||
             slowest_time(fit.channels[c]) > kSlowestShare * longest_run(data)) {
-          closed.push_back(trial);
+          failed.push_back(trial);
           continue;
         }
+        paid.push_back(trial);
         if (!best || bic(fit) < bic(*best)) best = std::move(fit);
       }
+    for (const Trial& trial : failed)
+      if (std::find(paid.begin(), paid.end(), trial) == paid.end()) closed.push_back(trial);
     if (!best) break;
     grown.push_back(fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps));
   }

@@ -97,6 +97,24 @@ TEST_CASE("a slow channel of vague gain stays where predictions are worse withou
   CHECK(kept == 10);
 }
 
+// 1 / (5 s + 1) - 1.5 / (60 s + 1), in samples: up at first, in the end down by half as much.
+TEST_CASE("an answer that turns back is not taken for a late one") {
+  constexpr Eigen::Index kRows = 3000;
+  for (std::uint64_t seed = 800; seed < 840; seed += 4) {
+    Eigen::MatrixXd inputs(kRows, 1), cvs(kRows, 1);
+    inputs.col(0) = telegraph(seed, kRows, 40);
+    cvs.col(0) = first_order(inputs.col(0), 1.0, 5.0) + first_order(inputs.col(0), -1.5, 60.0) +
+                 autoregressive(0.05 * white(seed + 1, kRows), 0.8);
+    const ChannelAnswer answer = answer_of(identify(recording_of(inputs, cvs), {}), 0, 0);
+    CAPTURE(seed);
+    CHECK(answer.left_out == LeftOut::kIdentified);
+    CHECK(answer.form == ChannelForm::kSecondOrderLead);
+    CHECK(answer.dynamics->gain == Approx(-0.5).margin(0.1));
+    CHECK(answer.dynamics->lead_s < -50.0);  // of the true one -105: -0.5 (1 - 105 s) / ..
+    CHECK(answer.dynamics->dead_time_s < 2.0);
+  }
+}
+
 TEST_CASE("hints are kept") {
   const Recording recording = open_loop(2000, 720);
   IdentificationSettings settings;
