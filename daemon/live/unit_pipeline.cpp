@@ -308,15 +308,17 @@ void UnitPipeline::judge_health(const std::vector<bus::Trouble>& troubles) {
     health_.detail = std::move(detail);
   };
   const std::string alarms = counted(health_.active_alarms, "alarm");
-  if (!troubles.empty() && troubles.front().severity > bus::Severity::kMaintenanceRequired)
+  const std::string besides = trouble_text_.empty() ? "" : "; " + trouble_text_;
+  const bool in_trouble = !troubles.empty();
+  const bool serious =
+      in_trouble && troubles.front().severity > bus::Severity::kMaintenanceRequired;
+  const bool waiting = health_.frames == 0, alarmed = health_.active_alarms > 0;
+  if (serious || (in_trouble && !waiting && !alarmed))
     set(to_string(troubles.front().severity), trouble_text_);
-  else if (health_.frames == 0)
-    set("function_check",
-        "no complete data yet" + (trouble_text_.empty() ? "" : "; " + trouble_text_));
-  else if (health_.active_alarms > 0)
-    set("maintenance_required", alarms + (trouble_text_.empty() ? "" : "; " + trouble_text_));
-  else if (!troubles.empty())
-    set(to_string(troubles.front().severity), trouble_text_);
+  else if (waiting)
+    set("function_check", "no complete data yet" + besides);
+  else if (alarmed)
+    set("maintenance_required", alarms + besides);
   else if (health_.matching + health_.mismatching == 0)
     set("function_check", "nothing determined yet");
   else

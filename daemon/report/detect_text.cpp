@@ -74,6 +74,7 @@ std::string matrix(const std::vector<ChannelRecord>& channels, const Layout& lay
     add_once(cvs, channel.cv);
   }
   std::vector<MatrixRow> rows;
+  rows.reserve(inputs.size());
   for (const std::string& input : inputs)
     rows.push_back({printable(input), std::vector<MatrixCell>(cvs.size())});
   for (const ChannelRecord& channel : channels) {
@@ -82,6 +83,7 @@ std::string matrix(const std::vector<ChannelRecord>& channels, const Layout& lay
     rows[static_cast<std::size_t>(row)].cells[static_cast<std::size_t>(column)] = cell_of(channel);
   }
   std::vector<std::string> columns;
+  columns.reserve(cvs.size());
   for (const std::string& cv : cvs) columns.push_back(printable(cv));
   return matrix_text(columns, rows, layout) + '\n' + wrapped(legend(rows), 2, layout.width);
 }
@@ -97,12 +99,12 @@ class Teller {
   /// A line for each channel of which there is something to say.
   void section(const char* title, const Say& say) {
     bool begun = false;
-    for (std::size_t i = 0; i < report_.channels.size(); ++i) {
-      const std::string text = say(report_.channels[i]);
+    for (const ChannelRecord& channel : report_.channels) {
+      const std::string text = say(channel);
       if (text.empty()) continue;
       if (!begun) text_ += '\n' + layout_.paint(Tint::kBold, title) + '\n';
       begun = true;
-      text_ += wrapped(name_of(report_.channels[i]) + ": " + text, 2, layout_.width);
+      text_ += wrapped(name_of(channel) + ": " + text, 2, layout_.width);
     }
   }
 
@@ -142,10 +144,12 @@ class Teller {
   // ", since 14:20 on 3 March" of an alarm that stands.
   [[nodiscard]] std::string since(const ChannelRecord& channel) const {
     if (channel.alarm != AlarmState::kActive) return "";
-    for (auto alarm = report_.alarms.rbegin(); alarm != report_.alarms.rend(); ++alarm)
-      if (alarm->mv == channel.mv && alarm->cv == channel.cv && alarm->to == AlarmChange::kActive)
-        return ", since " + moment_(alarm->source_time_ns);
-    return "";
+    const auto raised = std::find_if(report_.alarms.rbegin(), report_.alarms.rend(),
+                                     [&channel](const AlarmRecord& alarm) {
+                                       return alarm.mv == channel.mv && alarm.cv == channel.cv &&
+                                              alarm.to == AlarmChange::kActive;
+                                     });
+    return raised == report_.alarms.rend() ? "" : ", since " + moment_(raised->source_time_ns);
   }
 
   // Both tags and what stands around them in one line.

@@ -31,6 +31,7 @@ constexpr std::array<Quantity, 8> kQuantities{{
 
 std::vector<std::string> BoilerProcess::quantities() {
   std::vector<std::string> names;
+  names.reserve(kQuantities.size());
   for (const Quantity& quantity : kQuantities) names.emplace_back(quantity.name);
   return names;
 }

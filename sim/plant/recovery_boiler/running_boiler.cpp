@@ -40,7 +40,7 @@ struct RunningBoiler::Solver {
 
   Solver(States& states, double tolerance) {
     check(SUNContext_Create(nullptr, &context), "SUNContext_Create");
-    constexpr auto size = static_cast<sunindextype>(kStates);
+    const auto size = static_cast<sunindextype>(kStates);
     vector = N_VMake_Serial(size, states.data(), context);
     absolute = N_VNew_Serial(size, context);
     for (std::size_t i = 0; i < kStates; ++i)

@@ -24,7 +24,7 @@ struct History {
   TemporaryFolder folder;
 
   [[nodiscard]] std::string file(const std::string& name) const { return folder.file(name); }
-  [[nodiscard]] int run(std::vector<std::string> arguments) const {
+  [[nodiscard]] int run(const std::vector<std::string>& arguments) const {
     return test::run(arguments, file("out"), file("err")).value_or(-1);
   }
   void simulate(const std::string& scenario, int samples, int seed, const std::string& name) const {

@@ -21,12 +21,12 @@ LoopSetup setup_of(const std::vector<config::ProcessChange>& changes) {
 
 /// Mean of a CV over the second half of so many samples.
 double mean_of(ClosedLoop& loop, Eigen::Index cv, int samples) {
-  double sum = 0.0;
+  double sum = 0.0, count = 0.0;
   for (int k = 0; k < samples; ++k) {
     const Frame& frame = loop.step();
-    if (k >= samples / 2) sum += frame[SignalKind::kCv].values(cv);
+    if (2 * k >= samples) sum += frame[SignalKind::kCv].values(cv), count += 1.0;
   }
-  return sum / (samples - samples / 2);
+  return sum / count;
 }
 
 TEST_CASE("the boiler stands behind its unit, with what it measures beside") {
