@@ -145,9 +145,8 @@ int run_limits(const LoopSetup& setup, double percent) {
     throw BadInput("--limits: the scenario '" + setup.scenario.name +
                    "' changes the plant; take one that does not");
   const double rise = percent / 100.0;
-  LoopSetup on_model = setup;
-  on_model.unit.simulation.process
-      .clear();  // what is asked is which errors of the model would cost
+  LoopSetup on_model = setup;  // what is asked is which errors of the model would cost
+  on_model.unit.simulation.process.clear();
   print_limits(std::cout, on_model, materiality_limits(on_model, rise), rise);
   std::cout.flush();
   if (!std::cout) throw std::runtime_error("cannot write the limits");

@@ -81,16 +81,18 @@ double feedback_p_value(const IdentificationData& data, int first_lag) {
 }
 
 std::vector<bool> test_signals(const IdentificationData& data) {
-  const std::vector<double> foretold = InputRegression(data).p_values(1, true);
+  const InputRegression regression(data);
+  const std::vector<double> by_all = regression.p_values(1, true);
+  const std::vector<double> by_cvs = regression.p_values(1, false);
+  const auto unforetold = [](double p_value) { return p_value > kFeedback && p_value < 1.0; };
   std::vector<bool> result;
   for (Index i = 0; i < data.inputs.cols(); ++i) {
+    const auto s = static_cast<std::size_t>(i);
     std::set<double> values;
     for (Index k = 0; k < data.samples() && values.size() <= kTestLevels; ++k)
       values.insert(data.inputs(k, i));
-    const bool asked =
-        data.samples() > kFeedbackLags && foretold[static_cast<std::size_t>(i)] < 1.0;
-    result.push_back(values.size() <= kTestLevels ||
-                     (asked && foretold[static_cast<std::size_t>(i)] > kFeedback));
+    const bool few = values.size() <= kTestLevels;
+    result.push_back(unforetold(by_all[s]) || (few && unforetold(by_cvs[s])));
   }
   return result;
 }

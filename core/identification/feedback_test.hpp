@@ -15,8 +15,8 @@ namespace mpm {
 /// The smallest, times the number of inputs.
 [[nodiscard]] double feedback_p_value(const IdentificationData& data, int first_lag);
 
-/// Per input whether it is a test signal, that no controller makes: it takes few values, or nothing
-/// before it foretells it.
+/// Per input whether it is a test signal, that no controller makes: nothing before it foretells it,
+/// or it takes few values and the CVs' past does not foretell it (that of a relay's would).
 [[nodiscard]] std::vector<bool> test_signals(const IdentificationData& data);
 
 }  // namespace mpm

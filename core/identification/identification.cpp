@@ -170,7 +170,7 @@ void level_what_is_left(const Material& material, const CvOutcome& outcome, Mode
   if (count > 0.0) model.output_origin(cv) += sum / count;
 }
 
-/// How far the free run of the whole recording is off on rows that the choice of forms did not see.
+/// How far the free run of the whole recording is off on its last quarter.
 double unseen_rmse(const Material& material, const ModelSpec& model, int cv) {
   Simulator simulator(material.recording);
   const VectorXd simulated = free_run(simulator, model, cv);

@@ -73,7 +73,9 @@ struct CvAnswer {
   double whiteness_p_value = 1.0;  ///< of the innovations (Ljung and Box 1978)
   /// Per input: p-value of the innovations not depending on its past; 1 where it was not asked.
   std::vector<double> input_p_values;
-  double unseen_rmse = 0.0;    ///< of the free run on what was left out of the choice
+  /// Of the free run on the last quarter: forms are chosen on it, numbers fitted to it as to the
+  /// rest.
+  double unseen_rmse = 0.0;
   double unseen_spread = 0.0;  ///< s.d. of the CV there
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "sim/plant/hidden_plant.hpp"
 #include "sim/scenario/random_change.hpp"
@@ -77,6 +78,11 @@ std::optional<std::string> why_not(const LoopSetup& setup) {
 /// Of what is hidden in the plant, or of the first change with which, and with those before it, the
 /// plant is too much.
 config::Place place_to_blame(LoopSetup setup) {
+  for (const config::ProcessChange& change : std::exchange(setup.scenario.process, {})) {
+    LoopSetup alone = setup;
+    alone.scenario.process = {change};
+    if (!why_not(setup) && why_not(alone)) return change.place;
+  }
   setup.changes.clear();
   if (why_not(setup)) return setup.scenario.plant.place;  // already without a change
   for (const config::Change& change : setup.scenario.changes) {

@@ -64,6 +64,13 @@ TEST_CASE("mpmsim runs a plant of its own equations, and tells what it hides the
   CHECK(folder.run("--config " + unit + " --scenario hidden_gain --samples 50 --csv " +
                    folder.file("run.csv")) == 3);
   CHECK(folder.read("err").find("is under `process`") != std::string::npos);
+  folder.write("wrong.yaml",
+               "process:\n  - {quantity: dry_solids, value: 0.66}\n"
+               "  - {quantity: co_oxydation, value: 1.1}\n");
+  CHECK(folder.run("--config " + unit + " --scenario " + folder.file("wrong.yaml") +
+                   " --samples 50 --csv " + folder.file("run.csv")) == 3);
+  CHECK(folder.read("err").find("wrong.yaml:3:5: error: ") != std::string::npos);
+  CHECK(folder.read("err").find("no quantity 'co_oxydation'") != std::string::npos);
 }
 
 TEST_CASE("mpmsim writes a run and its truth, the same for the same seed") {

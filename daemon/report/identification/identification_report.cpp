@@ -207,8 +207,8 @@ std::string to_text(const IdentificationRun& run) {
       unseen += "  " + cv_tag(run, answer.cv) + ": " + number_text(answer.unseen_rmse) + " of " +
                 number_text(answer.unseen_spread) + "\n";
   if (!unseen.empty() && found_any(run))
-    text +=
-        "\nerror of the free run on the last part, which chose no form, and s.d. there:\n" + unseen;
+    text += "\nerror of the free run on the last quarter, fitted like the rest, and s.d. there:\n" +
+            unseen;
   const std::string doubt = doubts(run);
   if (!doubt.empty()) text += "\nin doubt:\n" + doubt;
   if (run.plan) text += '\n' + plan_text(run);

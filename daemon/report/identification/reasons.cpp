@@ -96,7 +96,7 @@ std::vector<std::string> doubts_of_model(const IdentificationRun& run) {
           (worse.empty() ? "" : ", ") + run.unit.cv.at(static_cast<std::size_t>(answer.cv)).tag;
   }
   if (!worse.empty())
-    doubts.push_back("On the last part the free run is off by more than the CV moves: " + worse +
+    doubts.push_back("On the last quarter the free run is off by more than the CV moves: " + worse +
                      ". Either a disturbance is as large as that, or these channels are wrong");
   return doubts;
 }

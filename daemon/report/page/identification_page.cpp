@@ -97,10 +97,10 @@ std::string details(const IdentificationRun& run) {
   for (const CvAnswer& answer : run.identification.cvs) {
     if (!(answer.unseen_spread > 0.0)) continue;
     const config::CvSignal& cv = run.unit.cv.at(static_cast<std::size_t>(answer.cv));
-    text +=
-        (text.empty() ? "On the last part, which chose no form, the free run's error is " : ", ") +
-        cv.tag + " " + rounded(answer.unseen_rmse, cv.unit) + " of " +
-        rounded(answer.unseen_spread, cv.unit) + " s.d.";
+    text += (text.empty() ? "On the last quarter, fitted like the rest, the free run's error is "
+                          : ", ") +
+            cv.tag + " " + rounded(answer.unseen_rmse, cv.unit) + " of " +
+            rounded(answer.unseen_spread, cv.unit) + " s.d.";
   }
   return text;
 }

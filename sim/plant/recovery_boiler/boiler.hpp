@@ -37,8 +37,8 @@ struct Inputs {
   double tertiary = kTertiary;  ///< m3/s at 120 degC
   double liquor = kLiquor;      ///< m3/h
   double liquor_temperature = kLiquorTemperature;
-  double spray = 26.0 / 3.6;  ///< kg/s
-  double feedwater = 101.0;   ///< kg/s, into the economizer
+  double spray = kSpray;     ///< kg/s
+  double feedwater = 101.0;  ///< kg/s, into the economizer
 };
 
 /// What nobody tells the controller about.

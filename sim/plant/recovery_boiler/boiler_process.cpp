@@ -16,7 +16,7 @@ struct Quantity {
   const char* name;
   std::variant<double Condition::*, double Faults::*> where;
 };
-constexpr std::array<Quantity, 8> kQuantities{{
+constexpr std::array<Quantity, 7> kQuantities{{
     {"co_oxidation", &Condition::oxidation},
     {"superheating", &Condition::superheating},
     {"dry_solids", &Condition::solids},
@@ -24,7 +24,6 @@ constexpr std::array<Quantity, 8> kQuantities{{
     {"air_leak", &Condition::air_leak},
     {"valve_stiction", &Faults::valve_stiction},
     {"o2_offset", &Faults::o2_offset},
-    {"unmeasured_air", &Faults::unmeasured_air},
 }};
 
 }  // namespace

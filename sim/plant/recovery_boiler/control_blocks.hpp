@@ -13,22 +13,21 @@ class Pi {
     double gain;           ///< % of the actuator per unit
     double integral_time;  ///< s
   };
-  Pi(const Tuning& tuning, double output) : tuning_(tuning), integral_(output), output_(output) {}
+  Pi(const Tuning& tuning, double output) : tuning_(tuning), integral_(output) {}
 
-  /// `forward`: %, added as it is.
-  double step(double setpoint, double measured, double seconds, double forward = 0.0) {
+  /// The actuator's %.
+  double step(double setpoint, double measured, double seconds) {
     const double error = setpoint - measured;
-    const double wanted = tuning_.gain * error + integral_ + forward;
-    output_ = std::clamp(wanted, 0.0, 100.0);
+    const double wanted = tuning_.gain * error + integral_;
     const bool further = (wanted > 100.0 && error * tuning_.gain > 0.0) ||
                          (wanted < 0.0 && error * tuning_.gain < 0.0);
     if (!further) integral_ += tuning_.gain * error * seconds / tuning_.integral_time;
-    return output_;
+    return std::clamp(wanted, 0.0, 100.0);
   }
 
  private:
   Tuning tuning_;
-  double integral_, output_;
+  double integral_;
 };
 
 /// A first-order lag, exact for an input that is held.

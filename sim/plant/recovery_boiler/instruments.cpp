@@ -28,8 +28,8 @@ Instruments::Flow::Flow(const Pi::Tuning& tuning, double actuator_time, double f
       sensor(kFlowSensorTime, flow),
       full(full_flow) {}
 
-double Instruments::Flow::step(double setpoint, double forward) {
-  const double output = controller.step(setpoint, sensor.value(), kStep, forward);
+double Instruments::Flow::step(double setpoint) {
+  const double output = controller.step(setpoint, sensor.value(), kStep);
   const double flow = full * actuator.step(output, kStep) / 100.0;
   sensor.step(flow, kStep);
   return flow;
@@ -60,9 +60,8 @@ void Instruments::advance(const SetPoints& setpoints, const Condition& condition
   for (int second = 0; second < seconds; ++second) one_second(setpoints, condition, faults);
 }
 
-void Instruments::one_second(const SetPoints& setpoints, Condition condition,
+void Instruments::one_second(const SetPoints& setpoints, const Condition& condition,
                              const Faults& faults) {
-  condition.air_leak += faults.unmeasured_air;
   Inputs inputs;
   inputs.tertiary = air_.step(setpoints.tertiary);
   inputs.liquor = liquor_.step(setpoints.liquor);

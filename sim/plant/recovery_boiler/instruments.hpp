@@ -23,10 +23,8 @@ struct Readings {
 
 /// What may be wrong with instruments and actuators.
 struct Faults {
-  double valve_stiction =
-      0.0;                 ///< % of stroke that the command must move before the spray valve does
-  double o2_offset = 0.0;  ///< % that the analyser reads too much
-  double unmeasured_air = 0.0;  ///< m3/s that go past the measurement: a damper that leaks
+  double valve_stiction = 0.0;  ///< % that the command must move before the spray valve does
+  double o2_offset = 0.0;       ///< % that the analyser reads too much
 };
 
 /// The boiler behind its low-level control: loops of air flow, liquor flow, liquor temperature and
@@ -46,13 +44,13 @@ class Instruments {
   /// A flow, its actuator (0 to 100 %) and its sensor.
   struct Flow {
     Flow(const Pi::Tuning& tuning, double actuator_time, double full, double flow);
-    double step(double setpoint, double forward = 0.0);
+    double step(double setpoint);
     Pi controller;
     Lag actuator;  ///< %
     Lag sensor;
     double full;  ///< at 100 %
   };
-  void one_second(const SetPoints& setpoints, Condition condition, const Faults& faults);
+  void one_second(const SetPoints& setpoints, const Condition& condition, const Faults& faults);
 
   RunningBoiler boiler_;
   Flow air_, liquor_, feedwater_;

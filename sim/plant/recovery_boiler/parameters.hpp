@@ -83,8 +83,9 @@ inline constexpr double kDrumMetal = 1e8;         ///< J/K, with the risers
 
 // actuators and sensors:
 inline constexpr double kSprayValve = 30.0;   ///< %, Table 5.4
+inline constexpr double kSpray = 26.0 / 3.6;  ///< kg/s there
 inline constexpr double kSprayCloses = 26.2;  ///< %, lower end of the valve's range
-inline constexpr double kSprayPerPercent = 26.0 / 3.6 / (kSprayValve - kSprayCloses);  ///< kg/s
+inline constexpr double kSprayPerPercent = kSpray / (kSprayValve - kSprayCloses);      ///< kg/s
 inline constexpr double kFullAir = 60.0, kFullLiquor = 200.0, kFullFeedwater = 150.0;  ///< at 100 %
 inline constexpr double kFanTime = 4.0, kPumpTime = 3.0, kPositionerTime = 2.0;        ///< s
 inline constexpr double kFlowSensorTime = 1.0;

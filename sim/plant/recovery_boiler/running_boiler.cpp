@@ -15,8 +15,7 @@ namespace {
 
 constexpr double kLeastScale = 1e-3;  ///< of states that rest at 0
 constexpr double kRest = 1e5;         ///< s, in which everything settles
-constexpr double kLevelTime =
-    100.0;  ///< s, in which feedwater brings the drum back before the start
+constexpr double kLevelTime = 100.0;  ///< s, in which feedwater then brings the drum back
 constexpr long kMostSteps = 100'000;
 
 void check(int result, const char* what) {
@@ -33,7 +32,6 @@ struct RunningBoiler::Solver {
   SUNMatrix matrix = nullptr;
   SUNLinearSolver linear = nullptr;
   void* cvode = nullptr;
-  double time = 0.0;
   Inputs inputs;
   Condition condition;
   bool held_level = false;  ///< feedwater follows the drum, whatever the inputs say

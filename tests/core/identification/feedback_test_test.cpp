@@ -27,7 +27,18 @@ TEST_CASE("a test signal is told from what a controller moves") {
   Loop still;
   still.setpoint_moves = false;
   CHECK_FALSE(test_signals(identification_data(still.run(1500)))[0]);
+  // A thermostat: two levels, switched by the CV with a hysteresis.
   MatrixXd inputs(1500, 1), cvs(1500, 1);
+  const VectorXd wandering = autoregressive(0.3 * white(912, 1500), 0.95);
+  double heat = 1.0, room = 0.0;
+  for (Index k = 0; k < 1500; ++k) {
+    cvs(k, 0) = room + wandering(k);
+    if (cvs(k, 0) > 0.5) heat = -1.0;
+    if (cvs(k, 0) < -0.5) heat = 1.0;
+    inputs(k, 0) = heat;
+    room += 0.1 * (2.0 * heat - room);
+  }
+  CHECK_FALSE(test_signals(identification_data(recording_of(inputs, cvs)))[0]);
   inputs.col(0) = white(911, 1500);
   cvs.col(0) = first_order(inputs.col(0), 1.0, 5.0, 1);
   CHECK(test_signals(identification_data(recording_of(inputs, cvs)))[0]);

@@ -58,9 +58,10 @@ TEST_CASE("faults of instruments do what they say") {
   setpoints.spray_valve = 30.6;
   plant.advance(setpoints, {}, faults, 100);
   CHECK(plant.readings().spray_valve == Approx(30.6));
-  faults.unmeasured_air = 2.0;
+  Condition leaking;
+  leaking.air_leak = 2.0;
   const double o2 = plant.readings().excess_o2;
-  plant.advance(setpoints, {}, faults, 300);
+  plant.advance(setpoints, leaking, faults, 300);
   CHECK(plant.readings().tertiary == Approx(30.0).margin(0.01));
   CHECK(plant.readings().excess_o2 > o2 + 0.1);
 }
