@@ -65,15 +65,16 @@ inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to it
 inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
 inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
 /// Where a channel with lead begins, times the time constant that it had: slow tail, overshoot,
-/// inverse response, a quick answer that mostly goes back, one that goes back further than it came.
+/// inverse response, a quick answer that mostly goes back, one that goes back further than it came,
+/// a quick answer that creeps on.
 struct LeadStart {
   double first, second, lead, gain;  ///< the gain times its own
 };
-inline constexpr LeadStart kLeadStarts[] = {{3.0, 0.7, 2.0, 1.0},
-                                            {1.0, 0.5, 1.5, 1.0},
-                                            {1.0, 0.5, -0.5, 1.0},
-                                            {20.0, 0.7, 26.0, 1.0},
-                                            {10.0, 1.0, -17.0, -0.5}};
+inline constexpr LeadStart kLeadStarts[] = {{3.0, 0.7, 2.0, 1.0},     {1.0, 0.5, 1.5, 1.0},
+                                            {1.0, 0.5, -0.5, 1.0},    {20.0, 0.7, 26.0, 1.0},
+                                            {10.0, 1.0, -17.0, -0.5}, {50.0, 1.0, 42.0, 1.2}};
+/// Of the quicker of two lags: where a third begins.
+inline constexpr double kThirdShares[] = {0.3, 1.0};
 /// Where a damped pair begins.
 inline constexpr double kDampedStart = 0.4;
 inline constexpr double kPairTime = 0.7;       ///< of half the dead time and the time constant

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "core/identification/calibration.hpp"
@@ -68,6 +69,7 @@ void state_numbers(const Material& material, const PredictionErrorFit& fit, std:
         break;
       case ShapeNumber::kLogTime:
       case ShapeNumber::kLogSecond:
+      case ShapeNumber::kLogThird:
         answer.time_constants.push_back(
             {std::exp(interval.low) * dt, std::exp(interval.high) * dt});
         break;
@@ -84,10 +86,9 @@ void state_numbers(const Material& material, const PredictionErrorFit& fit, std:
 void state_step(const PredictionErrorFit& fit, std::size_t which, double sample_time_s,
                 ChannelAnswer& answer) {
   const ChannelShape& shape = fit.channels[which];
-  const bool two =
-      shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead;
-  const double times =
-      two ? shape.time_constant + shape.second : std::max(1.0, slowest_time(shape));
+  const std::vector<double> own = lags(shape);
+  const double times = own.size() > 1 ? std::accumulate(own.begin(), own.end(), 0.0)
+                                      : std::max(1.0, slowest_time(shape));
   const auto stride = static_cast<Index>(
       std::max(1.0, std::ceil((shape.dead_time + kStepTimes * times) / kStepPoints)));
   VectorXd input = VectorXd::Ones(stride * kStepPoints + 2);

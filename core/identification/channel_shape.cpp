@@ -17,14 +17,36 @@ bool integrates(ChannelForm form) {
   return form == ChannelForm::kIntegrator || form == ChannelForm::kIntegratorLag;
 }
 
+namespace {
+
+bool has_second(ChannelForm form) {
+  return form == ChannelForm::kSecondOrder || form == ChannelForm::kSecondOrderLead ||
+         form == ChannelForm::kThirdOrderLead;
+}
+
+bool has_lead(ChannelForm form) {
+  return form == ChannelForm::kSecondOrderLead || form == ChannelForm::kThirdOrderLead;
+}
+
+}  // namespace
+
+std::vector<double> lags(const ChannelShape& shape) {
+  std::vector<double> times;
+  if (shape.form != ChannelForm::kIntegrator && shape.form != ChannelForm::kDamped)
+    times.push_back(shape.time_constant);
+  if (has_second(shape.form)) times.push_back(shape.second);
+  if (shape.form == ChannelForm::kThirdOrderLead) times.push_back(shape.third);
+  return times;
+}
+
 std::vector<ShapeNumber> free_numbers(const ChannelShape& shape) {
   std::vector<ShapeNumber> numbers = {ShapeNumber::kGain};
   if (!shape.dead_time_known) numbers.push_back(ShapeNumber::kDeadTime);
   if (shape.form != ChannelForm::kIntegrator) numbers.push_back(ShapeNumber::kLogTime);
-  if (shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead)
-    numbers.push_back(ShapeNumber::kLogSecond);
+  if (has_second(shape.form)) numbers.push_back(ShapeNumber::kLogSecond);
+  if (shape.form == ChannelForm::kThirdOrderLead) numbers.push_back(ShapeNumber::kLogThird);
   if (shape.form == ChannelForm::kDamped) numbers.push_back(ShapeNumber::kDamping);
-  if (shape.form == ChannelForm::kSecondOrderLead) numbers.push_back(ShapeNumber::kLead);
+  if (has_lead(shape.form)) numbers.push_back(ShapeNumber::kLead);
   return numbers;
 }
 
@@ -38,6 +60,8 @@ double number_of(const ChannelShape& shape, ShapeNumber which) {
       return std::log(shape.time_constant);
     case ShapeNumber::kLogSecond:
       return std::log(shape.second);
+    case ShapeNumber::kLogThird:
+      return std::log(shape.third);
     case ShapeNumber::kLead:
       return shape.lead;
     case ShapeNumber::kDamping:
@@ -61,6 +85,9 @@ void set_number(ChannelShape& shape, ShapeNumber which, double value, double lon
     case ShapeNumber::kLogSecond:
       shape.second = time();
       break;
+    case ShapeNumber::kLogThird:
+      shape.third = time();
+      break;
     case ShapeNumber::kLead:
       // Who gives a gain's sign means that of the answer: no inverse response.
       shape.lead = std::clamp(value, shape.sign != 0 ? 0.0 : -longest, longest);
@@ -72,19 +99,9 @@ void set_number(ChannelShape& shape, ShapeNumber which, double value, double lon
 }
 
 double slowest_time(const ChannelShape& shape) {
-  switch (shape.form) {
-    case ChannelForm::kIntegrator:
-      return 0.0;
-    case ChannelForm::kDamped:
-      return shape.time_constant / shape.damping;
-    case ChannelForm::kSecondOrder:
-    case ChannelForm::kSecondOrderLead:
-      return std::max(shape.time_constant, shape.second);
-    case ChannelForm::kFirstOrder:
-    case ChannelForm::kIntegratorLag:
-      break;
-  }
-  return shape.time_constant;
+  if (shape.form == ChannelForm::kDamped) return shape.time_constant / shape.damping;
+  const std::vector<double> times = lags(shape);
+  return times.empty() ? 0.0 : *std::max_element(times.begin(), times.end());
 }
 
 TransferFunction transfer_function(const ChannelShape& shape, double sample_time_s) {
@@ -92,11 +109,8 @@ TransferFunction transfer_function(const ChannelShape& shape, double sample_time
   tf.integrating = integrates(shape.form);
   tf.gain = tf.integrating ? shape.gain / sample_time_s : shape.gain;
   tf.dead_time_s = shape.dead_time * sample_time_s;
-  if (shape.form != ChannelForm::kIntegrator && shape.form != ChannelForm::kDamped)
-    tf.time_constants_s.push_back(shape.time_constant * sample_time_s);
-  if (shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead)
-    tf.time_constants_s.push_back(shape.second * sample_time_s);
-  if (shape.form == ChannelForm::kSecondOrderLead) tf.lead_s = shape.lead * sample_time_s;
+  for (const double time : lags(shape)) tf.time_constants_s.push_back(time * sample_time_s);
+  if (has_lead(shape.form)) tf.lead_s = shape.lead * sample_time_s;
   return tf;
 }
 

@@ -14,6 +14,7 @@ enum class ChannelForm {
   kSecondOrder,      ///< K e^{-Ls} / ((T s + 1)(T2 s + 1))
   kDamped,           ///< K e^{-Ls} / (T^2 s^2 + 2 damping T s + 1), damping < 1
   kSecondOrderLead,  ///< K (lead s + 1) e^{-Ls} / ((T s + 1)(T2 s + 1))
+  kThirdOrderLead,   ///< K (lead s + 1) e^{-Ls} / ((T s + 1)(T2 s + 1)(T3 s + 1))
   kIntegrator,       ///< K e^{-Ls} / s
   kIntegratorLag,    ///< K e^{-Ls} / (s (T s + 1))
 };
@@ -27,6 +28,7 @@ struct ChannelShape {
   double dead_time = 0.0;
   double time_constant = 1.0;
   double second = 1.0;
+  double third = 1.0;
   double lead = 0.0;
   double damping = 0.5;
   bool dead_time_known = false;  ///< the user gave it: it stays
@@ -34,9 +36,11 @@ struct ChannelShape {
 };
 
 [[nodiscard]] bool integrates(ChannelForm form);
+/// Its lags, samples; of a damped pair none.
+[[nodiscard]] std::vector<double> lags(const ChannelShape& shape);
 
 /// A number of a shape that a fit moves. Times are moved by their log.
-enum class ShapeNumber { kGain, kDeadTime, kLogTime, kLogSecond, kLead, kDamping };
+enum class ShapeNumber { kGain, kDeadTime, kLogTime, kLogSecond, kLogThird, kLead, kDamping };
 [[nodiscard]] std::vector<ShapeNumber> free_numbers(const ChannelShape& shape);
 [[nodiscard]] double number_of(const ChannelShape& shape, ShapeNumber which);
 /// Within what makes sense: dead time and lags not negative, `longest` (samples) at most.

@@ -110,9 +110,9 @@ class CvFitting {
   [[nodiscard]] std::vector<double> decays(const std::vector<ChannelShape>& channels) const {
     std::vector<double> times;
     for (const ChannelShape& shape : channels) {
-      times.push_back(slowest_time(shape));
-      if (shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead)
-        times.push_back(std::min(shape.time_constant, shape.second));
+      const std::vector<double> own = lags(shape);
+      times.insert(times.end(), own.begin(), own.end());
+      if (own.empty()) times.push_back(slowest_time(shape));
     }
     std::sort(times.rbegin(), times.rend());
     std::vector<double> picked;

@@ -88,8 +88,17 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
     case ChannelForm::kIntegrator:
       add(ChannelForm::kIntegratorLag, [](ChannelShape& next) { next.time_constant = 1.0; });
       break;
-    case ChannelForm::kDamped:
     case ChannelForm::kSecondOrderLead:
+      // One lag more: beside the quicker one, and in place of dead time that it looked like.
+      for (const double share : kThirdShares)
+        add(ChannelForm::kThirdOrderLead, [&](ChannelShape& next) {
+          next.third = std::max(kFastest, share * std::min(next.time_constant, next.second));
+          const double delay = next.dead_time_known ? 0.0 : std::min(next.dead_time, next.third);
+          next.dead_time -= delay;
+        });
+      break;
+    case ChannelForm::kDamped:
+    case ChannelForm::kThirdOrderLead:
     case ChannelForm::kIntegratorLag:
       break;
   }

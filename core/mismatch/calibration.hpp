@@ -151,6 +151,28 @@ namespace confounding {
 inline constexpr double kMasked = 2.0;
 }
 
+/// Whether a CV's answer depends on where the plant is operated (`SecondOrderTerms`).
+namespace curvature {
+/// Inputs whose products are looked at, those that moved the CV most. Chosen: ten products cost a
+/// fifth more than a CV's usual columns.
+inline constexpr int kMostInputs = 4;
+/// Rows beyond the columns that each term needs. Chosen.
+inline constexpr int kFreedomPerColumn = 10;
+/// Taken in below this p-value, as certain as a change has to be (core/monitor, change_search).
+inline constexpr double kCertainPValue = 1e-9;
+/// Of one channel, once that is certain. Chosen.
+inline constexpr double kChannelPValue = 1e-6;
+/// Where noise nearly integrates, 1 - a_1 - ... - a_p is no less: what is said of the gain's
+/// variation is then too little. Chosen.
+inline constexpr double kLeastOwnGain = 0.02;
+/// Of what the second order explains, what orders beyond it may pass off as a change; and of a
+/// gain's variation, what does not matter as an error. Chosen on healthy runs of the recovery
+/// boiler, seeds 1 to 8.
+inline constexpr double kBeyondShare = 0.1;
+inline constexpr double kHarmlessShare = 0.25;
+inline constexpr double kMostVariation = 10.0;  ///< said of a gain's variation; chosen
+}  // namespace curvature
+
 /// The search for the moment of a change.
 namespace change_scan {
 inline constexpr int kMoments = 100;  ///< looked at; chosen: one per cent of the memory

@@ -32,9 +32,17 @@ ChangeScan::ChangeScan(const RegressionShape& shape)
   moments_.reserve(kMoments);
 }
 
+// Of a CV with second-order terms these are part of the lead-in.
+void ChangeScan::take_shape(const ResidualRegression& regression) {
+  RegressionShape shape = shape_;
+  shape.terms += regression.lead_in() - shape.lead_in();
+  if (shape.terms != shape_.terms) *this = ChangeScan(shape);
+}
+
 std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, int cv) {
   const Rows rows{detector.history(), detector.regression(cv), cv};
   if (rows.span() < 2 * kMoments) return std::nullopt;
+  take_shape(rows.regression);
   moments_.clear();  // ages at which a part ends, newest first
   for (int m = 1; m < kMoments; ++m) moments_.push_back(m * rows.span() / kMoments);
   pass(rows, true, true, after_with_);
@@ -47,11 +55,14 @@ std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, in
   per_square_ = freedom / constant_;
 
   const double inputs = shape_.inputs * shape_.block();
+  const Curvature* curvature = detector.curvature(cv);
+  const double bent = curvature ? calibration::curvature::kBeyondShare * curvature->explained : 0.0;
+  const double margin = kMargin + bent;
   const double chance =
       inputs + calibration::change_scan::kChanceDeviations * std::sqrt(2.0 * inputs);
   const int fewest = calibration::change_scan::kRowsPerColumn * shape_.columns();
-  const ChangePoint began = strongest(ChangeKind::kBegan, after_with_, before_without_, kMargin, 0);
-  const ChangePoint ended = strongest(ChangeKind::kEnded, after_without_, before_with_, kMargin, 0);
+  const ChangePoint began = strongest(ChangeKind::kBegan, after_with_, before_without_, margin, 0);
+  const ChangePoint ended = strongest(ChangeKind::kEnded, after_without_, before_with_, margin, 0);
   ChangePoint best = ended.gain > began.gain ? ended : began;
   const ChangePoint other =
       strongest(ChangeKind::kOther, after_with_, before_with_, best.gain + chance, fewest);
@@ -130,7 +141,7 @@ int ChangeScan::fit_input(const Rows& rows, int input, int samples, bool strict,
         strict ? rows.regression.row_weight(age) : rows.regression.lenient_weight(age);
     if (!(weight > 0.0)) continue;
     double* row = feed_.next_row(factor);
-    rows.history.fill_lead_in(age, row);
+    rows.regression.fill_lead_in(rows.history, age, row);
     if (input >= 0) {
       rows.history.fill_inputs(age, inputs_.data());
       std::copy_n(inputs_.data() + input * shape_.block(), shape_.block(), row + shape_.lead_in());
@@ -164,7 +175,7 @@ void ChangeScan::pass(const Rows& rows, bool newest_first, bool with_inputs,
     if (weight > 0.0) {
       double* row = feed_.next_row(factor);
       if (with_inputs) rows.history.fill_inputs(age, row);
-      rows.history.fill_lead_in(age, row + first);
+      rows.regression.fill_lead_in(rows.history, age, row + first);
       row[first + shape_.lead_in()] = rows.history.residual(rows.cv, age);
       for (int c = 0; c <= first + shape_.lead_in(); ++c) row[c] *= weight;
       ++count;

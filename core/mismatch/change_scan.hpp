@@ -33,7 +33,8 @@ struct ChangePoint {
 /// what that many could gain by chance (Andrews 1993, on the likelihood ratio over all moments);
 /// where it wins but no input explains anything since then, it is an end, if that too beats "no
 /// change".
-/// One pass over the rows in each direction gives the residual squares for all moments at once.
+/// One pass over the rows in each direction gives the residual squares for all moments at once. No
+/// allocation unless CVs with and without second-order terms take turns.
 class ChangeScan {
  public:
   explicit ChangeScan(const RegressionShape& shape);
@@ -62,6 +63,7 @@ class ChangeScan {
                                                                     : 0.0;
   }
 
+  void take_shape(const ResidualRegression& regression);
   void pass(const Rows& rows, bool newest_first, bool with_inputs, std::vector<Part>& parts);
   void store(const GivensQr& factor, int first, int rows, Part& part) const;
   /// The moment, at least `fewest` samples ago, at which the two parts beat no change by most, and

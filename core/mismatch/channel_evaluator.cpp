@@ -32,6 +32,12 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
     throw std::invalid_argument("materiality limits: one per channel, or one for all");
 }
 
+void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
+  MaterialityLimits& limits = limits_[index(cv, input)];
+  limits.gain = std::max(limits.gain, limit);
+  limits.time_constant = std::max(limits.time_constant, limit);
+}
+
 void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence) {
   estimates_.read(cv, memory.factor);
   const EstimateNoise noise = estimate_noise(memory);

@@ -38,6 +38,9 @@ class ChannelEvaluator {
   ChannelEvaluator(const RegressionShape& shape, const LinearModel& model,
                    std::vector<MaterialityLimits> limits);
 
+  /// An error of the gain or the time constant up to `limit` (relative) matters in this channel no
+  /// longer, if it did.
+  void widen_limits(int cv, int input, double limit);
   /// Evidence of all inputs to one CV into `evidence` (as many as inputs); the memory is ready.
   void evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence);
   /// What is explained of a CV's residual beyond its own past, in squares.

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/mismatch/calibration.hpp"
+#include "core/mismatch/second_order_terms.hpp"
 #include "core/regression/rotation.hpp"
 
 namespace mpm {
@@ -13,7 +14,7 @@ constexpr int kGranule = static_cast<int>(kRowGranule);
 }  // namespace
 
 InputEstimates::InputEstimates(const RegressionShape& shape)
-    : shape_(shape), block_(shape.block()), lead_in_(shape.lead_in()) {
+    : shape_(shape), block_(shape.block()) {
   const int all = shape.inputs * block_;
   padded_ = (all + kGranule - 1) / kGranule * kGranule;
   triangle_.setZero(padded_, padded_);
@@ -22,11 +23,12 @@ InputEstimates::InputEstimates(const RegressionShape& shape)
   scales_.setZero(all);
   rotated_.setZero(all);
   estimate_.setZero(all);
-  coefficients_.setZero(shape.columns());
+  coefficients_.setZero(shape.columns() + SecondOrderTerms::most_columns());
 }
 
 void InputEstimates::read(int cv, const GivensQr& factor) {
   const int all = columns();
+  lead_in_ = factor.columns() - all;
   factor.centred_norms(lead_in_, norms_);
   for (int c = 0; c < all; ++c) scales_(c) = norms_(c) > 0.0 ? 1.0 / norms_(c) : 0.0;
   for (int i = 0; i < all; ++i) {
@@ -46,7 +48,7 @@ void InputEstimates::read_own_lags(int cv, const GivensQr& factor) {
   double least_share = 1.0;
   for (int c = 0; c < columns(); ++c) least_share = std::min(least_share, triangle_(c, c));
   const bool separable = least_share > calibration::rounding::kSeparableShare;
-  factor.solve(0, separable ? shape_.columns() : lead_in_, coefficients_);
+  factor.solve(0, separable ? factor.columns() : lead_in_, coefficients_);
   own_lags_at_ = 1 + cv * shape_.residual_order;
   residual_norm_ = factor.centred_norm(1 + cv * shape_.residual_order);
 }

@@ -78,7 +78,7 @@ class InputEstimates {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   RegressionShape shape_;
   int block_;
-  int lead_in_;
+  int lead_in_ = 0;  // of the factor that was read
   int padded_;
   RowMajor triangle_;             // R_t, columns scaled to norm 1; padded with zeros
   AlignedArray inverse_;          // T, likewise

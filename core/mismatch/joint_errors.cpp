@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/mismatch/calibration.hpp"
+#include "core/mismatch/second_order_terms.hpp"
 #include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
@@ -20,7 +21,7 @@ JointErrors::JointErrors(const RegressionShape& shape)
       errors_(Eigen::MatrixXd::Zero(shape.block(), shape.inputs * kUsualErrors)),
       error_(Eigen::VectorXd::Zero(shape.block())),
       sizes_(Eigen::VectorXd::Zero(shape.inputs * kUsualErrors)),
-      lead_in_(Eigen::VectorXd::Zero(shape.lead_in())),
+      lead_in_(Eigen::VectorXd::Zero(shape.lead_in() + SecondOrderTerms::most_columns())),
       own_lags_(Eigen::VectorXd::Zero(shape.residual_order)),
       feed_(shape.inputs * (kUsualErrors + kShifts) + shape.block() + 1),
       all_(shape.inputs * kUsualErrors, 1 + shape.inputs * kShifts),
@@ -52,7 +53,7 @@ void JointErrors::read(int cv, const GivensQr& factor,
 // The lead-in's coefficients where the inputs' are those of the fit: R_l^-1 (z_l - R_li X x).
 void JointErrors::learn_own_lags(const GivensQr& factor) {
   all_.solve(0, all_.columns(), sizes_);
-  const int lead_in = shape_.lead_in();
+  const int lead_in = factor.columns() - shape_.inputs * shape_.block();
   for (int r = lead_in - 1; r >= 0; --r) {
     double left = factor.z(r, 0);
     for (int c = r + 1; c < lead_in; ++c) left -= factor.r(r, c) * lead_in_(c);

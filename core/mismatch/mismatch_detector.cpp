@@ -1,5 +1,6 @@
 #include "core/mismatch/mismatch_detector.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/mismatch/calibration.hpp"
@@ -12,8 +13,10 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
                                    std::vector<MaterialityLimits> limits)
     : shape_(shape),
       memory_count_(static_cast<int>(memories.size())),
+      model_(model),
       history_(shape, remembered),
-      work_(shape.columns(), patience),
+      curvatures_(static_cast<std::size_t>(shape.cvs)),
+      work_(shape.columns() + SecondOrderTerms::most_columns(), patience),
       evaluator_(shape, model, std::move(limits)),
       evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs) * memories.size()),
       explained_(static_cast<std::size_t>(shape.cvs)) {
@@ -29,7 +32,10 @@ void MismatchDetector::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
 void MismatchDetector::skip(std::int64_t missing) {
   for (ResidualRegression& regression : regressions_) regression.fold(history_, work_);
   history_.skip(missing);
-  for (ResidualRegression& regression : regressions_) regression.add_gap(missing);
+  for (ResidualRegression& regression : regressions_) {
+    regression.add_gap(missing);
+    regression.follow_gap(missing, history_);
+  }
 }
 
 void MismatchDetector::fold(int cv) {
@@ -51,6 +57,26 @@ Rival MismatchDetector::rival(int cv, const FollowedSignal& followed) const {
   const bool much = followed.explained > calibration::confounding::kShare * inputs;
   return {followed.signal, much && followed.explained > by.usual_errors + margin,
           !much || followed.explained < by.usual_errors - margin};
+}
+
+bool MismatchDetector::take_in_curvature(int cv, double least) {
+  const auto at = static_cast<std::size_t>(cv);
+  ResidualRegression& regression = regressions_[at];
+  const int span = std::min(regression.span(), history_.settled());
+  if (curvatures_[at] || span == 0) return false;
+  fold(cv);
+  SecondOrderTerms terms(model_, cv, history_, span);
+  std::optional<Curvature> found = find_curvature(shape_, cv, history_, regression, terms);
+  if (!found || !(found->p_value < calibration::curvature::kCertainPValue) ||
+      !(found->explained > least))
+    return false;
+  for (int i = 0; i < shape_.inputs; ++i)
+    evaluator_.widen_limits(cv, i,
+                            calibration::curvature::kHarmlessShare *
+                                found->channels[static_cast<std::size_t>(i)].gain_variation);
+  curvatures_[at] = std::move(found);
+  regression.take_in(std::move(terms), history_, work_);
+  return true;
 }
 
 void MismatchDetector::start_afresh(int cv, int samples) {

@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/mismatch/channel_evaluator.hpp"
 #include "core/mismatch/channel_evidence.hpp"
+#include "core/mismatch/curvature.hpp"
 #include "core/mismatch/outside_signals.hpp"
 #include "core/mismatch/regression_history.hpp"
 #include "core/mismatch/residual_regression.hpp"
@@ -67,6 +69,17 @@ class MismatchDetector {
   /// Forgets of this CV what is older than its last `samples` samples (>= 0).
   void start_afresh(int cv, int samples);
 
+  /// Looks whether the CV's answer depends on where the plant is operated. Where that is certain,
+  /// and explains more than `least` residual variances, its regression takes the terms in, and
+  /// true. From then on errors are those of the linear part alone, and what is small beside the
+  /// gain's variation does not matter. Allocates.
+  bool take_in_curvature(int cv, double least);
+  /// Of a CV of which that was found; null of others.
+  [[nodiscard]] const Curvature* curvature(int cv) const {
+    const std::optional<Curvature>& found = curvatures_[static_cast<std::size_t>(cv)];
+    return found ? &*found : nullptr;
+  }
+
   [[nodiscard]] const ResidualRegression& regression(int cv) const {
     return regressions_[static_cast<std::size_t>(cv)];
   }
@@ -84,8 +97,10 @@ class MismatchDetector {
 
   RegressionShape shape_;
   int memory_count_;
+  LinearModel model_;
   RegressionHistory history_;
-  std::vector<ResidualRegression> regressions_;  // per CV
+  std::vector<ResidualRegression> regressions_;       // per CV
+  std::vector<std::optional<Curvature>> curvatures_;  // per CV
   RowWorkspace work_;
   ChannelEvaluator evaluator_;
   std::vector<ChannelEvidence> evidence_;

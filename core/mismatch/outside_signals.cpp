@@ -16,7 +16,7 @@ OutsideSignals::OutsideSignals(const RegressionShape& shape, int signals, std::v
       origin_(static_cast<std::size_t>(signals), std::numeric_limits<double>::quiet_NaN()),
       last_(static_cast<std::size_t>(signals), 0.0),
       unknown_(Eigen::VectorXd::Constant(signals, std::numeric_limits<double>::quiet_NaN())),
-      feed_(shape.lead_in() + block() + 1),
+      feed_(shape.lead_in() + SecondOrderTerms::most_columns() + block() + 1),
       factor_(shape.lead_in() + block(), 1) {
   for (int w = 0; w < signals * block(); ++w) windows_.emplace_back(depth);
 }
@@ -55,13 +55,17 @@ FollowedSignal OutsideSignals::followed(int cv, const RegressionHistory& history
 
 double OutsideSignals::explained_by(int signal, int cv, const RegressionHistory& history,
                                     const ResidualRegression& regression) {
+  if (lead_in_ != regression.lead_in()) {
+    lead_in_ = regression.lead_in();
+    factor_ = GivensQr(lead_in_ + block(), 1);
+  }
   factor_.clear();
   const double lambda = regression.memory(0).length.lambda;
   for (int age = std::min(regression.span(), depth_) - 1; age >= 0; --age) {
     const double weight = regression.row_weight(age);
     if (!(weight > 0.0)) continue;
     double* row = feed_.next_row(factor_, lambda);
-    history.fill_lead_in(age, row);
+    regression.fill_lead_in(history, age, row);
     for (int w = 0; w < block(); ++w)
       row[lead_in_ + w] = windows_[static_cast<std::size_t>(signal * block() + w)].window()[age];
     row[factor_.columns()] = history.residual(cv, age);

@@ -18,10 +18,11 @@ struct RegressionShape {
   int residual_order = 1;          ///< p >= 1
   std::vector<double> tail_poles;  ///< r_t in (0, 1); at least one
   std::vector<double> start_poles = {};
+  int terms = 0;  ///< columns of second-order terms behind the lead-in, of a CV that has some
 
   [[nodiscard]] int block() const { return fir_lags + static_cast<int>(tail_poles.size()); }
   [[nodiscard]] int lead_in() const {
-    return 1 + cvs * residual_order + static_cast<int>(start_poles.size());
+    return 1 + cvs * residual_order + static_cast<int>(start_poles.size()) + terms;
   }
   [[nodiscard]] int columns() const { return lead_in() + inputs * block(); }
 };
@@ -61,6 +62,10 @@ class RegressionHistory {
   /// The same in two parts: the constant and residual lags, and the inputs' blocks.
   void fill_lead_in(int age, double* row) const;
   void fill_inputs(int age, double* row) const;
+  /// Of the sample `age` samples ago, in its own units; unknown ones as unchanged.
+  [[nodiscard]] double input(int input, int age) const {
+    return origin_(input) + input_windows_[static_cast<std::size_t>(input)].window()[age];
+  }
   [[nodiscard]] double residual(int cv, int age) const {
     return residual_windows_[static_cast<std::size_t>(cv)].window()[age];
   }

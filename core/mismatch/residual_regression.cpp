@@ -1,6 +1,7 @@
 #include "core/mismatch/residual_regression.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace mpm {
 namespace {
@@ -20,6 +21,7 @@ RowWorkspace::RowWorkspace(int columns, int capacity)
 ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
                                        const std::vector<MemoryLength>& lengths, int remembered)
     : cv_(cv),
+      lead_in_(shape.lead_in()),
       columns_(shape.columns()),
       remembered_(remembered),
       weights_(remembered),
@@ -34,7 +36,22 @@ ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
   }
 }
 
+void ResidualRegression::take_in(SecondOrderTerms terms, const RegressionHistory& history,
+                                 RowWorkspace& work) {
+  fold(history, work);
+  columns_ += terms.columns() - (terms_ ? terms_->columns() : 0);
+  terms_ = std::move(terms);
+  for (RegressionMemory& memory : memories_) memory = RegressionMemory(columns_, memory.length);
+  start_afresh(span_, history, work);
+}
+
+void ResidualRegression::fill(const RegressionHistory& history, int age, double* row) const {
+  fill_lead_in(history, age, row);
+  history.fill_inputs(age, row + lead_in());
+}
+
 void ResidualRegression::add_sample(const RegressionHistory& history, RowWorkspace& work) {
+  if (terms_) terms_->push(history);
   weights_.push(history.usable(cv_) ? kWaiting : 0.0);
   scales_.push(noise_.scale());
   span_ = std::min(span_ + 1, remembered_);
@@ -48,6 +65,12 @@ void ResidualRegression::add_gap(std::int64_t missing) {
     scales_.push(noise_.scale());
     span_ = std::min(span_ + 1, remembered_);
   }
+}
+
+void ResidualRegression::follow_gap(std::int64_t missing, const RegressionHistory& history) {
+  if (!terms_) return;
+  for (std::int64_t k = 0; k < std::min(missing, static_cast<std::int64_t>(remembered_)); ++k)
+    terms_->push(history);
 }
 
 int ResidualRegression::patience(const RowWorkspace& work) const {
@@ -81,7 +104,7 @@ void ResidualRegression::gather(int oldest, int newest, const RegressionHistory&
   for (int age = oldest; age >= newest; --age) {
     if (row_weight(age) != kWaiting) continue;
     double* row = work.rows.row(static_cast<int>(work.ages.size()));
-    history.fill(age, row);
+    fill(history, age, row);
     row[columns_] = history.residual(cv_, age);
     work.ages.push_back(age);
   }
@@ -158,7 +181,7 @@ void ResidualRegression::refill(RegressionMemory& memory, int samples,
     const double weight = row_weight(age);
     if (weight > 0.0) {
       double* row = work.weighed.row(count++);
-      history.fill(age, row);
+      fill(history, age, row);
       row[columns_] = history.residual(cv_, age);
       for (int c = 0; c <= columns_; ++c) row[c] *= weight;
     }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/mismatch/calibration.hpp"
 #include "core/mismatch/noise_level.hpp"
 #include "core/mismatch/regression_history.hpp"
 #include "core/mismatch/regression_memory.hpp"
+#include "core/mismatch/second_order_terms.hpp"
 #include "core/regression/row_batch.hpp"
 
 namespace mpm {
@@ -37,10 +39,25 @@ class ResidualRegression {
   ResidualRegression(const RegressionShape& shape, int cv, const std::vector<MemoryLength>& lengths,
                      int remembered);
 
+  /// Takes these terms in from now on, as columns behind the lead-in, and begins with all samples
+  /// that it rests on. Allocates.
+  void take_in(SecondOrderTerms terms, const RegressionHistory& history, RowWorkspace& work);
+  /// Those taken in; null before.
+  [[nodiscard]] const SecondOrderTerms* terms() const { return terms_ ? &*terms_ : nullptr; }
+  /// Columns before the inputs' blocks.
+  [[nodiscard]] int lead_in() const { return lead_in_ + (terms_ ? terms_->columns() : 0); }
+  /// Theirs, of the row whose response is `age` samples old.
+  void fill_lead_in(const RegressionHistory& history, int age, double* row) const {
+    history.fill_lead_in(age, row);
+    if (terms_) terms_->fill(age, row + lead_in_);
+  }
+
   /// After the history took a sample.
   void add_sample(const RegressionHistory& history, RowWorkspace& work);
   /// Before the history skips `missing` samples, folded.
   void add_gap(std::int64_t missing);
+  /// After it skipped them.
+  void follow_gap(std::int64_t missing, const RegressionHistory& history);
   /// Takes the rows that wait; before, nothing else that is asked here knows of them.
   void fold(const RegressionHistory& history, RowWorkspace& work);
   /// Forgets what is older than the last `samples` samples (>= 0). Rows are weighed anew: what was
@@ -75,7 +92,10 @@ class ResidualRegression {
   void refill(RegressionMemory& memory, int samples, const RegressionHistory& history,
               RowWorkspace& work) const;
 
+  void fill(const RegressionHistory& history, int age, double* row) const;
+
   int cv_;
+  int lead_in_;  // of the history
   int columns_;
   int remembered_;
   int span_ = 0;
@@ -83,6 +103,7 @@ class ResidualRegression {
   NoiseLevel noise_;
   LagWindow weights_;  // per sample: 1 / scale, times the clip; 0 = no row, < 0: it waits
   LagWindow scales_;   // per sample: the noise level before it
+  std::optional<SecondOrderTerms> terms_;
   std::vector<RegressionMemory> memories_;
   std::vector<int> slides_;  // per memory: samples since its window was rebuilt
 };

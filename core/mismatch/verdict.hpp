@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/text/words.hpp"
@@ -23,6 +24,7 @@ enum class Reason : std::uint8_t {
   kConstrained,     ///< the input sits at a limit
   kIsolating,       ///< something in this CV changed; samples since then are still too few
   kWeakExcitation,  ///< a mismatch: it shows, though an error of interest need not have shown
+  kOperatingPoint,  ///< a mismatch: the gain varies over where the plant is operated
 };
 
 [[nodiscard]] constexpr auto words_of(Verdict) {
@@ -30,9 +32,10 @@ enum class Reason : std::uint8_t {
 }
 
 [[nodiscard]] constexpr auto words_of(Reason) {
-  return std::array{
-      "",           "warming_up",     "not_excited", "collinear", "confounded",     "bad_data",
-      "compressed", "controller_off", "constrained", "isolating", "weak_excitation"};
+  return std::array{"",           "warming_up",      "not_excited",
+                    "collinear",  "confounded",      "bad_data",
+                    "compressed", "controller_off",  "constrained",
+                    "isolating",  "weak_excitation", "operating_point"};
 }
 
 /// The numbers behind a verdict that an alarm repeats.
@@ -59,6 +62,9 @@ struct ChannelVerdict : AlarmEvidence {
   bool usual = false;  ///< errors of gain, time constant and dead time explain what is seen
   double smallest_error = 0.0;  ///< smallest relative gain error that would have been seen, >= 0
   double effective_samples = 0.0;
+  /// Two s.d. of the local gain over where the plant was operated, relative to the model's; NaN
+  /// unless the CV's answer is known to depend on that.
+  double gain_variation = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Judgement on one channel (one input to one CV) after one sample.

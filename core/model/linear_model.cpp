@@ -197,6 +197,8 @@ LinearModel::~LinearModel() = default;
 int LinearModel::input_count() const { return state_->definition->spec.input_count; }
 int LinearModel::cv_count() const { return state_->definition->spec.cv_count; }
 
+const VectorXd& LinearModel::operating_input() const { return state_->definition->input_origin; }
+
 void LinearModel::reset() {
   reset_steady(state_->definition->input_origin);
   const std::optional<StateSpaceSpec>& system = state_->definition->spec.state_space;
@@ -268,11 +270,11 @@ void LinearModel::advance(const Eigen::Ref<const VectorXd>& input) {
 VectorXd LinearModel::impulse_response(int cv, int input, int length) const {
   VectorXd response = VectorXd::Zero(std::max(0, length));
   if (!state_->definition->fact(cv, input).exists) return response;
-  LinearModel channel = single_channel(cv, input);
+  LinearModel one = channel(cv, input);
   VectorXd pulse = VectorXd::Ones(1);
   for (Index k = 0; k < response.size(); ++k) {
-    response(k) = channel.output()(0);
-    channel.advance(pulse);
+    response(k) = one.output()(0);
+    one.advance(pulse);
     pulse.setZero();
   }
   return response;
@@ -300,11 +302,15 @@ int LinearModel::settling_samples(double tolerance, int limit) const {
     for (int input = 0; input < input_count(); ++input) {
       const ChannelFacts& facts = state_->definition->fact(cv, input);
       if (!facts.exists || facts.integrating) continue;
-      LinearModel channel = single_channel(cv, input);
-      samples = std::max(samples, settling_of(channel, facts, tolerance, limit));
+      LinearModel one = channel(cv, input);
+      samples = std::max(samples, settling_of(one, facts, tolerance, limit));
     }
   }
   return samples;
+}
+
+double LinearModel::time_constant_samples(int cv, int input) const {
+  return state_->definition->fact(cv, input).slowest;
 }
 
 double LinearModel::slowest_time_constant_samples() const {
@@ -321,8 +327,7 @@ double LinearModel::longest_dead_time_samples() const {
   return longest;
 }
 
-/// The linear part of one channel as a model of its own, in deviations, at rest.
-LinearModel LinearModel::single_channel(int cv, int input) const {
+LinearModel LinearModel::channel(int cv, int input) const {
   const ModelSpec& spec = state_->definition->spec;
   ModelSpec one;
   one.sample_time_s = spec.sample_time_s;

@@ -44,6 +44,11 @@ class LinearModel {
   /// Takes u(k) (input_count, own units), which acts from k to k+1.
   void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
 
+  /// The linear part of one channel as a model of its own, in deviations, at rest.
+  [[nodiscard]] LinearModel channel(int cv, int input) const;
+  /// Of the inputs, input_count, own units: about which the model is linear.
+  [[nodiscard]] const Eigen::VectorXd& operating_input() const;
+
   /// Response of one channel's linear part (of tanks: around the operating point) to a unit pulse
   /// at u(0): h(0) = 0, h(1), ... h(length-1). Zero where the channel does not exist.
   [[nodiscard]] Eigen::VectorXd impulse_response(int cv, int input, int length) const;
@@ -55,13 +60,13 @@ class LinearModel {
   /// Samples after which every non-integrating channel's step response stays within `tolerance`
   /// (a fraction of its final value); at most `limit`.
   [[nodiscard]] int settling_samples(double tolerance = 0.01, int limit = 100000) const;
+  /// Slowest time constant of one channel, samples (>= 1); 1 where there is none.
+  [[nodiscard]] double time_constant_samples(int cv, int input) const;
   /// Slowest time constant of any channel in samples (>= 1), and longest dead time in samples.
   [[nodiscard]] double slowest_time_constant_samples() const;
   [[nodiscard]] double longest_dead_time_samples() const;
 
  private:
-  [[nodiscard]] LinearModel single_channel(int cv, int input) const;
-
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -30,10 +30,16 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
   status.verdict = Verdict::kUndetermined;
   if (!has_evidence(channel, status)) return;
   read_evidence(channel, status);
+  status.gain_variation = channel.gain_variation;
   const bool exceeding = exceeds(channel, status);
   if (exceeding && channel.confounder >= 0) {
     status.reason = Reason::kConfounded;
     status.confounder = channel.confounder;
+    return;
+  }
+  if (!exceeding && channel.bends) {
+    status.verdict = Verdict::kMismatch;
+    status.reason = Reason::kOperatingPoint;
     return;
   }
   const bool convincing = status.smallest_error < visibility::kBlindGainError &&

@@ -19,12 +19,14 @@ struct JudgedChannel {
   bool overdue = false;             ///< there ought to be rows enough by now
   const RegressionMemory& memory;   ///< the CV's long one
   const ChannelEvidence& evidence;
-  const CvAlarms& alarms;  ///< the CV's
-  bool mvs_still = false;  ///< no MV moves
-  bool at_limit = false;   ///< the input rests at the end of its range
-  int confounder = -1;     ///< the signal that the CV follows, as in ChannelStatus
-  CorrelationPeak peak;    ///< with ThresholdKind::kMeanLine, else unused
-  double mean_line = 0.0;  ///< likewise
+  const CvAlarms& alarms;       ///< the CV's
+  bool mvs_still = false;       ///< no MV moves
+  bool at_limit = false;        ///< the input rests at the end of its range
+  int confounder = -1;          ///< the signal that the CV follows, as in ChannelStatus
+  CorrelationPeak peak;         ///< with ThresholdKind::kMeanLine, else unused
+  double mean_line = 0.0;       ///< likewise
+  double gain_variation = 0.0;  ///< as in ChannelStatus
+  bool bends = false;           ///< and for certain by more than matters
 };
 
 /// Turns evidence into verdicts: first whether there can be one at all, then whether an error of

@@ -82,8 +82,17 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
   const bool suspicious =
       due && (something_wrong(cv, quiet, detector) || memories_disagree(cv, detector, limits));
   if (!risen && !suspicious) return;
-  const std::optional<ChangePoint> change = find_change(cv, risen, detector, scan);
-  if (!change) return;
+  since_scan_ = 0;
+  detector.fold(cv);
+  const std::optional<ChangePoint> change = scan.scan(detector, cv);
+  if (detector.take_in_curvature(cv, change ? change->gain : 0.0)) {
+    // What rose just now rested on a model that knows one operating point.
+    for (std::size_t i = 0; i < conditions_.size(); ++i) conditions_[i].set(before_[i]);
+    change_ = {};
+    isolating_ = true;
+    return;
+  }
+  if (!change || !certain(*change, risen)) return;
   detector.start_afresh(cv, change->samples);
   isolating_ = true;
   change_ = *change;
@@ -94,16 +103,9 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
                                                             : AlarmState::kCleared);
 }
 
-std::optional<ChangePoint> CvAlarms::find_change(int cv, bool risen, MismatchDetector& detector,
-                                                 ChangeScan& scan) {
-  since_scan_ = 0;
-  detector.fold(cv);
-  std::optional<ChangePoint> change = scan.scan(detector, cv);
-  const bool ended = change && change->kind == ChangeKind::kEnded && any();
-  const bool certain =
-      change && (risen || ended || change->p_value < change_search::kCertainPValue);
-  if (!certain) change.reset();
-  return change;
+bool CvAlarms::certain(const ChangePoint& change, bool risen) const {
+  const bool ended = change.kind == ChangeKind::kEnded && any();
+  return risen || ended || change.p_value < change_search::kCertainPValue;
 }
 
 void CvAlarms::settle(int cv, const MismatchDetector& detector, const Condition::Limits& limits) {

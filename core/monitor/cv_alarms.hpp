@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/alarm/condition.hpp"
@@ -20,6 +19,9 @@ namespace mpm {
 /// or rises; the rest clears at once. While an alarm stands the fast memory is watched: where it
 /// disagrees with the long one, something changed again (a return to normal as a rule) and the CV
 /// forgets once more.
+///
+/// Before anything rises or a change is believed, it is asked whether the CV's answer depends on
+/// where the plant is operated (`Curvature`); if that explains more, no channel is blamed for it.
 class CvAlarms {
  public:
   explicit CvAlarms(int inputs) : conditions_(static_cast<std::size_t>(inputs)) {
@@ -65,9 +67,7 @@ class CvAlarms {
   [[nodiscard]] bool something_wrong(int cv, bool quiet, const MismatchDetector& detector) const;
   [[nodiscard]] bool memories_disagree(int cv, const MismatchDetector& detector,
                                        const Condition::Limits& limits) const;
-  [[nodiscard]] std::optional<ChangePoint> find_change(int cv, bool risen,
-                                                       MismatchDetector& detector,
-                                                       ChangeScan& scan);
+  [[nodiscard]] bool certain(const ChangePoint& change, bool risen) const;
 
   std::vector<Condition> conditions_;
   std::vector<AlarmState> before_;

@@ -68,8 +68,8 @@ void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
                                          1, evaluation::kLongestStride);
 }
 
-void derive_materiality(const ModelSpec& spec, const MonitorSettings& monitor,
-                        DerivedSettings& derived) {
+void derive_materiality(const ModelSpec& spec, const LinearModel& model,
+                        const MonitorSettings& monitor, DerivedSettings& derived) {
   const auto limits = [&](const MaterialitySettings& settings) {
     return MaterialityLimits{settings.gain, settings.time_constant,
                              settings.dead_time_s > 0.0
@@ -81,6 +81,14 @@ void derive_materiality(const ModelSpec& spec, const MonitorSettings& monitor,
   for (const ChannelMateriality& channel : monitor.channel_materiality)
     derived.materiality[static_cast<std::size_t>(channel.input * spec.cv_count + channel.cv)] =
         limits(channel.limits);
+  // A time constant is known no better than a dead time: half a sample, or what the user sets.
+  for (int i = 0; i < spec.input_count; ++i)
+    for (int j = 0; j < spec.cv_count; ++j) {
+      MaterialityLimits& channel =
+          derived.materiality[static_cast<std::size_t>(i * spec.cv_count + j)];
+      channel.time_constant = std::max(
+          channel.time_constant, channel.dead_time_samples / model.time_constant_samples(j, i));
+    }
 }
 
 }  // namespace
@@ -118,7 +126,7 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
 
   derive_memories(spec, monitor, derived);
 
-  derive_materiality(spec, monitor, derived);
+  derive_materiality(spec, model, monitor, derived);
   derived.settling_samples =
       whole(std::ceil(calibration::simulation::kSettlingTimeConstants * slowest + dead_time));
   derived.starting_samples =

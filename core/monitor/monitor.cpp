@@ -55,6 +55,8 @@ struct Monitor::State {
   void follow(int cv);
   void move_alarms();
   void judge_channels();
+  [[nodiscard]] double gain_variation(int cv, int input) const;
+  [[nodiscard]] bool bends(int cv, int input) const;
   [[nodiscard]] Reason bad_data(int cv, int input) const;
   [[nodiscard]] int missing_input(int cv, int input) const;
 
@@ -292,10 +294,27 @@ void Monitor::State::judge_channels() {
                    .at_limit = inputs.at_limit(i),
                    .confounder = of(j).rival.wins ? counts.inputs() + of(j).rival.signal : -1,
                    .peak = against_line ? correlation.peak(j, i) : CorrelationPeak{},
-                   .mean_line = line},
+                   .mean_line = line,
+                   .gain_variation = gain_variation(j, i),
+                   .bends = bends(j, i)},
                   status[index(j, i)]);
     }
   }
+}
+
+double Monitor::State::gain_variation(int cv, int input) const {
+  const Curvature* found = detector.curvature(cv);
+  return found ? found->channels[static_cast<std::size_t>(input)].gain_variation
+               : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool Monitor::State::bends(int cv, int input) const {
+  const Curvature* found = detector.curvature(cv);
+  if (!found) return false;
+  const Curvature::Channel& channel = found->channels[static_cast<std::size_t>(input)];
+  return channel.p_value < calibration::curvature::kChannelPValue &&
+         channel.gain_variation >
+             settings.materiality[index(cv, input) % settings.materiality.size()].gain;
 }
 
 // Why no verdict can be drawn, if none can. Lost: for as long as an input's pulse lags.

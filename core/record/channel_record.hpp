@@ -88,6 +88,8 @@ struct ChannelRecord : ChannelVerdict {
     visit("smallest_error", record.smallest_error, sample.smallest_error...);
     visit("effective_samples", record.effective_samples, sample.effective_samples...);
     visit("alarm", record.alarm, sample.alarm_active...);
+    visit({"gain_variation", std::isfinite(record.gain_variation)}, record.gain_variation,
+          sample.gain_variation...);
     visit("partial_correlations", std::tie(record.first_lag, record.partial_correlations),
           std::tie(sample.first_lag, sample.partial_correlations)...);
   }

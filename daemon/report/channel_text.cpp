@@ -104,6 +104,9 @@ ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
 }
 
 std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file) {
+  if (channel.reason == Reason::kOperatingPoint)
+    return "the gain varies by +-" + number_text(100.0 * channel.gain_variation) +
+           " % over where the plant is operated, which a linear model cannot follow; no fault";
   std::string text = gain_part(channel, file);
   if (file.modelled && channel.usual)
     text += ", " + time_constant_part(channel) + ", " + dead_time_part(channel, file);
@@ -149,6 +152,7 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
              "; too few samples since then to tell which channel";
     case Reason::kNone:
     case Reason::kWeakExcitation:
+    case Reason::kOperatingPoint:
       break;
   }
   return "not known";

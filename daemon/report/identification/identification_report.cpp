@@ -28,6 +28,8 @@ std::string form_word(ChannelForm form) {
       return "damped";
     case ChannelForm::kSecondOrderLead:
       return "second_order_lead";
+    case ChannelForm::kThirdOrderLead:
+      return "third_order_lead";
     case ChannelForm::kIntegrator:
       return "integrator";
     case ChannelForm::kIntegratorLag:
