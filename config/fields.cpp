@@ -31,6 +31,8 @@ const std::vector<Field<MonitorSettings>>& monitor_fields() {
        {.low = 0, .high = 200000},
        "kept by mpmd for a diagnosis when an alarm stands; 0 = none is made"},
       {"diagnosis_period", &S::diagnosis_period_s, kNotNegative, "s, between two at least"},
+      {"performance_window", &S::performance_window_s, kPositive,
+       "s, that mpm/performance looks back; 100 samples at least"},
   };
   return fields;
 }

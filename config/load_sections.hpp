@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/choice.hpp"
@@ -31,6 +33,19 @@ void load_identify(const Value* section, UnitConfig& config);
 /// A part of `load_model`; see load_model_parts.hpp for the others.
 /// `map` has A, B, C and perhaps D and x0.
 void load_state_space(const Map& map, UnitConfig& config);
+
+/// `low` and `high` of a map, either or both; reported where low is not below high.
+template <class Limits>
+void read_low_high(const Map& map, Limits& limits) {
+  const auto read = [&map](std::string_view key) {
+    const Value* value = map.find(key);
+    return value != nullptr ? value->number(kAny) : std::nullopt;
+  };
+  limits.low = read("low");
+  limits.high = read("high");
+  if (limits.low && limits.high && *limits.low >= *limits.high)
+    map.find("high")->error("must be above low");
+}
 
 /// Index of the tag that `value` names, or -1 (reported as an unknown `noun`).
 [[nodiscard]] int find_tag(const Value& value, const std::vector<std::string>& tags,

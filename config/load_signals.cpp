@@ -46,6 +46,7 @@ void read_description(const Map& map, Signal& signal) {
 void read_signal(const Map& map, TagReader& tags, InputSignal& signal) {
   if (const Value* tag = map.require("tag")) signal.tag = tags.read(*tag);
   read_description(map, signal);
+  read_low_high(map, signal.limits);
 }
 
 void read_signal(const Map& map, TagReader& tags, CvSignal& signal) {
@@ -53,6 +54,7 @@ void read_signal(const Map& map, TagReader& tags, CvSignal& signal) {
   read_description(map, signal);
   if (const Value* tag = map.find("prediction")) signal.prediction = tags.read(*tag);
   if (const Value* tag = map.find("setpoint")) signal.setpoint = tags.read(*tag);
+  read_low_high(map, signal.limits);
 }
 
 /// Signals that could not be read keep their place with an empty tag, so that nothing else shifts.
@@ -79,9 +81,10 @@ void load_signals(const Value* section, UnitConfig& config) {
   const Map map = section->map({"mv", "dv", "cv", "aux", "raw", "calc"});
   TagReader tags;
   const std::vector<std::string> input_keys = {"tag", "unit", "description"};
-  read_list(map, "mv", input_keys, tags, config.mv);
+  read_list(map, "mv", {"tag", "unit", "description", "low", "high"}, tags, config.mv);
   read_list(map, "dv", input_keys, tags, config.dv);
-  read_list(map, "cv", {"tag", "unit", "description", "prediction", "setpoint"}, tags, config.cv);
+  read_list(map, "cv", {"tag", "unit", "description", "prediction", "setpoint", "low", "high"},
+            tags, config.cv);
   read_list(map, "aux", input_keys, tags, config.aux);
   read_list(map, "raw", input_keys, tags, config.raw);
   load_calculated(map, config);

@@ -49,19 +49,6 @@ void read_each(const Map& map, std::string_view key, const std::vector<std::stri
   }
 }
 
-std::optional<double> read_optional(const Map& map, std::string_view key, const Range& range) {
-  const Value* value = map.find(key);
-  return value != nullptr ? value->number(range) : std::nullopt;
-}
-
-template <class Limits>
-void read_low_high(const Map& map, Limits& limits) {
-  limits.low = read_optional(map, "low", kAny);
-  limits.high = read_optional(map, "high", kAny);
-  if (limits.low && limits.high && *limits.low >= *limits.high)
-    map.find("high")->error("must be above low");
-}
-
 void read_limits(const Map& map, const UnitConfig& config, SimulationSettings& simulation) {
   const Value* value = map.find("limits");
   if (value == nullptr) return;
@@ -75,7 +62,8 @@ void read_limits(const Map& map, const UnitConfig& config, SimulationSettings& s
     if (index < config.mv.size()) {
       const Map limits = entry.value.map({"low", "high", "max_move"});
       read_low_high(limits, simulation.mv_limits[index]);
-      simulation.mv_limits[index].max_move = read_optional(limits, "max_move", kPositive);
+      if (const Value* move = limits.find("max_move"))
+        simulation.mv_limits[index].max_move = move->number(kPositive);
     } else {
       read_low_high(entry.value.map({"low", "high"}),
                     simulation.cv_limits[index - config.mv.size()]);

@@ -57,6 +57,8 @@ void print_signals(std::string_view kind, const std::vector<Signal>& signals, st
     }
     print("unit", signal.unit);
     print("description", signal.description);
+    if (signal.limits.low) out << ", low: " << yaml_text(*signal.limits.low);
+    if (signal.limits.high) out << ", high: " << yaml_text(*signal.limits.high);
     out << "}\n";
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 #include "core/identification/channel_hint.hpp"
 #include "core/model/model_spec.hpp"
 #include "core/monitor/settings.hpp"
+#include "core/performance/signal_limits.hpp"
 #include "core/signal/frame.hpp"
 
 /// The unit file as plain structs: the schema. Loading and checking is in `load_unit.hpp`.
@@ -17,14 +19,16 @@ struct InputSignal {
   std::string tag;
   std::string unit;  ///< engineering unit, for display
   std::string description;
+  SignalLimits limits = {};  ///< hard ones of an MV, its units; of no other
 };
 
 struct CvSignal {
   std::string tag;
   std::string unit;
   std::string description;
-  std::string prediction;  ///< tag; empty = simulate from the model
-  std::string setpoint;    ///< tag; may be empty
+  std::string prediction;    ///< tag; empty = simulate from the model
+  std::string setpoint;      ///< tag; may be empty
+  SignalLimits limits = {};  ///< soft, CV units
 };
 
 /// A tag whose values are computed from those of others.
@@ -100,6 +104,14 @@ struct UnitConfig {
     return {static_cast<int>(mv.size()), static_cast<int>(dv.size()), static_cast<int>(cv.size()),
             static_cast<int>(aux.size()), static_cast<int>(raw.size())};
   }
+  /// The limits that count: those beside the signal or, where it has none there, those of
+  /// `simulation`.
+  [[nodiscard]] SignalLimits mv_limits(std::size_t index) const {
+    return limits_of(mv[index], simulation.mv_limits, index);
+  }
+  [[nodiscard]] SignalLimits cv_limits(std::size_t index) const {
+    return limits_of(cv[index], simulation.cv_limits, index);
+  }
   /// How this tag is calculated; null for one that is measured.
   [[nodiscard]] const CalculatedSignal* calculation_of(std::string_view tag) const {
     for (const CalculatedSignal& signal : calc)
@@ -134,6 +146,13 @@ struct UnitConfig {
   /// True where predictions can be simulated.
   [[nodiscard]] bool has_model() const {
     return !model.channels.empty() || model.state_space.has_value();
+  }
+
+ private:
+  [[nodiscard]] static SignalLimits limits_of(const auto& signal, const auto& simulated,
+                                              std::size_t index) {
+    if (signal.limits.known() || index >= simulated.size()) return signal.limits;
+    return {simulated[index].low, simulated[index].high};
   }
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -22,6 +24,7 @@ class SampleMaker {
   template <class Record>
   [[nodiscard]] SampleOf<Record> sample_of(const Record& record) {
     SampleOf<Record> sample{};
+    kept_.clear();
     Record::fields(*this, record, sample);
     return sample;
   }
@@ -45,6 +48,19 @@ class SampleMaker {
   static void put(const std::vector<double>& values, dds_sequence_double& sample);
   void put(const std::vector<CauseParameter>& values, dds_sequence_mpm_CauseParameter& sample);
   void put(const std::tuple<const Reason&, const std::string&>& reason, char*& sample);
+  template <HasFields Part, class Sample>
+  void put(const Part& part, Sample& sample) {
+    Part::fields(*this, part, sample);
+  }
+  template <HasFields Part, class Sequence>
+  void put(const std::vector<Part>& parts, Sequence& sample) {
+    using Element = std::remove_pointer_t<decltype(sample._buffer)>;
+    const auto elements = std::make_shared<std::vector<Element>>(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) put(parts[i], (*elements)[i]);
+    kept_.push_back(elements);
+    const auto count = static_cast<std::uint32_t>(elements->size());
+    sample = {count, count, elements->data(), false};
+  }
   template <class... Member, class... Sample>
   void put(const std::tuple<Member...>& members, const std::tuple<Sample...>& samples) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -58,6 +74,7 @@ class SampleMaker {
 
   std::string reason_;
   std::vector<mpm_CauseParameter> parameters_;
+  std::vector<std::shared_ptr<const void>> kept_;  // what sequences point to
 };
 
 /// Makes records of samples, those of another make too: strings may be missing, and a word that is
@@ -88,6 +105,15 @@ class RecordMaker {
   static void take(const dds_sequence_mpm_CauseParameter& sample,
                    std::vector<CauseParameter>& values);
   static void take(const char* sample, std::tuple<Reason&, std::string&> reason);
+  template <HasFields Part>
+  static void take(const auto& sample, Part& part) {
+    Part::fields(RecordMaker(), part, sample);
+  }
+  template <HasFields Part>
+  static void take(const auto& sample, std::vector<Part>& parts) {
+    parts.resize(sample._length);
+    for (std::size_t i = 0; i < parts.size(); ++i) take(sample._buffer[i], parts[i]);
+  }
   template <class... Sample, class... Member>
   static void take(const std::tuple<Sample...>& samples, const std::tuple<Member...>& members) {
     [&]<std::size_t... I>(std::index_sequence<I...>) {

@@ -68,6 +68,7 @@ Qos sample_reader_qos() {
 Qos layout_qos() { return transient_local(1, 1); }
 Qos alarm_qos() { return transient_local(1, 1); }
 Qos health_qos() { return transient_local(1, 1); }
+Qos performance_qos() { return transient_local(1, 1); }
 Qos late_joiner_reader_qos() { return transient_local_reader(kReaderLimit); }
 Qos channel_status_writer_qos() { return transient_local(kStatusDepth, 1); }
 Qos channel_status_reader_qos() { return transient_local_reader(kStatusReaderLimit); }

@@ -23,7 +23,8 @@ enum class WriterPace {
 [[nodiscard]] Qos layout_qos();  // both sides, as the following
 [[nodiscard]] Qos alarm_qos();
 [[nodiscard]] Qos health_qos();
-/// A reader of these three that wants every change, not only the last one.
+[[nodiscard]] Qos performance_qos();
+/// A reader of these four that wants every change, not only the last one.
 [[nodiscard]] Qos late_joiner_reader_qos();
 [[nodiscard]] Qos channel_status_writer_qos();
 [[nodiscard]] Qos channel_status_reader_qos();

@@ -6,6 +6,7 @@
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
 #include "core/record/health_record.hpp"
+#include "core/record/performance_record.hpp"
 #include "core/signal/frame.hpp"
 #include "idl/qos.hpp"
 #include "mpm.h"
@@ -17,6 +18,7 @@ inline constexpr const char* kChannelStatusTopic = "mpm/channel_status";
 inline constexpr const char* kAlarmTopic = "mpm/alarm";
 inline constexpr const char* kAlarmEventTopic = "mpm/alarm_event";
 inline constexpr const char* kHealthTopic = "mpm/health";
+inline constexpr const char* kPerformanceTopic = "mpm/performance";
 
 /// The kinds of signals that have a DDS topic; kAux comes from files only.
 inline constexpr std::array kTopicKinds = {SignalKind::kMv,       SignalKind::kDv,
@@ -53,6 +55,10 @@ struct TopicType<mpm_AlarmEvent> {
 template <>
 struct TopicType<mpm_Health> {
   static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Health_desc; }
+};
+template <>
+struct TopicType<mpm_Performance> {
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Performance_desc; }
 };
 
 /// The topic that carries a kind of record: the type of its samples, its name and profile (as in
@@ -97,8 +103,19 @@ struct OutputTopic<HealthRecord> {
   static constexpr int kBatch = 64;
 };
 
+template <>
+struct OutputTopic<PerformanceRecord> {
+  using Sample = mpm_Performance;
+  static constexpr const char* kName = kPerformanceTopic;
+  static constexpr auto kWriterQos = performance_qos;
+  static constexpr auto kReaderQos = performance_qos;
+  static constexpr auto kEveryChangeQos = late_joiner_reader_qos;
+  static constexpr int kBatch = 64;
+};
+
 /// All that the monitor says. Of one frame the alarms follow the channels.
-using OutputRecords = std::tuple<ChannelRecord, AlarmStateRecord, AlarmRecord, HealthRecord>;
+using OutputRecords =
+    std::tuple<ChannelRecord, AlarmStateRecord, AlarmRecord, HealthRecord, PerformanceRecord>;
 
 template <class Record>
 using SampleOf = typename OutputTopic<Record>::Sample;

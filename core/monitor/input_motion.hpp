@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/monitor/calibration.hpp"
+#include "core/monitor/still_run.hpp"
 
 namespace mpm {
 
@@ -15,19 +16,18 @@ class InputMotion {
 
   void take(double value) {
     if (samples_ == 0) {
-      low_ = high_ = last_ = value;
+      low_ = high_ = value;
+      run_.take(value);
     } else {
-      const bool same = value == last_;
+      const bool same = run_.take(value);
       const double range = high_ - low_;
       const double reach = calibration::input_motion::kAtEnd * range;
-      run_ = same ? run_ + 1 : 0;
       const bool at_end = same && range > 0.0 && (value <= low_ + reach || value >= high_ - reach);
       const double step = std::max(step_, 1.0 / (samples_ + 1.0));
-      still_ += step * ((run_ >= calibration::input_motion::kStillSamples ? 1.0 : 0.0) - still_);
+      still_ += step * ((run_.stands() ? 1.0 : 0.0) - still_);
       at_end_ += step * ((at_end ? 1.0 : 0.0) - at_end_);
       low_ = std::min(low_, value);
       high_ = std::max(high_, value);
-      last_ = value;
     }
     ++samples_;
   }
@@ -40,9 +40,9 @@ class InputMotion {
  private:
   double step_;
   double samples_ = 0.0;
-  int run_ = 0;
+  StillRun run_;
   double still_ = 0.0, at_end_ = 0.0;
-  double low_ = 0.0, high_ = 0.0, last_ = 0.0;
+  double low_ = 0.0, high_ = 0.0;
 };
 
 }  // namespace mpm

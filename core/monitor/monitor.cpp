@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/mismatch/change_scan.hpp"
@@ -396,6 +397,7 @@ const std::optional<std::int64_t>& Monitor::judged_interval() const {
 const CvReading& Monitor::reading(int cv) const {
   return state_->readings[static_cast<std::size_t>(cv)];
 }
+const std::vector<CvReading>& Monitor::readings() const { return state_->readings; }
 const std::vector<AlarmTransition>& Monitor::transitions() const { return state_->transitions; }
 const MonitorCounters& Monitor::counters() const { return state_->counters; }
 

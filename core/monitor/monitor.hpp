@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "core/alarm/condition.hpp"
 #include "core/mismatch/verdict.hpp"
 #include "core/model/model_spec.hpp"
+#include "core/monitor/cv_reading.hpp"
 #include "core/monitor/settings.hpp"
 #include "core/signal/frame.hpp"
 #include "core/signal/screen.hpp"
@@ -31,12 +31,6 @@ struct MonitorCounters {
   std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed, in the
                                    ///< frames that have left the screen
   ScreenCounters implausible;      ///< of these: good by their quality, but not by their look
-};
-
-/// One CV in the frame judged last; NaN where unknown.
-struct CvReading {
-  double measured = std::numeric_limits<double>::quiet_NaN();
-  double residual = std::numeric_limits<double>::quiet_NaN();  ///< measured minus predicted
 };
 
 /// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
@@ -74,6 +68,7 @@ class Monitor {
   /// interval, and its CVs. Nothing where none left the screen.
   [[nodiscard]] const std::optional<std::int64_t>& judged_interval() const;
   [[nodiscard]] const CvReading& reading(int cv) const;
+  [[nodiscard]] const std::vector<CvReading>& readings() const;
   /// Changes caused by the last `push`; valid until the next one.
   [[nodiscard]] const std::vector<AlarmTransition>& transitions() const;
   [[nodiscard]] const MonitorCounters& counters() const;

@@ -43,7 +43,8 @@ struct MonitorSettings {
   int residual_order = 0;        ///< lags of all residuals
   double tail_s = 0.0;           ///< time constant of the tail regressor
   int diagnosis_samples = 6000;  ///< kept for a diagnosis when an alarm stands; 0 = none is made
-  double diagnosis_period_s = 600.0;  ///< between two diagnoses at least
+  double diagnosis_period_s = 600.0;      ///< between two diagnoses at least
+  double performance_window_s = 28800.0;  ///< that live indices of control performance are over
   MaterialitySettings materiality;
   std::vector<ChannelMateriality> channel_materiality;
 };

@@ -19,4 +19,11 @@ struct FieldKey {
   bool shown;
 };
 
+/// What lists its fields so: a record, or a part of one, which has a struct of its own on DDS and
+/// an object in JSON.
+template <class T>
+concept HasFields = requires(T& parts) {
+  T::fields([](auto&&...) {}, parts);
+};
+
 }  // namespace mpm

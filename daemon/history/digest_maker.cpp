@@ -52,7 +52,9 @@ std::int64_t horizon_samples(const config::UnitConfig& unit) {
 }
 
 DigestMaker::DigestMaker(const config::UnitConfig& unit)
-    : inputs_(unit.counts().inputs()), cv_count_(unit.counts().cv) {
+    : inputs_(unit.counts().inputs()),
+      cv_count_(unit.counts().cv),
+      predictions_(cv_count_, {horizon_samples(unit)}) {
   const DerivedSettings derived = derived_of(unit);
   head_.unit = unit.unit;
   head_.sample_time_s = unit.sample_time_s;
@@ -76,7 +78,6 @@ DigestMaker::DigestMaker(const config::UnitConfig& unit)
   channels_.resize(head_.channels.size());
   status_.resize(head_.channels.size());
   alarms_.resize(head_.channels.size());
-  ring_.resize(static_cast<std::size_t>(head_.horizon_samples) * head_.cvs.size());
 }
 
 UnitHead DigestMaker::head(std::int64_t time_ns) const {
@@ -116,33 +117,15 @@ void DigestMaker::take(const Monitor& monitor) {
 
 void DigestMaker::take_readings(const Monitor& monitor) {
   if (!monitor.judged_interval()) return;
-  const std::size_t cvs = cvs_.size();
-  const auto put = [&](auto reading_of) {
-    for (std::size_t j = 0; j < cvs; ++j) ring_[place_ * cvs + j] = reading_of(static_cast<int>(j));
-    place_ = (place_ + 1) % static_cast<std::size_t>(head_.horizon_samples);
-  };
-  const std::int64_t missing =
-      judged_any_ ? std::clamp<std::int64_t>(*monitor.judged_interval() - judged_ - 1, 0,
-                                             head_.horizon_samples)
-                  : 0;
-  for (std::int64_t k = 0; k < missing; ++k) put([](int) { return CvReading(); });
-  judged_any_ = true;
-  judged_ = *monitor.judged_interval();
-  for (std::size_t j = 0; j < cvs; ++j) {
-    const CvReading now = monitor.reading(static_cast<int>(j));
-    const CvReading before = ring_[place_ * cvs + j];
-    Cv& cv = cvs_[j];
-    if (!std::isfinite(now.residual)) continue;
-    ++cv.known;
-    cv.residual_square += now.residual * now.residual;
-    if (!std::isfinite(before.residual)) continue;
-    ++cv.pairs;
-    const double error = now.residual - before.residual;
-    const double movement = now.measured - before.measured;
-    cv.prediction_square += error * error;
-    cv.movement_square += movement * movement;
+  for (std::size_t j = 0; j < cvs_.size(); ++j) {
+    const double residual = monitor.reading(static_cast<int>(j)).residual;
+    if (!std::isfinite(residual)) continue;
+    ++cvs_[j].known;
+    cvs_[j].residual_square += residual * residual;
   }
-  put([&](int cv) { return monitor.reading(cv); });
+  predictions_.push(
+      *monitor.judged_interval(), monitor.readings(),
+      [this](std::size_t cv, std::size_t) -> PredictionSums& { return cvs_[cv].predictions; });
 }
 
 ChannelDigest DigestMaker::digest_of(std::size_t channel) const {
@@ -180,8 +163,9 @@ std::optional<Digest> DigestMaker::finish() {
   digest.samples = samples_;
   for (std::size_t j = 0; j < cvs_.size(); ++j) {
     const Cv& cv = cvs_[j];
-    digest.cvs.push_back({head_.cvs[j].cv, cv.known, rms(cv.residual_square, cv.known), cv.pairs,
-                          rms(cv.prediction_square, cv.pairs), rms(cv.movement_square, cv.pairs)});
+    digest.cvs.push_back({head_.cvs[j].cv, cv.known, rms(cv.residual_square, cv.known),
+                          cv.predictions.pairs, rounded(cv.predictions.rmse()),
+                          rounded(cv.predictions.movement_rms())});
   }
   for (std::size_t c = 0; c < channels_.size(); ++c) digest.channels.push_back(digest_of(c));
   samples_ = 0;

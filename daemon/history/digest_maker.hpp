@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
+#include "core/performance/prediction_errors.hpp"
 #include "daemon/history/digest.hpp"
 #include "daemon/report/unit_monitor.hpp"
 
@@ -27,8 +28,9 @@ class DigestMaker {
 
  private:
   struct Cv {
-    std::int64_t known = 0, pairs = 0;
-    double residual_square = 0.0, prediction_square = 0.0, movement_square = 0.0;
+    std::int64_t known = 0;
+    double residual_square = 0.0;
+    PredictionSums predictions;
   };
   struct Channel {
     std::int64_t match = 0, mismatch = 0, excited = 0;
@@ -49,11 +51,7 @@ class DigestMaker {
   std::vector<Channel> channels_;
   std::vector<ChannelStatus> status_;  // after the last sample
   std::vector<AlarmState> alarms_;
-  // The last readings, as many as the horizon has: ring_[place * CVs + cv].
-  std::vector<CvReading> ring_;
-  std::size_t place_ = 0;
-  std::int64_t judged_ = 0;
-  bool judged_any_ = false;
+  PredictionErrors predictions_;
 };
 
 /// Of the horizon over which a CV's predictions are told: half of what the slowest channel of the

@@ -12,6 +12,7 @@
 #include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
 #include "daemon/report/channel_text.hpp"
+#include "daemon/report/unit_performance.hpp"
 #include "idl/layout_sample.hpp"
 #include "idl/topics.hpp"
 
@@ -68,6 +69,8 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       outputs_(outputs),
       samples_(samples),
       monitor_(config),
+      performance_(report::performance_setup(config),
+                   config.monitor.performance_window_s / config.sample_time_s),
       calculator_(config),
       calculated_(config.counts()),
       aligner_(config.counts(), files::needed_kinds(config),
@@ -171,11 +174,24 @@ void UnitPipeline::on_frame(const Frame& frame) {
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
+  if (performance_.push(frame, monitor_.monitor().judged_interval(), monitor_.monitor().readings()))
+    publish_performance();
   // Of either the problem is in the health.
   if (journal_) journal_->push(monitor_);
   if (samples_ != nullptr) (void)samples_->write(monitor_.channels(), monitor_.alarms());
   // Last, when everybody has been told: it may copy the unit's samples.
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
+}
+
+// Not into the journal, whose digests keep what a trend needs.
+void UnitPipeline::publish_performance() {
+  PerformanceRecord record =
+      report::performance_record(config_, performance_.setup(), performance_.total());
+  record.interval = monitor_.interval();
+  record.source_time_ns = monitor_.source_time_ns();
+  record.window_samples = performance_.samples();
+  if (!outputs_.write(record) && output_limit_.admit(now_))
+    spdlog::warn("{}: the control performance could not be published", config_.unit);
 }
 
 // Not into the journal: when a diagnosis is through depends on the machine, not on the data.

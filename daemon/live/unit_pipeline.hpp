@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
+#include "core/performance/performance_window.hpp"
 #include "core/signal/aligner.hpp"
 #include "daemon/bus/unit_inputs.hpp"
 #include "daemon/files/calculator.hpp"
@@ -60,6 +61,7 @@ class UnitPipeline {
  private:
   void on_frame(const Frame& frame);
   void publish_initial_alarms();
+  void publish_performance();
   void publish_diagnosis();
   void publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around);
   [[nodiscard]] std::vector<bus::Trouble> troubles(const bus::Surroundings& around) const;
@@ -71,6 +73,7 @@ class UnitPipeline {
   SampleJournal* samples_;
   std::optional<history::Journal> journal_;
   report::UnitMonitor monitor_;
+  PerformanceWindow performance_;
   files::Calculator calculator_;
   Frame calculated_;  // a copy of the aligner's, with what is calculated
   Aligner aligner_;

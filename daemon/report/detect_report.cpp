@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "daemon/report/record_json.hpp"
+#include "daemon/report/unit_performance.hpp"
 
 namespace mpm::report {
 namespace {
@@ -44,6 +45,7 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
     entry.update(record);
     json["alarms"].push_back(std::move(entry));
   }
+  json["performance"] = performance_json(report.performance);
   return json;
 }
 

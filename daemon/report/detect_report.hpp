@@ -7,6 +7,7 @@
 
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
+#include "core/record/performance_record.hpp"
 #include "daemon/files/times/time_choice.hpp"
 
 namespace mpm::report {
@@ -25,6 +26,7 @@ struct DetectReport {
   std::vector<files::Stretch> used;
   std::vector<ChannelRecord> channels;
   std::vector<AlarmRecord> alarms;
+  PerformanceRecord performance;  ///< over all rows
 
   [[nodiscard]] bool mismatch() const;
 };

@@ -36,6 +36,20 @@ class JsonMaker {
   static Json value_of(const std::optional<std::string>& text) {
     return text ? Json(*text) : Json();
   }
+  template <HasFields Part>
+  static Json value_of(const Part& part) {
+    if constexpr (requires { part.known(); })
+      if (!part.known()) return nullptr;
+    Json json;
+    Part::fields(JsonMaker(json), part);
+    return json;
+  }
+  template <HasFields Part>
+  static Json value_of(const std::vector<Part>& parts) {
+    Json json = Json::array();
+    for (const Part& part : parts) json.push_back(value_of(part));
+    return json;
+  }
   static Json value_of(const std::vector<CauseParameter>& parameters);
   static Json value_of(const CauseIntervals& intervals);
   static Json value_of(const std::tuple<const Reason&, const std::string&>& reason);

@@ -7,12 +7,15 @@
 #include "daemon/report/page/identification_page.hpp"
 #include "daemon/report/page/page.hpp"
 #include "daemon/report/record_json.hpp"
+#include "daemon/report/unit_performance.hpp"
 
 namespace mpm::report {
 
 std::string write_reports(const DiagnosisRun& run, files::OutputFolder& folder) {
   folder.write("extended.yaml", extended_yaml(run));
-  std::string json = json_text(to_json(run), 2) + "\n";
+  nlohmann::ordered_json report = to_json(run);
+  if (run.performance) report["performance"] = performance_json(*run.performance);
+  std::string json = json_text(report, 2) + "\n";
   folder.write("report.json", json);
   folder.write("report.html", page_html(page_data(run)));
   return json;

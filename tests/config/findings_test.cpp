@@ -213,6 +213,18 @@ TEST_CASE("Mistakes in the head of a file are told at their place") {
        "u.yaml:3:10: error: signals: `cv` needs at least one controlled variable"},
       {"unit: t\nsample_time: 1\nsignals: {mv: [], cv: y1}\n",
        "u.yaml:3:10: error: signals: `mv` needs at least one manipulated variable"},
+      {"unit: t\nsample_time: 1\nsignals: {mv: [{tag: u1, low: 5, high: 5}], cv: y1}\nmodel: "
+       "{channels: {cv: y1, mv: u1, gain: 1}}\n",
+       "u.yaml:3:40: error: signals.mv[0].high: must be above low"},
+      {"unit: t\nsample_time: 1\nsignals: {mv: u1, cv: [{tag: y1, low: 2, high: -1}]}\nmodel: "
+       "{channels: {cv: y1, mv: u1, gain: 1}}\n",
+       "u.yaml:3:48: error: signals.cv[0].high: must be above low"},
+      {"unit: t\nsample_time: 1\nsignals: {mv: {tag: u1, low: x}, cv: y1}\nmodel: {channels: {cv: "
+       "y1, mv: u1, gain: 1}}\n",
+       "u.yaml:3:30: error: signals.mv.low: must be a number, not 'x'"},
+      {"unit: t\nsample_time: 1\nsignals: {mv: u1, dv: {tag: d1, low: 0}, cv: y1}\nmodel: "
+       "{channels: {cv: y1, mv: u1, gain: 1}}\n",
+       "u.yaml:3:33: error: signals.dv.low: unknown key (known: tag, unit, description)"},
       {"- 1\n- 2\n",
        "u.yaml:1:1: error: a unit file is a map of keys such as `unit:` and "
        "`signals:`"},

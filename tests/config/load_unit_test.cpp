@@ -18,12 +18,12 @@ unit: "unit 7"
 sample_time: 2.5
 signals:
   mv:
-    - {tag: FIC-101.SP, unit: "%", description: "top: draw"}
+    - {tag: FIC-101.SP, unit: "%", description: "top: draw", low: 0.5, high: 60.5}
     - u2
     - {tag: "3"}
   dv: [d1]
   cv:
-    - {tag: y1, prediction: yhat1, setpoint: sp1, unit: degC}
+    - {tag: y1, prediction: yhat1, setpoint: sp1, unit: degC, high: 101}
     - y2
     - y3
   aux: [{tag: t_amb, unit: degC}]
@@ -183,6 +183,15 @@ void check_full(const UnitConfig& config) {
   CHECK(simulation.mv_limits[1].max_move == 0.5);
   CHECK(simulation.cv_limits.at(0).low == 90.0);
   CHECK_FALSE(simulation.cv_limits.at(0).high);
+  // Beside a signal they count instead of the simulation's.
+  CHECK(config.mv_limits(0).low == 0.5);
+  CHECK(config.mv_limits(0).high == 60.5);
+  CHECK(config.mv_limits(1).low == -2.0);
+  CHECK(config.mv_limits(1).high == 3.0);
+  CHECK_FALSE(config.mv_limits(2).known());
+  CHECK_FALSE(config.cv_limits(0).low);
+  CHECK(config.cv_limits(0).high == 101.0);
+  CHECK_FALSE(config.cv_limits(1).known());
   REQUIRE(simulation.noise.size() == 3);
   CHECK(simulation.noise[0].sigma == 0.1);
   CHECK(simulation.noise[0].pole == 0.5);

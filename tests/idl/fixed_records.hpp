@@ -3,6 +3,7 @@
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
 #include "core/record/health_record.hpp"
+#include "core/record/performance_record.hpp"
 
 /// Records in which no two numbers or texts are the same, so that none can stand in for another.
 namespace mpm::test {
@@ -107,6 +108,39 @@ namespace mpm::test {
   record.matching = 113;
   record.mismatching = 114;
   record.active_alarms = 115;
+  return record;
+}
+
+/// Of the second CV and the second MV next to nothing is known.
+[[nodiscard]] inline PerformanceRecord performance() {
+  PerformanceRecord record;
+  record.unit = "shell";
+  record.interval = 600;
+  record.source_time_ns = 601'000'000'000;
+  record.window_samples = 28800;
+  record.samples = 599;
+  record.service_factor = 0.9375;
+  CvPerformance known;
+  known.cv = "y1";
+  known.engineering_unit = "degC";
+  known.setpoint = "sp1";
+  known.samples = 598;
+  known.control_error = {-0.125, 0.25, 0.5156};
+  known.outside_limits = 0.0625;
+  known.prediction = {{1, 0.1, 0.2}, {90, 0.3, 0.7}};
+  record.cvs = {known, CvPerformance()};
+  record.cvs[1].cv = "y2";
+  MvPerformance used;
+  used.mv = "u1";
+  used.engineering_unit = "%";
+  used.samples = 597;
+  used.at_low = 0.01;
+  used.at_high = 0.02;
+  used.at_limits = 0.03;
+  used.travel = 0.75;
+  used.standing = 0.5;
+  record.mvs = {used, MvPerformance()};
+  record.mvs[1].mv = "u2";
   return record;
 }
 

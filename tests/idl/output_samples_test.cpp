@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -190,6 +191,46 @@ TEST_CASE("the health goes to its sample and back") {
   check_both_ways(test::health(), sample);
 }
 
+TEST_CASE("control performance goes to its sample and back, with all that is in it") {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<mpm_HorizonError> horizons = {{1, 0.1, 0.2}, {90, 0.3, 0.7}};
+  std::vector<mpm_CvPerformance> cvs(2);
+  cvs[0].cv = text("y1");
+  cvs[0].unit = text("degC");
+  cvs[0].setpoint = text("sp1");
+  cvs[0].samples = 598;
+  cvs[0].control_error = {-0.125, 0.25, 0.5156};
+  cvs[0].outside_limits = 0.0625;
+  cvs[0].prediction = {2, 2, horizons.data(), false};
+  cvs[1].cv = text("y2");
+  cvs[1].unit = cvs[1].setpoint = text("");
+  cvs[1].control_error = {unknown, unknown, unknown};
+  cvs[1].outside_limits = unknown;
+  std::vector<mpm_MvPerformance> mvs(2);
+  mvs[0].mv = text("u1");
+  mvs[0].unit = text("%");
+  mvs[0].samples = 597;
+  mvs[0].at_low = 0.01;
+  mvs[0].at_high = 0.02;
+  mvs[0].at_limits = 0.03;
+  mvs[0].travel = 0.75;
+  mvs[0].standing = 0.5;
+  mvs[1].mv = text("u2");
+  mvs[1].unit = text("");
+  mvs[1].at_low = mvs[1].at_high = mvs[1].at_limits = mvs[1].travel = mvs[1].standing = unknown;
+  mpm_Performance sample{};
+  sample.unit = text("shell");
+  sample.interval = 600;
+  sample.source_time_ns = 601'000'000'000;
+  sample.window_samples = 28800;
+  sample.samples = 599;
+  sample.service_factor = 0.9375;
+  sample.cvs = {2, 2, cvs.data(), false};
+  sample.mvs = {2, 2, mvs.data(), false};
+  check_both_ways(test::performance(), sample);
+  CHECK_FALSE(record_of<PerformanceRecord>(sample).cvs[1].setpoint);
+}
+
 /// Whatever a member may be made from.
 struct Anything {
   template <class T>
@@ -220,21 +261,27 @@ struct CountMembers {
   }
 };
 
+template <class One, class Sample>
+void check_rows() {
+  const Sample sample{};
+  const One record{};
+  std::size_t rows = 0;
+  One::fields(CountMembers{rows}, record, sample);
+  CHECK(rows == members_of<Sample>());
+}
+
 template <class... Record>
 void check_rows(const std::tuple<Record...>*) {
-  const auto check = []<class One>(const One& record) {
-    const SampleOf<One> sample{};
-    std::size_t rows = 0;
-    One::fields(CountMembers{rows}, record, sample);
-    INFO(OutputTopic<One>::kName);
-    CHECK(rows == members_of<SampleOf<One>>());
-  };
-  (check(Record()), ...);
+  (check_rows<Record, SampleOf<Record>>(), ...);
 }
 
 TEST_CASE("every member of every output sample has its row") {
   CHECK(members_of<mpm_CauseParameter>() == 4);
   check_rows(static_cast<const OutputRecords*>(nullptr));
+  check_rows<ControlError, mpm_ControlError>();
+  check_rows<HorizonError, mpm_HorizonError>();
+  check_rows<CvPerformance, mpm_CvPerformance>();
+  check_rows<MvPerformance, mpm_MvPerformance>();
 }
 
 TEST_CASE("what another make leaves out or words in its own way says nothing") {

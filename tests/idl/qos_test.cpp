@@ -186,6 +186,7 @@ TEST_CASE("a stranger learns every type from the network") {
   const Writer<mpm_Alarm> alarms(daemon, kAlarmTopic, alarm_qos());
   const Writer<mpm_AlarmEvent> events(daemon, kAlarmEventTopic, alarm_event_writer_qos());
   const Writer<mpm_Health> health(daemon, kHealthTopic, health_qos());
+  const Writer<mpm_Performance> performance(daemon, kPerformanceTopic, performance_qos());
 
   const Entity publications(
       dds_create_reader(stranger.get(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
@@ -207,7 +208,7 @@ TEST_CASE("a stranger learns every type from the network") {
       if (code == DDS_RETCODE_OK) dds_delete_topic_descriptor(descriptor);
     }
     if (count > 0) dds_return_loan(publications.get(), samples, count);
-    return result.size() == 6;
+    return result.size() == 7;
   }));
   for (const auto& [topic, code] : result) {
     INFO(topic);

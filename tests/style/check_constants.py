@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-ROOMS = ["alarm", "identification", "mismatch", "model", "monitor", "regression", "signal", "statistics"]
+ROOMS = ["alarm", "identification", "mismatch", "model", "monitor", "performance", "regression", "signal", "statistics"]
 PLAIN = {0.0, 0.5, 1.0, 2.0}
 FIRST_WHOLE = 10
 ALLOWED = {  # file: numbers, why

@@ -75,6 +75,7 @@ record text alarm mismatch
 monitor text signal statistics model alarm mismatch
 identify/fit parallel model
 identify/evidence model mismatch monitor identify/fit
+performance signal model monitor identify/fit
 identification parallel statistics model identify/fit identify/evidence
 identify/causes parallel text model identify/fit
 identify/valves

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "daemon/report/unit_performance.hpp"
+#include "idl/output_readers.hpp"
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
@@ -119,6 +121,66 @@ TEST_CASE("without predictions the daemon says what mpm detect says") {
   CHECK(std::any_of(live.begin(), live.end(), [](const std::string& line) {
     return line.find("\"verdict\":\"mismatch\"") != std::string::npos;
   }));
+  daemon.send(SIGTERM);
+  CHECK(daemon.wait(std::chrono::seconds(5)) == 0);
+}
+
+/// The same keys and texts, and numbers that differ by no more than the order of adding up.
+void check_alike(const nlohmann::ordered_json& live, const nlohmann::ordered_json& file) {
+  CAPTURE(live.dump(), file.dump());
+  if (file.is_number_float()) {
+    REQUIRE(live.is_number());
+    CHECK(live.get<double>() == Approx(file.get<double>()).epsilon(1e-9));
+  } else if (file.is_structured() && live.size() == file.size() && live.type() == file.type()) {
+    for (auto mine = live.begin(), its = file.begin(); its != file.end(); ++mine, ++its)
+      check_alike(*mine, *its);
+  } else {
+    CHECK(live == file);
+  }
+}
+
+TEST_CASE("of control performance the daemon says what mpm detect says of the same frames") {
+  TemporaryFolder folder;
+  const idl::DomainOptions domain = idl::test_domain("performance");
+  const auto must = [&](const std::vector<std::string>& command) {
+    CAPTURE(command);
+    REQUIRE(run(command, folder.file("out"), folder.file("err")) == 0);
+  };
+  // 48 blocks of 20 samples: the 900 are 45 of them, and none has slid out.
+  const std::string unit = folder.file("unit.yaml");
+  std::string text = read_file(kUnit);
+  text.replace(text.find("monitor: {}"), 11, "monitor: {performance_window: 960}");
+  text.replace(text.find("{tag: u1,"), 9, "{tag: u1, low: -0.1, high: 0.1,");
+  write_file(unit, text);
+  const std::vector<std::string> simulate = {"mpmsim", "--config",     unit, "--scenario",
+                                             "none",   "--seed",       "5",  "--samples",
+                                             "900",    "--start-time", "0"};
+  std::vector<std::string> to_file = simulate, to_bus = simulate;
+  to_file.insert(to_file.end(), {"--csv", folder.file("run.csv")});
+  must(to_file);
+  must({"mpm", "detect", "--config", unit, "--data", folder.file("run.csv"), "--json"});
+  const auto expected = nlohmann::ordered_json::parse(read_file(folder.file("out")))["performance"];
+  REQUIRE(expected["samples"] == 900);
+
+  Process daemon({"mpmd", "--config", unit, "--partition", domain.partition},
+                 folder.file("mpmd.out"), folder.file("mpmd.err"));
+  to_bus.insert(to_bus.end(),
+                {"--speed", "0", "--wait-readers", "20", "--partition", domain.partition});
+  must(to_bus);
+  // Who joins late gets the last one; until the daemon is through that is an earlier one.
+  const idl::Participant participant(domain);
+  idl::OutputReaders readers(participant);
+  PerformanceRecord last;
+  CHECK(idl::eventually(
+      [&] {
+        for (const idl::Output& output : readers.take())
+          if (const auto* record = std::get_if<PerformanceRecord>(&output)) last = *record;
+        return last.samples == 900;
+      },
+      std::chrono::seconds(20)));
+  CHECK(last.unit == "shell");
+  CHECK(last.window_samples == 960);
+  check_alike(report::performance_json(last), expected);
   daemon.send(SIGTERM);
   CHECK(daemon.wait(std::chrono::seconds(5)) == 0);
 }

@@ -83,9 +83,7 @@ inline constexpr double kClearlyLessSeen = 0.7;
 inline constexpr double kStillMoves = 1e-5;
 inline constexpr double kBeyondDoubt = 1e-6;
 
-/// A model has settled after so many slowest time constants: 5 % are left to come. Horizons of
-/// predictions take at most one of so many parts of the rows.
-inline constexpr double kSettlingTimeConstants = 3.0;
+/// Horizons of predictions take at most one of so many parts of the rows.
 inline constexpr Eigen::Index kHorizonsInRows = 4;
 
 /// Blocks of the bootstrap: two slowest time constants and so many rows.

@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "core/identify/diagnosis/calibration.hpp"
-#include "core/identify/diagnosis/horizons.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
+#include "core/identify/fit/horizons.hpp"
 
 namespace mpm {
 
@@ -27,7 +27,7 @@ Unseen::Unseen(const Recording& recording, Index rows, const ModelSpec& model, s
     : simulator_(recording),
       rows_(rows),
       block_(static_cast<Index>(kBlockTimeConstants * slowest_samples(model)) + kBlockRows),
-      horizons_(horizons_of(model, rows)),
+      horizons_(horizons_of(model, rows / kHorizonsInRows)),
       seed_(seed) {}
 
 Eigen::VectorXd Unseen::measured(int cv) const {

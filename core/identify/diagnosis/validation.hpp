@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/identify/diagnosis/horizons.hpp"
+#include "core/identify/fit/horizons.hpp"
 
 namespace mpm {
 

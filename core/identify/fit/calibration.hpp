@@ -63,6 +63,9 @@ inline constexpr double kFarBorder = 1.0 / 6.0;
 inline constexpr double kShortestLongGap = 20.0;  ///< intervals
 inline constexpr Eigen::Index kShortestRun = 40;  ///< rows
 
+/// A model has settled after so many slowest time constants: 5 % are left to come (horizons.hpp).
+inline constexpr double kSettlingTimeConstants = 3.0;
+
 /// Of a sample: two moments are the same.
 inline constexpr double kSameMoment = 1e-6;
 

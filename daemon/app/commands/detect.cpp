@@ -22,7 +22,9 @@
 #include "daemon/mcap/read/file_sequence.hpp"
 #include "daemon/report/detect_report.hpp"
 #include "daemon/report/detect_text.hpp"
+#include "daemon/report/performance_text.hpp"
 #include "daemon/report/unit_monitor.hpp"
+#include "daemon/report/unit_performance.hpp"
 
 namespace mpm::app {
 namespace {
@@ -39,6 +41,7 @@ struct DetectOptions {
   std::string sample_journal;  // file
   TimesText times;
   bool json = false;
+  bool performance = false;
   bool fail_on_mismatch = false;
 };
 
@@ -77,6 +80,7 @@ struct Journals {
 report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& source,
                          const files::TimeChoice& choice, Journals& journals) {
   report::UnitMonitor monitor(unit);
+  report::PerformanceTally performance(unit);
   report::DetectReport report;
   report.unit = unit.unit;
   files::UsedStretches used;
@@ -90,6 +94,7 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
     if (monitor.counters().frames == 0) report.first_ns = frame.source_time_ns;
     report.last_ns = frame.source_time_ns;
     monitor.push(frame);
+    performance.push(frame, monitor.monitor());
     report.alarms.insert(report.alarms.end(), monitor.alarms().begin(), monitor.alarms().end());
     journals.push(monitor);
   }
@@ -104,6 +109,7 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
   report.clipped = counters.implausible.clipped;
   report.spikes = counters.implausible.spikes;
   report.channels = monitor.channels();
+  report.performance = performance.record();
   if (!choice.all()) report.used = used.stretches();
   return report;
 }
@@ -139,8 +145,10 @@ int detect(const DetectOptions& options) {
     const report::Layout layout{host::terminal_width(STDOUT_FILENO),
                                 host::wants_color(STDOUT_FILENO)};
     std::cout << (options.json ? to_json(report).dump() + "\n"
-                               : to_text(report, loaded.config, layout, times.zone.get()))
-              << std::flush;
+                               : to_text(report, loaded.config, layout, times.zone.get()));
+    if (options.performance && !options.json)
+      std::cout << '\n' << report::performance_text(report.performance, layout);
+    std::cout << std::flush;
     return options.fail_on_mismatch && report.mismatch() ? 1 : 0;
   } catch (const config::InputError& error) {
     std::cerr << error.what() << '\n';
@@ -165,6 +173,8 @@ void add_detect(CLI::App& app, int& exit_code) {
   add_time_choice(*command, options->time);
   add_times(*command, options->times);
   command->add_flag("--json", options->json, "print one JSON object");
+  command->add_flag("--performance", options->performance,
+                    "tell how well the unit is controlled as well; --json always does");
   command->add_option("--journal", options->journal,
                       "keep what mpmd keeps in its journal, in this folder");
   command->add_option("--journal-every-sample", options->sample_journal,

@@ -22,6 +22,7 @@
 #include "daemon/report/closed_loop/run_mpmsim.hpp"
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
 #include "daemon/report/report_files.hpp"
+#include "daemon/report/unit_performance.hpp"
 #include "idl/version.hpp"
 
 namespace mpm::app {
@@ -64,8 +65,8 @@ std::optional<config::UnitConfig> load(const std::string& file) {
 /// All of what the files hold; refuses what no diagnosis can use.
 Given read_all(const std::vector<std::string>& files, const config::UnitConfig& unit,
                const files::TimeStyle& times, const files::TimeChoice& choice,
-               std::vector<std::string>& notices) {
-  Given all = read_given(files, unit, times, choice, notices);
+               std::vector<std::string>& notices, report::PerformanceTally* performance = nullptr) {
+  Given all = read_given(files, unit, times, choice, notices, performance);
   const std::string problem = files::recording_problem(all.recording, needed_samples(unit.model));
   if (!problem.empty()) refuse(all.name, problem);
   return all;
@@ -77,7 +78,9 @@ report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig 
   const files::TimeStyle times = times_of(options.times);
   const files::TimeChoice choice(options.time, times);
   run.time_chosen = !choice.all();
-  Given data = read_all(options.data, run.unit, times, choice, run.notices);
+  report::PerformanceTally performance(run.unit);
+  Given data = read_all(options.data, run.unit, times, choice, run.notices, &performance);
+  run.performance = performance.record();
   run.recording = std::move(data.recording);
   run.run_files = std::move(data.files);
   run.data_file = std::move(data.name);

@@ -3,20 +3,54 @@
 #include <cstdint>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "core/text/number_text.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/read_recording.hpp"
+#include "daemon/report/unit_monitor.hpp"
 
 namespace mpm::app {
 namespace {
 
+/// The frames of another source; on their way those that `choice` takes are tallied, with a monitor
+/// of their own.
+class TalliedFrames : public files::FrameSource {
+ public:
+  TalliedFrames(files::FrameSource& frames, const config::UnitConfig& unit,
+                const files::TimeChoice& choice, report::PerformanceTally& performance)
+      : frames_(frames), choice_(choice), monitor_(unit), performance_(performance) {
+    performance_.begin_run();
+  }
+
+  [[nodiscard]] bool next(Frame& frame) override {
+    if (!frames_.next(frame)) return false;
+    if (choice_.takes(frame.source_time_ns)) {
+      monitor_.push(frame);
+      performance_.push(frame, monitor_.monitor());
+    }
+    return true;
+  }
+  [[nodiscard]] const std::vector<std::string>& notices() const override {
+    return frames_.notices();
+  }
+
+ private:
+  files::FrameSource& frames_;
+  const files::TimeChoice& choice_;
+  report::UnitMonitor monitor_;
+  report::PerformanceTally& performance_;
+};
+
 Recording read(const std::string& file, const config::UnitConfig& unit,
                const files::TimeStyle& times, const files::TimeChoice& choice,
-               std::vector<std::string>& notices) {
+               std::vector<std::string>& notices, report::PerformanceTally* performance) {
   const std::unique_ptr<files::FrameSource> frames = bag::open_recording(file, unit, times);
-  files::RecordingFile data = files::read_recording(*frames, unit, file, choice);
+  std::optional<TalliedFrames> tallied;
+  if (performance != nullptr) tallied.emplace(*frames, unit, choice, *performance);
+  files::FrameSource& source = tallied ? *tallied : *frames;
+  files::RecordingFile data = files::read_recording(source, unit, file, choice);
   const std::string prefix = file + ": ";
   for (const std::string& notice : frames->notices()) notices.push_back(prefix + notice);
   const auto count = [&](std::int64_t number, const char* what, const std::string& rest) {
@@ -37,11 +71,11 @@ Recording read(const std::string& file, const config::UnitConfig& unit,
 
 Given read_given(const std::vector<std::string>& files, const config::UnitConfig& unit,
                  const files::TimeStyle& times, const files::TimeChoice& choice,
-                 std::vector<std::string>& notices) {
+                 std::vector<std::string>& notices, report::PerformanceTally* performance) {
   std::vector<Recording> recordings;
   Given all;
   for (const std::string& file : files) {
-    recordings.push_back(read(file, unit, times, choice, notices));
+    recordings.push_back(read(file, unit, times, choice, notices, performance));
     all.files.insert(all.files.end(), runs_of(recordings.back()).size(), file);
     all.name += (all.name.empty() ? "" : ", ") + file;
   }

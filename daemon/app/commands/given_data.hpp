@@ -7,6 +7,7 @@
 #include "core/identify/fit/recording.hpp"
 #include "daemon/files/times/time_choice.hpp"
 #include "daemon/files/times/time_style.hpp"
+#include "daemon/report/unit_performance.hpp"
 
 namespace mpm::app {
 
@@ -18,10 +19,12 @@ struct Given {
 };
 
 /// Reads the files, of either kind, one after the other. What was left out or is missing goes to
-/// `notices`. Throws config::InputError as the readers do.
+/// `notices`, how well the unit is controlled in all that is taken to `performance` where that is
+/// wanted. Throws config::InputError as the readers do.
 [[nodiscard]] Given read_given(const std::vector<std::string>& files,
                                const config::UnitConfig& unit, const files::TimeStyle& times,
-                               const files::TimeChoice& choice, std::vector<std::string>& notices);
+                               const files::TimeChoice& choice, std::vector<std::string>& notices,
+                               report::PerformanceTally* performance = nullptr);
 
 /// The command line of this process as it was typed, quoted where a shell would need it.
 [[nodiscard]] std::string command_line();

@@ -26,6 +26,14 @@ class TextCleaner {
   static void clean(std::vector<CauseParameter>& parameters) {
     for (CauseParameter& parameter : parameters) clean(parameter.name);
   }
+  template <HasFields Part>
+  static void clean(Part& part) {
+    Part::fields(TextCleaner(), part);
+  }
+  template <HasFields Part>
+  static void clean(std::vector<Part>& parts) {
+    for (Part& part : parts) clean(part);
+  }
   template <class... Member>
   static void clean(const std::tuple<Member&...>& members) {
     std::apply([](auto&... member) { (clean(member), ...); }, members);

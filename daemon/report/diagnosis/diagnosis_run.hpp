@@ -9,6 +9,7 @@
 #include "config/unit_config.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/identify/fit/recording.hpp"
+#include "core/record/performance_record.hpp"
 #include "daemon/files/times/time_zone.hpp"
 
 /// All that the reports of `mpm diagnose` are made from.
@@ -40,6 +41,8 @@ struct DiagnosisRun {
   std::optional<Recording> validation;
   Diagnosis diagnosis;
   std::optional<ClosedLoop> closed_loop;
+  /// Over the whole recording; none where only its values are left.
+  std::optional<PerformanceRecord> performance = {};
 
   std::string program;  ///< with its version
   std::string command_line;

@@ -14,6 +14,7 @@
 #include "daemon/report/diagnosis/names_of.hpp"
 #include "daemon/report/page/channel_matrix.hpp"
 #include "daemon/report/page/channel_numbers.hpp"
+#include "daemon/report/page/control_section.hpp"
 #include "daemon/report/page/finding_views.hpp"
 #include "daemon/report/page/page_parts.hpp"
 #include "daemon/report/page/plot_json.hpp"
@@ -431,6 +432,8 @@ nlohmann::ordered_json page_data(const DiagnosisRun& run) {
   for (const Unexplained& left : diagnosis.unexplained)
     json["unexplained"].push_back(unexplained_text(run, left));
   json["refused"] = refused_json(run);
+  if (run.performance)
+    json["control"] = control_section(*run.performance, run.recording.sample_time_s);
   json["errors"] = errors_json(run);
   json["closed_loop"] = closed_loop_json(run);
   json["cvs"] = cvs_json(run, all);

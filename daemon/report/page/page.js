@@ -5,6 +5,7 @@
 //   views       [{title, finding, plots}]
 //   findings    [{title, place, in_model, text, numbers, facts, plots}]
 //   responses   plots of an identification; unexplained, refused, plan: texts
+//   control     {text, cvs: {columns, rows}, mvs: {columns, rows}, note}
 //   errors      [[cv, before, after, less by, fit before, fit after]]
 //   closed_loop {text, rows}
 //   cvs         [{tag, description, plots, errors}]; inputs: plots
@@ -165,6 +166,13 @@ function findings() {
   section('Findings', ...page.findings.map(findingCard), ...folds);
 }
 
+function control() {
+  if (!page.control) return;
+  const {text, cvs, mvs, note} = page.control;
+  const body = () => [paragraph(text), ...[cvs, mvs].map(each => table('wide', each.columns, each.rows)), paragraph(note, 'note')];
+  main.append(element('section', {id: 'control'}, panel('Control', 'errors, limits and predictions over the whole recording', body)));
+}
+
 // --- the rest ---------------------------------------------------------------------------------
 
 function errors() {
@@ -225,6 +233,7 @@ function onPaper(paper) {
 head();
 firstScreen();
 findings();
+control();
 errors();
 closedLoop();
 record();

@@ -69,6 +69,17 @@ TEST_CASE("records are the JSON lines that readers know, byte for byte") {
         R"("missing":103,"incomplete":104,"late":105,"repeated":106,"out_of_order":107,)"
         R"("bad_values":108,"wrong_length":109,"unknown_unit":110,"restarts":111,)"
         R"("undetermined":112,"matching":113,"mismatching":114,"active_alarms":115})");
+  CHECK(json_of(performance()).dump() ==
+        R"({"record":"performance","unit":"shell","interval":600,"time_ns":601000000000,)"
+        R"("window_samples":28800,"samples":599,"service_factor":0.9375,"cvs":[{"cv":"y1",)"
+        R"("unit":"degC","setpoint":"sp1","samples":598,"control_error":{"mean":-0.125,)"
+        R"("variance":0.25,"rms":0.5156},"outside_limits":0.0625,"prediction":[{"samples":1,)"
+        R"("rmse":0.1,"movement_rms":0.2},{"samples":90,"rmse":0.3,"movement_rms":0.7}]},)"
+        R"({"cv":"y2","unit":"","setpoint":null,"samples":0,"control_error":null,)"
+        R"("outside_limits":null,"prediction":[]}],"mvs":[{"mv":"u1","unit":"%",)"
+        R"("samples":597,"at_low":0.01,"at_high":0.02,"at_limits":0.03,"travel":0.75,)"
+        R"("standing":0.5},{"mv":"u2","unit":"","samples":0,"at_low":null,"at_high":null,)"
+        R"("at_limits":null,"travel":null,"standing":null}]})");
 }
 
 }  // namespace

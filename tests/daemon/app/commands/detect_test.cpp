@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 
 #include "config/load_unit.hpp"
 #include "daemon/bag/open_recording.hpp"
@@ -179,6 +181,131 @@ TEST_CASE("data faster than the sample time are averaged, and no dead time comes
   CHECK(verdict("15", "2") == "match");
   CHECK(verdict("45", "2") == "mismatch");
   CHECK(verdict("15", "3") == "mismatch");
+}
+
+/// Every index of one signal series, as its definition says it and in no other way.
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+double rms_of(std::vector<double> values) {
+  for (double& value : values) value *= value;
+  return std::sqrt(mean_of(values));
+}
+
+// The series are made here, and every number is computed from them once more, in two passes over
+// whole vectors.
+TEST_CASE("mpm detect says how well a unit is controlled") {
+  Bench bench;
+  write_file(bench.folder.file("small.yaml"),
+             "unit: small\nsample_time: 1\nsignals: {mv: {tag: u, low: -1, high: 1.5, unit: t/h}, "
+             "cv: [{tag: y, prediction: yhat, setpoint: sp, high: 0.5}, z]}\n"
+             "model: {channels: [{cv: y, mv: u, gain: 2, time_constants: [10]}, {cv: z, mv: u, "
+             "gain: 1, time_constants: [2]}]}\n");
+  constexpr int kCount = 400;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> u, error, measured, residual;
+  std::string text = "time,u,y,yhat,sp,z\n";
+  double drift = 0.0;
+  int standing = 0, run = 0;
+  for (int k = 0; k < kCount; ++k) {
+    const double setpoint = k < 200 ? 0.0 : 0.25;
+    drift = 0.98 * drift + 0.1 * normal(random);
+    const double prediction = 0.3 * std::sin(0.1 * k);
+    const double y = prediction + drift;
+    // Rests for 100 samples, and is clamped at either end now and then.
+    u.push_back(k >= 250 && k < 350 ? 0.5 : std::clamp(normal(random), -1.0, 1.5));
+    run = k > 0 && u[u.size() - 1] == u[u.size() - 2] ? run + 1 : 0;
+    standing += run >= 60 ? 1 : 0;  // calibration::input_motion::kStillSamples
+    measured.push_back(y);
+    residual.push_back(y - prediction);
+    error.push_back(y - setpoint);
+    const auto number = [](double value) {
+      std::ostringstream out;
+      out.precision(17);
+      out << value;
+      return out.str();
+    };
+    text += std::to_string(k) + ',' + number(u.back()) + ',' + number(y) + ',' +
+            number(prediction) + ',' + number(setpoint) + ",1\n";
+  }
+  write_file(bench.folder.file("a.csv"), text);
+  REQUIRE(detect(bench, "a.csv", {"--json"}) == 0);
+  const auto json = nlohmann::json::parse(bench.text("out"))["performance"];
+  CHECK(json["samples"] == kCount);
+  CHECK(json["service_factor"].get<double>() == Approx(1.0 - standing / double{kCount}));
+  REQUIRE(json["cvs"].size() == 2);
+  const auto& y = json["cvs"][0];
+  CHECK(y["cv"] == "y");
+  CHECK(y["setpoint"] == "sp");
+  CHECK(y["samples"] == kCount);
+  const double mean = mean_of(error);
+  CHECK(y["control_error"]["mean"].get<double>() == Approx(mean));
+  CHECK(y["control_error"]["rms"].get<double>() == Approx(rms_of(error)));
+  for (double& value : error) value -= mean;
+  CHECK(y["control_error"]["variance"].get<double>() ==
+        Approx(std::pow(rms_of(error), 2) * kCount / (kCount - 1.0)));
+  const auto outside =
+      std::count_if(measured.begin(), measured.end(), [](double value) { return value > 0.5; });
+  CHECK(outside > 0);
+  CHECK(y["outside_limits"].get<double>() == Approx(static_cast<double>(outside) / kCount));
+  // Three time constants settle: 30 samples. The last three wait in the screen.
+  REQUIRE(y["prediction"].size() == 4);
+  for (const auto& [at, horizon] : {std::pair{0, 1}, {1, 15}, {2, 30}, {3, 60}}) {
+    std::vector<double> errors, moves;
+    for (int k = horizon; k < kCount - 3; ++k) {
+      const auto now = static_cast<std::size_t>(k), before = static_cast<std::size_t>(k - horizon);
+      errors.push_back(residual[now] - residual[before]);
+      moves.push_back(measured[now] - measured[before]);
+    }
+    const auto& told = y["prediction"][static_cast<std::size_t>(at)];
+    CHECK(told["samples"] == horizon);
+    CHECK(told["rmse"].get<double>() == Approx(rms_of(errors)));
+    CHECK(told["movement_rms"].get<double>() == Approx(rms_of(moves)));
+  }
+  const auto& z = json["cvs"][1];
+  CHECK(z["setpoint"].is_null());
+  CHECK(z["control_error"].is_null());
+  CHECK(z["outside_limits"].is_null());
+  const auto& mv = json["mvs"][0];
+  const auto share = [&u](auto holds) {
+    return static_cast<double>(std::count_if(u.begin(), u.end(), holds)) / kCount;
+  };
+  CHECK(mv["unit"] == "t/h");
+  CHECK(mv["at_low"].get<double>() == Approx(share([](double x) { return x <= -0.9875; })));
+  CHECK(mv["at_high"].get<double>() == Approx(share([](double x) { return x >= 1.4875; })));
+  CHECK(mv["at_limits"].get<double>() ==
+        Approx(mv["at_low"].get<double>() + mv["at_high"].get<double>()));
+  CHECK(mv["standing"].get<double>() == Approx(standing / double{kCount}));
+  double travel = 0.0;
+  for (std::size_t k = 1; k < u.size(); ++k) travel += std::abs(u[k] - u[k - 1]);
+  CHECK(mv["travel"].get<double>() == Approx(travel / (kCount - 1.0)));
+
+  // For people only where they ask.
+  REQUIRE(detect(bench, "a.csv") == 0);
+  CHECK(bench.text("out").find("Control performance") == std::string::npos);
+  REQUIRE(detect(bench, "a.csv", {"--performance"}) == 0);
+  CHECK(bench.text("out").find("Control performance\n  400 samples; the controller acts in 90 % "
+                               "of them") != std::string::npos);
+  CHECK(bench.text("out").find("--") != std::string::npos);  // z has no set-point
+}
+
+TEST_CASE("of one row nothing is told of control that one row cannot tell") {
+  Bench bench;
+  write_file(bench.folder.file("a.csv"), rows(1));
+  REQUIRE(detect(bench, "a.csv", {"--json"}) == 0);
+  const auto json = nlohmann::json::parse(bench.text("out"))["performance"];
+  CHECK(json["samples"] == 1);
+  CHECK(json["cvs"][0]["control_error"]["mean"] == -2.0);  // 0 - 2
+  CHECK(json["cvs"][0]["control_error"]["variance"].is_null());
+  for (const auto& horizon : json["cvs"][0]["prediction"]) {
+    CHECK(horizon["rmse"].is_null());
+    CHECK(horizon["movement_rms"].is_null());
+  }
+  CHECK(json["mvs"][0]["travel"].is_null());
+  CHECK(json["mvs"][0]["at_limits"].is_null());
 }
 
 }  // namespace

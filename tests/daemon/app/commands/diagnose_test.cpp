@@ -153,6 +153,30 @@ TEST_CASE("mpm diagnose writes its three files, and --json prints the report") {
         report["findings"]);
 }
 
+TEST_CASE("a diagnosis says of control what mpm detect says of the same file, and adds files up") {
+  const Bench bench;
+  const auto performance_of = [&](const std::vector<std::string>& data) {
+    std::vector<std::string> more(data.begin() + 1, data.end());
+    for (const char* option : {"--json", "--quiet"}) more.emplace_back(option);
+    REQUIRE(bench.diagnose(bench.small(), data[0], more) == 0);
+    CHECK(read_file(bench.out + "/report.html").find("\"control\":") != std::string::npos);
+    return nlohmann::json::parse(read_file(bench.out + "/report.json"))["performance"];
+  };
+  const std::string data = bench.data(rows(600, 2.0));
+  const auto once = performance_of({data});
+  REQUIRE(run({"mpm", "detect", "--config", bench.small(), "--data", data, "--json"},
+              bench.folder.file("stdout"), bench.folder.file("stderr")) == 0);
+  CHECK(once == nlohmann::json::parse(read_file(bench.folder.file("stdout")))["performance"]);
+  CHECK(once["samples"] == 600);
+  CHECK(once["cvs"][0]["control_error"]["rms"] > 0.0);
+  // Twice the same: no share or mean changes, and no move leads from one file to the other.
+  const auto twice = performance_of({data, "--data", data});
+  CHECK(twice["samples"] == 1200);
+  CHECK(twice["mvs"][0]["travel"].get<double>() == Approx(once["mvs"][0]["travel"].get<double>()));
+  CHECK(twice["cvs"][0]["prediction"][3]["rmse"].get<double>() ==
+        Approx(once["cvs"][0]["prediction"][3]["rmse"].get<double>()));
+}
+
 TEST_CASE("gaps and bad values are told, not fatal") {
   const Bench bench;
   std::string text;

@@ -15,8 +15,9 @@ struct Horizon {
   double rmse_before = 0.0, rmse_after = 0.0;  ///< CV units
 };
 
-/// One sample, half, one and two settling times of the model, as far as `rows` allow.
-[[nodiscard]] std::vector<Eigen::Index> horizons_of(const ModelSpec& model, Eigen::Index rows);
+/// One sample, half, one and two settling times of a model in channels, in samples, ascending; what
+/// is longer than `longest` is `longest`.
+[[nodiscard]] std::vector<Eigen::Index> horizons_of(const ModelSpec& model, Eigen::Index longest);
 
 /// Squared prediction errors at a horizon, one per row from which it can be predicted; NaN where
 /// unknown. `residual`: measured minus simulated.

@@ -1,4 +1,4 @@
-#include "core/identify/diagnosis/horizons.hpp"
+#include "core/identify/fit/horizons.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 TEST_CASE("horizons are one sample and parts of the settling time") {
   const ModelSpec model = test::model_of({test::lag(0, 0, 2.0, 10.0)}, 1, 1);
   CHECK(horizons_of(model, 900) == std::vector<Index>{1, 15, 30, 60});
-  CHECK(horizons_of(model, 100) == std::vector<Index>{1, 15, 25});  // a quarter of the rows
+  CHECK(horizons_of(model, 25) == std::vector<Index>{1, 15, 25});
 }
 
 // A level is known after one sample; of white noise of variance s^2 two samples differ by 2 s^2, of

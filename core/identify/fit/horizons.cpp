@@ -1,9 +1,9 @@
-#include "core/identify/diagnosis/horizons.hpp"
+#include "core/identify/fit/horizons.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 
 namespace mpm {
@@ -11,14 +11,13 @@ namespace mpm {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-std::vector<Index> horizons_of(const ModelSpec& model, Index rows) {
+std::vector<Index> horizons_of(const ModelSpec& model, Index longest) {
   double settling = 1.0;
   for (const ChannelSpec& channel : model.channels) {
     const double lag = slowest_time_constant_s(channel, model.sample_time_s);
     const double dead = removable_dead_time_s(channel, model.sample_time_s);
     settling = std::max(settling, (kSettlingTimeConstants * lag + dead) / model.sample_time_s);
   }
-  const Index longest = std::max<Index>(1, rows / kHorizonsInRows);
   std::vector<Index> found;
   for (const double share : {0.0, 0.5, 1.0, 2.0}) {
     const double wanted = std::min(share * settling, static_cast<double>(longest));

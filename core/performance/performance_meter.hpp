@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/monitor/cv_reading.hpp"
+#include "core/monitor/still_run.hpp"
+#include "core/performance/performance_sums.hpp"
+#include "core/signal/frame.hpp"
+
+namespace mpm {
+
+/// Adds a unit's samples, one by one, to sums of whoever wants them. What is unknown or bad does
+/// not count; what the monitor finds implausible does, but not in predictions, which are told by
+/// its residuals. No allocation after construction.
+class PerformanceMeter {
+ public:
+  explicit PerformanceMeter(PerformanceSetup setup);
+
+  [[nodiscard]] const PerformanceSetup& setup() const { return setup_; }
+  /// Whether a frame is newer than all before; others are left out, as by the monitor.
+  [[nodiscard]] bool takes(const Frame& frame) const {
+    return !begun_ || frame.interval > interval_;
+  }
+  /// Set-points, limits and moves of the next frame.
+  void take(const Frame& frame, PerformanceSums& sums);
+  /// Predictions: what the monitor read of an interval (`Monitor::judged_interval`, `readings`),
+  /// a later one each time.
+  void judge(std::int64_t interval, std::span<const CvReading> readings, PerformanceSums& sums);
+  /// What follows is another run: no move and no prediction goes across, and its intervals may
+  /// begin anywhere.
+  void begin_run();
+
+ private:
+  /// One MV's last values.
+  struct Trace {
+    StillRun run;
+    double last = 0.0;
+    bool known = false;  // in the last interval
+  };
+
+  void take_cv(const Frame& frame, int cv, CvSums& sums) const;
+  void take_mvs(const Frame& frame, bool next, PerformanceSums& sums);
+
+  PerformanceSetup setup_;
+  PredictionErrors predictions_;
+  std::vector<Trace> mvs_;
+  std::int64_t interval_ = 0;  // of the last frame
+  bool begun_ = false;
+};
+
+}  // namespace mpm

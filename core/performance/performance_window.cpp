@@ -1,0 +1,52 @@
+#include "core/performance/performance_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace mpm {
+
+using calibration::performance::kBlocks;
+using calibration::performance::kFewestSamples;
+using calibration::performance::kMostSamples;
+
+PerformanceWindow::PerformanceWindow(PerformanceSetup setup, double samples)
+    : meter_(std::move(setup)),
+      block_samples_(static_cast<std::int64_t>(std::ceil(
+          std::clamp(samples, static_cast<double>(kFewestSamples), kMostSamples) / kBlocks))),
+      blocks_(kBlocks, PerformanceSums(meter_.setup())),
+      total_(meter_.setup()) {}
+
+std::int64_t PerformanceWindow::samples() const { return kBlocks * block_samples_; }
+
+bool PerformanceWindow::push(const Frame& frame, const std::optional<std::int64_t>& judged,
+                             std::span<const CvReading> readings) {
+  if (!meter_.takes(frame)) return false;
+  if (!begun_) first_ = frame.interval;
+  begun_ = true;
+  const std::int64_t since = frame.interval - first_, block = since / block_samples_;
+  const bool ended = open_ && block != block_;
+  slide_to(block);
+  PerformanceSums& sums = blocks_[static_cast<std::size_t>(block % kBlocks)];
+  meter_.take(frame, sums);
+  if (judged) meter_.judge(*judged, readings, sums);
+  open_ = (since + 1) % block_samples_ != 0;
+  return ended || !open_;
+}
+
+void PerformanceWindow::slide_to(std::int64_t block) {
+  const std::int64_t steps = std::min<std::int64_t>(block - block_, kBlocks);
+  for (std::int64_t k = 0; k < steps; ++k)
+    blocks_[static_cast<std::size_t>((block - k) % kBlocks)].clear();
+  block_ = block;
+}
+
+const PerformanceSums& PerformanceWindow::total() {
+  total_.clear();
+  // From the oldest on, so that the sums are those of one who adds as time goes by.
+  for (std::int64_t k = kBlocks - 1; k >= 0; --k)
+    if (k <= block_) total_.add(blocks_[static_cast<std::size_t>((block_ - k) % kBlocks)]);
+  return total_;
+}
+
+}  // namespace mpm
