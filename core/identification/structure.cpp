@@ -98,6 +98,12 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
         });
       break;
     case ChannelForm::kDamped:
+      // Two lags that begin quickly overshoot, too.
+      add(ChannelForm::kSecondOrderLead, [](ChannelShape& next) {
+        next.second = next.time_constant;
+        next.lead = kSecondShare * next.time_constant;
+      });
+      break;
     case ChannelForm::kThirdOrderLead:
     case ChannelForm::kIntegratorLag:
       break;
@@ -177,7 +183,7 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
                                                  const NoiseAssumption& noise) {
   std::vector<PredictionErrorFit> grown = {std::move(simplest)};
   using Trial = std::pair<std::size_t, ChannelForm>;
-  std::vector<Trial> closed;  // changes that did not pay when they were tried
+  std::vector<Trial> closed;  // changes that did not pay since the last one that did
   for (;;) {
     const PredictionErrorFit& now = grown.back();
     std::optional<PredictionErrorFit> best;
@@ -202,6 +208,7 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
       if (std::find(paid.begin(), paid.end(), trial) == paid.end()) closed.push_back(trial);
     if (!best) break;
     grown.push_back(fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps));
+    closed.clear();  // what was wrong there hid what is wrong elsewhere
   }
   return grown;
 }
