@@ -105,7 +105,9 @@ function numbers() {
       small ? element('span', {class: 'range'}, small) : null,
     ].filter(Boolean);
   };
-  const row = each => ({name: each.changed ? 'changed' : '', cells: [`${each.input} → ${each.cv}`, value(each.gain), value(each.time_constant), value(each.dead_time)]});
+  // Broken behind the arrow, not within a tag.
+  const channel = each => element('span', {}, element('span', {class: 'tag'}, `${each.input} →`), ' ', element('span', {class: 'tag'}, each.cv));
+  const row = each => ({name: each.changed ? 'changed' : '', cells: [channel(each), value(each.gain), value(each.time_constant), value(each.dead_time)]});
   const columns = ['channel', 'gain', 'time constant', 'dead time'];
   const changed = rows.filter(each => each.changed), same = rows.filter(each => !each.changed);
   const shown = changed.length ? changed : rows;
