@@ -54,9 +54,13 @@ const unknownTicks = (page) => page.evaluate(() => [...document.querySelectorAll
   .flatMap((each) => each.plot ? each.plot.axes.flatMap((axis) => axis._values || []) : [])
   .filter((text) => text === "–").length);
 
-// Plots that are wider than their figures.
+// Plots that are wider than their figures, and grids with plots that are not in line.
 const tooWide = (page) => page.evaluate(() => [...document.querySelectorAll("figure")]
   .filter((each) => each.plot && each.plot.width > each.getBoundingClientRect().width + 1).length);
+const outOfLine = (page) => page.evaluate(() => [...document.querySelectorAll(".grid")].filter((grid) => {
+  const [first, second] = [...grid.children].map((each) => each.getBoundingClientRect());
+  return second && first.width && Math.abs(first.top - second.top) > 0.5;
+}).length);
 
 async function copied(page, name) {
   await page.evaluate(() => {
@@ -82,6 +86,7 @@ for (const [name, file] of [["diagnosis", diagnosis], ["identification", identif
       await page.waitForTimeout(150);
       assert.equal(await empty(page), 0, `${what}: empty plots`);
       assert.deepEqual(await stickingOut(page), [], what);
+      if (width === 1280) assert.equal(await outOfLine(page), 0, `${what}: plots out of line`);
       assert.ok(await overflow(page) <= 0, `${what}: all open, wider than the window`);
       assert.deepEqual(page.troubles, [], what);
       if (pictures) {
@@ -125,6 +130,7 @@ for (const width of [1280, 400]) {
   await printed.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
   await printed.waitForTimeout(150);
   assert.equal(await tooWide(printed), 0, `printed from ${width} px: plots wider than their places`);
+  assert.equal(await outOfLine(printed), 0, `printed from ${width} px: plots below each other`);
   assert.equal(await unknownTicks(printed), 0, `printed from ${width} px: ticks without a number`);
   const paper = (await printed.pdf({ format: "A4" })).toString("latin1");
   pages.push(paper.match(/\/Type *\/Page\b/g).length);
