@@ -114,7 +114,7 @@ function numbers() {
   return element('div', {id: 'numbers'}, table('numbers', columns, shown.map(row)),
       changed.length && same.length ? element('details', {class: 'plain'}, element('summary', {}, `${same.length} others, within 5 % of the unit file’s`), table('numbers', columns, same.map(row))) : null,
       element('p', {class: 'tools'}, yaml ? copyButton('YAML', yaml) : null, copyButton('CSV', csv),
-        element('span', {class: 'note'}, (anyOld ? 'Struck out: the unit file’s. ' : '') + 'Small: 95 % interval.')));
+        element('span', {class: 'note'}, (anyOld && changed.length ? 'Struck out: the unit file’s. ' : '') + 'Small: 95 % interval.')));
 }
 
 // Plots of one axis above each other: the last one has its ticks.
