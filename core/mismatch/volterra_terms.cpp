@@ -36,8 +36,8 @@ double movement_of(const LagWindow& window, int span) {
 
 }  // namespace
 
-VolterraTerms::VolterraTerms(const LinearModel& model, int cv,
-                                   const RegressionHistory& history, int span) {
+VolterraTerms::VolterraTerms(const LinearModel& model, int cv, const RegressionHistory& history,
+                             int span) {
   struct Candidate {
     int input;
     double centre;

@@ -112,6 +112,14 @@ TEST_CASE("how well the unit is controlled is told where that is known, dashes w
   CHECK(control["mvs"]["rows"][0] == Json({"u1", "25 %", "\u2013", "\u2013", "\u2013"}));
 }
 
+TEST_CASE("an error that may have grown has a minus as wide as a digit") {
+  report::DiagnosisRun run = sample_run(600);
+  run.diagnosis.scores.at(1).gain_low = -0.086;
+  run.diagnosis.scores.at(1).gain_high = 0.3;
+  run.diagnosis.scores.at(1).refused = false;
+  CHECK(report::page_data(run)["errors"][1][3] == "\u22128.6 to 30 %");
+}
+
 TEST_CASE("data that say little are warned of") {
   report::DiagnosisRun run = sample_run(600);
   for (config::CvSignal& cv : run.unit.cv) cv.setpoint = cv.tag + "_sp";
