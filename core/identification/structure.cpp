@@ -98,12 +98,6 @@ std::vector<ChannelShape> richer(const ChannelShape& shape) {
         });
       break;
     case ChannelForm::kDamped:
-      // Two lags that begin quickly overshoot, too.
-      add(ChannelForm::kSecondOrderLead, [](ChannelShape& next) {
-        next.second = next.time_constant;
-        next.lead = kSecondShare * next.time_constant;
-      });
-      break;
     case ChannelForm::kThirdOrderLead:
     case ChannelForm::kIntegratorLag:
       break;

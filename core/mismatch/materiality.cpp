@@ -71,11 +71,11 @@ void Materiality::judge_usual(const MaterialityLimits& limits, const EstimateNoi
                               ChannelEvidence& evidence) {
   constexpr double kTests = 3.0;
   const double log_time = std::log1p(limits.time_constant);
-  const double beyond =
+  const double most =
       std::min({beyond(evidence.gain_error, limits.gain, noise.freedom),
                 beyond(evidence.log_time_error, log_time, noise.freedom),
                 beyond(evidence.dead_time_error, limits.dead_time_samples, noise.freedom)});
-  evidence.p_value_material = std::min(1.0, kTests * beyond);
+  evidence.p_value_material = std::min(1.0, kTests * most);
   evidence.harmless = surely_within(evidence.gain_error, limits.gain) &&
                       surely_within(evidence.log_time_error, log_time) &&
                       surely_within(evidence.dead_time_error, limits.dead_time_samples);

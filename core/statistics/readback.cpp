@@ -8,9 +8,9 @@
 
 namespace mpm {
 
-using calibration::readback::kLags;
-using calibration::readback::kMostOf;
-using calibration::readback::kRowsPerColumn;
+using readback::kLags;
+using readback::kMostOf;
+using readback::kRowsPerColumn;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
