@@ -8,12 +8,12 @@
 
 namespace mpm {
 
-using readback::kLags;
-using readback::kMostOf;
-using readback::kRowsPerColumn;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using readback::kLags;
+using readback::kMostOf;
+using readback::kRowsPerColumn;
 
 int rows_to_read_back(int inputs) { return kLags + kRowsPerColumn * (1 + kLags + kLags * inputs); }
 
