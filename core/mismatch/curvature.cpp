@@ -40,7 +40,7 @@ double gain_variation(const VolterraTerms& terms, int a, const Eigen::VectorXd& 
   for (int b = 0; b < count; ++b)
     slopes.push_back((a == b ? 2.0 : 1.0) *
                      coefficient(terms.product_columns(std::min(a, b), std::max(a, b))));
-  const double bend = 3.0 * coefficient(terms.cube_columns(a));
+  const double bend = 3 * coefficient(terms.cube_columns(a));
   double sum = 0.0, square = 0.0;
   for (int age = 0; age < span; ++age) {
     double change = bend * terms.contribution(a, age) * terms.contribution(a, age);

@@ -35,7 +35,8 @@ struct MonitorCounters {
 
 /// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
 /// Deterministic: same frames, same bytes. No allocation in `push` after construction, but where a
-/// signal turns out to live elsewhere than it did (`Screen::anew`) and all is begun anew.
+/// signal turns out to live elsewhere than it did (`Screen::anew`) and all is begun anew, and where
+/// something is off and is asked, each 20 samples at most, whether the plant bends (`Curvature`).
 class Monitor {
  public:
   /// `may_predict[j]`: CV j's model prediction may come with the frames. As long as none came, it
