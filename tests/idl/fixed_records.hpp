@@ -38,6 +38,7 @@ namespace mpm::test {
   record.dead_time_high_s = -29.5;
   record.smallest_error = 0.08;
   record.effective_samples = 3999.5;
+  record.gain_variation = 0.375;
   record.alarm = AlarmState::kActive;
   record.first_lag = -2;
   record.partial_correlations = {0.01, -0.02, 0.3, 0.0};

@@ -66,6 +66,7 @@ mpm_ChannelStatus mismatching_sample(std::vector<double>& correlations) {
   sample.dead_time_error = -60.0;
   sample.dead_time_low = -90.5;
   sample.dead_time_high = -29.5;
+  sample.gain_variation = 0.375;
   return sample;
 }
 
@@ -134,7 +135,8 @@ TEST_CASE("the words of a verdict and its reason go to DDS and back") {
                                      {Reason::kControllerOff, "controller_off"},
                                      {Reason::kConstrained, "constrained"},
                                      {Reason::kIsolating, "isolating"},
-                                     {Reason::kWeakExcitation, "weak_excitation"}}) {
+                                     {Reason::kWeakExcitation, "weak_excitation"},
+                                     {Reason::kOperatingPoint, "operating_point"}}) {
     record.reason = reason;
     sample.reason = text(word);
     check_both_ways(record, sample);

@@ -102,10 +102,10 @@ Beyond beyond(const std::vector<std::string>& cvs, const Step& step) {
   return result;
 }
 
-/// Of 21 independent numbers in their 95 % intervals, more than four are beyond once in 300 times
-/// (binomial). Those of one channel go together, so that it is more often than that; but oracle and
+/// Of n independent numbers in their 95 % intervals more are beyond once in 300 times (binomial).
+/// Those of one channel go together, so that it is more often than that; but oracle and
 /// identification read the same rows, and differ by less than either errs.
-constexpr int kMostBeyond = 4;
+constexpr int kMostBeyondOf12 = 3, kMostBeyondOf21 = 4, kMostBeyondOf30 = 5;
 
 Beyond identified_beyond(const ModelSpec& model, const std::vector<std::string>& cvs) {
   return beyond(cvs, [&](int cv, int input, Index sample) {
@@ -113,7 +113,7 @@ Beyond identified_beyond(const ModelSpec& model, const std::vector<std::string>&
   });
 }
 
-TEST_CASE("the boiler's channels are the oracle's, and steam temperature and CO answer as there",
+TEST_CASE("the boiler's channels are the oracle's, and all but steam flow answer as there",
           "[trials]") {
   const Identification found = identify(recorded_test(), {{}, 2});
   std::vector<std::pair<int, int>> expected, identified;
@@ -124,17 +124,19 @@ TEST_CASE("the boiler's channels are the oracle's, and steam temperature and CO 
     identified.emplace_back(channel.cv, channel.input);
   CHECK(expected.size() == 14);
   CHECK(identified == expected);
-  const Beyond result = identified_beyond(found.model, {"TI-502.PV", "AI-602.PV"});
-  CHECK(result.of == 21);
-  CHECK(result.count <= kMostBeyond);
+  const Beyond result = identified_beyond(found.model, {"TI-502.PV", "AI-601.PV", "AI-602.PV"});
+  CHECK(result.of == 30);
+  CHECK(result.count <= kMostBeyondOf30);
 }
 
-// Of steam flow and O2 the identified model lacks slow parts that the oracle finds, and its
-// intervals do not say so (docs/recovery_boiler.md). Whoever mends that is told by this test.
-TEST_CASE("steam flow and O2 answer as the oracle says", "[trials][!shouldfail]") {
-  const Identification found = identify(recorded_test(), {{}, 2});
-  const Beyond result = identified_beyond(found.model, {"FI-500.PV", "AI-601.PV"});
-  CHECK(result.count <= kMostBeyond);
+// The identified model of steam flow lacks slow parts that the oracle finds, and its intervals do
+// not say so (docs/recovery_boiler.md). Whoever mends that is told by this test.
+TEST_CASE("steam flow answers as the oracle says", "[trials][!shouldfail]") {
+  Recording recording = recorded_test();
+  recording.cvs = recording.cvs.leftCols(1).eval();
+  const Identification found = identify(recording, {{}, 2});
+  const Beyond result = identified_beyond(found.model, {"FI-500.PV"});
+  CHECK(result.count <= kMostBeyondOf12);
 }
 
 TEST_CASE("the plant's own steps of steam flow and O2 are those of the oracle") {
@@ -147,7 +149,7 @@ TEST_CASE("the plant's own steps of steam flow and O2 are those of the oracle") 
     return steps[static_cast<std::size_t>(input)](sample, cv);
   });
   CHECK(result.of == 21);
-  CHECK(result.count <= kMostBeyond);
+  CHECK(result.count <= kMostBeyondOf21);
 }
 
 }  // namespace
