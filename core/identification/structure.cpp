@@ -176,31 +176,22 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
                                                  PredictionErrorFit simplest,
                                                  const NoiseAssumption& noise) {
   std::vector<PredictionErrorFit> grown = {std::move(simplest)};
-  using Trial = std::pair<std::size_t, ChannelForm>;
-  std::vector<Trial> closed;  // changes that did not pay when they were tried
   for (;;) {
     const PredictionErrorFit& now = grown.back();
     std::optional<PredictionErrorFit> best;
-    std::vector<Trial> paid, failed;  // a form may have several starts
     for (std::size_t c = 0; c < now.channels.size(); ++c)
       for (const ChannelShape& shape : richer(now.channels[c])) {
-        const Trial trial{c, shape.form};
-        if (std::find(closed.begin(), closed.end(), trial) != closed.end()) continue;
         std::vector<ChannelShape> changed = now.channels;
         changed[c] = shape;
         PredictionErrorFit fit =
             fit_prediction_error(data, cv, std::move(changed), noise, kTrialSteps);
         if (bic(fit) + kWorthRicher > bic(now) ||
-            slowest_time(fit.channels[c]) > kSlowestShare * longest_run(data)) {
-          failed.push_back(trial);
+            slowest_time(fit.channels[c]) > kSlowestShare * longest_run(data))
           continue;
-        }
-        paid.push_back(trial);
         if (!best || bic(fit) < bic(*best)) best = std::move(fit);
       }
-    for (const Trial& trial : failed)
-      if (std::find(paid.begin(), paid.end(), trial) == paid.end()) closed.push_back(trial);
     if (!best) break;
+    // What was wrong there hid what is wrong elsewhere: next, every form is tried again.
     grown.push_back(fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps));
   }
   return grown;

@@ -151,7 +151,7 @@ namespace confounding {
 inline constexpr double kMasked = 2.0;
 }
 
-/// Whether a CV's answer depends on where the plant is operated (`SecondOrderTerms`).
+/// Whether a CV's answer depends on where the plant is operated (`VolterraTerms`).
 namespace curvature {
 /// Inputs whose products are looked at, those that moved the CV most. Chosen: ten products cost a
 /// fifth more than a CV's usual columns.

@@ -32,7 +32,7 @@ ChangeScan::ChangeScan(const RegressionShape& shape)
   moments_.reserve(kMoments);
 }
 
-// Of a CV with second-order terms these are part of the lead-in.
+// Of a CV with Volterra terms these are part of the lead-in.
 void ChangeScan::take_shape(const ResidualRegression& regression) {
   RegressionShape shape = shape_;
   shape.terms += regression.lead_in() - shape.lead_in();

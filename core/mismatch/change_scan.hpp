@@ -34,7 +34,7 @@ struct ChangePoint {
 /// where it wins but no input explains anything since then, it is an end, if that too beats "no
 /// change".
 /// One pass over the rows in each direction gives the residual squares for all moments at once. No
-/// allocation unless CVs with and without second-order terms take turns.
+/// allocation unless CVs with and without Volterra terms take turns.
 class ChangeScan {
  public:
   explicit ChangeScan(const RegressionShape& shape);

@@ -36,6 +36,7 @@ void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
   MaterialityLimits& limits = limits_[index(cv, input)];
   limits.gain = std::max(limits.gain, limit);
   limits.time_constant = std::max(limits.time_constant, limit);
+  limits.gain_alone = true;
 }
 
 void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence) {
@@ -75,6 +76,11 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
     judge_jointly(cv, input, noise, evidence);
   else if (channel.gain != 0.0)  // of a channel that the model lacks no error is usual
     judge_alone(cv, input, noise, evidence);
+  const MaterialityLimits& limits = limits_[index(cv, input)];
+  if (limits.gain_alone && !evidence.usual)
+    evidence.p_value_material =
+        std::max(evidence.p_value_material,
+                 Materiality::beyond(evidence.gain_error, limits.gain, noise.freedom));
 }
 
 void ChannelEvaluator::judge_alone(int cv, int input, const EstimateNoise& noise,

@@ -39,7 +39,7 @@ class ChannelEvaluator {
                    std::vector<MaterialityLimits> limits);
 
   /// An error of the gain or the time constant up to `limit` (relative) matters in this channel no
-  /// longer, if it did.
+  /// longer, if it did, nor does what is no such error beside its gain.
   void widen_limits(int cv, int input, double limit);
   /// Evidence of all inputs to one CV into `evidence` (as many as inputs); the memory is ready.
   void evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence);

@@ -12,6 +12,8 @@ struct MaterialityLimits {
   double gain = calibration::materiality::kGain;
   double time_constant = calibration::materiality::kTimeConstant;
   double dead_time_samples = calibration::materiality::kDeadTimeSamples;
+  /// Where it is no error of gain, time constant or dead time, only its gain counts.
+  bool gain_alone = false;
 };
 
 /// An estimate with its standard deviation; the s.d. is infinite where nothing is known.

@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/mismatch/calibration.hpp"
@@ -14,7 +15,7 @@ namespace {
 namespace limits = calibration::curvature;
 
 // What the terms still say where those with channel `a` in them are left out; and how many go.
-double explained_by(const SecondOrderTerms& terms, int a, const Eigen::MatrixXd& triangle,
+double explained_by(const VolterraTerms& terms, int a, const Eigen::MatrixXd& triangle,
                     const Eigen::VectorXd& rotated, int& left_out) {
   std::vector<Eigen::Index> kept;
   for (int c = 0; c < terms.columns(); ++c)
@@ -29,19 +30,20 @@ double explained_by(const SecondOrderTerms& terms, int a, const Eigen::MatrixXd&
 }
 
 // Two s.d. of the local gain of channel `a`, relative to the model's.
-double gain_variation(const SecondOrderTerms& terms, int a, const Eigen::VectorXd& coefficients,
+double gain_variation(const VolterraTerms& terms, int a, const Eigen::VectorXd& coefficients,
                       int first, double own, int span) {
   const int count = static_cast<int>(terms.inputs().size());
+  const auto coefficient = [&](const std::array<int, 2>& columns) {
+    return (coefficients(first + columns[0]) + coefficients(first + columns[1])) / own;
+  };
   std::vector<double> slopes;
-  for (int b = 0; b < count; ++b) {
-    double sum = 0.0;
-    for (const int column : terms.columns_of(std::min(a, b), std::max(a, b)))
-      sum += coefficients(first + column);
-    slopes.push_back((a == b ? 2.0 : 1.0) * sum / own);
-  }
+  for (int b = 0; b < count; ++b)
+    slopes.push_back((a == b ? 2.0 : 1.0) *
+                     coefficient(terms.product_columns(std::min(a, b), std::max(a, b))));
+  const double bend = 3.0 * coefficient(terms.cube_columns(a));
   double sum = 0.0, square = 0.0;
   for (int age = 0; age < span; ++age) {
-    double change = 0.0;
+    double change = bend * terms.contribution(a, age) * terms.contribution(a, age);
     for (int b = 0; b < count; ++b)
       change += slopes[static_cast<std::size_t>(b)] * terms.contribution(b, age);
     sum += change;
@@ -56,7 +58,7 @@ double gain_variation(const SecondOrderTerms& terms, int a, const Eigen::VectorX
 std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
                                         const RegressionHistory& history,
                                         const ResidualRegression& regression,
-                                        const SecondOrderTerms& terms) {
+                                        const VolterraTerms& terms) {
   const int first = shape.columns();
   const int count = terms.columns();
   const int span = std::min(regression.span(), history.settled());

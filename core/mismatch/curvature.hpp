@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/mismatch/residual_regression.hpp"
-#include "core/mismatch/second_order_terms.hpp"
+#include "core/mismatch/volterra_terms.hpp"
 
 namespace mpm {
 
@@ -27,6 +27,6 @@ struct Curvature {
 [[nodiscard]] std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
                                                       const RegressionHistory& history,
                                                       const ResidualRegression& regression,
-                                                      const SecondOrderTerms& terms);
+                                                      const VolterraTerms& terms);
 
 }  // namespace mpm

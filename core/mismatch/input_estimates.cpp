@@ -3,7 +3,7 @@
 #include <array>
 
 #include "core/mismatch/calibration.hpp"
-#include "core/mismatch/second_order_terms.hpp"
+#include "core/mismatch/volterra_terms.hpp"
 #include "core/regression/rotation.hpp"
 
 namespace mpm {
@@ -23,7 +23,7 @@ InputEstimates::InputEstimates(const RegressionShape& shape)
   scales_.setZero(all);
   rotated_.setZero(all);
   estimate_.setZero(all);
-  coefficients_.setZero(shape.columns() + SecondOrderTerms::most_columns());
+  coefficients_.setZero(shape.columns() + VolterraTerms::most_columns());
 }
 
 void InputEstimates::read(int cv, const GivensQr& factor) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/mismatch/calibration.hpp"
-#include "core/mismatch/second_order_terms.hpp"
+#include "core/mismatch/volterra_terms.hpp"
 #include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
@@ -21,7 +21,7 @@ JointErrors::JointErrors(const RegressionShape& shape)
       errors_(Eigen::MatrixXd::Zero(shape.block(), shape.inputs * kUsualErrors)),
       error_(Eigen::VectorXd::Zero(shape.block())),
       sizes_(Eigen::VectorXd::Zero(shape.inputs * kUsualErrors)),
-      lead_in_(Eigen::VectorXd::Zero(shape.lead_in() + SecondOrderTerms::most_columns())),
+      lead_in_(Eigen::VectorXd::Zero(shape.lead_in() + VolterraTerms::most_columns())),
       own_lags_(Eigen::VectorXd::Zero(shape.residual_order)),
       feed_(shape.inputs * (kUsualErrors + kShifts) + shape.block() + 1),
       all_(shape.inputs * kUsualErrors, 1 + shape.inputs * kShifts),

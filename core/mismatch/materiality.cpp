@@ -15,17 +15,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// p-value of |parameter| <= limit: Student's t of the excess, one-sided.
-double beyond_limit(const Estimate& estimate, double limit, double freedom) {
-  const double excess = (std::abs(estimate.value) - limit) / estimate.deviation;
-  return excess > 0.0 ? 0.5 * f_upper_tail(excess * excess, 1.0, freedom) : 1.0;
-}
-
 bool surely_within(const Estimate& estimate, double limit) {
   return std::abs(estimate.value) + kNormalOneSided95 * estimate.deviation < limit;
 }
 
 }  // namespace
+
+double Materiality::beyond(const Estimate& estimate, double limit, double freedom) {
+  const double excess = (std::abs(estimate.value) - limit) / estimate.deviation;
+  return excess > 0.0 ? 0.5 * f_upper_tail(excess * excess, 1.0, freedom) : 1.0;
+}
 
 Materiality::Materiality(int block)
     : reduction_(std::max(block, kUsualErrors)),
@@ -72,11 +71,11 @@ void Materiality::judge_usual(const MaterialityLimits& limits, const EstimateNoi
                               ChannelEvidence& evidence) {
   constexpr double kTests = 3.0;
   const double log_time = std::log1p(limits.time_constant);
-  const double beyond =
-      std::min({beyond_limit(evidence.gain_error, limits.gain, noise.freedom),
-                beyond_limit(evidence.log_time_error, log_time, noise.freedom),
-                beyond_limit(evidence.dead_time_error, limits.dead_time_samples, noise.freedom)});
-  evidence.p_value_material = std::min(1.0, kTests * beyond);
+  const double most =
+      std::min({beyond(evidence.gain_error, limits.gain, noise.freedom),
+                beyond(evidence.log_time_error, log_time, noise.freedom),
+                beyond(evidence.dead_time_error, limits.dead_time_samples, noise.freedom)});
+  evidence.p_value_material = std::min(1.0, kTests * most);
   evidence.harmless = surely_within(evidence.gain_error, limits.gain) &&
                       surely_within(evidence.log_time_error, log_time) &&
                       surely_within(evidence.dead_time_error, limits.dead_time_samples);

@@ -25,6 +25,8 @@ class Materiality {
                            const EstimateNoise& noise, ChannelEvidence& evidence);
   /// Whether no more than noise is left of a block of so many coefficients.
   [[nodiscard]] static bool explained(double left, Eigen::Index block, const EstimateNoise& noise);
+  /// p-value of |parameter| <= limit: Student's t of the excess, one-sided.
+  [[nodiscard]] static double beyond(const Estimate& estimate, double limit, double freedom);
   /// `left`: by the errors in `evidence`. `usual`: the space that the directed test looks at.
   void judge(double left, const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
              const UsualErrorSpace& usual, const MaterialityLimits& limits,

@@ -16,7 +16,7 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
       model_(model),
       history_(shape, remembered),
       curvatures_(static_cast<std::size_t>(shape.cvs)),
-      work_(shape.columns() + SecondOrderTerms::most_columns(), patience),
+      work_(shape.columns() + VolterraTerms::most_columns(), patience),
       evaluator_(shape, model, std::move(limits)),
       evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs) * memories.size()),
       explained_(static_cast<std::size_t>(shape.cvs)) {
@@ -65,7 +65,7 @@ bool MismatchDetector::take_in_curvature(int cv, double least) {
   const int span = std::min(regression.span(), history_.settled());
   if (curvatures_[at] || span == 0) return false;
   fold(cv);
-  SecondOrderTerms terms(model_, cv, history_, span);
+  VolterraTerms terms(model_, cv, history_, span);
   std::optional<Curvature> found = find_curvature(shape_, cv, history_, regression, terms);
   if (!found || !(found->p_value < calibration::curvature::kCertainPValue) ||
       !(found->explained > least))

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/statistics/readback.hpp"
+
 namespace mpm {
 
 OutsideSignals::OutsideSignals(const RegressionShape& shape, int signals, std::vector<double> poles,
@@ -15,8 +17,9 @@ OutsideSignals::OutsideSignals(const RegressionShape& shape, int signals, std::v
       poles_(std::move(poles)),
       origin_(static_cast<std::size_t>(signals), std::numeric_limits<double>::quiet_NaN()),
       last_(static_cast<std::size_t>(signals), 0.0),
+      readbacks_(static_cast<std::size_t>(signals)),
       unknown_(Eigen::VectorXd::Constant(signals, std::numeric_limits<double>::quiet_NaN())),
-      feed_(shape.lead_in() + SecondOrderTerms::most_columns() + block() + 1),
+      feed_(shape.lead_in() + VolterraTerms::most_columns() + block() + 1),
       factor_(shape.lead_in() + block(), 1) {
   for (int w = 0; w < signals * block(); ++w) windows_.emplace_back(depth);
 }
@@ -44,13 +47,31 @@ void OutsideSignals::skip(std::int64_t missing) {
 FollowedSignal OutsideSignals::followed(int cv, const RegressionHistory& history,
                                         const ResidualRegression& regression) {
   FollowedSignal best;
+  const int span = std::min(regression.span(), depth_);
   for (int i = 0; i < signals_; ++i) {
+    if (reads_an_input_back(i, history, span)) continue;
     const double explained = explained_by(i, cv, history, regression);
     if (explained <= best.explained) continue;
     best.explained = explained;
     best.signal = i;
   }
   return best;
+}
+
+bool OutsideSignals::reads_an_input_back(int signal, const RegressionHistory& history, int span) {
+  std::optional<bool>& known = readbacks_[static_cast<std::size_t>(signal)];
+  if (known) return *known;
+  const int inputs = history.inputs();
+  if (span < rows_to_read_back(inputs)) return false;
+  Eigen::MatrixXd moves(span, inputs);
+  Eigen::VectorXd values(span);
+  const double* window = windows_[static_cast<std::size_t>(signal * block())].window();
+  for (int k = 0; k < span; ++k) {
+    for (int i = 0; i < inputs; ++i) moves(k, i) = history.input(i, span - 1 - k);
+    values(k) = window[span - 1 - k];
+  }
+  known = reads_back(moves, values);
+  return *known;
 }
 
 double OutsideSignals::explained_by(int signal, int cv, const RegressionHistory& history,

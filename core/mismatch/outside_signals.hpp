@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/mismatch/residual_regression.hpp"
@@ -19,7 +20,8 @@ struct FollowedSignal {
 /// Signals that are measured but no inputs of the model (set-points, auxiliary ones), and how well
 /// each by itself explains a CV's residual: a regression on the constant, the last residuals of all
 /// CVs and the signal's value and exponentially weighted means of it (`poles`), with the rows and
-/// weights of the CV's own regression. No allocation after construction.
+/// weights of the CV's own regression. Signals that read an input back (`reads_back`) are none.
+/// Allocates when it is first asked of a signal with enough rows.
 class OutsideSignals {
  public:
   /// `depth`: samples remembered.
@@ -35,6 +37,7 @@ class OutsideSignals {
 
  private:
   [[nodiscard]] int block() const { return static_cast<int>(poles_.size()) + 1; }
+  [[nodiscard]] bool reads_an_input_back(int signal, const RegressionHistory& history, int span);
   [[nodiscard]] double explained_by(int signal, int cv, const RegressionHistory& history,
                                     const ResidualRegression& regression);
 
@@ -43,8 +46,9 @@ class OutsideSignals {
   int depth_;
   std::vector<double> poles_;
   std::vector<double> origin_, last_;
-  std::vector<LagWindow> windows_;  // signal-major: value, means
-  Eigen::VectorXd unknown_;         // all NaN
+  std::vector<std::optional<bool>> readbacks_;  // per signal, once it is known
+  std::vector<LagWindow> windows_;              // signal-major: value, means
+  Eigen::VectorXd unknown_;                     // all NaN
   RowFeed feed_;
   GivensQr factor_;  // [lead-in | signal]
 };

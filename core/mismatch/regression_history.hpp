@@ -18,7 +18,7 @@ struct RegressionShape {
   int residual_order = 1;          ///< p >= 1
   std::vector<double> tail_poles;  ///< r_t in (0, 1); at least one
   std::vector<double> start_poles = {};
-  int terms = 0;  ///< columns of second-order terms behind the lead-in, of a CV that has some
+  int terms = 0;  ///< columns of Volterra terms behind the lead-in, of a CV that has some
 
   [[nodiscard]] int block() const { return fir_lags + static_cast<int>(tail_poles.size()); }
   [[nodiscard]] int lead_in() const {
@@ -53,6 +53,7 @@ class RegressionHistory {
   void skip(std::int64_t missing);
 
   [[nodiscard]] int depth() const { return depth_; }
+  [[nodiscard]] int inputs() const { return shape_.inputs; }
   /// Rows, at most `depth`, in which nothing is left of what the start left behind.
   [[nodiscard]] int settled() const { return settled_; }
   /// Whether the newest row serves this CV.

@@ -36,7 +36,7 @@ ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
   }
 }
 
-void ResidualRegression::take_in(SecondOrderTerms terms, const RegressionHistory& history,
+void ResidualRegression::take_in(VolterraTerms terms, const RegressionHistory& history,
                                  RowWorkspace& work) {
   fold(history, work);
   columns_ += terms.columns() - (terms_ ? terms_->columns() : 0);

@@ -10,7 +10,7 @@
 #include "core/mismatch/noise_level.hpp"
 #include "core/mismatch/regression_history.hpp"
 #include "core/mismatch/regression_memory.hpp"
-#include "core/mismatch/second_order_terms.hpp"
+#include "core/mismatch/volterra_terms.hpp"
 #include "core/regression/row_batch.hpp"
 
 namespace mpm {
@@ -41,9 +41,9 @@ class ResidualRegression {
 
   /// Takes these terms in from now on, as columns behind the lead-in, and begins with all samples
   /// that it rests on. Allocates.
-  void take_in(SecondOrderTerms terms, const RegressionHistory& history, RowWorkspace& work);
+  void take_in(VolterraTerms terms, const RegressionHistory& history, RowWorkspace& work);
   /// Those taken in; null before.
-  [[nodiscard]] const SecondOrderTerms* terms() const { return terms_ ? &*terms_ : nullptr; }
+  [[nodiscard]] const VolterraTerms* terms() const { return terms_ ? &*terms_ : nullptr; }
   /// Columns before the inputs' blocks.
   [[nodiscard]] int lead_in() const { return lead_in_ + (terms_ ? terms_->columns() : 0); }
   /// Theirs, of the row whose response is `age` samples old.
@@ -103,7 +103,7 @@ class ResidualRegression {
   NoiseLevel noise_;
   LagWindow weights_;  // per sample: 1 / scale, times the clip; 0 = no row, < 0: it waits
   LagWindow scales_;   // per sample: the noise level before it
-  std::optional<SecondOrderTerms> terms_;
+  std::optional<VolterraTerms> terms_;
   std::vector<RegressionMemory> memories_;
   std::vector<int> slides_;  // per memory: samples since its window was rebuilt
 };

@@ -31,7 +31,8 @@ Aligner::Aligner(const SignalCounts& counts, const std::array<bool, kSignalKindC
     : counts_(counts), settings_(settings), sink_(std::move(sink)) {
   settings_.capacity = std::max(settings_.capacity, 2 * settings_.max_lateness + 2);
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
-    if (needed[kind]) needed_ |= 1u << kind;
+    (needed[kind] ? needed_ : welcome_) |=
+        needed[kind] || settings_.welcome[kind] ? 1u << kind : 0u;
   Slot empty;
   empty.frame = Frame(counts);
   current_.slots.assign(static_cast<std::size_t>(settings_.capacity), empty);
@@ -39,7 +40,7 @@ Aligner::Aligner(const SignalCounts& counts, const std::array<bool, kSignalKindC
 }
 
 void Aligner::push(const BlockView& block) {
-  if ((needed_ & bit_of(block.kind)) == 0) return;
+  if ((taken() & bit_of(block.kind)) == 0) return;
   const auto count = static_cast<std::size_t>(counts_.of(block.kind));
   if (block.values.size() != count || (!block.quality.empty() && block.quality.size() != count) ||
       block.interval > kLargestInterval || block.interval < -kLargestInterval) {
@@ -62,7 +63,7 @@ void Aligner::expire() {
     const unsigned bit = 1u << kind;
     const bool behind = (current_.seen & bit) == 0 ||
                         current_.newest_of[kind] < current_.newest - settings_.max_lateness;
-    if ((needed_ & bit) != 0 && behind) silent_ |= bit;
+    if ((taken() & bit) != 0 && behind) silent_ |= bit;
   }
   std::int64_t last_complete = current_.newest;
   while (last_complete >= current_.next && !complete(last_complete)) --last_complete;
@@ -129,12 +130,13 @@ bool Aligner::store(Window& window, const BlockView& block) {
 
   std::int64_t& newest_of_kind = window.newest_of[static_cast<std::size_t>(block.kind)];
   const bool seen = (window.seen & bit) != 0;
+  const bool adjacent = seen && block.interval == newest_of_kind + 1;
   if (seen && block.interval < newest_of_kind) ++counters_.out_of_order;
   newest_of_kind = seen ? std::max(newest_of_kind, block.interval) : block.interval;
   window.newest = std::max(window.newest, block.interval);
   window.seen |= bit;
-  if (&window == &current_) silent_ &= ~bit;
-  return slot.present == needed_;
+  if (&window == &current_ && (adjacent || (needed_ & bit) != 0)) silent_ &= ~bit;
+  return (slot.present & needed_) == needed_;
 }
 
 void Aligner::fill(Slot& slot, const BlockView& block) {
@@ -170,7 +172,7 @@ void Aligner::emit(Slot& slot) {
   if (counters_.frames > 0)
     counters_.missing += static_cast<std::uint64_t>(interval - last_emitted_ - 1);
   ++counters_.frames;
-  if (slot.present != needed_) ++counters_.incomplete;
+  if ((slot.present & needed_) != needed_) ++counters_.incomplete;
   last_emitted_ = interval;
   slot.frame.interval = interval;
   sink_(slot.frame);
@@ -178,7 +180,8 @@ void Aligner::emit(Slot& slot) {
 
 bool Aligner::complete(std::int64_t interval) const {
   const Slot& slot = current_.slots[place_of(interval)];
-  return slot.used && slot.interval == interval && slot.present == needed_;
+  const unsigned awaited = needed_ | (welcome_ & ~silent_);
+  return slot.used && slot.interval == interval && (slot.present & awaited) == awaited;
 }
 
 void Aligner::advance() {
@@ -189,7 +192,7 @@ void Aligner::advance() {
 bool Aligner::past_lateness(std::int64_t interval) const {
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
     const unsigned bit = 1u << kind;
-    if ((needed_ & ~silent_ & bit) == 0) continue;
+    if ((taken() & ~silent_ & bit) == 0) continue;
     if ((current_.seen & bit) == 0) return false;
     if (current_.newest_of[kind] <= interval + settings_.max_lateness) return false;
   }
@@ -207,7 +210,7 @@ void Aligner::take_over() {
   std::swap(current_, candidate_);
   candidate_.started = false;
   for (Slot& slot : candidate_.slots) slot.used = false;
-  silent_ = 0;
+  silent_ &= welcome_;  // of which a new beginning says nothing
   advance();
 }
 

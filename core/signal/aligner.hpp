@@ -26,6 +26,9 @@ struct AlignerSettings {
   int max_lateness = calibration::alignment::kMaxLateness;
   /// Intervals that one kind may be ahead of another one, > max_lateness.
   int capacity = calibration::alignment::kCapacity;
+  /// Kinds that frames take along besides those that they need: awaited while they come, missed by
+  /// nobody where they do not.
+  std::array<bool, kSignalKindCount> welcome{};
 };
 
 /// What became of the blocks and intervals so far.
@@ -47,14 +50,16 @@ struct AlignerCounters {
 ///
 /// An interval is settled, i.e. its frame is emitted and nothing more is accepted for it, when all
 /// intervals before it are settled and
-///   - all needed blocks are there, or
-///   - every needed kind has gone on to an interval more than `max_lateness` newer, or
+///   - all blocks that are awaited are there, or
+///   - every kind that is awaited has gone on to an interval more than `max_lateness` newer, or
 ///   - some kind is `capacity` intervals ahead, or
 ///   - `expire()` says that a kind has fallen silent, or that what came last waits for too long.
-/// Absent blocks of an emitted frame are bad and have no value; an interval of which nothing came
-/// is left out. So as long as blocks come no more than `max_lateness` intervals late, the frames
-/// depend on what came and not on its order. The first frame after a start waits for the lateness
-/// to pass, or for `expire()`.
+/// A needed kind is awaited until `expire()` finds it silent, and again once it comes; so is a
+/// welcome one, but again only once it comes in adjacent intervals: what is sent now and then holds
+/// up no frame. Absent blocks of an emitted frame are bad and have no value; an interval of which
+/// nothing came is left out. So as long as blocks come no more than `max_lateness` intervals late,
+/// the frames depend on what came and not on its order. The first frame after a start waits for the
+/// lateness to pass, or for `expire()`.
 ///
 /// Blocks far from the current window are gathered in a second one. When that one has a complete
 /// frame, it takes over: the controller restarted or was away. A single stray number changes
@@ -64,7 +69,8 @@ class Aligner {
  public:
   using Sink = std::function<void(const Frame&)>;
 
-  /// `needed[kind]`: frames wait for that kind; blocks of other kinds are ignored.
+  /// `needed[kind]`: frames wait for that kind; blocks of other kinds that are not welcome are
+  /// ignored.
   /// `sink` gets each frame from inside `push` or `expire`; it is valid during the call.
   Aligner(const SignalCounts& counts, const std::array<bool, kSignalKindCount>& needed, Sink sink,
           const AlignerSettings& settings = {});
@@ -118,8 +124,11 @@ class Aligner {
   SignalCounts counts_;
   AlignerSettings settings_;
   Sink sink_;
+  [[nodiscard]] unsigned taken() const { return needed_ | welcome_; }
+
   unsigned needed_ = 0;
-  unsigned silent_ = 0;  // needed kinds that nobody waits for
+  unsigned welcome_ = 0;  // and not needed
+  unsigned silent_ = 0;   // kinds of these that nobody waits for
   Window current_;
   Window candidate_;
   std::int64_t offset_ = 0;        // emitted minus received interval number

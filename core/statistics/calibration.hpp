@@ -47,6 +47,16 @@ inline constexpr double kTie = 1e-9;        ///< of the range: values that diffe
 inline constexpr double kOneQuantum = 1.5;  ///< quanta: moves below are of one
 inline constexpr double kMuch = 0.5;        ///< of the signal's s.d., of the rows
 
+/// Whether a signal reads an input back (readback.hpp).
+namespace readback {
+/// Of the signal's own past, and of each input. Chosen: a control loop below answers within.
+inline constexpr int kLags = 5;
+/// Of what the signal's own past leaves. Chosen: of the recovery boiler's measured flows,
+/// temperature and valve position the inputs explain all, of its liquor's solids 0.3 %.
+inline constexpr double kMostOf = 0.5;
+inline constexpr int kRowsPerColumn = 10;  ///< chosen
+}  // namespace readback
+
 /// Whether a series of values changed (level_change.hpp).
 namespace level_change {
 /// Fewer tell no change from scatter: the p-value of a step ten times the scatter is 0.01. Chosen.

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "config/unit_layout.hpp"
-#include "core/signal/aligner.hpp"
 
 namespace mpm::files {
 
@@ -24,6 +23,13 @@ std::array<bool, kSignalKindCount> needed_kinds(const config::UnitConfig& unit) 
           needed[k] || (!tag.empty() && (kind != SignalKind::kSetpoint || calculates_with(tag)));
   }
   return needed;
+}
+
+AlignerSettings aligner_settings(const config::UnitConfig& unit) {
+  AlignerSettings settings;
+  for (const std::string& tag : measured_tags_of(unit, SignalKind::kSetpoint))
+    if (!tag.empty()) settings.welcome[static_cast<std::size_t>(SignalKind::kSetpoint)] = true;
+  return settings;
 }
 
 std::chrono::nanoseconds frame_patience(const config::UnitConfig& unit) {

@@ -73,12 +73,14 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
                    config.monitor.performance_window_s / config.sample_time_s),
       calculator_(config),
       calculated_(config.counts()),
-      aligner_(config.counts(), files::needed_kinds(config),
-               [this](const Frame& frame) {
-                 calculated_ = frame;
-                 calculator_.fill(calculated_);
-                 on_frame(calculated_);
-               }),
+      aligner_(
+          config.counts(), files::needed_kinds(config),
+          [this](const Frame& frame) {
+            calculated_ = frame;
+            calculator_.fill(calculated_);
+            on_frame(calculated_);
+          },
+          files::aligner_settings(config)),
       patience_(files::frame_patience(config)),
       inputs_(expected_of(config), now),
       now_(now),

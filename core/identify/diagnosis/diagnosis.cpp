@@ -21,6 +21,7 @@
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/split.hpp"
+#include "core/statistics/readback.hpp"
 
 namespace mpm {
 namespace {
@@ -171,9 +172,18 @@ void add_horizons(const Unseen& unseen, const VectorXd& before, const VectorXd& 
                               rms_of_squares(unseen.prediction_errors(after, horizon))});
 }
 
+/// With aux signals that read an input back as if they stood still: beside it they are no causes,
+/// and hide what its channels do.
+Recording without_readbacks(Recording recording) {
+  for (Index a = 0; a < recording.aux.cols(); ++a)
+    if (reads_back(recording.inputs, recording.aux.col(a))) recording.aux.col(a).setZero();
+  return recording;
+}
+
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
-Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording* unseen_runs,
+Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {
+  const Recording measured = without_readbacks(whole);
   const Recording recording = with_setpoints(measured);
   std::optional<Recording> validation;
   if (unseen_runs != nullptr) validation = with_setpoints(*unseen_runs);
@@ -251,7 +261,7 @@ Diagnosis run(const ModelSpec& given, const Recording& measured, const Recording
                     {settings.mv_count, base.input_count, aux}, outside, search_settings))
       diagnosis.findings.push_back(std::move(late));
   decide(least_explained(residuals, recording.cvs),
-         !sticking_loops(base, settings.mv_count, measured).empty(), diagnosis);
+         !sticking_loops(base, settings.mv_count, whole).empty(), diagnosis);
   tell_on_clock(recording, given, diagnosis);
   return diagnosis;
 }

@@ -64,12 +64,15 @@ std::string plan_text(const IdentificationRun& run) {
 
 TestLimits test_limits(const config::UnitConfig& unit) {
   TestLimits limits;
-  for (const config::MvLimits& each : unit.simulation.mv_limits)
-    limits.inputs.push_back({each.low, each.high});
+  for (std::size_t i = 0; i < unit.mv.size(); ++i) {
+    const SignalLimits own = unit.mv_limits(i);
+    limits.inputs.push_back({own.low, own.high});
+  }
   limits.inputs.resize(static_cast<std::size_t>(unit.counts().inputs()));
-  for (const config::CvLimits& each : unit.simulation.cv_limits)
-    limits.cvs.push_back({each.low, each.high});
-  limits.cvs.resize(unit.cv.size());
+  for (std::size_t j = 0; j < unit.cv.size(); ++j) {
+    const SignalLimits own = unit.cv_limits(j);
+    limits.cvs.push_back({own.low, own.high});
+  }
   return limits;
 }
 

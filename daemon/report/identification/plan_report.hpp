@@ -11,7 +11,7 @@ namespace mpm::report {
 [[nodiscard]] nlohmann::ordered_json plan_json(const IdentificationRun& run);
 [[nodiscard]] std::string plan_text(const IdentificationRun& run);
 
-/// What the unit file's section `simulation` says of limits.
+/// The limits that count of each signal, as the unit file says them.
 [[nodiscard]] TestLimits test_limits(const config::UnitConfig& unit);
 
 }  // namespace mpm::report

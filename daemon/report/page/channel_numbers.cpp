@@ -181,6 +181,16 @@ std::string unit_of(const ChannelNumbers& channel, const config::UnitConfig& uni
   return text;
 }
 
+/// The unit file has a pair as its sampled form, which has neither time nor dead time.
+void set_pair(const ChannelAnswer& answer, ChannelNumbers& channel) {
+  channel.time_constants.resize(1);
+  channel.time_constants.front().new_value = answer.pair->time;
+  channel.dead_time.new_value = answer.dynamics->dead_time_s;
+  channel.damping.emplace();
+  channel.damping->new_value = answer.pair->damping;
+  if (answer.damping) set_interval(*channel.damping, answer.damping->low, answer.damping->high);
+}
+
 /// RFC 4180.
 std::string csv_text(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
@@ -208,6 +218,7 @@ std::string csv_of(const std::vector<ChannelNumbers>& channels, const config::Un
     std::vector<Row> rows = {{"gain", unit_of(channel, unit), channel.gain}};
     for (const OldAndNew& each : channel.time_constants)
       rows.push_back({"time constant", "s", each});
+    if (channel.damping) rows.push_back({"damping", "", *channel.damping});
     rows.push_back({"dead time", "s", channel.dead_time});
     for (const auto& [name, of, number] : rows) {
       if (!std::isfinite(number.old_value) && !std::isfinite(number.new_value)) continue;
@@ -262,6 +273,15 @@ Json times_json(const std::vector<OldAndNew>& numbers, bool changed) {
   return cell(before, after, range, "", changed);
 }
 
+/// "15.8 s, damping 0.8"
+Json lags_json(const ChannelNumbers& channel, bool changed) {
+  Json json = times_json(channel.time_constants, changed);
+  if (channel.damping)
+    json["new"] =
+        json["new"].get<std::string>() + ", damping " + rounded(channel.damping->new_value);
+  return json;
+}
+
 }  // namespace
 
 bool ChannelNumbers::changed(double sample_time_s) const {
@@ -299,6 +319,7 @@ std::vector<ChannelNumbers> channel_numbers(const IdentificationRun& run) {
     if (answer.left_out != LeftOut::kIdentified) continue;
     ChannelNumbers channel = compared(answer.cv, answer.input, before(answer.cv, answer.input),
                                       after(answer.cv, answer.input));
+    if (answer.pair) set_pair(answer, channel);
     set_interval(channel.gain, answer.gain.low, answer.gain.high);
     set_interval(channel.dead_time, answer.dead_time_s.low, answer.dead_time_s.high);
     for (std::size_t i = 0; i < answer.time_constants.size() && i < channel.time_constants.size();
@@ -322,7 +343,7 @@ nlohmann::ordered_json numbers_json(const std::vector<ChannelNumbers>& channels,
                             {"input", unit.input_tag(channel.input)},
                             {"changed", channel.changed(unit.sample_time_s)},
                             {"gain", gain_json(channel.gain, unit_of(channel, unit))},
-                            {"time_constant", times_json(channel.time_constants, lags)},
+                            {"time_constant", lags_json(channel, lags)},
                             {"dead_time", times_json({channel.dead_time}, late)}});
   }
   json["csv"] = csv_of(channels, unit);

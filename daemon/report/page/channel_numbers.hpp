@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/model/model_spec.hpp"
@@ -27,6 +28,9 @@ struct ChannelNumbers {
   OldAndNew gain;                         ///< CV units per input unit (and s where it integrates)
   std::vector<OldAndNew> time_constants;  ///< s; those of two lags have no interval of their own
   OldAndNew dead_time;                    ///< s
+  /// Of a pair that overshoots, whose time is the one time constant; the interval is that of the
+  /// fit.
+  std::optional<OldAndNew> damping = {};
 
   /// By so much that somebody would type it anew; what a fit moves along with it is less.
   [[nodiscard]] bool changed(double sample_time_s) const;

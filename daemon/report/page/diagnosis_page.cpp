@@ -190,6 +190,7 @@ Json errors_json(const DiagnosisRun& run) {
     const CvScore& score = run.diagnosis.scores[cv];
     const std::string& unit = run.unit.cv[cv].unit;
     std::string less = interval_text(100.0 * score.gain_low, 100.0 * score.gain_high, 2) + " %";
+    if (less.front() == '-') less.replace(0, 1, "\u2212");  // as all numbers of the page
     if (score.gain_low == score.gain_high) less = "unchanged";
     if (score.refused) less = "tried, refused";
     const auto fit = [](double value) { return fixed_text(value, 0) + " %"; };

@@ -84,6 +84,9 @@ const translucent = (role, share) => `color-mix(in srgb, ${colour(role)} ${share
 
 // --- a plot -----------------------------------------------------------------------------------
 
+// Of a logarithmic axis the decades alone; null is a tick that the plot has no room for.
+const tickText = (tick, log) => !known(tick) || log && Math.abs(Math.log10(tick) % 1) > 1e-9 ? '' : number(tick);
+
 function axes(plot, range) {
   const bare = plot.bare;  // the plot below it has the axis
   const common = {stroke: () => colour('muted'), font: font(), grid: {stroke: () => colour('grid'), width: 1},
@@ -100,7 +103,7 @@ function axes(plot, range) {
       x.label = `${plot.x.label || 'time'}, ${name}`;
     }
   } else {
-    x.values = (_, ticks) => ticks.map(tick => plot.x.log && Math.abs(Math.log10(tick) % 1) > 1e-9 ? '' : number(tick));
+    x.values = (_, ticks) => ticks.map(tick => tickText(tick, plot.x.log));
     x.label = plot.x.label;
   }
   if (x.label) Object.assign(x, {labelSize: 18, labelGap: 0, labelFont: font()});
@@ -108,7 +111,7 @@ function axes(plot, range) {
   // Plots of one group stand above each other.
   const y = {...common, size: (_, values) => plot.group ? 54 : 12 + 6.4 * Math.max(3, widest(values)),
     space: plot.low ? 22 : 32, gap: 4,
-    values: (_, ticks) => ticks.map(tick => plot.y.log && Math.abs(Math.log10(tick) % 1) > 1e-9 ? '' : number(tick))};
+    values: (_, ticks) => ticks.map(tick => tickText(tick, plot.y.log))};
   return [x, y];
 }
 
@@ -237,7 +240,9 @@ function figure(plot, {keys = true, title = plot.title, height = plot.low ? 110 
       plot.note ? element('span', {class: 'note'}, plot.note) : null, readout);
   const canvas = element('div', {class: 'canvas', role: 'img', tabindex: 0,
     'aria-label': [title, plot.note, plot.y.label, plot.lines.map(line => line.name).join(', ')].filter(Boolean).join('. ')});
-  const node = element('figure', {class: plot.low ? 'low' : ''}, plot.y.label !== title ? element('div', {class: 'unit'}, plot.y.label) : null, canvas);
+  // Below a title that is the tag, its unit alone.
+  const unit = plot.y.label === title ? '' : plot.y.label.startsWith(`${title}, `) ? plot.y.label.slice(title.length + 2) : plot.y.label;
+  const node = element('figure', {class: plot.low ? 'low' : ''}, unit ? element('div', {class: 'unit'}, unit) : null, canvas);
   if (caption.childNodes.length > 1 || title) node.prepend(caption); else node.append(readout);
 
   const x = plot.paths ? [...new Set(plot.lines.flatMap(line => line.x))].filter(known).sort((a, b) => a - b) : positions(plot.x);

@@ -109,14 +109,16 @@ function numbers() {
       small ? element('span', {class: 'range'}, small) : null,
     ].filter(Boolean);
   };
-  const row = each => ({name: each.changed ? 'changed' : '', cells: [`${each.input} → ${each.cv}`, value(each.gain), value(each.time_constant), value(each.dead_time)]});
+  // Broken behind the arrow, not within a tag.
+  const channel = each => element('span', {}, element('span', {class: 'tag'}, `${each.input} →`), ' ', element('span', {class: 'tag'}, each.cv));
+  const row = each => ({name: each.changed ? 'changed' : '', cells: [channel(each), value(each.gain), value(each.time_constant), value(each.dead_time)]});
   const columns = ['channel', 'gain', 'time constant', 'dead time'];
   const changed = rows.filter(each => each.changed), same = rows.filter(each => !each.changed);
   const shown = changed.length ? changed : rows;
   return element('div', {id: 'numbers'}, table('numbers', columns, shown.map(row)),
       changed.length && same.length ? element('details', {class: 'plain'}, element('summary', {}, `${same.length} others, within 5 % of the unit file’s`), table('numbers', columns, same.map(row))) : null,
       element('p', {class: 'tools'}, yaml ? copyButton('YAML', yaml) : null, copyButton('CSV', csv),
-        element('span', {class: 'note'}, (anyOld ? 'Struck out: the unit file’s. ' : '') + 'Small: 95 % interval.')));
+        element('span', {class: 'note'}, (anyOld && changed.length ? 'Struck out: the unit file’s. ' : '') + 'Small: 95 % interval.')));
 }
 
 // Plots of one axis above each other: the last one has its ticks.

@@ -18,6 +18,7 @@ constexpr double kMinute = 60.0, kHour = 3600.0, kDay = 86400.0;
 constexpr double kOfTheNext = 2.0;  ///< so much of a unit of time is read in it
 constexpr int kMostDecimals = 4;    ///< of a number that is read without a power of ten
 constexpr double kLargest = 1e7;
+constexpr double kSmallest = 1e-3;  ///< zeros after the point are counted no further
 
 int magnitude(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))); }
 
@@ -68,7 +69,7 @@ std::string fixed_text(double value, int decimals) {
   if (!std::isfinite(value)) return "\u2013";
   char text[64];
   const double size = std::abs(value);
-  if (size >= kLargest || (decimals > kMostDecimals && size > 0.0 && size < 0.1)) {
+  if (size >= kLargest || (decimals > kMostDecimals && size > 0.0 && size < kSmallest)) {
     const int exponent = magnitude(value);
     std::snprintf(text, sizeof text, "%.*f", std::clamp(decimals + exponent, 0, 4),
                   value / std::pow(10.0, exponent));

@@ -232,6 +232,49 @@ TEST_CASE("aligner: kinds of unneeded topics are ignored") {
   CHECK(bench.intervals() == range(0, 9));
 }
 
+AlignerSettings with_setpoints() {
+  AlignerSettings settings;
+  settings.welcome[static_cast<std::size_t>(SignalKind::kSetpoint)] = true;
+  return settings;
+}
+
+TEST_CASE("aligner: a welcome kind is awaited while it comes, as late as it may") {
+  Bench bench(with_setpoints());
+  for (std::int64_t k = 100; k <= 140; ++k) {
+    bench.push_all(k, k);
+    if (k >= 105) bench.push(SignalKind::kSetpoint, k - 5);
+  }
+  CHECK(bench.intervals() == range(100, 135));
+  for (const Seen& seen : bench.frames)
+    CHECK(seen.values.back() ==
+          10.0 * static_cast<double>(seen.interval) + static_cast<double>(SignalKind::kSetpoint));
+}
+
+TEST_CASE("aligner: nobody misses a welcome kind that does not come") {
+  Bench bench(with_setpoints());
+  bench.push_all(100, 120);
+  CHECK(bench.frames.empty());  // it might come
+  bench.aligner.expire();
+  CHECK(bench.intervals() == range(100, 120));
+  bench.push_all(121, 130);
+  CHECK(bench.intervals() == range(100, 130));  // at once
+  // Now and then it comes, and holds up nothing.
+  for (std::int64_t k = 131; k <= 160; ++k) {
+    if (k % 10 == 0) bench.push(SignalKind::kSetpoint, k);
+    bench.push_all(k, k);
+    CHECK(bench.intervals().back() == k);
+  }
+  CHECK(bench.aligner.counters().incomplete == 0);
+  // Once it comes in adjacent intervals it is awaited again, until it stops.
+  bench.push(SignalKind::kSetpoint, 161);
+  bench.push(SignalKind::kSetpoint, 162);
+  bench.push_all(161, 175);
+  CHECK(bench.intervals().back() == 162);
+  bench.aligner.expire();
+  CHECK(bench.intervals() == range(100, 175));
+  CHECK(bench.aligner.counters().incomplete == 0);
+}
+
 TEST_CASE("aligner: a kind may run ahead of the others by the capacity") {
   Bench bench(AlignerSettings{8, 256});
   bench.push_all(0, 19);

@@ -74,5 +74,23 @@ TEST_CASE("an identified channel has its own intervals") {
   CHECK(all[0].dead_time.low == 0.8);
 }
 
+// The unit file holds the pair's sampled form; the table says what the fit found.
+TEST_CASE("a pair that overshoots has its time, damping and dead time") {
+  IdentificationRun run = small_run();
+  ChannelAnswer& answer = run.identification.channels[0];
+  answer.dynamics = TransferFunction{2.0, {}, 0.0, 1.0, false};
+  answer.pair = DampedPair{8.0, 0.5};
+  run.identification.model.channels[0].dynamics = sampled(*answer.pair, 2.0, 1.0, 1.0);
+  const std::vector<ChannelNumbers> all = channel_numbers(run);
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].time_constants.at(0).new_value == 8.0);
+  CHECK(all[0].time_constants.at(0).low == 7.0);
+  CHECK(all[0].dead_time.new_value == 1.0);
+  CHECK(all[0].dead_time.high == 1.2);
+  const auto json = numbers_json(all, run.unit);
+  CHECK(json["rows"][0]["time_constant"]["new"] == "8.0 s, damping 0.5");
+  CHECK(json["csv"].get<std::string>().find("y,u,damping,,,0.5,,\n") != std::string::npos);
+}
+
 }  // namespace
 }  // namespace mpm::test

@@ -16,8 +16,9 @@ TEST_CASE("a number has the digits that its interval knows") {
   CHECK(rounded(7.2, 5.0, 9.4, "degC") == "7.2 degC");
   CHECK(rounded(-23922.0, -30316.0, -18877.0, "s") == "\u221223900 s");
   CHECK(rounded(0.0, -1.0, 1.0) == "0.0");
-  CHECK(rounded(-0.001, -1.0, 1.0) == "0.0");         // no minus before 0
-  CHECK(rounded(10.0, 9.9999999, 10.0) == "10.000");  // five digits are enough
+  CHECK(rounded(-0.001, -1.0, 1.0) == "0.0");               // no minus before 0
+  CHECK(rounded(0.074189, 0.07342, 0.07495) == "0.07419");  // a power of ten only below 0.001
+  CHECK(rounded(10.0, 9.9999999, 10.0) == "10.000");        // five digits are enough
 }
 
 TEST_CASE("a number without an interval has three digits") {

@@ -5,6 +5,35 @@ import { browser, empty, kScreen, open, overflow } from "./browser.mjs";
 
 const [diagnosis, identification, pictures] = process.argv.slice(2);
 
+// Texts that stick out of what holds them, and tags that are broken.
+const stickingOut = (page) => page.evaluate(() => {
+  const right = (node) => {
+    const range = document.createRange();
+    range.selectNodeContents(node);
+    return range.getBoundingClientRect().right;
+  };
+  const matrix = document.querySelector("#matrix"), found = [];
+  if (matrix.parentElement.scrollWidth > matrix.parentElement.clientWidth) found.push("the matrix");
+  for (const cell of matrix.querySelectorAll("td, th"))
+    if (!cell.querySelector(".heard") && right(cell) > cell.getBoundingClientRect().right) found.push(cell.textContent);
+  for (const tag of document.querySelectorAll("#numbers .tag"))
+    if (tag.offsetParent && tag.offsetHeight > 1.5 * parseFloat(getComputedStyle(tag).lineHeight)) found.push(tag.textContent);
+  return found;
+});
+
+// Ticks of all axes that say that a number is not known.
+const unknownTicks = (page) => page.evaluate(() => [...document.querySelectorAll("figure")]
+  .flatMap((each) => each.plot ? each.plot.axes.flatMap((axis) => axis._values || []) : [])
+  .filter((text) => text === "–").length);
+
+// Plots that are wider than their figures, and grids with plots that are not in line.
+const tooWide = (page) => page.evaluate(() => [...document.querySelectorAll("figure")]
+  .filter((each) => each.plot && each.plot.width > each.getBoundingClientRect().width + 1).length);
+const outOfLine = (page) => page.evaluate(() => [...document.querySelectorAll(".grid")].filter((grid) => {
+  const [first, second] = [...grid.children].map((each) => each.getBoundingClientRect());
+  return second && first.width && Math.abs(first.top - second.top) > 0.5;
+}).length);
+
 async function copied(page, name) {
   await page.evaluate(() => {
     navigator.clipboard.writeText = async (text) => { window.copied = text; };
@@ -28,6 +57,8 @@ for (const [name, file] of [["diagnosis", diagnosis], ["identification", identif
       await page.evaluate(() => document.querySelectorAll("details").forEach((each) => { each.open = true; }));
       await page.waitForTimeout(150);
       assert.equal(await empty(page), 0, `${what}: empty plots`);
+      assert.deepEqual(await stickingOut(page), [], what);
+      if (width === 1280) assert.equal(await outOfLine(page), 0, `${what}: plots out of line`);
       assert.ok(await overflow(page) <= 0, `${what}: all open, wider than the window`);
       assert.deepEqual(page.troubles, [], what);
       if (pictures) {
@@ -64,6 +95,22 @@ const ranges = await page.evaluate(() => [...document.querySelectorAll("#views .
 assert.ok(ranges[0][1] - ranges[0][0] < 0.5 * ranges[0][2], "a drag does not zoom");
 for (const range of ranges) assert.deepEqual(range.slice(0, 2), ranges[0].slice(0, 2), "one plot is zoomed alone");
 
+// Printed from any window: laid out for the paper before the browser takes its picture.
+const pages = [];
+for (const width of [1280, 400]) {
+  const printed = await open(diagnosis, width, "dark");
+  await printed.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+  await printed.waitForTimeout(150);
+  assert.equal(await tooWide(printed), 0, `printed from ${width} px: plots wider than their places`);
+  assert.equal(await outOfLine(printed), 0, `printed from ${width} px: plots below each other`);
+  assert.equal(await unknownTicks(printed), 0, `printed from ${width} px: ticks without a number`);
+  const paper = (await printed.pdf({ format: "A4" })).toString("latin1");
+  pages.push(paper.match(/\/Type *\/Page\b/g).length);
+  await printed.context().close();
+}
+assert.equal(pages[0], pages[1], "another window gives another paper");
+console.log(`on ${pages[0]} pages of paper`);
+
 // Paper is white, everything is open, nothing is cut off.
 await page.emulateMedia({ media: "print", colorScheme: "dark" });
 await page.setViewportSize({ width: 718, height: 1000 });
@@ -71,6 +118,7 @@ await page.waitForTimeout(200);
 assert.equal(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), "rgb(255, 255, 255)");
 assert.equal(await page.locator("details:not([open])").count(), 0);
 assert.ok(await overflow(page) <= 0, "wider than the paper");
+assert.equal(await tooWide(page), 0, "plots wider than their places on paper");
 assert.ok((await page.pdf({ format: "A4" })).length > 50_000);
 assert.deepEqual(page.troubles, []);
 await browser.close();

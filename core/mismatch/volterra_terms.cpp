@@ -1,4 +1,4 @@
-#include "core/mismatch/second_order_terms.hpp"
+#include "core/mismatch/volterra_terms.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@ using calibration::curvature::kMostInputs;
 constexpr int kLags = 2;
 
 int products_of(int inputs) { return inputs * (inputs + 1) / 2; }
+int terms_of(int inputs) { return products_of(inputs) + inputs; }
 
 // Where the input's channel is looked at from.
 double centre_of(int input, double operating_point, const RegressionHistory& history, int span) {
@@ -35,8 +36,8 @@ double movement_of(const LagWindow& window, int span) {
 
 }  // namespace
 
-SecondOrderTerms::SecondOrderTerms(const LinearModel& model, int cv,
-                                   const RegressionHistory& history, int span) {
+VolterraTerms::VolterraTerms(const LinearModel& model, int cv, const RegressionHistory& history,
+                             int span) {
   struct Candidate {
     int input;
     double centre;
@@ -71,41 +72,51 @@ SecondOrderTerms::SecondOrderTerms(const LinearModel& model, int cv,
   }
 }
 
-int SecondOrderTerms::most_columns() { return kLags * products_of(kMostInputs); }
+int VolterraTerms::most_columns() { return kLags * terms_of(kMostInputs); }
 
-int SecondOrderTerms::columns() const {
-  return kLags * products_of(static_cast<int>(inputs_.size()));
+int VolterraTerms::terms() const { return terms_of(static_cast<int>(inputs_.size())); }
+
+int VolterraTerms::columns() const { return kLags * terms(); }
+
+std::array<int, 2> VolterraTerms::product_columns(int a, int b) const {
+  const int count = static_cast<int>(inputs_.size());
+  const int at = products_of(count) - products_of(count - a) + b - a;
+  return {at, terms() + at};
 }
 
-bool SecondOrderTerms::has(int column, int a) const {
+std::array<int, 2> VolterraTerms::cube_columns(int a) const {
+  const int at = products_of(static_cast<int>(inputs_.size())) + a;
+  return {at, terms() + at};
+}
+
+bool VolterraTerms::has(int column, int a) const {
+  const auto is = [&](const std::array<int, 2>& own) {
+    return own[0] == column || own[1] == column;
+  };
+  if (is(cube_columns(a))) return true;
   for (int b = 0; b < static_cast<int>(inputs_.size()); ++b)
-    for (const int own : columns_of(std::min(a, b), std::max(a, b)))
-      if (own == column) return true;
+    if (is(product_columns(std::min(a, b), std::max(a, b)))) return true;
   return false;
 }
 
-std::vector<int> SecondOrderTerms::columns_of(int a, int b) const {
-  const int count = static_cast<int>(inputs_.size());
-  const int product = products_of(count) - products_of(count - a) + b - a;
-  return {product, products_of(count) + product};
-}
-
-void SecondOrderTerms::take(std::size_t channel, double input) {
+void VolterraTerms::take(std::size_t channel, double input) {
   Eigen::Matrix<double, 1, 1> deviation;
   deviation(0) = input - centres_[channel];
   windows_[channel].push(channels_[channel].output()(0));
   channels_[channel].advance(deviation);
 }
 
-void SecondOrderTerms::push(const RegressionHistory& history) {
+void VolterraTerms::push(const RegressionHistory& history) {
   for (std::size_t c = 0; c < inputs_.size(); ++c) take(c, history.input(inputs_[c], 0));
 }
 
-void SecondOrderTerms::fill(int age, double* row) const {
-  for (int lag = 0; lag < kLags; ++lag)
+void VolterraTerms::fill(int age, double* row) const {
+  for (int lag = 0; lag < kLags; ++lag) {
+    const auto now = [&](std::size_t a) { return windows_[a].window()[age + lag]; };
     for (std::size_t a = 0; a < windows_.size(); ++a)
-      for (std::size_t b = a; b < windows_.size(); ++b)
-        *row++ = windows_[a].window()[age + lag] * windows_[b].window()[age + lag];
+      for (std::size_t b = a; b < windows_.size(); ++b) *row++ = now(a) * now(b);
+    for (std::size_t a = 0; a < windows_.size(); ++a) *row++ = now(a) * now(a) * now(a);
+  }
 }
 
 }  // namespace mpm
