@@ -207,7 +207,7 @@ function panel(title, note, make, open) {
 function chapters() {
   for (const {title, text = [], tables = [], plots = [], groups = [], made = []} of page.chapters || [])
     section(title, ...text.map(each => paragraph(each)),
-        ...tables.flatMap(each => [element('h3', {}, each.title), table('wide', each.columns, each.rows), paragraph(each.note, 'note')]),
+        ...tables.flatMap(each => [element('h3', {}, each.title), table('wide told', each.columns, each.rows), paragraph(each.note, 'note')].filter(Boolean)),
         some(plots, list => element('div', {class: 'grid four'}, ...list.map((plot, i) =>
           plot.lines ? figure(plot, {keys: i === 0, height: 150}) : element('div', {class: 'note'}, element('b', {}, plot.title), element('p', {}, plot.text))))),
         some(groups, list => element('div', {class: 'grid'}, ...list.map(group => element('div', {class: 'view'}, element('h3', {}, group.title), ...stack(group.plots))))),
