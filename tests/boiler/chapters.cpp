@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/text/number_text.hpp"
 #include "daemon/report/page/page_parts.hpp"
 #include "daemon/report/page/wording.hpp"
 #include "tests/boiler/figures.hpp"
+#include "tests/boiler/hidden_changes.hpp"
 #include "tests/boiler/samples.hpp"
 #include "tests/boiler/tables.hpp"
 
@@ -56,6 +58,14 @@ std::string same_answer_said(const std::vector<const LiveRun*>& runs) {
              : "What mpmd published live differs from what mpm detect says of the recording.";
 }
 
+/// In one piece, so that no line ends within it.
+std::string since(const Json& onset) {
+  if (!onset.is_number()) return {};
+  std::string text = onset > 0.0 ? duration(onset.get<double>()) : "start";
+  const std::size_t blank = text.find(' ');
+  return blank == std::string::npos ? text : text.replace(blank, 1, "\u00a0");
+}
+
 std::string confidence_text(const Json& finding) {
   const double confidence = finding["confidence"];
   return confidence > 0.999 ? "> 99.9 %" : rounded(100.0 * confidence, "%");
@@ -73,10 +83,12 @@ Json rest_chapter(const Story& story) {
       "stand at Table 5.4.");
   Json values = table("Steady state, beside Table 5.4", {"signal", "Table 5.4", "here"});
   for (std::size_t i = 0; i < unit.mv.size(); ++i)
-    values["rows"].push_back({unit.mv[i].description, rounded(thesis::kRestMv[i], unit.mv[i].unit),
+    values["rows"].push_back({unit.mv[i].description + ", " + unit.mv[i].tag,
+                              rounded(thesis::kRestMv[i], unit.mv[i].unit),
                               rounded(mean_of(samples.mvs[i]), unit.mv[i].unit)});
   for (std::size_t j = 0; j < unit.cv.size(); ++j)
-    values["rows"].push_back({unit.cv[j].description, rounded(thesis::kRestCv[j], unit.cv[j].unit),
+    values["rows"].push_back({unit.cv[j].description + ", " + unit.cv[j].tag,
+                              rounded(thesis::kRestCv[j], unit.cv[j].unit),
                               rounded(mean_of(samples.cvs[j]), unit.cv[j].unit)});
   values["note"] = "Here: mean of " + length_of(unit, story.plan.rest) +
                    ". The thesis prints the tertiary air in m3/h; 30 m3/h would be nothing beside "
@@ -95,9 +107,12 @@ Json model_chapter(const Story& story) {
     return channel["in_model"].get<bool>();
   });
   Json result = chapter("2 A model from a test");
-  say(result, "All MVs move between two levels at random for " + length_of(unit, story.plan.test) +
-                  ". From the tags alone mpm identify finds " + std::to_string(found) + " of " +
-                  std::to_string(channels.size()) + " channels; the thesis has 14.");
+  say(result,
+      "All MVs move between two levels at random for " + length_of(unit, story.plan.test) +
+          ". From the tags alone mpm identify finds " + std::to_string(found) + " of " +
+          std::to_string(channels.size()) +
+          " channels; the thesis has 14. Step responses: shaded is the 95 % interval, dotted "
+          "the end of the axis in figure 5.2.");
   Json fit = table("Free run on another test", {"CV", "error, RMS", "CV moves by, s.d."});
   for (std::size_t j = 0; j < unit.cv.size(); ++j)
     fit["rows"].push_back({unit.cv[j].description,
@@ -122,6 +137,9 @@ Json commissioning_chapter(const Story& story) {
                   length_of(unit, story.plan.compare) + ".");
   result["tables"] = control_tables(unit, {{"here", control_of(story.commissioned.detect)},
                                            {"thesis, Table 5.6", thesis::kCommissioned}});
+  result["tables"][0]["note"] =
+      "The thesis moves its set-points otherwise: what compares is how they change from chapter to "
+      "chapter.";
   const std::vector<Drawn> drawn = {{"measured", Role::kMeasured, samples}};
   result["groups"].push_back(cv_figure("Reference tracking (figure 5.3)", unit, drawn));
   result["groups"].push_back(mv_figure("Inputs and their limits (figure 5.4)", unit, drawn));
@@ -137,11 +155,22 @@ Json change_chapter(const Story& story) {
   say(result,
       "CO burns to CO2 quicker by a tenth from the first sample on. Set-points and noise are "
       "those of chapter 3; the model is the old one.");
+  const std::string alarms = alarms_said(story.changed.detect);
+  say(result, "The monitor sees " + length_of(unit, story.plan.watch) +
+                  " of each plant. Changed: " + verdicts_said(story.changed.detect) +
+                  "; in alarm: " + alarms + ". Unchanged: " + verdicts_said(story.healthy.detect) +
+                  "; in alarm: " + alarms_said(story.healthy.detect) + ".");
+  if (alarms == "none")
+    say(result,
+        "So the change raises no alarm: what the channels show of it is less than what the monitor "
+        "takes to matter.");
+  for (const LiveRun* run : {&story.changed, &story.healthy}) {
+    if (run->detect["channels"].dump().find("operating_point") == std::string::npos) continue;
+    say(result, "Operating point: how the CV answers depends on where the plant runs.");
+    break;
+  }
   say(result,
-      "The monitor sees " + length_of(unit, story.plan.watch) +
-          " of each plant. Changed: " + verdicts_said(story.changed.detect) +
-          ". Unchanged: " + verdicts_said(story.healthy.detect) + ". " +
-          same_answer_said({&story.commissioned, &story.mismatch, &story.changed, &story.healthy}));
+      same_answer_said({&story.commissioned, &story.mismatch, &story.changed, &story.healthy}));
   result["tables"] = control_tables(unit, {{"commissioning", control_of(story.commissioned.detect)},
                                            {"mismatch", control_of(story.mismatch.detect)},
                                            {"thesis, commissioning", thesis::kCommissioned},
@@ -166,12 +195,14 @@ Json diagnosis_chapter(const Story& story) {
   Json result = chapter("5 Diagnosis and a small test");
   say(result, findings.empty() ? "Of the changed run mpm diagnose names nothing: " +
                                      story.diagnosis["verdict"].get<std::string>() + "."
-                               : "Of the changed run mpm diagnose says:");
+                               : "Of the changed run mpm diagnose has " +
+                                     counted(findings.size(), "finding") + ", below.");
   if (!findings.empty()) {
-    Json named = table("Findings", {"finding", "confidence", "in its words"});
+    Json named = table("Findings", {"finding", "confidence", "which is", "in its words"});
     for (const Json& finding : findings)
-      named["rows"].push_back(
-          {place_of(finding), confidence_text(finding), finding["explanation"]});
+      named["rows"].push_back({place_of(finding), confidence_text(finding),
+                               judged("co_oxidation", finding, story.healthy_diagnosis),
+                               finding["explanation"]});
     result["tables"].push_back(named);
   }
   made_by(result, "diagnosis", story.made_diagnosis);
@@ -180,6 +211,14 @@ Json diagnosis_chapter(const Story& story) {
   say(result, "Only the channels of " + report::listed(story.suspected_cvs) +
                   " are identified again, from " + length_of(unit, story.plan.test) +
                   " of test signals on the changed plant. All other channels keep their numbers.");
+  std::vector<std::string> point;
+  for (std::size_t i = 0; i < unit.mv.size(); ++i)
+    point.push_back(unit.mv[i].description + " " +
+                    rounded(story.test_point.at(i), unit.mv[i].unit));
+  say(result,
+      "The MVs move about where the controller now holds them: " + report::listed(point) +
+          ". The test of chapter 2 moved about Table 5.4, so the new numbers differ by what "
+          "the plant's curvature makes of that, too.");
   Json gains = table("Gains, old and new", {"channel", "old", "new", "95 % interval", "unit"});
   for (const Json& channel : story.identified_again["channels"]) {
     if (!channel["in_model"].get<bool>()) continue;
@@ -227,24 +266,32 @@ Json repair_chapter(const Story& story) {
 Json others_chapter(const Story& story) {
   const config::UnitConfig unit = unit_of(kCommissionedModel);
   Json result = chapter("7 Other hidden changes");
-  say(result,
-      "One run of " + length_of(unit, story.plan.watch) + " each, with the commissioned model.");
-  Json found = table("Hidden and found", {"hidden", "monitor", "found", "confidence"});
-  for (const HiddenChange& change : story.others) {
-    std::vector<std::string> names, confidences;
-    for (const Json& finding : change.diagnosis["findings"]) {
-      names.push_back(place_of(finding));
-      confidences.push_back(confidence_text(finding));
+  say(result, "One run of " + length_of(unit, story.plan.watch) +
+                  " each, with the model of chapter 2. Recordings of the bus hold no auxiliary "
+                  "measurements; of the run that one of them sees, a file with all of them is "
+                  "diagnosed as well.");
+  Json found =
+      table("Hidden and found", {"hidden", "found", "since", "confidence", "which is", "alarms"});
+  const auto add = [&](std::string hidden, std::string alarms, const Json& diagnosis,
+                       const std::string& scenario) {
+    if (diagnosis["findings"].empty())
+      found["rows"].push_back({hidden, "nothing", "", "", "", alarms});
+    for (const Json& finding : diagnosis["findings"]) {
+      found["rows"].push_back({std::exchange(hidden, ""), place_of(finding),
+                               since(finding["onset"]), confidence_text(finding),
+                               judged(scenario, finding, story.healthy_diagnosis),
+                               std::exchange(alarms, "")});
     }
-    const auto joined = [](const std::vector<std::string>& words) {
-      std::string text;
-      for (const std::string& word : words) text += (text.empty() ? "" : "; ") + word;
-      return text;
-    };
-    found["rows"].push_back({change.description, verdicts_said(change.run.detect),
-                             names.empty() ? "nothing" : joined(names), joined(confidences)});
+  };
+  add("nothing", alarms_said(story.healthy.detect), story.healthy_diagnosis, "none");
+  made_by(result, "nothing hidden", story.healthy.commands);
+  for (const HiddenChange& change : story.others) {
+    add(change.description, alarms_said(change.run.detect), change.diagnosis, change.scenario);
+    if (!change.with_aux.is_null())
+      add("the same run, with auxiliary measurements", "", change.with_aux, change.scenario);
     made_by(result, change.scenario, change.run.commands);
   }
+  found["note"] = "Since: time from the start of the run, where a moment was found.";
   result["tables"].push_back(found);
   return result;
 }

@@ -18,9 +18,9 @@ std::string variance(const LiveRun& run) {
 
 std::string sentence(const Story& story) {
   return "The variance of the CO control error is " + variance(story.commissioned) +
-         " ppm\u00b2 at commissioning, " + variance(story.mismatch) +
-         " ppm\u00b2 after a hidden change and " + variance(story.repaired) +
-         " ppm\u00b2 with the repaired model.";
+         "\u00a0ppm\u00b2 at commissioning, " + variance(story.mismatch) +
+         "\u00a0ppm\u00b2 after a hidden change and " + variance(story.repaired) +
+         "\u00a0ppm\u00b2 with the repaired model.";
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace mpm::boiler {
 namespace {
 
 const std::string kScenarios = "config/plants/scenarios/";
+const std::string kPlantNow = "plant_now.yaml";
 
 class Player {
  public:
@@ -23,7 +24,11 @@ class Player {
     std::vector<std::function<void()>> tasks = {[this] { follow_change(); }};
     for (std::size_t i = 0; i < plan.others.size(); ++i)
       tasks.emplace_back([this, i] { hide(story_.others[i], story_.plan.others[i]); });
-    tasks.emplace_back([this] { story_.healthy = live("healthy", "none", story_.plan.watch); });
+    tasks.emplace_back([this] {
+      story_.healthy = live("healthy", "none", story_.plan.watch);
+      story_.healthy_diagnosis =
+          diagnosed("healthy", story_.healthy.recording, story_.healthy.commands);
+    });
     tasks.emplace_back([this] {
       story_.commissioned = live("commissioned", "none", story_.plan.compare);
       story_.mismatch = live("mismatch", "co_oxidation", story_.plan.compare);
@@ -38,11 +43,11 @@ class Player {
     return workshop_.run(command);
   }
 
-  [[nodiscard]] Command simulated(const std::string& scenario, int samples, std::uint64_t seed,
-                                  const std::string& csv) const {
+  [[nodiscard]] static Command simulated(const std::string& plant, const std::string& scenario,
+                                         int samples, std::uint64_t seed, const std::string& csv) {
     return {"mpmsim",
             "--config",
-            kPlant,
+            plant,
             "--scenario",
             scenario,
             "--samples",
@@ -58,16 +63,16 @@ class Player {
     const StoryPlan& plan = story_.plan;
     test::write_file("rest.yaml", "scenario: rest\ncontroller: {off: [{from: 0}]}\n");
     story_.rest = "rest.csv";
-    run(story_.made_rest, simulated("rest.yaml", plan.rest, plan.seed, story_.rest));
+    run(story_.made_rest, simulated(kPlant, "rest.yaml", plan.rest, plan.seed, story_.rest));
     test::write_file("tags.yaml", tags_alone(test::read_file(kPlant)));
     story_.test = "test.csv";
-    run(story_.made_model, simulated("identification", plan.test, plan.seed, story_.test));
+    run(story_.made_model, simulated(kPlant, "identification", plan.test, plan.seed, story_.test));
     story_.identified =
         Json::parse(run(story_.made_model, {"mpm", "identify", "--config", "tags.yaml", "--data",
                                             story_.test, "--out", kCommissionedModel, "--json"}));
     story_.validation = "validation.csv";
     run(story_.made_validation,
-        simulated("identification", plan.test / 3, plan.seed + 1, story_.validation));
+        simulated(kPlant, "identification", plan.test / 3, plan.seed + 1, story_.validation));
   }
 
   LiveRun live(const std::string& name, const std::string& scenario, int samples,
@@ -83,8 +88,8 @@ class Player {
     return Json::parse(test::read_file(out + "/report.json"));
   }
 
-  /// The thesis's change: seen, diagnosed, re-identified where the findings point, and controlled
-  /// again.
+  /// The thesis's change: seen, diagnosed, re-identified where the findings point and the plant now
+  /// rests, and controlled again.
   void follow_change() {
     story_.changed = live("changed", "co_oxidation", story_.plan.watch);
     story_.diagnosis = diagnosed("changed", story_.changed.recording, story_.made_diagnosis);
@@ -109,9 +114,15 @@ class Player {
     test::write_file("test_on_changed_plant.yaml",
                      test_on_changed_plant(test::read_file(kScenarios + "identification.yaml"),
                                            test::read_file(kScenarios + "co_oxidation.yaml")));
+    const std::string here = "test_on_changed_plant.yaml";
     test::write_file("suspected_tags.yaml", tags_alone(test::read_file(kPlant), cvs));
-    run(story_.made_repair, simulated("test_on_changed_plant.yaml", story_.plan.test,
-                                      story_.plan.seed + 2, "test_again.csv"));
+    std::vector<double> means;
+    for (const report::Series& mv : samples_of(story_.changed.recording, unit_of(kPlant)).mvs)
+      means.push_back(mean_of(mv));
+    test::write_file(kPlantNow, resting_at(kPlant, means, here));
+    for (const double at : unit_of(kPlantNow).model.input_origin) story_.test_point.push_back(at);
+    run(story_.made_repair,
+        simulated(kPlantNow, here, story_.plan.test, story_.plan.seed + 2, "test_again.csv"));
     story_.identified_again =
         Json::parse(run(story_.made_repair,
                         {"mpm", "identify", "--config", "suspected_tags.yaml", "--data",
@@ -124,6 +135,13 @@ class Player {
     change.description = description_of(test::read_file(kScenarios + scenario + ".yaml"));
     change.run = live(scenario, scenario, story_.plan.watch);
     change.diagnosis = diagnosed(scenario, change.run.recording, change.run.commands);
+    if (scenario != story_.plan.seen_by_aux) return;
+    // The same numbers as a historian has them: the bus carries no auxiliary measurements.
+    const std::string csv = scenario + ".csv";
+    Command command = simulated(kPlant, scenario, story_.plan.watch, story_.plan.seed, csv);
+    command.insert(command.end(), {"--controller-model", kCommissionedModel});
+    run(change.run.commands, command);
+    change.with_aux = diagnosed(scenario + "_aux", csv, change.run.commands);
   }
 
   Workshop& workshop_;

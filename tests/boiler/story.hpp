@@ -18,6 +18,7 @@ struct StoryPlan {
   std::vector<std::string> others = {"fouled_superheater", "sticking_spray_valve",
                                      "o2_analyser_drift",  "drier_liquor",
                                      "growing_char_bed",   "leaking_damper"};
+  std::string seen_by_aux = "drier_liquor";  ///< of these, what an auxiliary measurement sees
 };
 
 /// One of the further hidden changes.
@@ -25,6 +26,7 @@ struct HiddenChange {
   std::string scenario, description;
   LiveRun run;
   Json diagnosis;
+  Json with_aux;  ///< diagnosis of the same run with auxiliary measurements; null where not made
 };
 
 /// All that happened, for the page.
@@ -35,6 +37,8 @@ struct Story {
   LiveRun commissioned, mismatch, repaired;
   LiveRun healthy, changed;                ///< long ones
   Json diagnosis;                          ///< report.json of the changed run
+  Json healthy_diagnosis;                  ///< and of the one in which nothing is hidden
+  std::vector<double> test_point;          ///< about which the MVs move in the second test
   std::vector<std::string> suspected_cvs;  ///< that its findings name
   Json identified_again;                   ///< these alone; null where there is none
   std::vector<HiddenChange> others;

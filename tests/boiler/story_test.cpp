@@ -5,8 +5,10 @@
 #include <catch2/catch.hpp>
 #include <cerrno>
 
+#include "config/load_unit.hpp"
 #include "daemon/report/page/page.hpp"
 #include "tests/boiler/page_data.hpp"
+#include "tests/boiler/tables.hpp"
 #include "tests/boiler/unit_texts.hpp"
 #include "tests/system/process.hpp"
 
@@ -39,8 +41,9 @@ TEST_CASE(
                              &story.changed, &story.others.at(0).run}) {
     CAPTURE(run->recording);
     CHECK(run->same_answer);
-    CHECK(run->detect["channels"].size() == 14);
+    CHECK(run->detect["channels"].size() == 16);
   }
+  CHECK(alarms_said(story.healthy.detect) == "none");
   CHECK((waitpid(-1, nullptr, WNOHANG) == -1 && errno == ECHILD));  // no process is left
 
   const std::string page = report::page_html(page_data(story));
@@ -65,6 +68,21 @@ TEST_CASE(
                                "browser.out", "browser.err");
   INFO(test::read_file("browser.err"));
   CHECK((drawn == 0 || drawn == 77));  // 77: there is no browser
+}
+
+TEST_CASE("a test signal stays within the limits of what it moves") {
+  const std::string scenario = MPM_SOURCE_DIR "/config/plants/scenarios/identification.yaml";
+  const std::string plant = MPM_SOURCE_DIR "/config/plants/recovery_boiler.yaml";
+  // By hand from its limits and sizes: 125 to 145 m3/h and 2, 125 to 135 degC and 2, 15 to 45 m3/s
+  // and 3; the spray valve's place leaves room.
+  const auto unit =
+      config::load_unit_text(resting_at(plant, {16.0, 150.0, 134.0, 31.0}, scenario), "now");
+  REQUIRE(unit.ok());
+  const Eigen::VectorXd& at = unit.config.model.input_origin;
+  CHECK(at(0) == 18.0);
+  CHECK(at(1) == 143.0);
+  CHECK(at(2) == 133.0);
+  CHECK(at(3) == 31.0);
 }
 
 TEST_CASE("a unit without its model keeps its signals, and a part of it its own") {

@@ -17,12 +17,12 @@ double number_or_nan(const Json& json) {
   return json.is_number() ? json.get<double>() : std::nan("");
 }
 
-/// Time of the first alarm of a channel that is active at the end.
+/// Since when a channel is in alarm; empty where it is not.
 std::string alarm_text(const Json& detect, const Json& channel) {
   std::string text;
   for (const Json& alarm : detect["alarms"]) {
     if (alarm["mv"] != channel["mv"] || alarm["cv"] != channel["cv"]) continue;
-    if (alarm["to"] == "active") text = ", alarm since " + report::duration(alarm["time"]);
+    if (alarm["to"] == "active") text = report::duration(alarm["time"].get<double>());
     if (alarm["to"] == "cleared") text.clear();
   }
   return text;
@@ -37,7 +37,8 @@ std::string verdict_text(const Json& detect, const Json& channel) {
     text += ", gain " + rounded(channel["gain_error_percent"].get<double>(), "%");
   if (channel["verdict"] == "mismatch" && channel["material"] == false)
     text += ", too small to matter";
-  return text + alarm_text(detect, channel);
+  const std::string alarm = alarm_text(detect, channel);
+  return alarm.empty() ? text : text + ", in alarm since " + alarm;
 }
 
 }  // namespace
@@ -81,7 +82,7 @@ Json verdict_table(const std::string& title, const config::UnitConfig& unit, con
   Json table{{"title", title}, {"columns", Json::array({"CV"})}, {"rows", Json::array()}};
   for (const config::InputSignal& mv : unit.mv) table["columns"].push_back(mv.tag);
   for (const config::CvSignal& cv : unit.cv) {
-    Json row = Json::array({cv.tag});
+    Json row = Json::array({cv.description});
     for (const config::InputSignal& mv : unit.mv) {
       std::string text = "\u2013";
       for (const Json& channel : detect["channels"])
@@ -92,6 +93,17 @@ Json verdict_table(const std::string& title, const config::UnitConfig& unit, con
     table["rows"].push_back(row);
   }
   return table;
+}
+
+std::string alarms_said(const Json& detect) {
+  std::string text;
+  for (const Json& channel : detect["channels"]) {
+    const std::string alarm = alarm_text(detect, channel);
+    if (alarm.empty()) continue;
+    text += (text.empty() ? "" : ", ") + channel["mv"].get<std::string>() + " \u2192 " +
+            channel["cv"].get<std::string>() + " since " + alarm;
+  }
+  return text.empty() ? "none" : text;
 }
 
 int count_of(const Json& detect, const std::string& verdict) {
@@ -105,7 +117,7 @@ std::string place_of(const Json& finding) {
     return finding[key].is_string() ? finding[key].get<std::string>() : std::string();
   };
   const std::string from = text("tag").empty() ? text("mv") : text("tag"), to = text("cv");
-  return finding["title"].get<std::string>() + " of " + from +
+  return finding["title"].get<std::string>() + ": " + from +
          (from.empty() || to.empty() ? "" : " \u2192 ") + to;
 }
 

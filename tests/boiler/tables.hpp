@@ -26,9 +26,12 @@ struct ControlColumn {
 [[nodiscard]] Json verdict_table(const std::string& title, const config::UnitConfig& unit,
                                  const Json& detect);
 
+/// Alarms that stand at the end: "FC-301.SP \u2192 AI-602.PV since 3 h"; "none".
+[[nodiscard]] std::string alarms_said(const Json& detect);
+
 [[nodiscard]] int count_of(const Json& detect, const std::string& verdict);
 
-/// "gain of HV-501.SP -> TI-502.PV"
+/// "Sticking valve: HV-501.SP"
 [[nodiscard]] std::string place_of(const Json& finding);
 
 }  // namespace mpm::boiler

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "config/load_unit.hpp"
+#include "config/scenario_config.hpp"
 #include "core/model/linear_model.hpp"
 #include "tests/boiler/samples.hpp"
 #include "tests/boiler/workshop.hpp"
@@ -81,6 +82,25 @@ std::string with_channels_of(const std::string& old_file, const std::string& new
 std::string test_on_changed_plant(const std::string& tests, const std::string& changed) {
   return "scenario: test_on_changed_plant\n" + last_section(changed, "process") +
          last_section(tests, "tests");
+}
+
+std::string resting_at(const std::string& file, const std::vector<double>& mvs,
+                       const std::string& scenario) {
+  config::UnitConfig unit = unit_of(file);
+  std::vector<double> sizes(mvs.size(), 0.0);
+  for (const config::TestSignal& test : config::load_scenario(scenario, unit).scenario.tests)
+    for (std::size_t i = 0; i < mvs.size(); ++i)
+      if (unit.mv[i].tag == test.mv) sizes[i] = std::max(sizes[i], test.size);
+  for (std::size_t i = 0; i < mvs.size(); ++i) {
+    const SignalLimits limits = unit.mv_limits(i);
+    double& at = unit.model.input_origin(static_cast<Eigen::Index>(i));
+    at = mvs[i];
+    if (limits.low) at = std::max(at, *limits.low + sizes[i]);
+    if (limits.high) at = std::min(at, *limits.high - sizes[i]);
+  }
+  std::ostringstream text;
+  config::print_unit(unit, text);
+  return text.str();
 }
 
 std::string description_of(const std::string& scenario) {

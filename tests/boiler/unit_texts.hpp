@@ -20,6 +20,11 @@ namespace mpm::boiler {
 [[nodiscard]] std::string test_on_changed_plant(const std::string& tests,
                                                 const std::string& changed);
 
+/// The unit of `file` with the MVs' operating point at `mvs`, as far as the test signals of
+/// `scenario` about it stay within their limits.
+[[nodiscard]] std::string resting_at(const std::string& file, const std::vector<double>& mvs,
+                                     const std::string& scenario);
+
 /// What a scenario file says of itself.
 [[nodiscard]] std::string description_of(const std::string& scenario);
 
