@@ -1,6 +1,7 @@
 #include "tests/boiler/live_run.hpp"
 
 #include <csignal>
+#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -50,10 +51,25 @@ class Published {
   std::map<std::pair<std::string, std::string>, ChannelRecord> last_;
 };
 
-void end(test::Process& process, const std::string& name) {
-  process.send(SIGTERM);
-  if (process.wait(kToEnd) != 0) throw StoryError(name + " did not end as it should");
-}
+/// A program that runs until it is told to end.
+class Companion {
+ public:
+  Companion(Workshop& workshop, Command command)
+      : command_(std::move(command)),
+        errors_(workshop.log_name(command_.front())),
+        process_(command_, workshop.log_name(command_.front()), errors_) {}
+
+  void end() {
+    process_.send(SIGTERM);
+    if (process_.wait(kToEnd) != 0)
+      throw StoryError(typed(command_) + ": did not end as it should\n" + test::read_file(errors_));
+  }
+
+ private:
+  Command command_;
+  std::string errors_;
+  test::Process process_;
+};
 
 }  // namespace
 
@@ -68,25 +84,22 @@ LiveRun play_live(Workshop& workshop, const LivePlan& plan) {
     run.commands.push_back(std::move(command));
     return run.commands.back();
   };
-  const auto start = [&](const Command& command) {
-    return test::Process(command, workshop.log_name(command.front()),
-                         workshop.log_name(command.front()));
-  };
   Published published(domain);
-  test::Process monitor = start(remember({"mpmd", "--config", plan.model}, true));
-  test::Process recorder = start(remember({"mpm", "record", "--output", run.recording}, true));
+  Companion monitor(workshop, remember({"mpmd", "--config", plan.model}, true));
+  std::filesystem::remove(run.recording);  // of an earlier story
+  Companion recorder(workshop, remember({"mpm", "record", "--output", run.recording}, true));
   workshop.run(remember(
       {"mpmsim", "--config", kPlant, "--scenario", plan.scenario, "--controller-model", plan.model,
        "--samples", std::to_string(plan.samples), "--seed", std::to_string(plan.seed),
        "--start-time", "0", "--speed", "0", "--readers", "2", "--wait-readers", "30"},
       true));
-  end(recorder, "mpm record");
+  recorder.end();
   run.detect = Json::parse(workshop.run(remember(
       {"mpm", "detect", "--config", plan.model, "--data", run.recording, "--json"}, false)));
   const Json& channels = run.detect["channels"];
   if (!published.complete(channels.size(), plan.samples - 1))
     throw StoryError(plan.name + ": mpmd did not answer for all channels");
-  end(monitor, "mpmd");
+  monitor.end();
   run.same_answer = run.detect["samples"] == plan.samples;
   for (const Json& channel : channels)  // as text: what is not known equals itself
     run.same_answer =
