@@ -1,4 +1,4 @@
-// The page, from its data (diagnosis_page.cpp, identification_page.cpp):
+// The page, from its data (diagnosis_page.cpp, identification_page.cpp); what it has not is left out:
 //   kicker, verdict, sentence, details, data, zone, warnings: texts
 //   matrix      {inputs, rows: [{tag, cells: [{state, text, findings: [{number, text}]}]}]}
 //   numbers     {rows: [{cv, input, changed, gain, time_constant, dead_time}], csv, yaml}
@@ -9,6 +9,8 @@
 //   errors      [[cv, before, after, less by, fit before, fit after]]
 //   closed_loop {text, rows}
 //   cvs         [{tag, description, plots, errors}]; inputs: plots
+//   chapters    [{title, text: paragraphs, tables: [{title, columns, rows, note}], plots: small ones side
+//               by side, groups: [{title, plots above each other}], made: [[what, command]]}]
 //   made_by     [[name, text]]; odds: what the words for them mean
 
 const page = JSON.parse(document.getElementById('data').textContent);
@@ -43,7 +45,7 @@ function head() {
   const sentence = header.querySelector('h1');
   sentence.textContent = sentence.textContent.replaceAll(' → ', '\u00a0→\u00a0');  // no line begins with an arrow
   header.append(...[paragraph(page.details), paragraph(page.data, 'note')].filter(Boolean));
-  if (page.warnings.length)
+  if (page.warnings && page.warnings.length)
     header.append(element('div', {class: 'warnings'}, ...page.warnings.map(text => {
       const [word, ...rest] = text.split(': ');
       return element('p', {}, element('b', {}, word + ': '), rest.join(': '));
@@ -55,6 +57,7 @@ const STATES = page.responses ? {doubt: 'left out', right: 'identified'}
   : {wrong: 'a finding', doubt: 'in doubt, or not told by the data', right: 'as modelled'};
 
 function matrix() {
+  if (!page.matrix) return null;
   const {inputs, rows} = page.matrix;
   const glyph = state => element('span', {class: 'glyph', 'aria-hidden': 'true'}, GLYPHS[state]);
   const cell = (each, i) => {
@@ -94,7 +97,7 @@ function copyButton(name, text) {
 
 // Old above new: the new one is what is typed.
 function numbers() {
-  const {rows, csv, yaml} = page.numbers;
+  const {rows, csv, yaml} = page.numbers || {rows: []};
   if (!rows.length) return null;
   const anyOld = rows.some(row => [row.gain, row.time_constant, row.dead_time].some(each => each.old !== '–'));
   const value = each => {
@@ -127,7 +130,7 @@ function stack(plots, options = {}) {
 }
 
 function views() {
-  if (!page.views.length) return;
+  if (!page.views || !page.views.length) return;
   const shown = page.views.map((view, i) => {
     const title = view.finding ? `${view.finding} ${view.title}` : view.title;
     return element('div', {class: 'view'}, ...stack(view.plots, {title, keys: i === 0}));
@@ -136,7 +139,8 @@ function views() {
 }
 
 function firstScreen() {
-  main.append(element('section', {class: 'first'}, ...[matrix(), numbers()].filter(Boolean)));
+  const parts = [matrix(), numbers()].filter(Boolean);
+  if (parts.length) main.append(element('section', {class: 'first'}, ...parts));
   views();
 }
 
@@ -164,7 +168,7 @@ function findings() {
         ...folds, page.plan ? element('pre', {}, page.plan) : null);
     return;
   }
-  if (!page.findings.length && !folds.length) return;
+  if (!page.findings || !page.findings.length && !folds.length) return;
   section('Findings', ...page.findings.map(findingCard), ...folds);
 }
 
@@ -199,7 +203,19 @@ function panel(title, note, make, open) {
   return node;
 }
 
+// A story in sections, each with its tables and figures and, folded, the commands that made them.
+function chapters() {
+  for (const {title, text = [], tables = [], plots = [], groups = [], made = []} of page.chapters || [])
+    section(title, ...text.map(each => paragraph(each)),
+        ...tables.flatMap(each => [element('h3', {}, each.title), table('wide told', each.columns, each.rows), paragraph(each.note, 'note')].filter(Boolean)),
+        some(plots, list => element('div', {class: 'grid four'}, ...list.map((plot, i) =>
+          plot.lines ? figure(plot, {keys: i === 0, height: 150}) : element('div', {class: 'note'}, element('b', {}, plot.title), element('p', {}, plot.text))))),
+        some(groups, list => element('div', {class: 'grid'}, ...list.map(group => element('div', {class: 'view'}, element('h3', {}, group.title), ...stack(group.plots))))),
+        some(made, rows => panel('How this was made', '', () => [element('div', {class: 'made'}, pairs(rows.map(([what, command]) => [what, element('code', {}, command)])))])));
+}
+
 function record() {
+  if (!page.cvs) return;
   const panels = page.cvs.map(cv => panel(cv.tag, cv.description, () => [
     ...stack(cv.plots),
     cv.errors.length ? panel('Where the error is', 'over frequency and range, and with which input', () =>
@@ -210,11 +226,11 @@ function record() {
 }
 
 function madeBy() {
+  const plots = [...(page.views || []), ...(page.cvs || [])].flatMap(each => each.plots);
   section('How this was made', element('div', {class: 'made'}, pairs(page.made_by)),
       element('p', {class: 'note'}, [page.odds ? `Odds in words: ${page.odds}.` : '',
         page.zone ? `Times are in ${page.zone}.` : 'The data carry no dates: times are counted from their clock’s zero.',
-        page.views.some(view => view.plots.some(plot => 'unseen' in plot)) || page.cvs.some(cv => cv.plots.some(plot => 'unseen' in plot))
-          ? 'Shaded in plots: data that no fit has seen.' : '',
+        plots.some(plot => 'unseen' in plot) ? 'Shaded in plots: data that no fit has seen.' : '',
         page.findings ? '“How the error goes with” an input: their correlation at each lag, both filtered so that the input is white; grey is what chance leaves at one lag in twenty, left of 0 is feedback.' : ''].filter(Boolean).join(' ')));
 }
 
@@ -238,6 +254,7 @@ findings();
 control();
 errors();
 closedLoop();
+chapters();
 record();
 madeBy();
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);

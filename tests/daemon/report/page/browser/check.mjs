@@ -1,37 +1,9 @@
 // node check.mjs DIAGNOSIS.html IDENTIFICATION.html [PICTURES]: what an engineer sees of the two pages.
 import assert from "node:assert/strict";
-import path from "node:path";
-import { chromium } from "playwright-core";
 import YAML from "yaml";
+import { browser, empty, kScreen, open, overflow } from "./browser.mjs";
 
 const [diagnosis, identification, pictures] = process.argv.slice(2);
-const kScreen = 900; // height of a window, pixels
-const quiet = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-  "--disable-background-networking", "--disable-component-update", "--disable-sync"];
-const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: quiet });
-
-async function open(file, width, colorScheme) {
-  const context = await browser.newContext({ viewport: { width, height: kScreen }, colorScheme });
-  const page = await context.newPage();
-  page.troubles = [];
-  page.on("console", (message) => page.troubles.push(message.text()));
-  page.on("pageerror", (error) => page.troubles.push(error.stack));
-  page.on("request", (request) => {
-    if (!request.url().startsWith("file:")) page.troubles.push(`asks for ${request.url()}`);
-  });
-  await page.goto(`file://${path.resolve(file)}`);
-  await page.waitForSelector("canvas", { state: "attached" });
-  return page;
-}
-
-const overflow = (page) =>
-  page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-
-// Whether each drawn plot holds more than its ground.
-const empty = (page) => page.evaluate(() => [...document.querySelectorAll("canvas")].filter((canvas) => {
-  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-  return !data.some((value) => value !== data[0]);
-}).length);
 
 // Texts that stick out of what holds them, and tags that are broken.
 const stickingOut = (page) => page.evaluate(() => {
