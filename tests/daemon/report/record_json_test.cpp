@@ -25,6 +25,7 @@ TEST_CASE("records are the JSON lines that readers know, byte for byte") {
         R"("time_constant_ratio":1.5,"time_constant_ratio_interval":[1.1,2.25],)"
         R"("dead_time_error":-60.0,"dead_time_error_interval":[-90.5,-29.5],)"
         R"("smallest_error":0.08,"effective_samples":3999.5,"alarm":"active",)"
+        R"("gain_variation":0.375,)"
         R"("partial_correlations":{"lags":[-2,1],"values":[0.01,-0.02,0.3,0.0]}})");
   CHECK(json_of(collinear_channel()).dump() ==
         R"({"record":"channel","unit":"shell","interval":12,"time_ns":12000000000,"mv":"u1",)"
