@@ -164,6 +164,8 @@ Json change_chapter(const Story& story) {
     say(result,
         "So the change raises no alarm: what the channels show of it is less than what the monitor "
         "takes to matter.");
+  if (alarms_said(story.healthy.detect) != "none")
+    say(result, "Nothing is hidden in the unchanged plant: its alarms are false.");
   for (const LiveRun* run : {&story.changed, &story.healthy}) {
     if (run->detect["channels"].dump().find("operating_point") == std::string::npos) continue;
     say(result, "Operating point: how the CV answers depends on where the plant runs.");

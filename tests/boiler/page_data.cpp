@@ -34,7 +34,9 @@ Json page_data(const Story& story) {
              "Beside Carlsson (2010), chapter 5: identification, commissioning, a hidden "
              "change, its diagnosis, the repair. Controller, monitor and recorder are "
              "separate processes that talk over DDS."},
-            {"data", "Control interval 10 s. All times are process time."}};
+            {"data",
+             "Control interval 10 s. All times are process time. One draw of set-points and noise: "
+             "another seed gives other numbers, verdicts and findings."}};
   json["chapters"] = {rest_chapter(story),   model_chapter(story),     commissioning_chapter(story),
                       change_chapter(story), diagnosis_chapter(story), repair_chapter(story),
                       others_chapter(story)};
