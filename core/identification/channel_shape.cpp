@@ -121,7 +121,8 @@ VectorXd damped_response(const ChannelShape& shape, const Eigen::Ref<const Vecto
   const DiscreteFilter filter =
       sampled({shape.time_constant, shape.damping}, shape.gain, shape.dead_time, 1.0);
   VectorXd output(input.size());
-  for (const auto& [first, count] : runs) {
+  for (const Run& run : runs) {
+    const Index first = run.first, count = run.count;
     const double before = input(first), rest = shape.gain * before;
     const auto moved = [&](Index k) { return k > 0 ? output(first + k) - rest : 0.0; };
     for (Index k = 0; k < count; ++k) {

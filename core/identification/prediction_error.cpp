@@ -257,7 +257,7 @@ class CvFitting {
     return result;
   }
 
-  Step linearise(const State& state) const {
+  [[nodiscard]] Step linearise(const State& state) const {
     Step step;
     step.free = free_numbers_of(state);
     const auto count = static_cast<Index>(step.free.size());
@@ -276,7 +276,7 @@ class CvFitting {
       const Eigen::HouseholderQR<MatrixXd> qr(system);
       const Index height = std::min(system.rows(), system.cols());
       const MatrixXd triangle = qr.matrixQR().topRows(height).triangularView<Eigen::Upper>();
-      if (height > own) kept.push_back(triangle.bottomRightCorner(height - own, count + 1));
+      if (height > own) kept.emplace_back(triangle.bottomRightCorner(height - own, count + 1));
     }
     Index height = 0;
     for (const MatrixXd& part : kept) height += part.rows();
@@ -327,7 +327,7 @@ class CvFitting {
     return channels;
   }
 
-  PredictionErrorFit finished(State state) const {
+  [[nodiscard]] PredictionErrorFit finished(State state) const {
     if (noise_.bound == 0.0) take_restricted_noise(state);
     const Step step = linearise(state);
     PredictionErrorFit fit;

@@ -37,6 +37,7 @@ double gain_variation(const VolterraTerms& terms, int a, const Eigen::VectorXd& 
     return (coefficients(first + columns[0]) + coefficients(first + columns[1])) / own;
   };
   std::vector<double> slopes;
+  slopes.reserve(terms.inputs().size());
   for (int b = 0; b < count; ++b)
     slopes.push_back((a == b ? 2.0 : 1.0) *
                      coefficient(terms.product_columns(std::min(a, b), std::max(a, b))));

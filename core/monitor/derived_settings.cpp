@@ -117,8 +117,11 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
       monitor.residual_order > 0 ? monitor.residual_order : regression_shape::kResidualOrder;
 
   double tail = monitor.tail_s > 0.0 ? monitor.tail_s / sample_time_s : slowest;
-  for (double mean = tail; mean > 1.0; mean /= calibration::confounding::kPoleRatio)
+  double mean = tail;
+  while (mean > 1.0) {
     derived.outside_poles.push_back(std::exp(-1.0 / mean));
+    mean /= calibration::confounding::kPoleRatio;
+  }
   do {
     derived.tail_poles.push_back(std::exp(-1.0 / tail));
     tail /= regression_shape::kTailRatio;

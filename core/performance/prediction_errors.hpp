@@ -41,7 +41,7 @@ class PredictionErrors {
   void skip_to(std::int64_t interval);
   void remember(std::span<const CvReading> readings);
   [[nodiscard]] const CvReading& ago(std::int64_t samples, std::size_t cv) const {
-    const std::size_t back = static_cast<std::size_t>(samples);
+    const auto back = static_cast<std::size_t>(samples);
     return ring_[((place_ + rows_ - back) % rows_) * cvs_ + cv];
   }
 
