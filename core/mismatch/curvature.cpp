@@ -63,6 +63,7 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
   const int first = shape.columns();
   const int count = terms.columns();
   const int span = std::min(regression.span(), history.settled());
+  if (count == 0 || span < first + count) return std::nullopt;
   GivensQr factor(first + count, 1);
   RowFeed feed(first + count + 1);
   int rows = 0;
@@ -78,7 +79,7 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
   }
   feed.flush(factor);
   const int freedom = rows - first - count;
-  if (count == 0 || freedom < limits::kFreedomPerColumn * count) return std::nullopt;
+  if (freedom < limits::kFreedomPerColumn * count) return std::nullopt;
   const double variance = factor.residual_square(0) / freedom;
   if (!(variance > 0.0)) return std::nullopt;
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/statistics/calibration.hpp"
 #include "core/statistics/readback.hpp"
 
 namespace mpm {
@@ -59,19 +60,18 @@ FollowedSignal OutsideSignals::followed(int cv, const RegressionHistory& history
 }
 
 bool OutsideSignals::reads_an_input_back(int signal, const RegressionHistory& history, int span) {
-  std::optional<bool>& known = readbacks_[static_cast<std::size_t>(signal)];
-  if (known) return *known;
-  const int inputs = history.inputs();
-  if (span < rows_to_read_back(inputs)) return false;
-  Eigen::MatrixXd moves(span, inputs);
-  Eigen::VectorXd values(span);
+  Readback& known = readbacks_[static_cast<std::size_t>(signal)];
+  const int rows = std::min(span, readback::kMostRowsLive);
+  if (known.is || rows < rows_to_read_back() || rows < 2 * known.asked_span) return known.is;
+  Eigen::MatrixXd moves(rows, history.inputs());
+  Eigen::VectorXd values(rows);
   const double* window = windows_[static_cast<std::size_t>(signal * block())].window();
-  for (int k = 0; k < span; ++k) {
-    for (int i = 0; i < inputs; ++i) moves(k, i) = history.input(i, span - 1 - k);
-    values(k) = window[span - 1 - k];
+  for (int k = 0; k < rows; ++k) {
+    for (int i = 0; i < history.inputs(); ++i) moves(k, i) = history.input(i, rows - 1 - k);
+    values(k) = window[rows - 1 - k];
   }
-  known = reads_back(moves, values);
-  return *known;
+  known = {reads_back(moves, values), rows};
+  return known.is;
 }
 
 double OutsideSignals::explained_by(int signal, int cv, const RegressionHistory& history,

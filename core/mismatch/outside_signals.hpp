@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/mismatch/residual_regression.hpp"
@@ -21,7 +20,8 @@ struct FollowedSignal {
 /// each by itself explains a CV's residual: a regression on the constant, the last residuals of all
 /// CVs and the signal's value and exponentially weighted means of it (`poles`), with the rows and
 /// weights of the CV's own regression. Signals that read an input back (`reads_back`) are none.
-/// Allocates when it is first asked of a signal with enough rows.
+/// Allocates when it asks a signal that; of one that is none again when there are twice the rows,
+/// for an input may stand still at first.
 class OutsideSignals {
  public:
   /// `depth`: samples remembered.
@@ -46,9 +46,14 @@ class OutsideSignals {
   int depth_;
   std::vector<double> poles_;
   std::vector<double> origin_, last_;
-  std::vector<std::optional<bool>> readbacks_;  // per signal, once it is known
-  std::vector<LagWindow> windows_;              // signal-major: value, means
-  Eigen::VectorXd unknown_;                     // all NaN
+  // Per signal: whether it reads an input back, and the span of rows that said so.
+  struct Readback {
+    bool is = false;
+    int asked_span = 0;
+  };
+  std::vector<Readback> readbacks_;
+  std::vector<LagWindow> windows_;  // signal-major: value, means
+  Eigen::VectorXd unknown_;         // all NaN
   RowFeed feed_;
   GivensQr factor_;  // [lead-in | signal]
 };

@@ -52,9 +52,11 @@ namespace readback {
 /// Of the signal's own past, and of each input. Chosen: a control loop below answers within.
 inline constexpr int kLags = 5;
 /// Of what the signal's own past leaves. Chosen: of the recovery boiler's measured flows,
-/// temperature and valve position the inputs explain all, of its liquor's solids 0.3 %.
+/// temperature and valve position their set-points explain all, of its liquor's solids 0.3 %.
 inline constexpr double kMostOf = 0.5;
 inline constexpr int kRowsPerColumn = 10;  ///< chosen
+/// Rows that the monitor looks at. Chosen: it asks in between two samples, of every signal.
+inline constexpr int kMostRowsLive = 1000;
 }  // namespace readback
 
 /// Whether a series of values changed (level_change.hpp).

@@ -7,6 +7,7 @@
 #include "core/statistics/calibration.hpp"
 
 namespace mpm {
+namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -15,36 +16,46 @@ using readback::kLags;
 using readback::kMostOf;
 using readback::kRowsPerColumn;
 
-int rows_to_read_back(int inputs) { return kLags + kRowsPerColumn * (1 + kLags + kLags * inputs); }
+constexpr Index kOwn = 1 + kLags;         // the constant and the signal's past
+constexpr Index kColumns = kOwn + kLags;  // and one input's
 
-bool reads_back(const Eigen::Ref<const MatrixXd>& inputs,
-                const Eigen::Ref<const VectorXd>& signal) {
-  const Index own = 1 + kLags, all = own + kLags * inputs.cols();
+double left_of(const Eigen::Ref<const MatrixXd>& columns, const VectorXd& response) {
+  return (response - columns * columns.colPivHouseholderQr().solve(response)).squaredNorm();
+}
+
+bool reads_one_back(const Eigen::Ref<const VectorXd>& input,
+                    const Eigen::Ref<const VectorXd>& signal) {
   std::vector<Index> rows;
   for (Index k = kLags; k < signal.size(); ++k)
     if (signal.segment(k - kLags, kLags + 1).allFinite() &&
-        inputs.middleRows(k - kLags, kLags).allFinite())
+        input.segment(k - kLags, kLags).allFinite())
       rows.push_back(k);
   const auto count = static_cast<Index>(rows.size());
-  if (count + kLags < rows_to_read_back(static_cast<int>(inputs.cols()))) return false;
-  MatrixXd columns(count, all);
+  if (count + kLags < rows_to_read_back()) return false;
+  MatrixXd columns(count, kColumns);
   VectorXd response(count);
+  columns.col(0).setOnes();
   for (Index r = 0; r < count; ++r) {
     const Index k = rows[static_cast<std::size_t>(r)];
-    columns(r, 0) = 1.0;
     for (Index lag = 1; lag <= kLags; ++lag) {
       columns(r, lag) = signal(k - lag);
-      for (Index i = 0; i < inputs.cols(); ++i)
-        columns(r, own + i * kLags + lag - 1) = inputs(k - lag, i);
+      columns(r, kLags + lag) = input(k - lag);
     }
     response(r) = signal(k);
   }
-  const auto left = [&](Index width) {
-    const MatrixXd used = columns.leftCols(width);
-    return (response - used * used.colPivHouseholderQr().solve(response)).squaredNorm();
-  };
-  const double alone = left(own);
-  return alone > 0.0 && left(all) < (1.0 - kMostOf) * alone;
+  const double alone = left_of(columns.leftCols(kOwn), response);
+  return alone > 0.0 && left_of(columns, response) < (1.0 - kMostOf) * alone;
+}
+
+}  // namespace
+
+int rows_to_read_back() { return kLags + kRowsPerColumn * static_cast<int>(kColumns); }
+
+bool reads_back(const Eigen::Ref<const MatrixXd>& inputs,
+                const Eigen::Ref<const VectorXd>& signal) {
+  for (Index i = 0; i < inputs.cols(); ++i)
+    if (reads_one_back(inputs.col(i), signal)) return true;
+  return false;
 }
 
 }  // namespace mpm

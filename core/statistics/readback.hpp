@@ -6,7 +6,7 @@ namespace mpm {
 
 /// Whether a measured signal is a model's input over again: the flow behind a flow controller's
 /// set-point, a valve's position behind its command. Such a signal explains what the input does,
-/// and is no cause of its own. It is one where the inputs' last values explain most of what the
+/// and is no cause of its own. It is one where one input's last values explain most of what the
 /// signal's own past does not; what disturbs from outside may move the inputs, but not after them.
 /// `inputs`: samples x inputs; `signal`: samples; rows with unknown values are left out. False
 /// where the rows are too few to tell.
@@ -14,6 +14,6 @@ namespace mpm {
                               const Eigen::Ref<const Eigen::VectorXd>& signal);
 
 /// Rows that it takes to tell.
-[[nodiscard]] int rows_to_read_back(int inputs);
+[[nodiscard]] int rows_to_read_back();
 
 }  // namespace mpm

@@ -58,8 +58,8 @@ TEST_CASE("what moves by itself is no readback, though an input follows it") {
 TEST_CASE("few rows, and what stands still, tell of no readback") {
   const Eigen::MatrixXd inputs = commands();
   const Eigen::VectorXd flow = flow_behind(inputs.col(0), 0.0);
-  const int enough = rows_to_read_back(2);
-  CHECK(enough == 165);  // 5 + 10 (1 + 5 + 10)
+  const int enough = rows_to_read_back();
+  CHECK(enough == 115);  // 5 + 10 (1 + 5 + 5)
   CHECK(reads_back(inputs.topRows(enough), flow.head(enough)));
   CHECK_FALSE(reads_back(inputs.topRows(enough - 1), flow.head(enough - 1)));
   CHECK_FALSE(reads_back(inputs, Eigen::VectorXd::Constant(kRows, 7.0)));
