@@ -18,6 +18,8 @@ inline constexpr double kSmallRatioStep = 0.01;     ///< of finite differences, 
 inline constexpr double kSmallDeadTimeStep = 0.25;  ///< samples
 /// A CV's level is uncertain by its misfit, at least by this share of what it moves.
 inline constexpr double kLeastLevel = 1e-6;
+/// A level that has more than this share of the misfit's mean square is far off.
+inline constexpr double kLevelFarOff = 0.5;
 /// Its first state by its first errors, at least by this share, and by so many of its moves in a
 /// row: noise alone is off by a few.
 inline constexpr double kLeastFirstState = 1e-3;

@@ -83,11 +83,11 @@ class Problem::Fitting {
     std::vector<Index> where;  ///< its coordinates among the free ones
   };
 
-  /// Runs far apart in level would at first look like one wandering noise, which leaves the levels
-  /// free and holds the fit there: so each of several runs starts at its own.
+  /// Runs far apart in level, or a level far off beside all that moves, would at first look like
+  /// one wandering noise, which leaves the levels free and holds the fit there: so each of several
+  /// runs starts at its own, and a single one where that is far off.
   void start_at_levels(CvFit& state) {
     const CvData& data = problem_.data(state.cv);
-    if (data.runs.size() < 2) return;
     const VectorXd misfit =
         (data.measured - problem_.simulate(effects_, state.cv)).cwiseProduct(data.known);
     if (!misfit.allFinite()) return;
@@ -95,8 +95,10 @@ class Problem::Fitting {
       const auto& [first, count] = data.runs[r];
       const auto column = static_cast<Index>(r);
       const double known = std::max(1.0, data.known.segment(first, count).sum());
-      state.beta(column) =
-          misfit.segment(first, count).sum() / known / data.nuisances(first, column);
+      const double level = misfit.segment(first, count).sum() / known;
+      const double square = misfit.segment(first, count).squaredNorm() / known;
+      if (data.runs.size() == 1 && level * level < kLevelFarOff * square) return;
+      state.beta(column) = level / data.nuisances(first, column);
     }
   }
 

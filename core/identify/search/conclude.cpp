@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -28,6 +29,19 @@ double cost_at(Problem& problem, const Fit& fit, std::size_t effect, Index coord
   return problem.fit(effects, effects.size() - 1, cvs, 3).cost;
 }
 
+/// Inputs that the model left out have operating points that nobody knows: how far apart they took
+/// the CV.
+double range_of_new_inputs(Problem& problem, const std::vector<Effect>& effects, int cv) {
+  std::vector<Effect> others;
+  std::copy_if(effects.begin(), effects.end(), std::back_inserter(others),
+               [&](const Effect& effect) {
+                 return effect.edit != &causes::unmodelled_input() || effect.place.cv != cv;
+               });
+  if (others.size() == effects.size()) return 0.0;
+  const Eigen::VectorXd moved = problem.simulate(effects, cv) - problem.simulate(others, cv);
+  return moved.maxCoeff() - moved.minCoeff();
+}
+
 }  // namespace
 
 void widen_kinked(Problem& problem, SearchResult& result, const std::function<void()>& tell) {
@@ -52,16 +66,9 @@ void widen_kinked(Problem& problem, SearchResult& result, const std::function<vo
   }
 }
 
-void name_levels(const Problem& problem, const std::vector<int>& except, SearchResult& result) {
+void name_levels(Problem& problem, const std::vector<int>& except, SearchResult& result) {
   for (CvFit& fit : result.fit.cvs) {
     if (std::find(except.begin(), except.end(), fit.cv) != except.end()) continue;
-    // An input that the model left out has an operating point that nobody knows.
-    const bool new_input =
-        std::any_of(result.named.begin(), result.named.end(), [&](const Named& named) {
-          return named.effect.edit == &causes::unmodelled_input() &&
-                 named.effect.place.cv == fit.cv;
-        });
-    if (new_input) continue;
     const CvData& data = problem.data(fit.cv);
     // Runs have levels of their own, which are nobody's fault.
     if (data.runs.size() > 1) continue;
@@ -71,6 +78,7 @@ void name_levels(const Problem& problem, const std::vector<int>& except, SearchR
     const double rows = std::max(1.0, independence({fit}) * data.rows);
     const double sd = std::sqrt(fit.variance / rows) / memory;
     if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd)) continue;
+    if (std::abs(level) <= range_of_new_inputs(problem, result.fit.effects, fit.cv)) continue;
     Named named;
     named.effect = causes::constant_offset(fit.cv, level, noise);
     named.evidence = level * level / (sd * sd);

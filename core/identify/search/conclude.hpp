@@ -15,6 +15,6 @@ void widen_kinked(Problem& problem, SearchResult& result, const std::function<vo
 /// A level that is off from the first row on by far more than the noise moves it is no small error
 /// any more, but a sensor's offset or a disturbance as old as the data: adds those to `result`, but
 /// for the CVs in `except`.
-void name_levels(const Problem& problem, const std::vector<int>& except, SearchResult& result);
+void name_levels(Problem& problem, const std::vector<int>& except, SearchResult& result);
 
 }  // namespace mpm
