@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/identify/causes/actuator_moments.hpp"
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/input_block.hpp"
+#include "core/identify/causes/unmodelled_input.hpp"
+#include "core/identify/fit/channel_edit.hpp"
 
 namespace mpm::causes {
 namespace {
@@ -21,6 +24,36 @@ constexpr double kUsualSize = 0.3, kSizeStep = 0.01;
 /// wanders looks like steps of this and that.
 constexpr double kOneCvOnly = 30.0;
 constexpr double kWandering = 20.0;
+
+/// A signal has moved along with an onset where so much of its variance is between before and
+/// after.
+constexpr double kMovedAlong = 0.3;
+
+/// The column that moved most from before the onset to after it; -1: none did so clearly.
+int moves_along(const Eigen::MatrixXd& signals, Eigen::Index onset) {
+  int best = -1;
+  double most = kMovedAlong;
+  for (Eigen::Index a = 0; a < signals.cols(); ++a) {
+    double count[2] = {}, sum[2] = {}, square = 0.0;
+    for (Eigen::Index k = 0; k < signals.rows(); ++k) {
+      const double value = signals(k, a);
+      if (!std::isfinite(value)) continue;
+      ++count[k >= onset];
+      sum[k >= onset] += value - signals(0, a);
+      square += (value - signals(0, a)) * (value - signals(0, a));
+    }
+    if (count[0] == 0.0 || count[1] == 0.0) continue;
+    const double all = sum[0] + sum[1];
+    const double total = square - all * all / (count[0] + count[1]);
+    const double within = square - sum[0] * sum[0] / count[0] - sum[1] * sum[1] / count[1];
+    const double share = total > 0.0 ? 1.0 - within / total : 0.0;
+    if (share > most) {
+      most = share;
+      best = static_cast<int>(a);
+    }
+  }
+  return best;
+}
 
 /// An actuator is open by more than its command from a moment on: it leaks, or its zero has
 /// shifted. An offset that is always there is a level of the CVs, which a model leaves free; it
@@ -54,6 +87,32 @@ class InputOffsetCause : public InputBlockCause {
   /// The input need not move for it to show: it is a load on its CVs.
   [[nodiscard]] bool acts_through_channels() const override { return false; }
 
+  /// What the input feeds may have changed instead, and a signal that the model leaves out have
+  /// seen it: the one that moved most at that moment, acting on the same CVs.
+  [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
+                                              const Problem& problem,
+                                              const Tolerances&) const override {
+    const Effect& offset = accepted[mine];
+    const ModelSpec& model = problem.model();
+    const int aux = moves_along(problem.recording().aux, offset.onset);
+    if (aux < 0) return {};
+    Rewrite rewrite{{mine}, {}};
+    for (const ChannelSpec& channel : model.channels) {
+      if (channel.input != offset.place.input) continue;
+      const Place place{channel.cv, -1, aux};
+      const bool known = std::any_of(accepted.begin(), accepted.end(), [&](const Effect& effect) {
+        return effect.edit == &unmodelled_input() && effect.place == place;
+      });
+      if (known) continue;
+      if (const auto effect = unmodelled_input_at(
+              problem, place, 1, slowest_time_constant_s(channel, model.sample_time_s),
+              removable_dead_time_s(channel, model.sample_time_s)))
+        rewrite.with.push_back(*effect);
+    }
+    if (rewrite.with.empty()) return {};
+    return {rewrite};
+  }
+
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override {
     const Place& place = finding.subject.place;
@@ -65,7 +124,7 @@ class InputOffsetCause : public InputBlockCause {
                          : names.in_source(std::abs(size->value), place) +
                                (size->value < 0.0 ? " lower" : " higher") + " (size " +
                                interval_of(*size, names.source(place).unit) + ")");
-    text += ": its actuator leaks, or its zero has shifted. ";
+    text += ": its actuator leaks, its zero has shifted, or what it feeds has changed. ";
     const int cv = only_cv(names.model, place.input);
     if (cv >= 0)
       text += "Only " + names.cv(cv).tag +

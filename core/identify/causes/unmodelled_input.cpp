@@ -4,6 +4,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/priors.hpp"
 #include "core/identify/causes/spread.hpp"
+#include "core/identify/causes/unmodelled_input.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/text/number_text.hpp"
 
@@ -49,41 +50,49 @@ class UnmodelledInput : public Cause {
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const std::vector<Place> places = unconnected(outlook);
-    const double sample_time_s = outlook.sample_time_s();
     for (const Place& place : places) {
-      const Recording& recording = outlook.recording();
-      const std::optional<Spread> from = spread_of(
-          place.aux >= 0 ? recording.aux.col(place.aux) : recording.inputs.col(place.input));
-      const std::optional<Spread> to = spread_of(recording.cvs.col(place.cv));
-      if (!from || !to) continue;
       const double slowest = slowest_of_cv_s(outlook.model(), place.cv, kUsualSamples);
-      const double gain = kUsualGain * to->sd / std::max(1e-12, from->sd);
       for (const double share : kTimeConstants)
         for (const double delay : kDeadTimes) {
-          const double time_constant_s = std::max(0.5 * sample_time_s, share * slowest);
-          found.push_back(
-              effect(place,
-                     {{.quantity = &kGain,
-                       .prior_sd = gain,
-                       .step = 0.01 * gain,
-                       .low = -kUnbounded,
-                       .high = kUnbounded},
-                      {.quantity = &kTimeConstant,
-                       .value = std::log(time_constant_s),
-                       .prior_mean = std::log(slowest / 2.0),
-                       .prior_sd = kTimeConstantSd,
-                       .step = 0.02,
-                       .low = std::log(kFastest * sample_time_s),
-                       .high = std::log(kSlowest * slowest)},
-                      {.quantity = &kDeadTimeError,
-                       .value = delay * slowest / sample_time_s,
-                       .prior_sd = kDeadTimeSd * slowest / sample_time_s + kDeadTimeSamplesSd,
-                       .step = 0.25,
-                       .low = 0.0,
-                       .high = kLatest * slowest / sample_time_s}},
-                     cost_of(places.size())));
+          const double time_constant_s = std::max(0.5 * outlook.sample_time_s(), share * slowest);
+          if (const auto effect =
+                  at(outlook.problem, place, places.size(), time_constant_s, delay * slowest))
+            found.push_back(*effect);
         }
     }
+  }
+
+  [[nodiscard]] std::optional<Effect> at(const Problem& problem, const Place& place,
+                                         std::size_t members, double time_constant_s,
+                                         double dead_time_s) const {
+    const Recording& recording = problem.recording();
+    const std::optional<Spread> from = spread_of(
+        place.aux >= 0 ? recording.aux.col(place.aux) : recording.inputs.col(place.input));
+    const std::optional<Spread> to = spread_of(recording.cvs.col(place.cv));
+    if (!from || !to) return std::nullopt;
+    const double sample_time_s = problem.surroundings().sample_time_s;
+    const double slowest = slowest_of_cv_s(problem.model(), place.cv, kUsualSamples);
+    const double gain = kUsualGain * to->sd / std::max(1e-12, from->sd);
+    return effect(place,
+                  {{.quantity = &kGain,
+                    .prior_sd = gain,
+                    .step = 0.01 * gain,
+                    .low = -kUnbounded,
+                    .high = kUnbounded},
+                   {.quantity = &kTimeConstant,
+                    .value = std::log(time_constant_s),
+                    .prior_mean = std::log(slowest / 2.0),
+                    .prior_sd = kTimeConstantSd,
+                    .step = 0.02,
+                    .low = std::log(kFastest * sample_time_s),
+                    .high = std::log(kSlowest * slowest)},
+                   {.quantity = &kDeadTimeError,
+                    .value = dead_time_s / sample_time_s,
+                    .prior_sd = kDeadTimeSd * slowest / sample_time_s + kDeadTimeSamplesSd,
+                    .step = 0.25,
+                    .low = 0.0,
+                    .high = kLatest * slowest / sample_time_s}},
+                  cost_of(members));
   }
 
   [[nodiscard]] bool may_pass_for_noise() const override { return true; }
@@ -128,11 +137,19 @@ class UnmodelledInput : public Cause {
   }
 };
 
-}  // namespace
-
-const Cause& unmodelled_input() {
+const UnmodelledInput& the_cause() {
   static const UnmodelledInput cause;
   return cause;
+}
+
+}  // namespace
+
+const Cause& unmodelled_input() { return the_cause(); }
+
+std::optional<Effect> unmodelled_input_at(const Problem& problem, const Place& place,
+                                          std::size_t members, double time_constant_s,
+                                          double dead_time_s) {
+  return the_cause().at(problem, place, members, time_constant_s, dead_time_s);
 }
 
 }  // namespace mpm::causes
