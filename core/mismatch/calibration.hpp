@@ -32,7 +32,19 @@ inline constexpr double kBlock = 0.26;     ///< of the test of the whole block, 
 namespace rows_needed {
 inline constexpr double kPerColumn = 5.0;
 inline constexpr double kMorePerColumn = 20.0;  ///< where tails are as heavy as below
+/// Where a CV's noise remembers longer than its lags: with five p < 0.01 came four times too often,
+/// with ten twice, with more as often as it should (`./run study`, seeds 100001 to 100040). Chosen.
+inline constexpr double kMoreForSlowNoise = 10.0;
 }  // namespace rows_needed
+
+/// When a CV's own past is more than its lags (`ResidualRegression::take_means_in`): from so many
+/// rows per column on, and from fewer on where noise is beyond this p-value seen to be slow.
+/// Chosen: as many rows as slow noise asks for.
+namespace long_past {
+inline constexpr int kRowsPerColumn = 15;
+inline constexpr int kAskedRowsPerColumn = 5;
+inline constexpr double kPValue = 1e-4;
+}  // namespace long_past
 
 /// Shares of clipped rows (beyond row_weights::kClip) from which on tails count as somewhat and as
 /// very heavy; normal noise has 0.0027. With heavy tails and 528 rows p < 0.01 came in 10 % of

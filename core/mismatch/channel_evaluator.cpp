@@ -67,7 +67,7 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
   test_block(noise, evidence);
 
   evidence.reference_gain = reference_gain(cv, input);
-  channel.errors.front().filter(estimates_.own_lags(), error_);
+  channel.errors.front().filter(estimates_.own_past().data(), error_);
   if (channel.gain == 0.0) error_ *= evidence.reference_gain;
   error_.array() *= estimates_.norms(input).array();
   excitation_.measure(input, error_, estimate_, estimates_, covariance_, noise, evidence);
@@ -133,7 +133,7 @@ void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noi
 
 void ChannelEvaluator::scaled_error(const Signature& error, int input,
                                     Eigen::Ref<Eigen::VectorXd> out) const {
-  error.filter(estimates_.own_lags(), out);
+  error.filter(estimates_.own_past().data(), out);
   out.array() *= estimates_.norms(input).array();
 }
 
@@ -182,8 +182,7 @@ void ChannelEvaluator::size_error(int cv, int input, double left, const Estimate
 // The gain as the sum of the block's coefficients over A_j(1): free of the model's shape.
 void ChannelEvaluator::estimate_free_gain(double model_gain, int input, const EstimateNoise& noise,
                                           ChannelEvidence& evidence) {
-  double own = 1.0;
-  for (int l = 0; l < shape_.residual_order; ++l) own -= estimates_.own_lags()[l];
+  const double own = 1.0 - estimates_.own_past().sum();
   if (!(own > 0.0)) return;           // the noise integrates: no gain can be read off
   error_ = estimates_.scales(input);  // weighs the sum of the unscaled coefficients
   const double sum = error_.dot(estimates_.estimate(input));

@@ -45,11 +45,13 @@ std::vector<ChannelSignatures> channel_signatures(const RegressionShape& shape,
       if (pulse.cwiseAbs().maxCoeff() > 0.0) {
         channel.gain = gains(j, i) * (integrating(j, i) ? basis.slowest() : 1.0);
         for (const Eigen::VectorXd& error : usual_errors(pulse))
-          channel.errors.emplace_back(basis, error, shape.residual_order);
+          channel.errors.emplace_back(basis, error, shape.residual_order, shape.residual_poles);
         for (const int shift : {1, -1})
-          channel.shifts.emplace_back(basis, shifted(pulse, shift) - pulse, shape.residual_order);
+          channel.shifts.emplace_back(basis, shifted(pulse, shift) - pulse, shape.residual_order,
+                                      shape.residual_poles);
       } else {
-        channel.errors.emplace_back(basis, lag_with_slowest_tail(basis), shape.residual_order);
+        channel.errors.emplace_back(basis, lag_with_slowest_tail(basis), shape.residual_order,
+                                    shape.residual_poles);
       }
       channels.push_back(std::move(channel));
     }

@@ -71,7 +71,7 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
     const double weight = regression.row_weight(age);
     if (!(weight > 0.0)) continue;
     double* row = feed.next_row(factor);
-    history.fill(age, row);
+    regression.fill(history, age, row);
     terms.fill(age, row + first);
     row[first + count] = history.residual(cv, age);
     for (int c = 0; c <= first + count; ++c) row[c] *= weight;
@@ -91,10 +91,9 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
   }
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(first + count);
   factor.solve(0, first + count, coefficients);
-  double own = 1.0;
-  for (int l = 0; l < shape.residual_order; ++l)
-    own -= coefficients(1 + cv * shape.residual_order + l);
-  own = std::max(own, limits::kLeastOwnGain);
+  Eigen::VectorXd past(shape.residual_order + shape.means());
+  shape.own_past(cv, coefficients, past);
+  const double own = std::max(1.0 - past.sum(), limits::kLeastOwnGain);
 
   Curvature found;
   found.channels.resize(static_cast<std::size_t>(shape.inputs));

@@ -13,7 +13,8 @@ namespace sizes = calibration::error_sizes;
 ErrorSizes::ErrorSizes(const RegressionShape& shape, const LinearModel& model)
     : cvs_(shape.cvs),
       basis_(shape.fir_lags, shape.tail_poles),
-      signature_(basis_, Eigen::VectorXd::Zero(basis_.length()), shape.residual_order),
+      signature_(basis_, Eigen::VectorXd::Zero(basis_.length()), shape.residual_order,
+                 shape.residual_poles),
       reduction_(shape.block()),
       changed_(Eigen::VectorXd::Zero(basis_.length())),
       work_(changed_),
@@ -122,7 +123,7 @@ double ErrorSizes::leave(const Channel& channel, const Eigen::Vector3d& value,
     before = now;
   }
   signature_.replace(basis_, changed_, work_);
-  signature_.filter(channel.estimates.own_lags(), out);
+  signature_.filter(channel.estimates.own_past().data(), out);
   out.array() *= channel.estimates.norms(channel.input).array();
   channel.covariance.whiten(out);
   out = channel.target - out;

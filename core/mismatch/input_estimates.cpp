@@ -24,6 +24,7 @@ InputEstimates::InputEstimates(const RegressionShape& shape)
   rotated_.setZero(all);
   estimate_.setZero(all);
   coefficients_.setZero(shape.columns() + VolterraTerms::most_columns());
+  own_past_.setZero(shape.residual_order + shape.means());
 }
 
 void InputEstimates::read(int cv, const GivensQr& factor) {
@@ -41,16 +42,16 @@ void InputEstimates::read(int cv, const GivensQr& factor) {
   for (int i = 0; i < all; ++i)
     estimate_(i) =
         Eigen::Map<const Eigen::VectorXd>(inverse_row(i) + i, all - i).dot(rotated_.tail(all - i));
-  read_own_lags(cv, factor);
+  read_own_past(cv, factor);
 }
 
-void InputEstimates::read_own_lags(int cv, const GivensQr& factor) {
+void InputEstimates::read_own_past(int cv, const GivensQr& factor) {
   double least_share = 1.0;
   for (int c = 0; c < columns(); ++c) least_share = std::min(least_share, triangle_(c, c));
   const bool separable = least_share > calibration::rounding::kSeparableShare;
   factor.solve(0, separable ? factor.columns() : lead_in_, coefficients_);
-  own_lags_at_ = 1 + cv * shape_.residual_order;
-  residual_norm_ = factor.centred_norm(1 + cv * shape_.residual_order);
+  shape_.own_past(cv, coefficients_, own_past_);
+  residual_norm_ = factor.centred_norm(shape_.lags_of(cv));
 }
 
 void InputEstimates::move(int input, const Eigen::VectorXd& x,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstddef>
 
 #include "core/mismatch/regression_history.hpp"
@@ -55,14 +54,12 @@ class InputEstimates {
   /// values.
   [[nodiscard]] double movement(int input, const Eigen::VectorXd& x, Eigen::VectorXd& work) const;
 
-  /// a_1..a_p of the CV's own residual, of the regression on everything where everything can be
-  /// told apart, otherwise of the one on the residual lags alone: a loop without excitation makes
-  /// inputs a function of residuals.
-  [[nodiscard]] const double* own_lags() const { return coefficients_.data() + own_lags_at_; }
+  /// a_1..a_p and those of the means, of the CV's own residual, of the regression on everything
+  /// where everything can be told apart, otherwise of the one on the residual lags alone: a loop
+  /// without excitation makes inputs a function of residuals.
+  [[nodiscard]] const Eigen::VectorXd& own_past() const { return own_past_; }
   /// Until the next `read`.
-  void set_own_lags(const double* lags) {
-    std::copy_n(lags, shape_.residual_order, coefficients_.data() + own_lags_at_);
-  }
+  void set_own_past(const Eigen::VectorXd& past) { own_past_ = past; }
   /// Of the CV's own last residual.
   [[nodiscard]] double residual_norm() const { return residual_norm_; }
 
@@ -70,7 +67,7 @@ class InputEstimates {
   [[nodiscard]] double* inverse_row(int i) {
     return inverse_.get() + static_cast<std::size_t>(i) * static_cast<std::size_t>(padded_);
   }
-  void read_own_lags(int cv, const GivensQr& factor);
+  void read_own_past(int cv, const GivensQr& factor);
   void invert_triangle();
   void subtract_rows_behind(int first);
   void invert_granule(int first);
@@ -87,7 +84,7 @@ class InputEstimates {
   Eigen::VectorXd rotated_;       // z
   Eigen::VectorXd estimate_;      // T z
   Eigen::VectorXd coefficients_;  // of the whole regression
-  Eigen::Index own_lags_at_ = 0;  // in coefficients_
+  Eigen::VectorXd own_past_;
   double residual_norm_ = 0.0;
 };
 

@@ -22,7 +22,8 @@ JointErrors::JointErrors(const RegressionShape& shape)
       error_(Eigen::VectorXd::Zero(shape.block())),
       sizes_(Eigen::VectorXd::Zero(shape.inputs * kUsualErrors)),
       lead_in_(Eigen::VectorXd::Zero(shape.lead_in() + VolterraTerms::most_columns())),
-      own_lags_(Eigen::VectorXd::Zero(shape.residual_order)),
+      own_past_(Eigen::VectorXd::Zero(shape.residual_order + shape.means())),
+      learnt_(own_past_),
       feed_(shape.inputs * (kUsualErrors + kShifts) + shape.block() + 1),
       all_(shape.inputs * kUsualErrors, 1 + shape.inputs * kShifts),
       last_(shape.inputs * kUsualErrors, 1 + kShifts),
@@ -34,12 +35,13 @@ JointErrors::JointErrors(const RegressionShape& shape)
 void JointErrors::read(int cv, const GivensQr& factor,
                        const std::vector<ChannelSignatures>& signatures, const EstimateNoise& noise,
                        InputEstimates& estimates) {
-  own_lags_ = Eigen::Map<const Eigen::VectorXd>(estimates.own_lags(), shape_.residual_order);
+  own_past_ = estimates.own_past();
   fit(cv, signatures, noise, estimates);
   for (int turn = 0; turn < calibration::joint_errors::kTurns; ++turn) {
     const double before = all_.residual_square(0);
     learn_own_lags(factor);
-    estimates.set_own_lags(lead_in_.data() + 1 + cv * shape_.residual_order);
+    shape_.own_past(cv, lead_in_, learnt_);
+    estimates.set_own_past(learnt_);
     fit(cv, signatures, noise, estimates);
     if (before - all_.residual_square(0) <
         calibration::joint_errors::kWorthAnotherTurn * noise.variance)
@@ -47,7 +49,7 @@ void JointErrors::read(int cv, const GivensQr& factor,
   }
   adequate_ =
       adequate_ && noise.freedom >= calibration::joint_errors::kFreedomPerColumn * shape_.columns();
-  if (!adequate_) estimates.set_own_lags(own_lags_.data());
+  if (!adequate_) estimates.set_own_past(own_past_);
 }
 
 // The lead-in's coefficients where the inputs' are those of the fit: R_l^-1 (z_l - R_li X x).
@@ -101,7 +103,7 @@ void JointErrors::move(int cv, const InputEstimates& estimates,
     const ChannelSignatures& channel = signatures[static_cast<std::size_t>(i * shape_.cvs + cv)];
     const auto move_all = [&](const std::vector<Signature>& errors, Eigen::MatrixXd& out, int at) {
       for (const Signature& error : errors) {
-        error.filter(estimates.own_lags(), error_);
+        error.filter(estimates.own_past().data(), error_);
         if (&out == &moved_) errors_.col(at) = error_;
         error_.array() *= estimates.norms(i).array();
         estimates.move(i, error_, out.col(at++));

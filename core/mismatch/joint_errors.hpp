@@ -68,7 +68,7 @@ class JointErrors {
   Eigen::VectorXd error_;    // block
   Eigen::VectorXd sizes_;    // of the errors of all inputs
   Eigen::VectorXd lead_in_;  // coefficients
-  Eigen::VectorXd own_lags_;
+  Eigen::VectorXd own_past_, learnt_;
   RowFeed feed_;
   GivensQr all_;    // [R_t X | z, R_t s]
   GivensQr last_;   // [R_t X, one input's last | z, R_t s of that input]

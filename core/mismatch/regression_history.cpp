@@ -21,6 +21,7 @@ RegressionHistory::RegressionHistory(const RegressionShape& shape, int depth)
                                          std::numeric_limits<double>::quiet_NaN())),
       unknown_run_(static_cast<std::size_t>(shape.cvs), 0),
       since_gap_(static_cast<std::size_t>(shape.cvs), 0),
+      has_mean_(static_cast<std::size_t>(shape.cvs), false),
       usable_(static_cast<std::size_t>(shape.cvs), false) {
   if (shape.inputs < 1 || shape.cvs < 1 || shape.fir_lags < 1 || shape.residual_order < 1 ||
       shape.tail_poles.empty() || depth < 1)
@@ -30,7 +31,11 @@ RegressionHistory::RegressionHistory(const RegressionShape& shape, int depth)
     input_windows_.emplace_back(length);
     for (std::size_t t = 0; t < shape.tail_poles.size(); ++t) tail_windows_.emplace_back(length);
   }
-  for (int j = 0; j < shape.cvs; ++j) residual_windows_.emplace_back(length);
+  for (int j = 0; j < shape.cvs; ++j) {
+    residual_windows_.emplace_back(length);
+    for (std::size_t t = 0; t < shape.residual_poles.size(); ++t)
+      mean_windows_.emplace_back(length);
+  }
   for (std::size_t s = 0; s < shape.start_poles.size(); ++s) {
     start_windows_.emplace_back(length);
     start_windows_.back().push(1.0);
@@ -55,6 +60,10 @@ void RegressionHistory::push_residual(int cv, double residual) {
   const auto s = static_cast<std::size_t>(cv);
   LagWindow& window = residual_windows_[s];
   const double held = window.window()[0];
+  for (std::size_t t = 0; t < shape_.residual_poles.size(); ++t) {
+    LagWindow& mean = mean_windows_[s * shape_.residual_poles.size() + t];
+    mean.push(mean.window()[0]);
+  }
   if (!std::isfinite(residual)) {
     window.push(held);
     if (++unknown_run_[s] > kInterpolated) since_gap_[s] = 0;
@@ -62,12 +71,28 @@ void RegressionHistory::push_residual(int cv, double residual) {
   }
   const int run = unknown_run_[s];
   window.push(residual);
-  if (run > 0 && run <= kInterpolated)
+  const bool bridged = run <= kInterpolated;
+  if (bridged)
     for (int back = 1; back <= run; ++back)
       window.set(back, residual + (held - residual) * back / (run + 1));
+  follow_means(cv, bridged ? run : 0, !bridged || !has_mean_[s]);
+  has_mean_[s] = true;
   unknown_run_[s] = 0;
   ++since_gap_[s];
   if (since_gap_[s] > shape_.residual_order) since_gap_[s] = shape_.residual_order + 1;
+}
+
+// Of the samples `from` ago up to now.
+void RegressionHistory::follow_means(int cv, int from, bool begin) {
+  const double* residual = residual_windows_[static_cast<std::size_t>(cv)].window();
+  for (std::size_t t = 0; t < shape_.residual_poles.size(); ++t) {
+    LagWindow& mean =
+        mean_windows_[static_cast<std::size_t>(cv) * shape_.residual_poles.size() + t];
+    const double pole = shape_.residual_poles[t];
+    for (int age = from; age >= 0; --age)
+      mean.set(age,
+               begin ? residual[0] : pole * mean.window()[age + 1] + (1.0 - pole) * residual[age]);
+  }
 }
 
 void RegressionHistory::push_starts() {
@@ -114,7 +139,15 @@ void RegressionHistory::fill_lead_in(int age, double* row) const {
   *row++ = 1.0;
   for (const LagWindow& residual : residual_windows_)
     row = std::copy_n(residual.window() + age + 1, shape_.residual_order, row);
+  row = std::fill_n(row, shape_.means(), 0.0);
   for (const LagWindow& start : start_windows_) *row++ = start.window()[age];
+}
+
+void RegressionHistory::fill_means(int cv, int age, double* means) const {
+  const int count = shape_.means();
+  for (int t = 0; t < count; ++t)
+    means[t] = mean_windows_[static_cast<std::size_t>(cv * count + t)]
+                   .window()[age + shape_.residual_order + 1];
 }
 
 void RegressionHistory::fill_inputs(int age, double* row) const {

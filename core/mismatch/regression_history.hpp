@@ -8,9 +8,10 @@
 
 namespace mpm {
 
-/// What the residual of every CV is regressed on: a constant, the last `residual_order` residuals
-/// of all CVs, what a wrong start may leave behind (a decay per start pole), and per input a block:
-/// its last `fir_lags` values and, beyond them, one exponentially weighted mean per tail pole.
+/// What the residual of a CV is regressed on: a constant, the last `residual_order` residuals of
+/// all CVs, beyond them one exponentially weighted mean of its own per residual pole, what a wrong
+/// start may leave behind (a decay per start pole), and per input a block: its last `fir_lags`
+/// values and, beyond them, one exponentially weighted mean per tail pole.
 struct RegressionShape {
   int inputs = 1;
   int cvs = 1;
@@ -19,26 +20,38 @@ struct RegressionShape {
   std::vector<double> tail_poles;  ///< r_t in (0, 1); at least one
   std::vector<double> start_poles = {};
   int terms = 0;  ///< columns of Volterra terms behind the lead-in, of a CV that has some
+  std::vector<double> residual_poles = {};  ///< q_t in (0, 1)
 
   [[nodiscard]] int block() const { return fir_lags + static_cast<int>(tail_poles.size()); }
+  [[nodiscard]] int means() const { return static_cast<int>(residual_poles.size()); }
+  /// Where the lags of a CV begin, and the means.
+  [[nodiscard]] int lags_of(int cv) const { return 1 + cv * residual_order; }
+  [[nodiscard]] int means_at() const { return lags_of(cvs); }
   [[nodiscard]] int lead_in() const {
-    return 1 + cvs * residual_order + static_cast<int>(start_poles.size()) + terms;
+    return means_at() + means() + static_cast<int>(start_poles.size()) + terms;
   }
   [[nodiscard]] int columns() const { return lead_in() + inputs * block(); }
+  /// A CV's own of the regression's coefficients: of its lags, then of its means.
+  void own_past(int cv, const Eigen::VectorXd& coefficients, Eigen::VectorXd& past) const {
+    past.head(residual_order) = coefficients.segment(lags_of(cv), residual_order);
+    past.tail(means()) = coefficients.segment(means_at(), means());
+  }
 };
 
 /// The last samples of a unit and the regression rows that they make:
 ///
-///     1,  e_1..e_n (k-1 .. k-p),  r_s^k, s = 1..starts, until all is forgotten,
+///     1,  e_1..e_n (k-1 .. k-p),  of the CV's own m_jt(k-p-1), t = 1..means,
+///     r_s^k, s = 1..starts, until all is forgotten,
 ///     and per input i:  u_i(k-1 .. k-L), s_it(k-L-1), t = 1..tails,
-///     s_it(k) = r_t s_it(k-1) + (1 - r_t) u_i(k).
+///     s_it(k) = r_t s_it(k-1) + (1 - r_t) u_i(k),  m_jt likewise of e_j with q_t.
 ///
 /// Unknown values (NaN) do not break the window. An unknown input counts as unchanged: where the
 /// model is right e does not depend on u, so this cannot raise a false alarm. A residual that is
 /// unknown once or twice in a row is interpolated when the next one comes; longer gaps are not.
 /// A CV's row counts (`usable`) where its response and the one before are known, and none of its
 /// own lags lies in a long gap: the residual just before has a large coefficient, and what is
-/// guessed there would correlate with the inputs through the controller's feedback.
+/// guessed there would correlate with the inputs through the controller's feedback. The means of a
+/// residual begin with its first value, and again with the first one after a long gap.
 ///
 /// No allocation after construction.
 class RegressionHistory {
@@ -58,10 +71,13 @@ class RegressionHistory {
   [[nodiscard]] int settled() const { return settled_; }
   /// Whether the newest row serves this CV.
   [[nodiscard]] bool usable(int cv) const { return usable_[static_cast<std::size_t>(cv)]; }
-  /// The row whose response is `age` samples old, 0 <= age < depth: columns() values.
+  /// The row whose response is `age` samples old, 0 <= age < depth: columns() values, without the
+  /// means.
   void fill(int age, double* row) const;
-  /// The same in two parts: the constant and residual lags, and the inputs' blocks.
+  /// The same in two parts: the constant and residual lags, with zeros in place of the means, and
+  /// the inputs' blocks.
   void fill_lead_in(int age, double* row) const;
+  void fill_means(int cv, int age, double* means) const;
   void fill_inputs(int age, double* row) const;
   /// Of the sample `age` samples ago, in its own units; unknown ones as unchanged.
   [[nodiscard]] double input(int input, int age) const {
@@ -75,6 +91,7 @@ class RegressionHistory {
   void push_inputs(const Eigen::Ref<const Eigen::VectorXd>& inputs);
   void push_starts();
   void push_residual(int cv, double residual);
+  void follow_means(int cv, int from, bool begin);
 
   RegressionShape shape_;
   int depth_;
@@ -87,9 +104,11 @@ class RegressionHistory {
   std::vector<LagWindow> input_windows_;
   std::vector<LagWindow> tail_windows_;  // input-major
   std::vector<LagWindow> residual_windows_;
+  std::vector<LagWindow> mean_windows_;  // of the residuals, CV-major
   std::vector<LagWindow> start_windows_;
   std::vector<int> unknown_run_;  // per CV, unknown residuals up to now
   std::vector<int> since_gap_;    // per CV, samples since the last long gap
+  std::vector<bool> has_mean_;    // per CV
   std::vector<bool> usable_;
 };
 

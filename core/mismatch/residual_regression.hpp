@@ -49,8 +49,21 @@ class ResidualRegression {
   /// Theirs, of the row whose response is `age` samples old.
   void fill_lead_in(const RegressionHistory& history, int age, double* row) const {
     history.fill_lead_in(age, row);
+    if (takes_means_) history.fill_means(cv_, age, row + means_at_);
     if (terms_) terms_->fill(age, row + lead_in_);
   }
+  /// The whole row.
+  void fill(const RegressionHistory& history, int age, double* row) const {
+    fill_lead_in(history, age, row);
+    history.fill_inputs(age, row + lead_in());
+  }
+
+  /// Takes the means of its own past in once there are rows enough for them, or earlier where its
+  /// prediction errors follow them: noise that remembers longer than its lags, as a walk under
+  /// measurement noise does (Muth 1960), passes for what slow inputs do otherwise, and draws gains
+  /// that are wrong towards the model's. True where it did, and begins with all samples that it
+  /// rests on. Of fewer samples it does without them again, but where noise was seen to be slow.
+  bool take_means_in(const RegressionHistory& history, RowWorkspace& work);
 
   /// After the history took a sample.
   void add_sample(const RegressionHistory& history, RowWorkspace& work);
@@ -92,10 +105,15 @@ class ResidualRegression {
   void refill(RegressionMemory& memory, int samples, const RegressionHistory& history,
               RowWorkspace& work) const;
 
-  void fill(const RegressionHistory& history, int age, double* row) const;
+  [[nodiscard]] bool follows_means(const RegressionHistory& history) const;
 
   int cv_;
+  RegressionShape shape_;
   int lead_in_;  // of the history
+  int means_at_;
+  bool takes_means_ = false;
+  bool slow_noise_ = false;  // seen to be, before there were rows enough
+  int next_ask_;             // rows
   int columns_;
   int remembered_;
   int span_ = 0;

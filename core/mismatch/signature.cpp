@@ -53,18 +53,30 @@ void BlockBasis::sum_beyond(const Eigen::VectorXd& pulse, int shift,
   }
 }
 
-Signature::Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int order)
-    : pulse_(pulse.segment(1, basis.fir_lags())),
-      tails_(basis.columns() - basis.fir_lags(), order + 1) {
-  for (int shift = 0; shift <= order; ++shift)
-    tails_.col(shift) = basis.tail_coefficients(pulse, shift);
+Signature::Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int order,
+                     const std::vector<double>& means)
+    : poles_(means),
+      mean_(means.empty() ? 0 : basis.length()),
+      means_(basis.fir_lags(), static_cast<Eigen::Index>(means.size())),
+      tails_(basis.columns() - basis.fir_lags(), 1 + order + means_.cols()) {
+  Eigen::VectorXd work(basis.length());
+  replace(basis, pulse, work);
 }
 
 void Signature::replace(const BlockBasis& basis, const Eigen::VectorXd& pulse,
                         Eigen::VectorXd& work) {
   pulse_ = pulse.segment(1, basis.fir_lags());
-  for (Eigen::Index shift = 0; shift < tails_.cols(); ++shift)
+  for (Eigen::Index shift = 0; shift <= order(); ++shift)
     basis.tail_coefficients(pulse, static_cast<int>(shift), work, tails_.col(shift));
+  const Eigen::Index delay = order() + 1;
+  for (Eigen::Index t = 0; t < means_.cols(); ++t) {
+    const double pole = poles_[static_cast<std::size_t>(t)];
+    mean_.setZero();
+    for (Eigen::Index l = delay; l < mean_.size(); ++l)
+      mean_(l) = pole * mean_(l - 1) + (1.0 - pole) * pulse(l - delay);
+    means_.col(t) = mean_.segment(1, basis.fir_lags());
+    basis.tail_coefficients(mean_, 0, work, tails_.col(delay + t));
+  }
 }
 
 void Signature::filter(const double* a, Eigen::Ref<Eigen::VectorXd> coefficients) const {
@@ -73,7 +85,9 @@ void Signature::filter(const double* a, Eigen::Ref<Eigen::VectorXd> coefficients
   coefficients.tail(tails_.rows()) = tails_.col(0);
   for (Eigen::Index shift = 1; shift < tails_.cols(); ++shift) {
     const double share = a[shift - 1];
-    if (shift < lags)
+    if (shift > order())
+      coefficients.head(lags) -= share * means_.col(shift - order() - 1);
+    else if (shift < lags)
       coefficients.segment(shift, lags - shift) -= share * pulse_.head(lags - shift);
     coefficients.tail(tails_.rows()) -= share * tails_.col(shift);
   }

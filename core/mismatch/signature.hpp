@@ -40,19 +40,29 @@ class BlockBasis {
 };
 
 /// What one kind of model error adds to a CV's innovation: b(q) = A(q) h(q) on a block's basis,
-/// with A(q) = 1 - a_1 q^-1 - ... - a_p q^-p the CV's own residual dynamics, known only later.
+/// with
+///
+///     A(q) = 1 - a_1 q^-1 - ... - a_p q^-p - sum_t a_(p+t) q^-(p+1) (1 - q_t) / (1 - q_t q^-1)
+///
+/// the CV's own residual dynamics (`RegressionShape`), known only later.
 class Signature {
  public:
-  /// `pulse`: h(0), h(1), ... (basis.length() values).
-  Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int order);
+  /// `pulse`: h(0), h(1), ... (basis.length() values). `means`: the poles q_t.
+  Signature(const BlockBasis& basis, const Eigen::VectorXd& pulse, int order,
+            const std::vector<double>& means = {});
   /// Takes another pulse response in place of the first; no allocation.
   void replace(const BlockBasis& basis, const Eigen::VectorXd& pulse, Eigen::VectorXd& work);
-  /// `a` points at a_1..a_p; writes basis.columns() coefficients.
+  /// `a` points at a_1..a_p and those of the means; writes basis.columns() coefficients.
   void filter(const double* a, Eigen::Ref<Eigen::VectorXd> coefficients) const;
 
  private:
-  Eigen::VectorXd pulse_;  // h(1)..h(L)
-  Eigen::MatrixXd tails_;  // tails x (p + 1), for shifts 0..p
+  [[nodiscard]] Eigen::Index order() const { return tails_.cols() - 1 - means_.cols(); }
+
+  Eigen::VectorXd pulse_;      // h(1)..h(L)
+  std::vector<double> poles_;  // of the means
+  Eigen::VectorXd mean_;       // h as one of them has it, basis.length() values
+  Eigen::MatrixXd means_;      // L x means: its values at 1..L
+  Eigen::MatrixXd tails_;      // tails x (1 + p + means), for shifts 0..p, then the means
 };
 
 /// A pulse response delayed by `by` samples (earlier where negative); as many values.

@@ -120,6 +120,8 @@ inline constexpr int kDeadTimeMargin = 13;
 /// of the largest.
 inline constexpr double kSwingThatMatters = 0.05;
 inline constexpr int kResidualOrder = 8;
+/// Beyond them exponentially weighted means of so many samples.
+inline constexpr std::array kResidualMeans = {8.0, 40.0};
 /// One tail with the slowest time constant, and further ones, each this many times faster, as long
 /// as they are slower than the pulse lags can show (so many times their number).
 inline constexpr double kTailRatio = 4.0;

@@ -27,7 +27,8 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   const double block = derived.fir_lags + tails;
   const auto memories = static_cast<double>(derived.memories.size());
   MonitorCost cost;
-  cost.columns = 1.0 + cvs * derived.residual_order + inputs * block;
+  cost.columns = 1.0 + cvs * derived.residual_order +
+                 static_cast<double>(derived.residual_poles.size()) + inputs * block;
   cost.remembered = derived.remembered;
   const auto means = static_cast<double>(derived.outside_poles.size());  // of set-points
   const double history =

@@ -48,6 +48,7 @@ void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
                      DerivedSettings& derived) {
   const double columns =
       1.0 + spec.cv_count * derived.residual_order +
+      static_cast<double>(derived.residual_poles.size()) +
       spec.input_count * (derived.fir_lags + static_cast<double>(derived.tail_poles.size()));
   const auto effective = [&](double memory_s, double otherwise, double rows_per_column) {
     const double wanted = memory_s > 0.0 ? 2.0 * memory_s / spec.sample_time_s : otherwise;
@@ -115,6 +116,8 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
                        regression_shape::kFewestFirLags, regression_shape::kMostFirLags);
   derived.residual_order =
       monitor.residual_order > 0 ? monitor.residual_order : regression_shape::kResidualOrder;
+  for (const double mean : regression_shape::kResidualMeans)
+    derived.residual_poles.push_back(std::exp(-1.0 / mean));
 
   double tail = monitor.tail_s > 0.0 ? monitor.tail_s / sample_time_s : slowest;
   double mean = tail;

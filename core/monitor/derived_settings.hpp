@@ -25,6 +25,7 @@ struct DerivedSettings {
   int last_lag = 0;
   int fir_lags = 0;
   int residual_order = 0;
+  std::vector<double> residual_poles;  ///< of the means of residuals beyond these lags
   std::vector<double> tail_poles;
   std::vector<double> outside_poles;  ///< of the means of signals that are no inputs
   std::vector<double> start_poles;    ///< of what a simulation's wrong start leaves behind

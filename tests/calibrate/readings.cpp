@@ -49,13 +49,19 @@ MismatchDetector detector_of(const config::UnitConfig& unit) {
   const LinearModel model(unit.model);
   const DerivedSettings derived = derive_settings(unit.model, model, unit.monitor, unit.alarms);
   const SignalCounts counts = unit.counts();
-  return {
-      {counts.inputs(), counts.cv, derived.fir_lags, derived.residual_order, derived.tail_poles},
-      {MemoryLength{}},
-      derived.remembered,
-      derived.evaluation_stride,
-      model,
-      derived.materiality};
+  return {{counts.inputs(),
+           counts.cv,
+           derived.fir_lags,
+           derived.residual_order,
+           derived.tail_poles,
+           {},
+           0,
+           derived.residual_poles},
+          {MemoryLength{}},
+          derived.remembered,
+          derived.evaluation_stride,
+          model,
+          derived.materiality};
 }
 
 void read(int rows_per_column, MismatchDetector& detector, Run& run) {

@@ -18,8 +18,14 @@ using Eigen::VectorXd;
 namespace {
 
 RegressionShape shape_of(const ModelSpec& model, const DerivedSettings& derived) {
-  return {model.input_count, model.cv_count, derived.fir_lags, derived.residual_order,
-          derived.tail_poles};
+  return {model.input_count,
+          model.cv_count,
+          derived.fir_lags,
+          derived.residual_order,
+          derived.tail_poles,
+          {},
+          0,
+          derived.residual_poles};
 }
 
 /// The monitor's regression, with ever fewer lags until the rows suffice for it; nothing where they

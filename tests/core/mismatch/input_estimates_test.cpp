@@ -47,7 +47,7 @@ TEST_CASE("estimates and their covariance equal those of batch least squares") {
   const Eigen::MatrixXd normal = regression.x.transpose() * regression.x;
   const Eigen::MatrixXd inverse =
       normal.llt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
-  CHECK(estimates.own_lags()[0] == Approx(batch(1)).epsilon(1e-9));
+  CHECK(estimates.own_past()(0) == Approx(batch(1)).epsilon(1e-9));
   BlockCovariance covariance(estimates);
   for (int input = 0; input < kShape.inputs; ++input) {
     CAPTURE(input);

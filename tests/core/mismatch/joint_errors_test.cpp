@@ -119,7 +119,7 @@ TEST_CASE(
     Eigen::MatrixXd columns(rows.rows(), static_cast<Eigen::Index>(errors.size()));
     Eigen::VectorXd coefficients(shape.block());
     for (std::size_t i = 0; i < errors.size(); ++i) {
-      errors[i].filter(estimates.own_lags(), coefficients);
+      errors[i].filter(estimates.own_past().data(), coefficients);
       columns.col(static_cast<Eigen::Index>(i)) =
           rows.middleCols(shape.lead_in() + input * shape.block(), shape.block()) * coefficients;
     }
@@ -156,7 +156,7 @@ TEST_CASE(
         rows.middleCols(shape.lead_in() + input * shape.block(), shape.block());
     CHECK(explained == Approx(left(others, y) - left(beside(others, block), y)).epsilon(1e-6));
     Eigen::VectorXd coefficients(shape.block());
-    signatures[static_cast<std::size_t>(input)].errors[0].filter(estimates.own_lags(),
+    signatures[static_cast<std::size_t>(input)].errors[0].filter(estimates.own_past().data(),
                                                                  coefficients);
     coefficients.array() *= estimates.norms(input).array();
     covariance.whiten(coefficients);

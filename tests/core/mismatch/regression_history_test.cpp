@@ -35,6 +35,51 @@ TEST_CASE("a row holds the lags of its own age") {
   CHECK(history.usable(0));
 }
 
+TEST_CASE("means of a CV's own residuals stand beyond its lags") {
+  RegressionShape shape{1, 2, 3, 2, {0.5}};
+  shape.residual_poles = {0.5, 0.75};
+  RegressionHistory history(shape, 20);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(1), e(2);
+  // They begin with the first residual; what is unknown for two samples is interpolated in them,
+  // too, and after a long gap they begin again with what comes first.
+  double slow = 0.0, mean = 0.0;  // what the second CV's slower and faster one have been
+  std::vector<double> slow_at, mean_at;
+  for (int k = 0; k < 30; ++k) {
+    const double value = std::sqrt(1.0 + k);
+    const bool unknown = k == 8 || (k >= 15 && k < 19);
+    e << 1.0, unknown ? kNan : value;
+    history.push(u, e);
+    const double between = 0.5 * (std::sqrt(8.0) + std::sqrt(10.0));
+    if (k == 8) continue;
+    const auto follow = [&](double to) {
+      mean = 0.5 * mean + 0.5 * to;
+      slow = 0.75 * slow + 0.25 * to;
+      mean_at.push_back(mean);
+      slow_at.push_back(slow);
+    };
+    if (k == 9) follow(between);
+    if (k == 0 || k == 19) mean = slow = value;
+    if (unknown) {
+      mean_at.push_back(mean);
+      slow_at.push_back(slow);
+      continue;
+    }
+    follow(value);
+  }
+  for (const int age : {0, 5, 9, 12}) {
+    double means[2] = {};
+    history.fill_means(1, age, means);
+    const auto at = static_cast<std::size_t>(29 - age - 3);
+    CAPTURE(age);
+    CHECK(means[0] == Approx(mean_at[at]).epsilon(1e-14));
+    CHECK(means[1] == Approx(slow_at[at]).epsilon(1e-14));
+  }
+  // A row by itself has zeros in their place.
+  const std::vector<double> row = row_of(history, shape, 0);
+  CHECK(row[static_cast<std::size_t>(shape.means_at())] == 0.0);
+  CHECK(shape.lead_in() == 1 + 2 * 2 + 2);
+}
+
 TEST_CASE("short unknown runs of a residual are interpolated, long ones cost their lags") {
   const RegressionShape shape{1, 1, 3, 3, {0.5}};
   RegressionHistory history(shape, 20);

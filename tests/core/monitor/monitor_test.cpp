@@ -96,7 +96,7 @@ TEST_CASE(
     CAPTURE(seed, raised, cleared);
     CHECK(isolating);
     CHECK(raised > 2000);
-    CHECK(raised < 2500);
+    CHECK(raised < 2600);
     CHECK(cleared > 4000);
     CHECK(cleared < 4700);
     CHECK(monitor.channel(0, 1).verdict == Verdict::kMatch);
@@ -543,8 +543,9 @@ TEST_CASE("the monitor allocates nothing per sample and repeats itself exactly")
     first.correlate();
     allocating += test::allocation_count() != before ? 1 : 0;
   }
-  // Where something is off it is asked now and then whether the plant bends; else never.
-  CHECK(allocating <= (experiment.gain_ratio == 1.0 ? 0 : 2 * 1200 / 20));
+  // Where something is off it is asked now and then whether the plant bends; and once of each CV,
+  // of which there are two, whether its noise is slow.
+  CHECK(allocating <= (experiment.gain_ratio == 1.0 ? 2 : 2 + 2 * 1200 / 20));
   for (const Frame& frame : frames) second.push(frame);
   for (int j = 0; j < 2; ++j)
     for (int i = 0; i < 2; ++i) {
