@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/signal/calibration.hpp"
+
 namespace mpm::bus {
 namespace {
 
@@ -43,7 +45,12 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
     if (steps == 0.0) ++writer.repeated;
     if (steps > 1.0 && steps < static_cast<double>(kFar))
       writer.skipped += static_cast<std::uint64_t>(steps) - 1;
-    if (steps > static_cast<double>(kJump) || steps < -static_cast<double>(kReordered))
+    // As for core/signal/aligner: what is late is older than what came before it.
+    const bool newer = arrival.source_time_ns > writer.source_time_ns;
+    const bool back =
+        steps < -static_cast<double>(kReordered) ||
+        (newer && steps <= -static_cast<double>(calibration::alignment::kSmallestReturn));
+    if (steps > static_cast<double>(kJump) || back)
       jump_ = Jump{now, writer.interval, arrival.interval};
     const double elapsed_s = 1e-9 * (static_cast<double>(arrival.source_time_ns) -
                                      static_cast<double>(writer.source_time_ns));
@@ -53,7 +60,7 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
     if (dated && steps > 0.0 && steps <= static_cast<double>(kJump) &&
         std::abs(step_s) > std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s))
       clock_step_ = ClockStep{now, arrival.interval, step_s};
-    if (steps > -static_cast<double>(kReordered) && steps < 0.0) {  // late: the newer one stays
+    if (steps < 0.0 && !back) {  // late: the newer one stays
       ++writer.samples;
       writer.last = now;
       return;
