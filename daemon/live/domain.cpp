@@ -62,9 +62,10 @@ void Domain::report_unknown(std::string_view unit, Clock::time_point now) {
 
 void Domain::hear_other_monitors(Clock::time_point now) {
   other_monitors_.take_with_info([&](const mpm_Health& health, const idl::SampleInfo& info) {
-    if (!info.valid || health.unit == nullptr) return;
+    if (health.unit == nullptr) return;
     const auto it = units_.find(std::string_view(health.unit));
     if (it == units_.end()) return;
+    if (!info.valid) return it->second->hear_no_other_monitor();
     if (bus::find_writer(around_, info.writer) == nullptr) look_around(now);
     it->second->hear_other_monitor(bus::writer_name(around_, info.writer), now);
   });

@@ -122,7 +122,34 @@ void UnitPipeline::publish_initial_alarms() {
     record.cv = channel.cv;
     if (!outputs_.write(record))
       spdlog::warn("{}: cannot publish the alarm of {} -> {}", record.unit, record.mv, record.cv);
+    alarms_.push_back(std::move(record));
   }
+}
+
+bool UnitPipeline::publish_alarm_state(const AlarmRecord& change) {
+  AlarmStateRecord record(change);
+  const bool written = outputs_.write(record);
+  for (AlarmStateRecord& alarm : alarms_)
+    if (alarm.mv == record.mv && alarm.cv == record.cv) alarm = std::move(record);
+  return written;
+}
+
+// Of two monitors a reader keeps the last word, and one that starts clears all alarms. While
+// another one speaks an alarm of either stands; when it has left, what this one says holds.
+void UnitPipeline::publish_alarms_again() {
+  const bool speaks = other_monitor_speaks();
+  const bool left = other_monitor_spoke_ && !speaks;
+  other_monitor_spoke_ = speaks;
+  if (!speaks && !left) return;
+  bool written = true;
+  for (const AlarmStateRecord& alarm : alarms_)
+    if (left || alarm.to == AlarmChange::kActive) written = outputs_.write(alarm) && written;
+  if (!written && output_limit_.admit(now_))
+    spdlog::warn("{}: the alarms could not be published anew", config_.unit);
+}
+
+bool UnitPipeline::other_monitor_speaks() const {
+  return !other_monitor_.empty() && now_ - other_monitor_heard_ < kOtherMonitorGone;
 }
 
 void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
@@ -167,7 +194,7 @@ void UnitPipeline::on_frame(const Frame& frame) {
     written = outputs_.write(channel) && written;
   for (const AlarmRecord& alarm : monitor_.alarms()) {
     written = outputs_.write(alarm) && written;
-    written = outputs_.write(AlarmStateRecord(alarm)) && written;
+    written = publish_alarm_state(alarm) && written;
     spdlog::log(alarm.to == AlarmChange::kActive ? spdlog::level::warn : spdlog::level::info,
                 "{}: {} -> {}: alarm {} at interval {} ({}, p {:.1e})", alarm.unit, alarm.mv,
                 alarm.cv, to_string(alarm.to), alarm.interval,
@@ -210,7 +237,7 @@ void UnitPipeline::publish_diagnosis() {
   report_problem_ = outcome->file_problem;
   bool written = true;
   for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
-    written = outputs_.write(AlarmStateRecord(alarm)) && written;  // the alarm is as old as it was
+    written = publish_alarm_state(alarm) && written;  // the alarm is as old as it was
     alarm.interval = outcome->interval;
     alarm.source_time_ns = outcome->time_ns;
     written = outputs_.write(alarm) && written;
@@ -247,6 +274,7 @@ void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
   if (now < next_health_) return;
   next_health_ = now + kHealthPeriod;
   publish_health(unknown_unit, around);
+  publish_alarms_again();
 }
 
 void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around) {
@@ -302,7 +330,7 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
         fmt::format(
             "the monitor itself stood still for {} s: its machine is too busy or was asleep",
             std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
-  if (!other_monitor_.empty() && now_ - other_monitor_heard_ < kOtherMonitorGone)
+  if (other_monitor_speaks())
     add("other monitor", Severity::kMaintenanceRequired,
         "another monitor watches this unit as well: " + other_monitor_ +
             "; readers see both in turn");

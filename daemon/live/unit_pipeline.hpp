@@ -45,6 +45,8 @@ class UnitPipeline {
   void check_layout(const mpm_Layout& layout);
   /// Another monitor of this unit said something: `name`, as idl::name_of.
   void hear_other_monitor(std::string name, Clock::time_point now);
+  /// All others have left.
+  void hear_no_other_monitor() { other_monitor_.clear(); }
   /// Reports cannot be kept, and why; empty: they can.
   void set_report_problem(std::string problem) { report_problem_ = std::move(problem); }
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
@@ -61,6 +63,9 @@ class UnitPipeline {
  private:
   void on_frame(const Frame& frame);
   void publish_initial_alarms();
+  [[nodiscard]] bool publish_alarm_state(const AlarmRecord& change);
+  void publish_alarms_again();
+  [[nodiscard]] bool other_monitor_speaks() const;
   void publish_performance();
   void publish_diagnosis();
   void publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around);
@@ -89,6 +94,8 @@ class UnitPipeline {
   Clock::duration stood_still_for_{};
   std::string other_monitor_;  // who, and when it was heard
   Clock::time_point other_monitor_heard_;
+  bool other_monitor_spoke_ = false;      // at the last health
+  std::vector<AlarmStateRecord> alarms_;  // of each channel, as last written
   std::string report_problem_;
   HealthRecord health_;
   std::uint64_t incomplete_before_ = 0;  // at the last health

@@ -133,6 +133,40 @@ TEST_CASE("a monitor that stood still itself says so") {
   CHECK(bench.health().state == "out_of_specification");
 }
 
+TEST_CASE("a monitor that starts and leaves beside another one takes none of its alarms along") {
+  TemporaryFolder folder;
+  Bench bench("doctor-second");
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(3.5);
+  bench.publish(publisher, plant, 600);
+  const auto states = [&](const char* mv) {
+    std::vector<AlarmChange> to;
+    for (const auto& alarm : bench.seen<AlarmStateRecord>())
+      if (alarm.mv == mv) to.push_back(alarm.to);
+    return to;
+  };
+  const std::vector<AlarmChange> active = {AlarmChange::kCleared, AlarmChange::kActive};
+  REQUIRE(bench.observe([&] { return states("u1") == active; }));
+  REQUIRE(states("u2") == std::vector{AlarmChange::kCleared});
+
+  std::optional<Process> second;
+  second.emplace(std::vector<std::string>{"mpmd", "--config", bench.folder.file("toy.yaml"),
+                                          "--domain", std::to_string(bench.options.domain),
+                                          "--partition", bench.options.partition},
+                 folder.file("out2"), folder.file("err2"));
+  // It clears both, and the first one says again what stands.
+  CHECK(bench.observe([&] {
+    const auto to = states("u1");
+    return to.size() > 3 && to[2] == AlarmChange::kCleared && to.back() == AlarmChange::kActive &&
+           to[to.size() - 2] == AlarmChange::kActive;
+  }));
+  REQUIRE(states("u2").size() == 2);
+  second->send(SIGTERM);
+  CHECK(second->wait(std::chrono::seconds(10)) == 0);
+  CHECK(bench.observe([&] { return states("u2").size() == 3; }));
+  CHECK(states("u1").back() == AlarmChange::kActive);
+}
+
 TEST_CASE("two monitors of one unit, and what the disk does not take, are in health and status") {
   TemporaryFolder folder;
   Bench bench("doctor-monitors",
