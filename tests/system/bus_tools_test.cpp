@@ -266,6 +266,22 @@ TEST_CASE("mpm hz and delay end in peace when the reader of their pipe has left"
   }
 }
 
+TEST_CASE("mpm echo and watch end when the reader of their pipe has left, though nothing comes") {
+  const Corner corner("silent-left");
+  const std::string pipe = corner.folder.file("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  for (const auto& arguments : {std::vector<std::string>{"mpm", "echo", "mpm/alarm"},
+                                std::vector<std::string>{"mpm", "watch", "--json"}}) {
+    const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    REQUIRE(reader >= 0);
+    Process process(corner.on_bus(arguments), pipe, corner.folder.file("err"));
+    REQUIRE(idl::eventually([&] { return blocks_interrupts(process.pid()); }, kPatience));
+    close(reader);
+    CHECK(process.wait(kPatience) == 0);
+    CHECK(corner.err().empty());
+  }
+}
+
 TEST_CASE("lines on standard input become samples that the monitor judges as it would the file") {
   const Corner corner("publish");
   const std::string unit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
