@@ -34,6 +34,13 @@ long long whole_seconds(Clock::duration duration) {
 
 std::string topic_of(SignalKind kind) { return idl::sample_topic(kind); }
 
+// Two counters jump all the time, and that is said already.
+bool counters_differ(const std::vector<Trouble>& troubles) {
+  return std::any_of(troubles.begin(), troubles.end(), [](const Trouble& trouble) {
+    return trouble.key == "two gateways" && trouble.severity == Severity::kFailure;
+  });
+}
+
 double apart(std::int64_t a, std::int64_t b) {
   return std::abs(static_cast<double>(a) - static_cast<double>(b));
 }
@@ -91,6 +98,7 @@ std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::tim
   add_silence(around, now, troubles);
   add_rivals(around, now, troubles);
   add_contents(now, troubles);
+  add_gaps(now, troubles);
   add_events(now, troubles);
   sort_by_severity(troubles);
   return troubles;
@@ -230,12 +238,35 @@ void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troub
                           std::to_string(stream(*behind).newest().interval)});
 }
 
+// Of topics that come.
+void UnitInputs::add_gaps(Clock::time_point now, std::vector<Trouble>& troubles) const {
+  if (counters_differ(troubles)) return;
+  std::vector<std::string> gaps, off_pace;
+  double time_per_interval_s = 0.0;
+  for (const SignalKind kind : idl::kTopicKinds) {
+    const InputStream& input = stream(kind);
+    if (!needed(kind) || !input.started() || silent(kind, now)) continue;
+    const InputStream::Recent& recent = input.recent();
+    if (recent.with_gaps())
+      gaps.push_back(std::to_string(recent.left_out()) + " of the last " +
+                     std::to_string(recent.intervals) + " on " + topic_of(kind));
+    if (!recent.off_pace()) continue;
+    off_pace.push_back(topic_of(kind));
+    time_per_interval_s = recent.time_per_interval_s;
+  }
+  if (!gaps.empty())
+    troubles.push_back(
+        {"gaps", Severity::kOutOfSpecification, "intervals are missing: " + config::join(gaps)});
+  if (off_pace.empty()) return;
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3g s an interval where the unit file has %.3g s",
+                time_per_interval_s, expected_.sample_time_s);
+  troubles.push_back({"pace", Severity::kOutOfSpecification,
+                      "the source times on " + config::join(off_pace) + " go on by " + text});
+}
+
 void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& troubles) const {
-  // Two counters jump all the time, and that is said already.
-  const bool rivals = std::any_of(troubles.begin(), troubles.end(), [](const Trouble& trouble) {
-    return trouble.key == "two gateways" && trouble.severity == Severity::kFailure;
-  });
-  if (rivals) return;
+  if (counters_differ(troubles)) return;
   std::vector<std::string> jumped, stepped;
   InputStream::Jump jump;
   InputStream::ClockStep step;

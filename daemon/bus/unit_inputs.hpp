@@ -70,6 +70,7 @@ class UnitInputs {
                    std::vector<Trouble>& troubles) const;
   void add_rivals(const Surroundings& around, Clock::time_point now,
                   std::vector<Trouble>& troubles) const;
+  void add_gaps(Clock::time_point now, std::vector<Trouble>& troubles) const;
   void add_contents(Clock::time_point now, std::vector<Trouble>& troubles) const;
   void add_events(Clock::time_point now, std::vector<Trouble>& troubles) const;
 

@@ -282,6 +282,7 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   health_.frames = aligner.frames;
   health_.used = monitor_.counters().used;
   health_.missing = aligner.missing;
+  if (health_.incomplete != aligner.incomplete) incomplete_at_ = now_;
   health_.incomplete = aligner.incomplete;
   health_.late = aligner.late;
   health_.repeated = aligner.repeated;
@@ -306,7 +307,6 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
     spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", config_.unit,
                 line.text);
   judge_health(found);
-  incomplete_before_ = aligner.incomplete;
   if (journal_) journal_->push(health_);
   if (!outputs_.write(health_) && output_limit_.admit(now_))
     spdlog::warn("{}: the health could not be published", config_.unit);
@@ -321,8 +321,9 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   if (!wrong_layout_.empty())
     add("layout", Severity::kOutOfSpecification,
         "layout differs from the unit file: " + wrong_layout_);
-  // Where a topic is missing or a counter jumped, that is why.
-  if (health_.incomplete != incomplete_before_ &&
+  // Where a topic is missing or has gaps or a counter jumped, that is why.
+  if (incomplete_at_ &&
+      now_ - *incomplete_at_ < samples_or(config_.sample_time_s, 2, kHealthPeriod) &&
       (found.empty() || found.front().severity == Severity::kMaintenanceRequired))
     add("incomplete", Severity::kOutOfSpecification, "data incomplete");
   if (stood_still_ && now_ - *stood_still_ < kTold)

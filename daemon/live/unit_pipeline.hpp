@@ -98,8 +98,8 @@ class UnitPipeline {
   std::vector<AlarmStateRecord> alarms_;  // of each channel, as last written
   std::string report_problem_;
   HealthRecord health_;
-  std::uint64_t incomplete_before_ = 0;  // at the last health
-  std::string wrong_layout_;             // kinds whose layout differs; empty = none known
+  std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
+  std::string wrong_layout_;  // kinds whose layout differs; empty = none known
   host::RateLimiter refused_limit_, output_limit_, restart_limit_;
 };
 

@@ -21,6 +21,9 @@ constexpr std::size_t kMostUnits = 1000;
 // A clock that is off by more is to be told; by more than a day it is a replay or a simulation.
 constexpr double kClockOffS = 10.0;
 constexpr double kOtherTimeS = 86400.0;
+// From which on samples that repeat an interval are told.
+constexpr std::uint64_t kFewestRepeated = 3;
+constexpr std::uint64_t kRepeatedInverseShare = 4;
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -186,6 +189,13 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
              fmt::format("the source times of {} are {:.0f} s {} this machine's clock",
                          findings.topics.back().topic, off_s,
                          writer.clock_offset_s > 0.0 ? "behind" : "ahead of")});
+      if (writer.repeated >= kFewestRepeated &&
+          kRepeatedInverseShare * writer.repeated >= writer.samples)
+        findings.troubles.push_back(
+            {"repeats", Severity::kMaintenanceRequired,
+             fmt::format("{} of {} samples on {} from {} repeat the interval before",
+                         writer.repeated, writer.samples, findings.topics.back().topic,
+                         idl::name_of(writer.process))});
     }
   }
   if (unit.described) {

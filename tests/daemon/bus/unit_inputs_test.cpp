@@ -113,6 +113,84 @@ TEST_CASE("a unit of which nothing comes says where it listens and whose samples
   CHECK(scene.text() == "no data has come (mpm/mv ...: samples come of unit 'Toy' only)");
 }
 
+TEST_CASE("topics that leave out intervals are named with the share, until they are whole again") {
+  Scene scene;
+  for (int k = 0; k < 20; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.second({kMv, kCv}, 20);
+  CHECK(scene.text().empty());
+  for (int k = 21; k < 100; ++k) {
+    if (k % 2 == 1)
+      scene.second({kMv, kDv, kCv}, k);
+    else
+      scene.second({kMv, kCv}, k);
+  }
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+  CHECK(scene.text() == "intervals are missing: 32 of the last 64 on mpm/dv");
+  for (int k = 100; k < 155; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text() == "intervals are missing: 4 of the last 64 on mpm/dv");
+  for (int k = 155; k < 157; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text().empty());
+
+  // A late one is not missing, and two gateways that share the intervals leave none out.
+  Scene shared;
+  for (int k = 0; k < 100; ++k) {
+    if (k >= 5) shared.send(kMv, k - 5, k % 2 == 0 ? kGateway : kOtherGateway);
+    shared.second({kDv, kCv}, k);
+  }
+  CHECK(shared.text().find("missing") == std::string::npos);
+}
+
+TEST_CASE("at a slow sample time a few samples tell that every second one is missing") {
+  Scene scene;
+  ExpectedInputs expected = scene.inputs->expected();
+  expected.sample_time_s = 40.0;
+  expected.silence = seconds(400);
+  scene.inputs.emplace(expected, scene.now);
+  for (int k = 0; k < 5; ++k) {
+    for (const SignalKind kind : {kMv, kDv, kCv})
+      if (kind != kCv || k % 2 == 0)
+        scene.inputs->push(kind, {kGateway, k, 40 * k * kSecond, kind == kCv ? 2u : 1u, 0},
+                           scene.now);
+    scene.now += seconds(40);
+  }
+  CHECK(scene.text() == "intervals are missing: 2 of the last 5 on mpm/cv");
+}
+
+TEST_CASE("samples at another pace than the unit file's are told by their source times") {
+  Scene scene;
+  const auto at = [&](double period_s, int first, int last, std::int64_t from_ns) {
+    for (int k = first; k < last; ++k) {
+      for (const SignalKind kind : {kMv, kDv, kCv})
+        scene.inputs->push(kind,
+                           {kGateway, k, from_ns + static_cast<std::int64_t>(1e9 * period_s * k),
+                            kind == kCv ? 2u : 1u, 0},
+                           scene.now);
+      scene.now += milliseconds(100);
+    }
+  };
+  at(1.0, 0, 50, 0);  // a replay at ten times the speed
+  CHECK(scene.text().empty());
+  at(0.1, 50, 110, 45 * kSecond);
+  CHECK(scene.text() ==
+        "the source times on mpm/mv, mpm/dv, mpm/cv go on by 0.1 s an interval where the unit file "
+        "has 1 s");
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+
+  // Times of whole seconds at ten samples a second are only coarse.
+  Scene coarse;
+  ExpectedInputs expected = coarse.inputs->expected();
+  expected.sample_time_s = 0.1;
+  coarse.inputs.emplace(expected, coarse.now);
+  for (int k = 0; k < 300; ++k) {
+    for (const SignalKind kind : {kMv, kDv, kCv})
+      coarse.inputs->push(kind, {kGateway, k, k / 10 * kSecond, kind == kCv ? 2u : 1u, 0},
+                          coarse.now);
+    coarse.now += milliseconds(100);
+  }
+  CHECK(coarse.text().empty());
+}
+
 TEST_CASE("a stall of a minute is one failure") {
   Scene scene;
   for (int k = 0; k < 20; ++k) scene.second({kMv, kDv, kCv}, k);
