@@ -363,11 +363,11 @@ void UnitPipeline::judge_health(const std::vector<bus::Trouble>& troubles) {
   if (serious || (in_trouble && !waiting && !alarmed))
     set(to_string(troubles.front().severity), trouble_text_);
   else if (waiting)
-    set("function_check", "no complete data yet" + besides);
+    set("function_check", bus::kNoCompleteData + besides);
   else if (alarmed)
     set("maintenance_required", alarms + besides);
   else if (health_.matching + health_.mismatching == 0)
-    set("function_check", "nothing determined yet");
+    set("function_check", bus::kNothingDetermined);
   else
     set("normal", "");
 }

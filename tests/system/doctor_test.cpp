@@ -167,6 +167,20 @@ TEST_CASE("a monitor that starts and leaves beside another one takes none of its
   CHECK(states("u1").back() == AlarmChange::kActive);
 }
 
+TEST_CASE("doctor tells what ails a monitor beside its alarms") {
+  TemporaryFolder folder;
+  Bench bench("doctor-alarms", {"--journal-every-sample", "/dev/full"});
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(3.5);
+  bench.publish(publisher, plant, 600);
+  REQUIRE(bench.observe([&] { return bench.health().active_alarms == 1; }));
+  CHECK(run(mpm("doctor", bench.options,
+                {"--config", bench.folder.file("toy.yaml"), "--seconds", "2", "--json"}),
+            folder.file("out"), folder.file("err")) == 1);
+  const Json said = Json::parse(read_file(folder.file("out")));
+  CHECK(any_text(said["troubles"], "the journal cannot be written: No space left"));
+}
+
 TEST_CASE("two monitors of one unit, and what the disk does not take, are in health and status") {
   TemporaryFolder folder;
   Bench bench("doctor-monitors",

@@ -217,12 +217,13 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
          "two monitors watch it: " + idl::name_of(findings.monitors[0].process) + " and " +
              idl::name_of(findings.monitors[1].process)});
   // It knows more than the bus shows, of its disk for example. Alarms are what it is there for.
-  for (const MonitorFindings& monitor : findings.monitors)
-    if (monitor.state == "failure" || monitor.state == "out_of_specification" ||
-        (monitor.state == "maintenance_required" && monitor.active_alarms == 0))
+  for (const MonitorFindings& monitor : findings.monitors) {
+    const std::string said = troubles_in(monitor.detail, monitor.active_alarms);
+    if (!said.empty())
       findings.troubles.push_back(
           {"monitor says", Severity::kMaintenanceRequired,
-           idl::name_of(monitor.process) + " says " + monitor.state + ": " + monitor.detail});
+           idl::name_of(monitor.process) + " says " + monitor.state + ": " + said});
+  }
   sort_by_severity(findings.troubles);
   return findings;
 }
