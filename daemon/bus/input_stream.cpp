@@ -112,9 +112,12 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
                                      static_cast<double>(writer.source_time_ns));
     const double step_s = elapsed_s - steps * sample_time_s;
     const bool dated = arrival.source_time_ns != writer.source_time_ns;  // else it has no clock
+    const double limit_s = std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s);
+    // Where as much time went by here, the control system stood still and its clock is right.
+    const double here_s = std::chrono::duration<double>(now - writer.last).count();
     // A counter that jumps says nothing of the clock.
-    if (dated && steps > 0.0 && steps <= static_cast<double>(kJump) &&
-        std::abs(step_s) > std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s))
+    if (dated && steps > 0.0 && steps <= static_cast<double>(kJump) && std::abs(step_s) > limit_s &&
+        std::abs(elapsed_s - here_s) > limit_s)
       clock_step_ = ClockStep{now, arrival.interval, step_s};
     if (steps < 0.0 && !back) {  // late: the newer one stays
       ++writer.samples;
