@@ -18,6 +18,8 @@ using Clock = std::chrono::steady_clock;
 
 // A jump or a clock step is over at once; so long it is told.
 constexpr std::chrono::seconds kTold{60};
+// So long after a standstill of this process a jump is for what it missed.
+constexpr std::chrono::seconds kMissed{2};
 // Interval numbers of two topics that are further apart belong to two counters: what is taken in
 // one go is less.
 constexpr double kApart = 200.0;
@@ -83,7 +85,8 @@ bool UnitInputs::needed(SignalKind kind) const {
 }
 
 bool UnitInputs::silent(SignalKind kind, Clock::time_point now) const {
-  return now - stream(kind).last().value_or(start_) >= expected_.silence;
+  return now - std::max(stream(kind).last().value_or(start_), resumed_.value_or(start_)) >=
+         expected_.silence;
 }
 
 bool UnitInputs::wants_endpoints(Clock::time_point now) const {
@@ -272,7 +275,9 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
   InputStream::ClockStep step;
   for (const SignalKind kind : idl::kTopicKinds) {
     const InputStream& input = stream(kind);
-    if (input.jump() && now - input.jump()->when < kTold) {
+    const bool missed = resumed_ && input.jump() && input.jump()->when >= *resumed_ &&
+                        input.jump()->when - *resumed_ < kMissed;
+    if (input.jump() && !missed && now - input.jump()->when < kTold) {
       jumped.push_back(topic_of(kind));
       jump = *input.jump();
     }

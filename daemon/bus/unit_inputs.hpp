@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -50,6 +51,8 @@ class UnitInputs {
       : expected_(std::move(expected)), start_(now) {}
 
   void push(SignalKind kind, const Arrival& arrival, Clock::time_point now);
+  /// This process stood still until now: what was missed meanwhile is no fault of the inputs.
+  void stood_still(Clock::time_point now) { resumed_ = now; }
   /// The worst first. What only happens once is told for a minute.
   [[nodiscard]] std::vector<Trouble> troubles(const Surroundings& around,
                                               Clock::time_point now) const;
@@ -76,6 +79,7 @@ class UnitInputs {
 
   ExpectedInputs expected_;
   Clock::time_point start_;
+  std::optional<Clock::time_point> resumed_;
   std::array<InputStream, kSignalKindCount> streams_;
 };
 

@@ -153,7 +153,7 @@ bool UnitPipeline::other_monitor_speaks() const {
 }
 
 void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
-  now_ = now;
+  go_on(now);
   if (!aligner_.pending()) last_frame_ = now;  // patience counts from here
   inputs_.push(sample.kind,
                {sample.writer, sample.interval, sample.source_time_ns, sample.values.size(),
@@ -170,6 +170,16 @@ void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
                  restart_limit_.held_back() == 0
                      ? ""
                      : fmt::format(" ({} more like this before)", restart_limit_.held_back()));
+}
+
+// Samples may be the first that is seen after a standstill, and are not to be blamed for it.
+void UnitPipeline::go_on(Clock::time_point now) {
+  if (now - now_ > kStandstill) {
+    stood_still_ = now;
+    stood_still_for_ = now - now_;
+    inputs_.stood_still(now);
+  }
+  now_ = now;
 }
 
 void UnitPipeline::report_refused(const idl::SampleView& sample) {
@@ -264,11 +274,7 @@ void UnitPipeline::hear_other_monitor(std::string name, Clock::time_point now) {
 
 void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
                         const bus::Surroundings& around) {
-  if (now - now_ > kStandstill) {
-    stood_still_ = now;
-    stood_still_for_ = now - now_;
-  }
-  now_ = now;
+  go_on(now);
   if (aligner_.pending() && now - last_frame_ > patience_) aligner_.expire();
   if (diagnosis_) publish_diagnosis();
   if (now < next_health_) return;

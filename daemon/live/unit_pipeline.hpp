@@ -62,6 +62,7 @@ class UnitPipeline {
 
  private:
   void on_frame(const Frame& frame);
+  void go_on(Clock::time_point now);
   void publish_initial_alarms();
   [[nodiscard]] bool publish_alarm_state(const AlarmRecord& change);
   void publish_alarms_again();

@@ -124,7 +124,14 @@ TEST_CASE("two gateways with counters of their own are named, and do not flood t
 
 TEST_CASE("a monitor that stood still itself says so") {
   Bench bench("doctor-standstill");
+  // Also while samples wait for it, which are the first thing that it sees.
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kRealTime);
+  Plant plant(2.0);
+  const bool data = GENERATE(false, true);
+  if (data) bench.publish(publisher, plant, 30);
+  REQUIRE(bench.observe([&] { return bench.health().frames == (data ? 30u : 0u); }));
   bench.daemon.send(SIGSTOP);
+  if (data) bench.publish(publisher, plant, 3);  // before it is taken for dead
   std::this_thread::sleep_for(std::chrono::milliseconds(5500));
   bench.daemon.send(SIGCONT);
   CHECK(bench.observe([&] {

@@ -240,6 +240,20 @@ TEST_CASE("a jump of the interval number is told for a minute") {
   CHECK(scene.text().empty());
 }
 
+TEST_CASE("what came while this process stood still is nobody else's fault") {
+  Scene scene;
+  for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.now += seconds(30);
+  CHECK_FALSE(scene.text().empty());
+  scene.inputs->stood_still(scene.now);
+  CHECK(scene.text().empty());
+  for (int k = 40; k < 42; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text().empty());
+  for (int k = 42; k < 50; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.second({kMv, kDv, kCv}, 80);
+  CHECK(scene.text().find("the interval number went from 49 to 80") != std::string::npos);
+}
+
 TEST_CASE("a clock that steps by an hour is told, whatever time it shows") {
   Scene scene;
   const std::int64_t step_s = GENERATE(3600, -3600);
