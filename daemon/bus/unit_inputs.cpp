@@ -119,6 +119,10 @@ std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around) 
       refused.push_back(name + " does not match: " + config::join(endpoint.mismatch));
   }
   if (!refused.empty()) return "its writer " + config::join(refused);
+  // Who was killed is on the list for some seconds.
+  if (const idl::Endpoint* last = find_writer(around, stream(kind).newest().writer);
+      last != nullptr && last->topic == topic_of(kind) && stream(kind).started())
+    return idl::name_of(last->process) + " has stopped writing it, or was killed";
   if (writers.empty()) return "nobody writes it on " + around.place;
   if (!around.strangers.empty() && !stream(kind).started()) {
     const std::vector<std::string> names(around.strangers.begin(), around.strangers.end());

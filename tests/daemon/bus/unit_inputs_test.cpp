@@ -95,6 +95,14 @@ TEST_CASE("a topic that stops is told with the time since, and no sooner than it
   for (int k = 0; k < 20; ++k) scene.second({kMv, kDv, kCv}, k);
   for (int k = 20; k < 24; ++k) scene.second({kMv, kCv}, k);
   CHECK(scene.text().find("mpm/dv for 5 s") != std::string::npos);  // sent at 19, it is 24 now
+  CHECK(scene.text().find("nobody writes it") != std::string::npos);
+  scene.add_writer("mpm/dv", kOtherGateway, "other");
+  CHECK(scene.text().find("other (process 12 on host plant1) writes it, but nothing of 'toy'") !=
+        std::string::npos);
+  scene.add_writer("mpm/dv", kGateway, "gateway");
+  CHECK(scene.text() ==
+        "nothing on mpm/dv for 5 s (gateway (process 12 on host plant1) has stopped writing it, or "
+        "was killed)");
   scene.now -= milliseconds(1);
   CHECK(scene.text().empty());
 }
