@@ -4,11 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <optional>
 #include <utility>
 
 #include "config/suggest.hpp"
+#include "config/unit_layout.hpp"
 #include "core/text/number_text.hpp"
+#include "idl/layout_sample.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::bus {
@@ -56,6 +59,7 @@ ExpectedInputs expected_inputs(const config::UnitConfig& unit,
   expected.sample_time_s = unit.sample_time_s;
   expected.counts = unit.counts();
   expected.needed = needed;
+  expected.file = unit;
   return expected;
 }
 
@@ -80,6 +84,46 @@ void UnitInputs::push(SignalKind kind, const Arrival& arrival, Clock::time_point
   streams_[static_cast<std::size_t>(kind)].push(arrival, expected_.sample_time_s, now);
 }
 
+namespace {
+
+constexpr const char* kUnknownKind = "unknown kind";
+
+/// Nothing for a word that is none of a layout's kinds.
+std::optional<SignalKind> kind_of(const char* word) {
+  for (const SignalKind kind : idl::kTopicKinds)
+    if (word != nullptr && std::strcmp(word, idl::kind_name(kind)) == 0) return kind;
+  return std::nullopt;
+}
+
+}  // namespace
+
+// The last word on each kind counts: a gateway may have been put right.
+void UnitInputs::hear(const mpm_Layout& layout) {
+  if (!expected_.file) return;
+  const std::optional<SignalKind> kind = kind_of(layout.kind);
+  if (kind && !config::is_layout_of(*expected_.file, *kind, idl::texts_of(layout.tags)))
+    wrong_layouts_[layout.kind] = "tags or their order";
+  else if (kind && layout.sample_time_s != expected_.sample_time_s)
+    wrong_layouts_[layout.kind] = "sample time";
+  else if (kind)
+    wrong_layouts_.erase(layout.kind);
+  else
+    wrong_layouts_[kUnknownKind] = "";
+}
+
+void UnitInputs::forget_layout(const char* kind) {
+  wrong_layouts_.erase(kind_of(kind) ? kind : kUnknownKind);
+}
+
+void UnitInputs::add_layouts(std::vector<Trouble>& troubles) const {
+  std::string text;
+  for (const auto& [kind, what] : wrong_layouts_)
+    text += (text.empty() ? "" : ", ") + kind + (what.empty() ? "" : " (" + what + ")");
+  if (!text.empty())
+    troubles.push_back(
+        {"layout", Severity::kOutOfSpecification, "layout differs from the unit file: " + text});
+}
+
 bool UnitInputs::needed(SignalKind kind) const {
   return expected_.needed[static_cast<std::size_t>(kind)];
 }
@@ -101,6 +145,7 @@ std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::tim
   add_silence(around, now, troubles);
   add_rivals(around, now, troubles);
   add_contents(now, troubles);
+  add_layouts(troubles);
   add_gaps(now, troubles);
   add_events(now, troubles);
   sort_by_severity(troubles);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,6 +12,7 @@
 #include "daemon/bus/input_stream.hpp"
 #include "daemon/bus/trouble.hpp"
 #include "idl/discovery.hpp"
+#include "mpm.h"
 
 namespace mpm::bus {
 
@@ -22,6 +24,8 @@ struct ExpectedInputs {
   std::array<bool, kSignalKindCount> needed{};
   /// So long may a topic say nothing.
   std::chrono::steady_clock::duration silence = std::chrono::seconds(5);
+  /// What layouts are compared with; nothing: with nothing.
+  std::optional<config::UnitConfig> file;
 };
 
 /// By a unit file; `needed`: files::needed_kinds of it.
@@ -51,6 +55,9 @@ class UnitInputs {
       : expected_(std::move(expected)), start_(now) {}
 
   void push(SignalKind kind, const Arrival& arrival, Clock::time_point now);
+  /// What the control system says its values are, or the last that said so of `kind` has left.
+  void hear(const mpm_Layout& layout);
+  void forget_layout(const char* kind);
   /// This process stood still until now: what was missed meanwhile is no fault of the inputs.
   void stood_still(Clock::time_point now) { resumed_ = now; }
   /// The worst first. What only happens once is told for a minute.
@@ -73,6 +80,7 @@ class UnitInputs {
                    std::vector<Trouble>& troubles) const;
   void add_rivals(const Surroundings& around, Clock::time_point now,
                   std::vector<Trouble>& troubles) const;
+  void add_layouts(std::vector<Trouble>& troubles) const;
   void add_gaps(Clock::time_point now, std::vector<Trouble>& troubles) const;
   void add_contents(Clock::time_point now, std::vector<Trouble>& troubles) const;
   void add_events(Clock::time_point now, std::vector<Trouble>& troubles) const;
@@ -80,6 +88,7 @@ class UnitInputs {
   ExpectedInputs expected_;
   Clock::time_point start_;
   std::optional<Clock::time_point> resumed_;
+  std::map<std::string, std::string> wrong_layouts_;  // by kind: what differs
   std::array<InputStream, kSignalKindCount> streams_;
 };
 

@@ -37,10 +37,14 @@ void Domain::attach_to(idl::WaitSet& wait_set) const {
 }
 
 void Domain::poll(Clock::time_point now) {
-  layouts_.take([this](const mpm_Layout& layout) {
+  layouts_.take_with_info([this](const mpm_Layout& layout, const idl::SampleInfo& info) {
     if (layout.unit == nullptr || layout.kind == nullptr) return;
-    if (const auto it = units_.find(std::string_view(layout.unit)); it != units_.end())
-      it->second->check_layout(layout);
+    const auto it = units_.find(std::string_view(layout.unit));
+    if (it == units_.end()) return;
+    if (info.valid)
+      it->second->hear(layout);
+    else
+      it->second->forget_layout(layout.kind);
   });
   samples_.take([&](const idl::SampleView& sample) {
     if (const auto it = units_.find(sample.unit); it != units_.end())

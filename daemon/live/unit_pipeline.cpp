@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <string_view>
 
-#include "config/unit_layout.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/unit_performance.hpp"
-#include "idl/layout_sample.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::live {
@@ -39,15 +36,6 @@ bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
   bus::ExpectedInputs expected = bus::expected_inputs(unit, files::needed_kinds(unit));
   expected.silence = samples_or(unit.sample_time_s, kSilentSamples, std::chrono::seconds(5));
   return expected;
-}
-
-/// Nothing for a word that is none of a layout's kinds.
-std::optional<SignalKind> kind_of(std::string_view word) {
-  for (std::size_t k = 0; k < kSignalKindCount; ++k) {
-    const auto kind = static_cast<SignalKind>(k);
-    if (kind != SignalKind::kAux && word == idl::kind_name(kind)) return kind;
-  }
-  return std::nullopt;
 }
 
 /// Null where the model has no such channel, whose gain an error could be told by.
@@ -256,17 +244,6 @@ void UnitPipeline::publish_diagnosis() {
     spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
 }
 
-void UnitPipeline::check_layout(const mpm_Layout& layout) {
-  const std::optional<SignalKind> known = kind_of(layout.kind);
-  const std::string kind = known ? layout.kind : "unknown kind";
-  const bool same = known && config::is_layout_of(config_, *known, idl::texts_of(layout.tags));
-  if (same && layout.sample_time_s == config_.sample_time_s) return;
-  if (wrong_layout_.find(kind) != std::string::npos) return;
-  wrong_layout_ += (wrong_layout_.empty() ? "" : ", ") + kind;
-  spdlog::warn("{}: the {} layout of the control system differs from the unit file ({})",
-               config_.unit, kind, same ? "sample time" : "tags or their order");
-}
-
 void UnitPipeline::hear_other_monitor(std::string name, Clock::time_point now) {
   other_monitor_ = std::move(name);
   other_monitor_heard_ = now;
@@ -324,9 +301,6 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   const auto add = [&found](const char* key, Severity severity, std::string text) {
     found.push_back({key, severity, std::move(text)});
   };
-  if (!wrong_layout_.empty())
-    add("layout", Severity::kOutOfSpecification,
-        "layout differs from the unit file: " + wrong_layout_);
   // Where a topic is missing or has gaps or a counter jumped, that is why.
   if (incomplete_at_ &&
       now_ - *incomplete_at_ < samples_or(config_.sample_time_s, 2, kHealthPeriod) &&

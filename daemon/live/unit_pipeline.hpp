@@ -41,8 +41,9 @@ class UnitPipeline {
   UnitPipeline& operator=(const UnitPipeline&) = delete;
 
   void push(const idl::SampleView& sample, Clock::time_point now);
-  /// What the control system says its values are; complains if the unit file says otherwise.
-  void check_layout(const mpm_Layout& layout);
+  /// What the control system says its values are, or that nobody says it of `kind` any more.
+  void hear(const mpm_Layout& layout) { inputs_.hear(layout); }
+  void forget_layout(const char* kind) { inputs_.forget_layout(kind); }
   /// Another monitor of this unit said something: `name`, as idl::name_of.
   void hear_other_monitor(std::string name, Clock::time_point now);
   /// All others have left.
@@ -100,7 +101,6 @@ class UnitPipeline {
   std::string report_problem_;
   HealthRecord health_;
   std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
-  std::string wrong_layout_;  // kinds whose layout differs; empty = none known
   host::RateLimiter refused_limit_, output_limit_, restart_limit_;
 };
 

@@ -122,10 +122,15 @@ void Examination::hear(SignalKind kind, const mpm_Sample& sample, std::uint64_t 
   stream.offsets_s.add(clock_offset_s(sample.source_time_ns));
 }
 
-// A unit that no file describes is what its control system says.
+// With a file it is compared; a unit that no file describes is what its control system says.
 void Examination::hear(const mpm_Layout& layout) {
+  if (!open_) {
+    const auto known = units_.find(layout.unit == nullptr ? "" : layout.unit);
+    if (known != units_.end()) known->second.inputs.hear(layout);
+    return;
+  }
   const auto kind = layout.kind == nullptr ? std::nullopt : kind_of(layout.kind, idl::kind_name);
-  if (!kind || !open_) return;
+  if (!kind) return;
   Unit* unit = unit_of(layout.unit);
   if (unit == nullptr) return;
   ExpectedInputs expected = unit->inputs.expected();
