@@ -75,9 +75,10 @@ std::string writer_name(const Surroundings& around, std::uint64_t handle) {
   return idl::name_of(endpoint == nullptr ? idl::Process() : endpoint->process);
 }
 
-std::string place_text(int domain, const std::string& partition) {
-  return "domain " + std::to_string(domain) +
-         (partition.empty() ? "" : ", partition '" + partition + "'");
+std::string place_text(const idl::DomainOptions& domain) {
+  return "domain " + std::to_string(domain.domain) +
+         (domain.partition.empty() ? "" : ", partition '" + domain.partition + "'") +
+         (idl::ignores_environment(domain) ? " (CYCLONEDDS_URI is set, but not used)" : "");
 }
 
 void UnitInputs::push(SignalKind kind, const Arrival& arrival, Clock::time_point now) {

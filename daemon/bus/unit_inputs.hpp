@@ -12,6 +12,7 @@
 #include "daemon/bus/input_stream.hpp"
 #include "daemon/bus/trouble.hpp"
 #include "idl/discovery.hpp"
+#include "idl/participant.hpp"
 #include "mpm.h"
 
 namespace mpm::bus {
@@ -42,8 +43,8 @@ struct Surroundings {
 [[nodiscard]] const idl::Endpoint* find_writer(const Surroundings& around, std::uint64_t handle);
 /// Its process, as idl::name_of.
 [[nodiscard]] std::string writer_name(const Surroundings& around, std::uint64_t handle);
-/// "domain 3", "domain 3, partition 'a'"
-[[nodiscard]] std::string place_text(int domain, const std::string& partition);
+/// "domain 3", "domain 3, partition 'a'"; and that CYCLONEDDS_URI is set in vain.
+[[nodiscard]] std::string place_text(const idl::DomainOptions& domain);
 
 /// How the samples of one unit come, and everything that is wrong with that. The same judgement
 /// for the daemon, which says it on mpm/health, and for `mpm doctor`.

@@ -22,7 +22,7 @@ Domain::Domain(const idl::DomainOptions& options)
       layouts_(participant_, idl::kLayoutTopic, idl::layout_qos()),
       other_monitors_(participant_, idl::kHealthTopic, idl::neighbour_health_qos()),
       outputs_(participant_) {
-  around_.place = bus::place_text(options.domain, options.partition);
+  around_.place = bus::place_text(options);
 }
 
 UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, SampleJournal* samples,

@@ -217,6 +217,19 @@ TEST_CASE("mpm echo prints samples and ends when it has enough") {
   CHECK(lines_of(corner.err()).size() == 1);
 }
 
+TEST_CASE("commands say that CYCLONEDDS_URI is set and not used") {
+  const Corner corner("environment");
+  const std::vector<std::string> uri = {"CYCLONEDDS_URI=file:///none"};
+  const std::string out = corner.folder.file("out"), err = corner.folder.file("err");
+  Process echo(corner.on_bus({"mpm", "echo", "mpm/mv", "--once", "--duration", "0.2"}), out, err,
+               uri);
+  CHECK(echo.wait(kPatience) == 2);
+  CHECK(corner.err().find("mpm: CYCLONEDDS_URI is set, but not used; --dds-from-environment") == 0);
+  Process status(corner.on_bus({"mpm", "status", "--wait", "0.2"}), out, err, uri);
+  CHECK(status.wait(kPatience) == 2);
+  CHECK(corner.out().find("(CYCLONEDDS_URI is set, but not used)") != std::string::npos);
+}
+
 TEST_CASE("mpm hz and delay measure a topic, also one that is not ours") {
   const Corner corner("hz");
   Process hz = corner.start({"mpm", "hz", "mpm/cv", "--json", "--duration", "1.5"});

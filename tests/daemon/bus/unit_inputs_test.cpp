@@ -21,7 +21,10 @@ struct Scene {
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv})
       expected.needed[static_cast<std::size_t>(kind)] = true;
     inputs.emplace(expected, now);
-    around.place = place_text(3, "plant-a");
+    idl::DomainOptions domain;
+    domain.domain = 3;
+    domain.partition = "plant-a";
+    around.place = place_text(domain);
     for (const char* topic : {"mpm/mv", "mpm/cv"}) add_writer(topic, kGateway, "gateway");
   }
 
