@@ -156,19 +156,19 @@ std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::tim
 // What is known of the ones who should write.
 std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around) const {
   std::vector<std::string> writers, refused;
+  std::string stopped;
   for (const idl::Endpoint& endpoint : around.endpoints) {
     if (!endpoint.writer || endpoint.topic != topic_of(kind)) continue;
     const std::string name = idl::name_of(endpoint.process);
+    // Who was killed is on the list for some seconds.
+    if (stream(kind).started() && endpoint.handle == stream(kind).newest().writer) stopped = name;
     if (endpoint.mismatch.empty())
       writers.push_back(name);
     else
       refused.push_back(name + " does not match: " + config::join(endpoint.mismatch));
   }
   if (!refused.empty()) return "its writer " + config::join(refused);
-  // Who was killed is on the list for some seconds.
-  if (const idl::Endpoint* last = find_writer(around, stream(kind).newest().writer);
-      last != nullptr && last->topic == topic_of(kind) && stream(kind).started())
-    return idl::name_of(last->process) + " has stopped writing it, or was killed";
+  if (!stopped.empty()) return stopped + " has stopped writing it, or was killed";
   if (writers.empty()) return "nobody writes it on " + around.place;
   if (!around.strangers.empty() && !stream(kind).started()) {
     const std::vector<std::string> names(around.strangers.begin(), around.strangers.end());
