@@ -27,6 +27,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLongestWait{50};
+// After which it says that nothing has come.
+constexpr std::chrono::seconds kSilence{5};
 
 struct EchoOptions {
   std::string topic;
@@ -84,6 +86,8 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic, JsonOf json_o
   const Clock::time_point end =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options.duration_s));
+  const Clock::time_point silent = Clock::now() + kSilence;
+  bool told = false;
   std::uint64_t printed = 0;
   const auto on_sample = [&](const T& sample, const idl::SampleInfo& info) {
     const std::string unit = sample.unit == nullptr ? "" : sample.unit;
@@ -97,6 +101,10 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic, JsonOf json_o
   while (printed < wanted && read() && !stop.received()) {
     if (wait_set.wait(kLongestWait)) reader.take_with_info(on_sample);
     std::cout.flush();
+    if (printed == 0 && !told && Clock::now() >= silent) {
+      std::cerr << "mpm echo: nothing has come on " << options.topic << " yet\n";
+      told = true;
+    }
     if (options.duration_s > 0.0 && Clock::now() >= end) break;
   }
   if (printed == 0 && read())
