@@ -106,10 +106,13 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
     if (steps > 1.0 && steps < static_cast<double>(kFar))
       writer.skipped += static_cast<std::uint64_t>(steps) - 1;
     const bool back = goes_back(steps, arrival.source_time_ns > writer.source_time_ns);
-    if (steps > static_cast<double>(kJump) || back)
-      jump_ = Jump{now, writer.interval, arrival.interval};
     const double elapsed_s = 1e-9 * (static_cast<double>(arrival.source_time_ns) -
                                      static_cast<double>(writer.source_time_ns));
+    if (steps > static_cast<double>(kJump) || back) {
+      const double usual_s = steps * sample_time_s;
+      jump_ = Jump{now, writer.interval, arrival.interval,
+                   steps > 0.0 && elapsed_s < kOddPace * usual_s && elapsed_s * kOddPace > usual_s};
+    }
     const double step_s = elapsed_s - steps * sample_time_s;
     const bool dated = arrival.source_time_ns != writer.source_time_ns;  // else it has no clock
     const double limit_s = std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s);

@@ -36,6 +36,7 @@ class InputStream {
   struct Jump {
     Clock::time_point when;
     std::int64_t from = 0, to = 0;
+    bool timely = false;  ///< the source time went on as far: nothing was sent, or it was lost
   };
   /// The source time did not go on with the interval number.
   struct ClockStep {

@@ -237,7 +237,12 @@ void UnitInputs::add_rivals(const Surroundings& around, Clock::time_point now,
     topics.push_back(topic_of(kind));
     first = first == nullptr ? a : first;
     second = second == nullptr ? b : second;
-    same = same && apart(a->interval, b->interval) <= kSameNumbers;
+    // One that has just left stays behind.
+    const double since_s =
+        std::chrono::duration<double>(std::max(a->last, b->last) - std::min(a->last, b->last))
+            .count();
+    same =
+        same && apart(a->interval, b->interval) <= kSameNumbers + since_s / expected_.sample_time_s;
   }
   if (first == nullptr || second == nullptr) return;
   const std::string who = "two gateways write " + config::join(topics) + ": " +
@@ -337,9 +342,13 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
     }
   }
   if (!jumped.empty())
-    troubles.push_back({"jump", Severity::kOutOfSpecification,
-                        "the interval number went from " + std::to_string(jump.from) + " to " +
-                            std::to_string(jump.to) + " on " + config::join(jumped)});
+    troubles.push_back(
+        {"jump", Severity::kOutOfSpecification,
+         (jump.timely ? "no intervals came between " + std::to_string(jump.from) + " and " +
+                            std::to_string(jump.to)
+                      : "the interval number went from " + std::to_string(jump.from) + " to " +
+                            std::to_string(jump.to)) +
+             " on " + config::join(jumped)});
   if (!stepped.empty()) {
     char size[32];
     std::snprintf(size, sizeof size, "%.0f s", std::abs(step.size_s));

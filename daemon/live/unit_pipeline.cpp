@@ -315,12 +315,13 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
     add("other monitor", Severity::kMaintenanceRequired,
         "another monitor watches this unit as well: " + other_monitor_ +
             "; readers see both in turn");
-  const auto add_journal = [&](const char* key, const std::string& problem) {
+  const auto add_journal = [&](const std::string& which, const std::string& problem) {
     if (!problem.empty())
-      add(key, Severity::kMaintenanceRequired, "the journal cannot be written: " + problem);
+      add(which.c_str(), Severity::kMaintenanceRequired,
+          "the " + which + " cannot be written: " + problem);
   };
   if (journal_) add_journal("journal", journal_->problem());
-  if (samples_ != nullptr) add_journal("journal of samples", samples_->problem());
+  if (samples_ != nullptr) add_journal("journal of every sample", samples_->problem());
   if (!report_problem_.empty())
     add("reports", Severity::kMaintenanceRequired,
         "reports of diagnoses cannot be kept: " + report_problem_);

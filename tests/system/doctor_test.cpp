@@ -185,7 +185,7 @@ TEST_CASE("doctor tells what ails a monitor beside its alarms") {
                 {"--config", bench.folder.file("toy.yaml"), "--seconds", "2", "--json"}),
             folder.file("out"), folder.file("err")) == 1);
   const Json said = Json::parse(read_file(folder.file("out")));
-  CHECK(any_text(said["troubles"], "the journal cannot be written: No space left"));
+  CHECK(any_text(said["troubles"], "the journal of every sample cannot be written: No space left"));
 }
 
 TEST_CASE("two monitors of one unit, and what the disk does not take, are in health and status") {
@@ -201,7 +201,8 @@ TEST_CASE("two monitors of one unit, and what the disk does not take, are in hea
       if (health.detail.find(word) != std::string::npos) return true;
     return false;
   };
-  CHECK(bench.observe([&] { return said("the journal cannot be written: No space left"); }));
+  CHECK(bench.observe(
+      [&] { return said("the journal of every sample cannot be written: No space left"); }));
   CHECK(said("reports of diagnoses cannot be kept: /proc/none"));
 
   std::optional<Process> second;
@@ -215,7 +216,7 @@ TEST_CASE("two monitors of one unit, and what the disk does not take, are in hea
   }));
   const std::string log = read_file(bench.folder.file("mpmd.err"));
   CHECK(count_of(log, "another monitor watches this unit as well") == 1);
-  CHECK(count_of(log, "the journal cannot be written") == 1);
+  CHECK(count_of(log, "the journal of every sample cannot be written") == 1);
   CHECK(count_of(log, "CYCLONEDDS_URI is set, but") == 1);
 
   const std::string out = folder.file("out"), err = folder.file("err");
