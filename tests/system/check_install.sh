@@ -30,6 +30,7 @@ done
 # The clients are built with nothing else, and there is a unit file for what their gateways play.
 cmake -S "$documents/tests/hmi" -B "$prefix/hmi" -D MPM_IDL="$prefix/share/mpm/mpm.idl" >"$prefix/log" 2>&1 &&
   cmake --build "$prefix/hmi" >>"$prefix/log" 2>&1 || { cat "$prefix/log" >&2; fail "no clients"; }
+rm -r "$prefix/hmi"
 [ -f "$documents/tests/hmi/loopback.xml" ] || fail "no network settings"
 "$prefix/bin/mpmd" --check --config "$documents/tests/hmi/toy.yaml" || fail "no unit to try"
 [ "$(find "$prefix" -path "$documents" -prune -o \
