@@ -120,7 +120,10 @@ void Aligner::start(Window& window, std::int64_t interval) {
       counters_.late += static_cast<std::uint64_t>(std::popcount(slot.present));
     slot.used = false;
   }
-  if (&window == &candidate_) back_ = 0, back_frames_ = 0;
+  if (&window == &candidate_) {
+    back_ = 0;
+    back_frames_ = 0;
+  }
   window.seen = 0;
   // Blocks of earlier intervals may still be on their way.
   window.next = interval - settings_.max_lateness;
