@@ -23,8 +23,15 @@ install(FILES ${said}/mpm.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_
 install(FILES idl/mpm.idl DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
 install(DIRECTORY config/units config/plants config/scenarios
   DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN *.yaml)
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# The documentation, and all that it links to at the place where it links to it.
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
-  FILES_MATCHING PATTERN *.md PATTERN *.svg PATTERN *.png)
-install(DIRECTORY tests/hmi DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests  # where docs/hmi.md links to
-  FILES_MATCHING PATTERN *.c PATTERN *.cpp PATTERN *.py PATTERN CMakeLists.txt)
+  FILES_MATCHING PATTERN *.md PATTERN *.html PATTERN *.svg PATTERN *.png
+  PATTERN cases/*.json PATTERN cases/*.py)
+install(DIRECTORY tests/hmi DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests
+  FILES_MATCHING PATTERN *.c PATTERN *.cpp PATTERN *.hpp PATTERN *.py PATTERN *.xml PATTERN *.yaml
+  PATTERN CMakeLists.txt)
+install(FILES tests/study/experiments.cpp DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/study)
+install(FILES idl/mpm.idl DESTINATION ${CMAKE_INSTALL_DOCDIR}/idl)
+install(DIRECTORY config/units config/scenarios config/cases
+  DESTINATION ${CMAKE_INSTALL_DOCDIR}/config FILES_MATCHING PATTERN *.yaml)

@@ -88,6 +88,10 @@ std::string domain_xml(const DomainOptions& options) {
   return xml;
 }
 
+bool ignores_environment(const DomainOptions& options) {
+  return !options.use_environment && std::getenv("CYCLONEDDS_URI") != nullptr;
+}
+
 Participant::Participant(const DomainOptions& options) {
   const std::string name = "domain " + std::to_string(options.domain);
   if (options.use_environment && std::getenv("CYCLONEDDS_URI") != nullptr) {

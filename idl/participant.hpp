@@ -23,6 +23,9 @@ struct DomainOptions {
   bool use_environment = false;  ///< CYCLONEDDS_URI, where set, overrides all but the domain
 };
 
+/// CYCLONEDDS_URI is set, and a participant with these options does not look at it.
+[[nodiscard]] bool ignores_environment(const DomainOptions& options);
+
 /// The configuration that `options` stand for, as Cyclone reads it.
 [[nodiscard]] std::string domain_xml(const DomainOptions& options);
 

@@ -78,7 +78,10 @@ void block_stop_signals() {
 int run_dds(const LoopSetup& setup, const Options& options, BadDataFilter& filter) {
   ClosedLoop loop(setup);
   const bool paced = options.speed > 0.0;
-  const idl::Participant participant(domain_options(setup.unit.dds, options));
+  const idl::DomainOptions domain = domain_options(setup.unit.dds, options);
+  if (idl::ignores_environment(domain))
+    spdlog::warn("CYCLONEDDS_URI is set, but the unit file's DDS settings are used");
+  const idl::Participant participant(domain);
   const idl::UnitPublisher publisher(
       participant, config::unit_layout(setup.unit),
       paced ? idl::WriterPace::kRealTime : idl::WriterPace::kLossless);

@@ -48,13 +48,52 @@ void Aligner::push(const BlockView& block) {
     return;
   }
   if (!current_.started) start(current_, block.interval);
-  if (near(current_, block.interval)) {
+  if (near(current_, block.interval) && !goes_back(block)) {
     store(current_, block);
     advance();
     return;
   }
   if (!candidate_.started || !near(candidate_, block.interval)) start(candidate_, block.interval);
-  if (store(candidate_, block)) take_over();
+  if (!store(candidate_, block)) return;
+  if (back_ == 0 || ++back_frames_ >= calibration::alignment::kReturnFrames) take_over();
+}
+
+bool Aligner::goes_back(const BlockView& block) {
+  const unsigned bit = bit_of(block.kind);
+  const auto kind = static_cast<std::size_t>(block.kind);
+  if ((current_.seen & bit) == 0 || block.source_time_ns <= current_.time_of[kind]) return false;
+  const std::int64_t newest = current_.newest_of[kind];
+  if ((back_ & bit) != 0) {
+    // Beyond both, it counts on from the one that is nearer.
+    if (block.interval <= newest || candidate_.newest_of[kind] >= newest) return true;
+    go_on(block.kind);
+    return false;
+  }
+  if (block.interval > newest - calibration::alignment::kSmallestReturn) return false;
+  if (back_ == 0) start(candidate_, block.interval);
+  back_ |= bit;
+  return true;
+}
+
+// With the numbers that it had: what came of others is none of a restart's.
+void Aligner::go_on(SignalKind kind) {
+  const unsigned bit = bit_of(kind);
+  for (std::int64_t k = candidate_.next; k <= candidate_.newest; ++k) {
+    Slot& slot = slot_of(candidate_, k);
+    if (!slot.used || slot.interval != k || (slot.present & bit) == 0) continue;
+    slot.present &= ~bit;
+    refuse(k, kind);
+  }
+  candidate_.seen &= ~bit;
+  back_ &= ~bit;
+  back_frames_ = 0;
+}
+
+void Aligner::refuse(std::int64_t interval, SignalKind kind) {
+  const Slot& settled = slot_of(current_, interval);
+  const bool was_there =
+      settled.used && settled.interval == interval && (settled.present & bit_of(kind)) != 0;
+  ++(was_there ? counters_.repeated : counters_.late);
 }
 
 void Aligner::expire() {
@@ -81,6 +120,10 @@ void Aligner::start(Window& window, std::int64_t interval) {
       counters_.late += static_cast<std::uint64_t>(std::popcount(slot.present));
     slot.used = false;
   }
+  if (&window == &candidate_) {
+    back_ = 0;
+    back_frames_ = 0;
+  }
   window.seen = 0;
   // Blocks of earlier intervals may still be on their way.
   window.next = interval - settings_.max_lateness;
@@ -106,10 +149,7 @@ Aligner::Slot& Aligner::slot_of(Window& window, std::int64_t interval) const {
 bool Aligner::store(Window& window, const BlockView& block) {
   const unsigned bit = bit_of(block.kind);
   if (block.interval < window.next) {
-    const Slot& settled = slot_of(window, block.interval);
-    const bool was_there =
-        settled.used && settled.interval == block.interval && (settled.present & bit) != 0;
-    ++(was_there ? counters_.repeated : counters_.late);
+    refuse(block.interval, block.kind);
     return false;
   }
   while (block.interval >= window.next + settings_.capacity) settle_next(window);
@@ -132,7 +172,10 @@ bool Aligner::store(Window& window, const BlockView& block) {
   const bool seen = (window.seen & bit) != 0;
   const bool adjacent = seen && block.interval == newest_of_kind + 1;
   if (seen && block.interval < newest_of_kind) ++counters_.out_of_order;
-  newest_of_kind = seen ? std::max(newest_of_kind, block.interval) : block.interval;
+  if (!seen || block.interval > newest_of_kind) {
+    newest_of_kind = block.interval;
+    window.time_of[static_cast<std::size_t>(block.kind)] = block.source_time_ns;
+  }
   window.newest = std::max(window.newest, block.interval);
   window.seen |= bit;
   if (&window == &current_ && (adjacent || (needed_ & bit) != 0)) silent_ &= ~bit;
@@ -210,6 +253,8 @@ void Aligner::take_over() {
   std::swap(current_, candidate_);
   candidate_.started = false;
   for (Slot& slot : candidate_.slots) slot.used = false;
+  back_ = 0;
+  back_frames_ = 0;
   silent_ &= welcome_;  // of which a new beginning says nothing
   advance();
 }

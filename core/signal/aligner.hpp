@@ -101,6 +101,7 @@ class Aligner {
   struct Window {
     std::vector<Slot> slots;                                 // ring, by interval
     std::array<std::int64_t, kSignalKindCount> newest_of{};  // per kind
+    std::array<std::int64_t, kSignalKindCount> time_of{};    // of that one, source time
     unsigned seen = 0;                                       // kinds that came at all
     std::int64_t next = 0;                                   // first unsettled interval
     std::int64_t newest = 0;
@@ -108,6 +109,10 @@ class Aligner {
   };
 
   void start(Window& window, std::int64_t interval);
+  /// True if the block is for the second window, though it is near the first.
+  [[nodiscard]] bool goes_back(const BlockView& block);
+  void go_on(SignalKind kind);
+  void refuse(std::int64_t interval, SignalKind kind);
   [[nodiscard]] bool near(const Window& window, std::int64_t interval) const;
   [[nodiscard]] std::size_t place_of(std::int64_t interval) const;
   [[nodiscard]] Slot& slot_of(Window& window, std::int64_t interval) const;
@@ -131,6 +136,8 @@ class Aligner {
   unsigned silent_ = 0;   // kinds of these that nobody waits for
   Window current_;
   Window candidate_;
+  unsigned back_ = 0;              // kinds whose numbers went back a little, into the candidate
+  int back_frames_ = 0;            // complete there since then
   std::int64_t offset_ = 0;        // emitted minus received interval number
   std::int64_t last_emitted_ = 0;  // valid if counters_.frames > 0
   AlignerCounters counters_;

@@ -70,6 +70,11 @@ inline constexpr int kCapacity = 1024;
 /// A number that is behind by more than this many times the lateness is a restart, not a late
 /// block.
 inline constexpr int kRestartFactor = 4;
+/// One that is behind by less is a restart where the numbers went back by at least kSmallestReturn
+/// while the source time went on, and kReturnFrames frames came so while the old numbers did not go
+/// on. Chosen: two gateways with the same numbers are hardly so far apart.
+inline constexpr int kSmallestReturn = 3;
+inline constexpr int kReturnFrames = 3;
 }  // namespace alignment
 
 }  // namespace mpm::calibration

@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <string>
 
 #include "daemon/app/commands/commands.hpp"
+#include "daemon/app/commands/help_format.hpp"
 #include "daemon/app/commands/slips.hpp"
 #include "daemon/host/standard_output.hpp"
 #include "idl/version.hpp"
@@ -15,6 +17,7 @@ int run(int argc, char** argv) {
   // Exit codes of all programs of the project: 0 done, 1 found, 2 failed, 3 bad usage or input.
   int exit_code = 0;
   CLI::App app("The engineer's side of the model-plant-mismatch monitor.", "mpm");
+  app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", idl::version_text("mpm"));
   app.require_subcommand(1);
   add_detect(app, exit_code);
@@ -40,13 +43,13 @@ int run(int argc, char** argv) {
   add_man(app, exit_code);
   app.footer(
       "Examples:\n"
-      "  mpm detect --config unit.yaml --data last_month.csv    which models are wrong?\n"
-      "  mpm diagnose --config unit.yaml --data last_month.csv --out report    and how?\n"
-      "  mpm identify --config unit.yaml --data step_test.csv --out new.yaml    a model from data\n"
+      "  mpm detect --config unit.yaml --data month.csv    which models are wrong?\n"
+      "  mpm diagnose --config unit.yaml --data month.csv --out report    and how?\n"
+      "  mpm identify --config unit.yaml --data test.csv --out new.yaml    a new model\n"
       "  mpm watch    what the monitors say, live\n"
-      "  mpm record --config unit.yaml --output monday.mcap    keep what goes over the bus\n"
+      "  mpm record --config unit.yaml --output monday.mcap    what goes over the bus\n"
       "  mpm COMMAND --help    the options of a command, with examples\n"
-      "Exit codes: 0 done, 1 found what was to be told so, 2 failed, 3 bad usage or input");
+      "Exit codes: 0 done, 1 found what was to be told, 2 failed, 3 bad usage or input");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "config/load_unit.hpp"
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/app/commands/help_format.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/slips.hpp"
 #include "daemon/host/logging.hpp"
@@ -82,7 +84,7 @@ void declare(CLI::App& app, Options& options) {
       "  mpmd --config /etc/mpm/shell.yaml\n"
       "  mpmd --config /etc/mpm/units --journal /var/lib/mpm/journal --journal-keep 2GB\n"
       "  mpmd --config /etc/mpm/units --check\n"
-      "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or bad unit file");
+      "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or unit file");
 }
 
 std::string cost_text(const config::UnitConfig& unit) {
@@ -146,6 +148,7 @@ int run(const Options& options) {
 int parse_and_run(int argc, char** argv) {
   CLI::App app("Monitors MPC units for model-plant mismatch: DDS in, verdicts and alarms out.",
                "mpmd");
+  app.formatter(std::make_shared<HelpFormat>());
   Options options;
   declare(app, options);
   try {

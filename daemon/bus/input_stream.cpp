@@ -1,8 +1,11 @@
 #include "daemon/bus/input_stream.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
+
+#include "core/signal/calibration.hpp"
 
 namespace mpm::bus {
 namespace {
@@ -14,8 +17,66 @@ constexpr double kClockStepSamples = 10.0;
 constexpr std::int64_t kFar = 100'000;
 // As far as a number goes back when samples come in another order (core/signal/aligner).
 constexpr std::int64_t kReordered = 32;
+// Of the last intervals, from which on left out ones are told.
+constexpr int kFewestLeftOut = 2;
+constexpr int kLeftOutInverseShare = 16;
+// A step of source times is odd where it is off by this factor; so many it takes, and three of four
+// of them odd, until the pace is. What stalls or steps once is not.
+constexpr double kOddPace = 1.5;
+constexpr int kFewestSteps = 8;
+
+// Whether the number went back to a new beginning; as for core/signal/aligner: what is late is
+// older than what came before it. `steps`: to this sample.
+bool goes_back(double steps, bool newer) {
+  return steps < -static_cast<double>(kReordered) ||
+         (newer && steps <= -static_cast<double>(calibration::alignment::kSmallestReturn));
+}
 
 }  // namespace
+
+int InputStream::Recent::left_out() const { return intervals - std::popcount(came); }
+
+bool InputStream::Recent::with_gaps() const {
+  return left_out() >= kFewestLeftOut && left_out() * kLeftOutInverseShare >= intervals;
+}
+
+bool InputStream::Recent::off_pace() const {
+  return steps >= kFewestSteps && 4 * std::popcount(odd) >= 3 * steps;
+}
+
+void InputStream::remember(const Arrival& arrival, double sample_time_s) {
+  Recent& r = recent_;
+  // Numbers may be anything: no difference of extremes.
+  const double ahead = static_cast<double>(arrival.interval) - static_cast<double>(r.newest);
+  const bool newer = arrival.source_time_ns > r.newest_time_ns;
+  if (r.intervals == 0 || ahead > static_cast<double>(kJump) || goes_back(ahead, newer)) {
+    r = {};
+    r.newest = r.dated = arrival.interval;
+    r.newest_time_ns = r.dated_ns = arrival.source_time_ns;
+    r.intervals = 1;
+    r.came = 1;
+    return;
+  }
+  const int steps = static_cast<int>(ahead);
+  if (steps <= 0) {
+    if (-steps < r.intervals) r.came |= std::uint64_t{1} << -steps;
+    return;
+  }
+  r.came = r.came << steps | 1;
+  r.intervals = std::min(Recent::kMost, r.intervals + steps);
+  r.newest = arrival.interval;
+  r.newest_time_ns = arrival.source_time_ns;
+  if (arrival.source_time_ns == r.dated_ns) return;
+  const double elapsed_s =
+      1e-9 * (static_cast<double>(arrival.source_time_ns) - static_cast<double>(r.dated_ns));
+  const double each_s = elapsed_s / static_cast<double>(arrival.interval - r.dated);
+  const bool odd = each_s > kOddPace * sample_time_s || each_s * kOddPace < sample_time_s;
+  r.odd = r.odd << 1 | (odd ? 1 : 0);
+  r.steps = std::min(Recent::kMost, r.steps + 1);
+  if (odd) r.time_per_interval_s = each_s;
+  r.dated = arrival.interval;
+  r.dated_ns = arrival.source_time_ns;
+}
 
 InputStream::Writer& InputStream::writer_of(std::uint64_t handle, Clock::time_point now) {
   for (Writer& writer : writers_)
@@ -34,6 +95,7 @@ InputStream::Writer& InputStream::writer_of(std::uint64_t handle, Clock::time_po
 void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time_point now) {
   newest_ = arrival;
   last_ = now;
+  remember(arrival, sample_time_s);
   Writer& writer = writer_of(arrival.writer, now);
   if (writer.samples > 0) {
     // Numbers may be anything: no difference of extremes.
@@ -43,17 +105,24 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
     if (steps == 0.0) ++writer.repeated;
     if (steps > 1.0 && steps < static_cast<double>(kFar))
       writer.skipped += static_cast<std::uint64_t>(steps) - 1;
-    if (steps > static_cast<double>(kJump) || steps < -static_cast<double>(kReordered))
-      jump_ = Jump{now, writer.interval, arrival.interval};
+    const bool back = goes_back(steps, arrival.source_time_ns > writer.source_time_ns);
     const double elapsed_s = 1e-9 * (static_cast<double>(arrival.source_time_ns) -
                                      static_cast<double>(writer.source_time_ns));
+    if (steps > static_cast<double>(kJump) || back) {
+      const double usual_s = steps * sample_time_s;
+      jump_ = Jump{now, writer.interval, arrival.interval,
+                   steps > 0.0 && elapsed_s < kOddPace * usual_s && elapsed_s * kOddPace > usual_s};
+    }
     const double step_s = elapsed_s - steps * sample_time_s;
     const bool dated = arrival.source_time_ns != writer.source_time_ns;  // else it has no clock
+    const double limit_s = std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s);
+    // Where as much time went by here, the control system stood still and its clock is right.
+    const double here_s = std::chrono::duration<double>(now - writer.last).count();
     // A counter that jumps says nothing of the clock.
-    if (dated && steps > 0.0 && steps <= static_cast<double>(kJump) &&
-        std::abs(step_s) > std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s))
+    if (dated && steps > 0.0 && steps <= static_cast<double>(kJump) && std::abs(step_s) > limit_s &&
+        std::abs(elapsed_s - here_s) > limit_s)
       clock_step_ = ClockStep{now, arrival.interval, step_s};
-    if (steps > -static_cast<double>(kReordered) && steps < 0.0) {  // late: the newer one stays
+    if (steps < 0.0 && !back) {  // late: the newer one stays
       ++writer.samples;
       writer.last = now;
       return;

@@ -36,12 +36,35 @@ class InputStream {
   struct Jump {
     Clock::time_point when;
     std::int64_t from = 0, to = 0;
+    bool timely = false;  ///< the source time went on as far: nothing was sent, or it was lost
   };
   /// The source time did not go on with the interval number.
   struct ClockStep {
     Clock::time_point when;
     std::int64_t interval = 0;
     double size_s = 0.0;
+  };
+
+  /// How the last intervals came, whoever sent them.
+  struct Recent {
+    static constexpr int kMost = 64;
+    std::int64_t newest = 0;
+    std::int64_t newest_time_ns = 0;
+    int intervals = 0;       ///< up to the newest one; 0: nothing has come
+    std::uint64_t came = 0;  ///< bit i: `newest` - i
+    /// Steps from one source time to the next; a bit is set where the time per interval was far
+    /// from the sample time.
+    int steps = 0;
+    std::uint64_t odd = 0;
+    double time_per_interval_s = 0.0;  ///< of the last of these
+    std::int64_t dated = 0;            ///< interval with the last source time
+    std::int64_t dated_ns = 0;
+
+    [[nodiscard]] int left_out() const;
+    /// So many are left out that the unit's statistics suffer.
+    [[nodiscard]] bool with_gaps() const;
+    /// The source times go on with the intervals, and not as the sample time says.
+    [[nodiscard]] bool off_pace() const;
   };
 
   /// A jump leaves out at least so many intervals.
@@ -56,6 +79,7 @@ class InputStream {
   [[nodiscard]] std::optional<Clock::time_point> last() const { return last_; }
   /// The last sample; valid if there was one.
   [[nodiscard]] const Arrival& newest() const { return newest_; }
+  [[nodiscard]] const Recent& recent() const { return recent_; }
   [[nodiscard]] const std::optional<Jump>& jump() const { return jump_; }
   [[nodiscard]] const std::optional<ClockStep>& clock_step() const { return clock_step_; }
   /// Two writers that both sent something while the other did, and within the last `recently`; the
@@ -65,9 +89,11 @@ class InputStream {
 
  private:
   Writer& writer_of(std::uint64_t handle, Clock::time_point now);
+  void remember(const Arrival& arrival, double sample_time_s);
 
   std::array<Writer, kMostWriters> writers_;
   Arrival newest_;
+  Recent recent_;
   std::optional<Clock::time_point> last_;
   std::optional<Jump> jump_;
   std::optional<ClockStep> clock_step_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/text/number_text.hpp"
+
 namespace mpm::bus {
 
 const char* to_string(Severity severity) {
@@ -15,6 +17,15 @@ const char* to_string(Severity severity) {
     default:
       return "failure";
   }
+}
+
+std::string troubles_in(const std::string& detail, std::uint32_t active_alarms) {
+  for (const std::string& first : {counted(active_alarms, "alarm"), std::string(kNoCompleteData),
+                                   std::string(kNothingDetermined)}) {
+    if (detail == first) return "";
+    if (detail.starts_with(first + "; ")) return detail.substr(first.size() + 2);
+  }
+  return detail;
 }
 
 void sort_by_severity(std::vector<Trouble>& troubles) {

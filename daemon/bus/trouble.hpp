@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,13 @@ struct Trouble {
   Severity severity = Severity::kFailure;
   std::string text;  ///< for a person
 };
+
+/// What `mpm/health` says of a unit that has only begun.
+inline constexpr const char* kNoCompleteData = "no complete data yet";
+inline constexpr const char* kNothingDetermined = "nothing determined yet";
+/// The troubles in the detail of a health, without these and how many alarms there are, which are
+/// none; empty if there are none.
+[[nodiscard]] std::string troubles_in(const std::string& detail, std::uint32_t active_alarms);
 
 /// Puts the worst first; those of one severity stay in their order.
 void sort_by_severity(std::vector<Trouble>& troubles);

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <optional>
 #include <utility>
 
 #include "config/suggest.hpp"
+#include "config/unit_layout.hpp"
 #include "core/text/number_text.hpp"
+#include "idl/layout_sample.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::bus {
@@ -18,6 +21,8 @@ using Clock = std::chrono::steady_clock;
 
 // A jump or a clock step is over at once; so long it is told.
 constexpr std::chrono::seconds kTold{60};
+// So long after a standstill of this process a jump is for what it missed.
+constexpr std::chrono::seconds kMissed{2};
 // Interval numbers of two topics that are further apart belong to two counters: what is taken in
 // one go is less.
 constexpr double kApart = 200.0;
@@ -34,6 +39,13 @@ long long whole_seconds(Clock::duration duration) {
 
 std::string topic_of(SignalKind kind) { return idl::sample_topic(kind); }
 
+// Two counters jump all the time, and that is said already.
+bool counters_differ(const std::vector<Trouble>& troubles) {
+  return std::any_of(troubles.begin(), troubles.end(), [](const Trouble& trouble) {
+    return trouble.key == "two gateways" && trouble.severity == Severity::kFailure;
+  });
+}
+
 double apart(std::int64_t a, std::int64_t b) {
   return std::abs(static_cast<double>(a) - static_cast<double>(b));
 }
@@ -47,6 +59,7 @@ ExpectedInputs expected_inputs(const config::UnitConfig& unit,
   expected.sample_time_s = unit.sample_time_s;
   expected.counts = unit.counts();
   expected.needed = needed;
+  expected.file = unit;
   return expected;
 }
 
@@ -62,13 +75,54 @@ std::string writer_name(const Surroundings& around, std::uint64_t handle) {
   return idl::name_of(endpoint == nullptr ? idl::Process() : endpoint->process);
 }
 
-std::string place_text(int domain, const std::string& partition) {
-  return "domain " + std::to_string(domain) +
-         (partition.empty() ? "" : ", partition '" + partition + "'");
+std::string place_text(const idl::DomainOptions& domain) {
+  return "domain " + std::to_string(domain.domain) +
+         (domain.partition.empty() ? "" : ", partition '" + domain.partition + "'") +
+         (idl::ignores_environment(domain) ? " (CYCLONEDDS_URI is set, but not used)" : "");
 }
 
 void UnitInputs::push(SignalKind kind, const Arrival& arrival, Clock::time_point now) {
   streams_[static_cast<std::size_t>(kind)].push(arrival, expected_.sample_time_s, now);
+}
+
+namespace {
+
+constexpr const char* kUnknownKind = "unknown kind";
+
+/// Nothing for a word that is none of a layout's kinds.
+std::optional<SignalKind> kind_of(const char* word) {
+  for (const SignalKind kind : idl::kTopicKinds)
+    if (word != nullptr && std::strcmp(word, idl::kind_name(kind)) == 0) return kind;
+  return std::nullopt;
+}
+
+}  // namespace
+
+// The last word on each kind counts: a gateway may have been put right.
+void UnitInputs::hear(const mpm_Layout& layout) {
+  if (!expected_.file) return;
+  const std::optional<SignalKind> kind = kind_of(layout.kind);
+  if (kind && !config::is_layout_of(*expected_.file, *kind, idl::texts_of(layout.tags)))
+    wrong_layouts_[layout.kind] = "tags or their order";
+  else if (kind && layout.sample_time_s != expected_.sample_time_s)
+    wrong_layouts_[layout.kind] = "sample time";
+  else if (kind)
+    wrong_layouts_.erase(layout.kind);
+  else
+    wrong_layouts_[kUnknownKind] = "";
+}
+
+void UnitInputs::forget_layout(const char* kind) {
+  wrong_layouts_.erase(kind_of(kind) ? kind : kUnknownKind);
+}
+
+void UnitInputs::add_layouts(std::vector<Trouble>& troubles) const {
+  std::string text;
+  for (const auto& [kind, what] : wrong_layouts_)
+    text += (text.empty() ? "" : ", ") + kind + (what.empty() ? "" : " (" + what + ")");
+  if (!text.empty())
+    troubles.push_back(
+        {"layout", Severity::kOutOfSpecification, "layout differs from the unit file: " + text});
 }
 
 bool UnitInputs::needed(SignalKind kind) const {
@@ -76,7 +130,8 @@ bool UnitInputs::needed(SignalKind kind) const {
 }
 
 bool UnitInputs::silent(SignalKind kind, Clock::time_point now) const {
-  return now - stream(kind).last().value_or(start_) >= expected_.silence;
+  return now - std::max(stream(kind).last().value_or(start_), resumed_.value_or(start_)) >=
+         expected_.silence;
 }
 
 bool UnitInputs::wants_endpoints(Clock::time_point now) const {
@@ -91,6 +146,8 @@ std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::tim
   add_silence(around, now, troubles);
   add_rivals(around, now, troubles);
   add_contents(now, troubles);
+  add_layouts(troubles);
+  add_gaps(now, troubles);
   add_events(now, troubles);
   sort_by_severity(troubles);
   return troubles;
@@ -99,15 +156,19 @@ std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::tim
 // What is known of the ones who should write.
 std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around) const {
   std::vector<std::string> writers, refused;
+  std::string stopped;
   for (const idl::Endpoint& endpoint : around.endpoints) {
     if (!endpoint.writer || endpoint.topic != topic_of(kind)) continue;
     const std::string name = idl::name_of(endpoint.process);
+    // Who was killed is on the list for some seconds.
+    if (stream(kind).started() && endpoint.handle == stream(kind).newest().writer) stopped = name;
     if (endpoint.mismatch.empty())
       writers.push_back(name);
     else
       refused.push_back(name + " does not match: " + config::join(endpoint.mismatch));
   }
   if (!refused.empty()) return "its writer " + config::join(refused);
+  if (!stopped.empty()) return stopped + " has stopped writing it, or was killed";
   if (writers.empty()) return "nobody writes it on " + around.place;
   if (!around.strangers.empty() && !stream(kind).started()) {
     const std::vector<std::string> names(around.strangers.begin(), around.strangers.end());
@@ -176,7 +237,12 @@ void UnitInputs::add_rivals(const Surroundings& around, Clock::time_point now,
     topics.push_back(topic_of(kind));
     first = first == nullptr ? a : first;
     second = second == nullptr ? b : second;
-    same = same && apart(a->interval, b->interval) <= kSameNumbers;
+    // One that has just left stays behind.
+    const double since_s =
+        std::chrono::duration<double>(std::max(a->last, b->last) - std::min(a->last, b->last))
+            .count();
+    same =
+        same && apart(a->interval, b->interval) <= kSameNumbers + since_s / expected_.sample_time_s;
   }
   if (first == nullptr || second == nullptr) return;
   const std::string who = "two gateways write " + config::join(topics) + ": " +
@@ -230,18 +296,43 @@ void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troub
                           std::to_string(stream(*behind).newest().interval)});
 }
 
+// Of topics that come.
+void UnitInputs::add_gaps(Clock::time_point now, std::vector<Trouble>& troubles) const {
+  if (counters_differ(troubles)) return;
+  std::vector<std::string> gaps, off_pace;
+  double time_per_interval_s = 0.0;
+  for (const SignalKind kind : idl::kTopicKinds) {
+    const InputStream& input = stream(kind);
+    if (!needed(kind) || !input.started() || silent(kind, now)) continue;
+    const InputStream::Recent& recent = input.recent();
+    if (recent.with_gaps())
+      gaps.push_back(std::to_string(recent.left_out()) + " of the last " +
+                     std::to_string(recent.intervals) + " on " + topic_of(kind));
+    if (!recent.off_pace()) continue;
+    off_pace.push_back(topic_of(kind));
+    time_per_interval_s = recent.time_per_interval_s;
+  }
+  if (!gaps.empty())
+    troubles.push_back(
+        {"gaps", Severity::kOutOfSpecification, "intervals are missing: " + config::join(gaps)});
+  if (off_pace.empty()) return;
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3g s an interval where the unit file has %.3g s",
+                time_per_interval_s, expected_.sample_time_s);
+  troubles.push_back({"pace", Severity::kOutOfSpecification,
+                      "the source times on " + config::join(off_pace) + " go on by " + text});
+}
+
 void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& troubles) const {
-  // Two counters jump all the time, and that is said already.
-  const bool rivals = std::any_of(troubles.begin(), troubles.end(), [](const Trouble& trouble) {
-    return trouble.key == "two gateways" && trouble.severity == Severity::kFailure;
-  });
-  if (rivals) return;
+  if (counters_differ(troubles)) return;
   std::vector<std::string> jumped, stepped;
   InputStream::Jump jump;
   InputStream::ClockStep step;
   for (const SignalKind kind : idl::kTopicKinds) {
     const InputStream& input = stream(kind);
-    if (input.jump() && now - input.jump()->when < kTold) {
+    const bool missed = resumed_ && input.jump() && input.jump()->when >= *resumed_ &&
+                        input.jump()->when - *resumed_ < kMissed;
+    if (input.jump() && !missed && now - input.jump()->when < kTold) {
       jumped.push_back(topic_of(kind));
       jump = *input.jump();
     }
@@ -251,9 +342,13 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
     }
   }
   if (!jumped.empty())
-    troubles.push_back({"jump", Severity::kOutOfSpecification,
-                        "the interval number went from " + std::to_string(jump.from) + " to " +
-                            std::to_string(jump.to) + " on " + config::join(jumped)});
+    troubles.push_back(
+        {"jump", Severity::kOutOfSpecification,
+         (jump.timely ? "no intervals came between " + std::to_string(jump.from) + " and " +
+                            std::to_string(jump.to)
+                      : "the interval number went from " + std::to_string(jump.from) + " to " +
+                            std::to_string(jump.to)) +
+             " on " + config::join(jumped)});
   if (!stepped.empty()) {
     char size[32];
     std::snprintf(size, sizeof size, "%.0f s", std::abs(step.size_s));

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -10,6 +12,8 @@
 #include "daemon/bus/input_stream.hpp"
 #include "daemon/bus/trouble.hpp"
 #include "idl/discovery.hpp"
+#include "idl/participant.hpp"
+#include "mpm.h"
 
 namespace mpm::bus {
 
@@ -21,6 +25,8 @@ struct ExpectedInputs {
   std::array<bool, kSignalKindCount> needed{};
   /// So long may a topic say nothing.
   std::chrono::steady_clock::duration silence = std::chrono::seconds(5);
+  /// What layouts are compared with; nothing: with nothing.
+  std::optional<config::UnitConfig> file;
 };
 
 /// By a unit file; `needed`: files::needed_kinds of it.
@@ -37,8 +43,8 @@ struct Surroundings {
 [[nodiscard]] const idl::Endpoint* find_writer(const Surroundings& around, std::uint64_t handle);
 /// Its process, as idl::name_of.
 [[nodiscard]] std::string writer_name(const Surroundings& around, std::uint64_t handle);
-/// "domain 3", "domain 3, partition 'a'"
-[[nodiscard]] std::string place_text(int domain, const std::string& partition);
+/// "domain 3", "domain 3, partition 'a'"; and that CYCLONEDDS_URI is set in vain.
+[[nodiscard]] std::string place_text(const idl::DomainOptions& domain);
 
 /// How the samples of one unit come, and everything that is wrong with that. The same judgement
 /// for the daemon, which says it on mpm/health, and for `mpm doctor`.
@@ -50,6 +56,11 @@ class UnitInputs {
       : expected_(std::move(expected)), start_(now) {}
 
   void push(SignalKind kind, const Arrival& arrival, Clock::time_point now);
+  /// What the control system says its values are, or the last that said so of `kind` has left.
+  void hear(const mpm_Layout& layout);
+  void forget_layout(const char* kind);
+  /// This process stood still until now: what was missed meanwhile is no fault of the inputs.
+  void stood_still(Clock::time_point now) { resumed_ = now; }
   /// The worst first. What only happens once is told for a minute.
   [[nodiscard]] std::vector<Trouble> troubles(const Surroundings& around,
                                               Clock::time_point now) const;
@@ -70,11 +81,15 @@ class UnitInputs {
                    std::vector<Trouble>& troubles) const;
   void add_rivals(const Surroundings& around, Clock::time_point now,
                   std::vector<Trouble>& troubles) const;
+  void add_layouts(std::vector<Trouble>& troubles) const;
+  void add_gaps(Clock::time_point now, std::vector<Trouble>& troubles) const;
   void add_contents(Clock::time_point now, std::vector<Trouble>& troubles) const;
   void add_events(Clock::time_point now, std::vector<Trouble>& troubles) const;
 
   ExpectedInputs expected_;
   Clock::time_point start_;
+  std::optional<Clock::time_point> resumed_;
+  std::map<std::string, std::string> wrong_layouts_;  // by kind: what differs
   std::array<InputStream, kSignalKindCount> streams_;
 };
 

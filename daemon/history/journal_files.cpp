@@ -1,6 +1,7 @@
 #include "daemon/history/journal_files.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,6 +30,12 @@ bool write_all(int descriptor, std::string_view text) {
     text.remove_prefix(static_cast<std::size_t>(written));
   }
   return true;
+}
+
+// A file that somebody removes takes what is written, and nobody will read it.
+bool has_name(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && status.st_nlink > 0;
 }
 
 }  // namespace
@@ -126,20 +133,30 @@ void JournalFiles::make_room() {
 }
 
 void JournalFiles::turn_over() {
-  if (bytes_ < file_bytes_) return;
+  const bool there = has_name(descriptor_);
+  if (there && bytes_ < file_bytes_) return;
+  if (!there) {
+    std::error_code ignored;  // then there is no file either
+    fs::create_directory(folder_, ignored);
+  }
   const int full = std::exchange(descriptor_, -1);
   const File file{number_, bytes_};
   if (!open_next()) {
+    if (!there) problem_ = std::generic_category().message(errno);
     descriptor_ = full;  // goes on growing
     return;
   }
   close(full);
-  earlier_.push_back(file);
+  if (there) earlier_.push_back(file);
   bytes_ = 0;
   make_room();
 }
 
 bool JournalFiles::append(std::string_view text) {
+  if (!has_name(descriptor_)) {
+    if (problem_.empty()) problem_ = std::generic_category().message(ENOENT);
+    return false;
+  }
   if (write_all(descriptor_, text)) {
     bytes_ += text.size();
     problem_.clear();

@@ -19,13 +19,15 @@ class JournalFiles {
   JournalFiles& operator=(const JournalFiles&) = delete;
   ~JournalFiles();
 
-  /// Begins the next file if the one at hand is full. What fails here is tried again by `append`.
+  /// Begins the next file if the one at hand is full or was removed. What fails here is tried again
+  /// by `append`.
   void turn_over();
   /// Nothing stands in the file at hand.
   [[nodiscard]] bool empty() const { return bytes_ == 0; }
   /// All of `text`, or nothing of it: false, and `problem` says why. With the next call it goes on.
   [[nodiscard]] bool append(std::string_view text);
-  /// Why the last `append` failed; empty if it did not.
+  /// Why the last `append` failed, or why no file could be begun for one that was removed; empty if
+  /// all is well.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:

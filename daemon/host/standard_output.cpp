@@ -7,14 +7,11 @@
 #include <iostream>
 
 namespace mpm::host {
-namespace {
 
 bool reader_has_left() {
   pollfd poller{STDOUT_FILENO, 0, 0};
   return poll(&poller, 1, 0) == 1 && (poller.revents & (POLLERR | POLLHUP)) != 0;
 }
-
-}  // namespace
 
 bool finish_standard_output() {
   std::cout.flush();

@@ -22,7 +22,7 @@ Domain::Domain(const idl::DomainOptions& options)
       layouts_(participant_, idl::kLayoutTopic, idl::layout_qos()),
       other_monitors_(participant_, idl::kHealthTopic, idl::neighbour_health_qos()),
       outputs_(participant_) {
-  around_.place = bus::place_text(options.domain, options.partition);
+  around_.place = bus::place_text(options);
 }
 
 UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, SampleJournal* samples,
@@ -37,10 +37,14 @@ void Domain::attach_to(idl::WaitSet& wait_set) const {
 }
 
 void Domain::poll(Clock::time_point now) {
-  layouts_.take([this](const mpm_Layout& layout) {
+  layouts_.take_with_info([this](const mpm_Layout& layout, const idl::SampleInfo& info) {
     if (layout.unit == nullptr || layout.kind == nullptr) return;
-    if (const auto it = units_.find(std::string_view(layout.unit)); it != units_.end())
-      it->second->check_layout(layout);
+    const auto it = units_.find(std::string_view(layout.unit));
+    if (it == units_.end()) return;
+    if (info.valid)
+      it->second->hear(layout);
+    else
+      it->second->forget_layout(layout.kind);
   });
   samples_.take([&](const idl::SampleView& sample) {
     if (const auto it = units_.find(sample.unit); it != units_.end())
@@ -62,9 +66,10 @@ void Domain::report_unknown(std::string_view unit, Clock::time_point now) {
 
 void Domain::hear_other_monitors(Clock::time_point now) {
   other_monitors_.take_with_info([&](const mpm_Health& health, const idl::SampleInfo& info) {
-    if (!info.valid || health.unit == nullptr) return;
+    if (health.unit == nullptr) return;
     const auto it = units_.find(std::string_view(health.unit));
     if (it == units_.end()) return;
+    if (!info.valid) return it->second->hear_no_other_monitor();
     if (bus::find_writer(around_, info.writer) == nullptr) look_around(now);
     it->second->hear_other_monitor(bus::writer_name(around_, info.writer), now);
   });

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cstdlib>
 #include <map>
 
 #include "core/text/number_text.hpp"
@@ -24,7 +23,9 @@ constexpr std::size_t kMostInStatus = 3;  // units whose troubles are told
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
                                const ServiceOptions& options, DiagnosisWorker& worker) {
   if (!options.sample_journal.empty()) samples_.emplace(options.sample_journal);
-  if (!options.use_environment && std::getenv("CYCLONEDDS_URI") != nullptr)
+  idl::DomainOptions any;
+  any.use_environment = options.use_environment;
+  if (idl::ignores_environment(any))
     spdlog::warn(
         "CYCLONEDDS_URI is set, but the unit files' DDS settings are used; --dds-from-environment "
         "takes it instead");

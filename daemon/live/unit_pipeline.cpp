@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <string_view>
 
-#include "config/unit_layout.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/unit_performance.hpp"
-#include "idl/layout_sample.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::live {
@@ -39,15 +36,6 @@ bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
   bus::ExpectedInputs expected = bus::expected_inputs(unit, files::needed_kinds(unit));
   expected.silence = samples_or(unit.sample_time_s, kSilentSamples, std::chrono::seconds(5));
   return expected;
-}
-
-/// Nothing for a word that is none of a layout's kinds.
-std::optional<SignalKind> kind_of(std::string_view word) {
-  for (std::size_t k = 0; k < kSignalKindCount; ++k) {
-    const auto kind = static_cast<SignalKind>(k);
-    if (kind != SignalKind::kAux && word == idl::kind_name(kind)) return kind;
-  }
-  return std::nullopt;
 }
 
 /// Null where the model has no such channel, whose gain an error could be told by.
@@ -122,11 +110,38 @@ void UnitPipeline::publish_initial_alarms() {
     record.cv = channel.cv;
     if (!outputs_.write(record))
       spdlog::warn("{}: cannot publish the alarm of {} -> {}", record.unit, record.mv, record.cv);
+    alarms_.push_back(std::move(record));
   }
 }
 
+bool UnitPipeline::publish_alarm_state(const AlarmRecord& change) {
+  AlarmStateRecord record(change);
+  const bool written = outputs_.write(record);
+  for (AlarmStateRecord& alarm : alarms_)
+    if (alarm.mv == record.mv && alarm.cv == record.cv) alarm = std::move(record);
+  return written;
+}
+
+// Of two monitors a reader keeps the last word, and one that starts clears all alarms. While
+// another one speaks an alarm of either stands; when it has left, what this one says holds.
+void UnitPipeline::publish_alarms_again() {
+  const bool speaks = other_monitor_speaks();
+  const bool left = other_monitor_spoke_ && !speaks;
+  other_monitor_spoke_ = speaks;
+  if (!speaks && !left) return;
+  bool written = true;
+  for (const AlarmStateRecord& alarm : alarms_)
+    if (left || alarm.to == AlarmChange::kActive) written = outputs_.write(alarm) && written;
+  if (!written && output_limit_.admit(now_))
+    spdlog::warn("{}: the alarms could not be published anew", config_.unit);
+}
+
+bool UnitPipeline::other_monitor_speaks() const {
+  return !other_monitor_.empty() && now_ - other_monitor_heard_ < kOtherMonitorGone;
+}
+
 void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
-  now_ = now;
+  go_on(now);
   if (!aligner_.pending()) last_frame_ = now;  // patience counts from here
   inputs_.push(sample.kind,
                {sample.writer, sample.interval, sample.source_time_ns, sample.values.size(),
@@ -143,6 +158,16 @@ void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
                  restart_limit_.held_back() == 0
                      ? ""
                      : fmt::format(" ({} more like this before)", restart_limit_.held_back()));
+}
+
+// Samples may be the first that is seen after a standstill, and are not to be blamed for it.
+void UnitPipeline::go_on(Clock::time_point now) {
+  if (now - now_ > kStandstill) {
+    stood_still_ = now;
+    stood_still_for_ = now - now_;
+    inputs_.stood_still(now);
+  }
+  now_ = now;
 }
 
 void UnitPipeline::report_refused(const idl::SampleView& sample) {
@@ -167,7 +192,7 @@ void UnitPipeline::on_frame(const Frame& frame) {
     written = outputs_.write(channel) && written;
   for (const AlarmRecord& alarm : monitor_.alarms()) {
     written = outputs_.write(alarm) && written;
-    written = outputs_.write(AlarmStateRecord(alarm)) && written;
+    written = publish_alarm_state(alarm) && written;
     spdlog::log(alarm.to == AlarmChange::kActive ? spdlog::level::warn : spdlog::level::info,
                 "{}: {} -> {}: alarm {} at interval {} ({}, p {:.1e})", alarm.unit, alarm.mv,
                 alarm.cv, to_string(alarm.to), alarm.interval,
@@ -210,24 +235,13 @@ void UnitPipeline::publish_diagnosis() {
   report_problem_ = outcome->file_problem;
   bool written = true;
   for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
-    written = outputs_.write(AlarmStateRecord(alarm)) && written;  // the alarm is as old as it was
+    written = publish_alarm_state(alarm) && written;  // the alarm is as old as it was
     alarm.interval = outcome->interval;
     alarm.source_time_ns = outcome->time_ns;
     written = outputs_.write(alarm) && written;
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
-}
-
-void UnitPipeline::check_layout(const mpm_Layout& layout) {
-  const std::optional<SignalKind> known = kind_of(layout.kind);
-  const std::string kind = known ? layout.kind : "unknown kind";
-  const bool same = known && config::is_layout_of(config_, *known, idl::texts_of(layout.tags));
-  if (same && layout.sample_time_s == config_.sample_time_s) return;
-  if (wrong_layout_.find(kind) != std::string::npos) return;
-  wrong_layout_ += (wrong_layout_.empty() ? "" : ", ") + kind;
-  spdlog::warn("{}: the {} layout of the control system differs from the unit file ({})",
-               config_.unit, kind, same ? "sample time" : "tags or their order");
 }
 
 void UnitPipeline::hear_other_monitor(std::string name, Clock::time_point now) {
@@ -237,16 +251,13 @@ void UnitPipeline::hear_other_monitor(std::string name, Clock::time_point now) {
 
 void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
                         const bus::Surroundings& around) {
-  if (now - now_ > kStandstill) {
-    stood_still_ = now;
-    stood_still_for_ = now - now_;
-  }
-  now_ = now;
+  go_on(now);
   if (aligner_.pending() && now - last_frame_ > patience_) aligner_.expire();
   if (diagnosis_) publish_diagnosis();
   if (now < next_health_) return;
   next_health_ = now + kHealthPeriod;
   publish_health(unknown_unit, around);
+  publish_alarms_again();
 }
 
 void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around) {
@@ -254,6 +265,7 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   health_.frames = aligner.frames;
   health_.used = monitor_.counters().used;
   health_.missing = aligner.missing;
+  if (health_.incomplete != aligner.incomplete) incomplete_at_ = now_;
   health_.incomplete = aligner.incomplete;
   health_.late = aligner.late;
   health_.repeated = aligner.repeated;
@@ -278,7 +290,6 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
     spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", config_.unit,
                 line.text);
   judge_health(found);
-  incomplete_before_ = aligner.incomplete;
   if (journal_) journal_->push(health_);
   if (!outputs_.write(health_) && output_limit_.admit(now_))
     spdlog::warn("{}: the health could not be published", config_.unit);
@@ -290,11 +301,9 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   const auto add = [&found](const char* key, Severity severity, std::string text) {
     found.push_back({key, severity, std::move(text)});
   };
-  if (!wrong_layout_.empty())
-    add("layout", Severity::kOutOfSpecification,
-        "layout differs from the unit file: " + wrong_layout_);
-  // Where a topic is missing or a counter jumped, that is why.
-  if (health_.incomplete != incomplete_before_ &&
+  // Where a topic is missing or has gaps or a counter jumped, that is why.
+  if (incomplete_at_ &&
+      now_ - *incomplete_at_ < samples_or(config_.sample_time_s, 2, kHealthPeriod) &&
       (found.empty() || found.front().severity == Severity::kMaintenanceRequired))
     add("incomplete", Severity::kOutOfSpecification, "data incomplete");
   if (stood_still_ && now_ - *stood_still_ < kTold)
@@ -302,16 +311,17 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
         fmt::format(
             "the monitor itself stood still for {} s: its machine is too busy or was asleep",
             std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
-  if (!other_monitor_.empty() && now_ - other_monitor_heard_ < kOtherMonitorGone)
+  if (other_monitor_speaks())
     add("other monitor", Severity::kMaintenanceRequired,
         "another monitor watches this unit as well: " + other_monitor_ +
             "; readers see both in turn");
-  const auto add_journal = [&](const char* key, const std::string& problem) {
+  const auto add_journal = [&](const std::string& which, const std::string& problem) {
     if (!problem.empty())
-      add(key, Severity::kMaintenanceRequired, "the journal cannot be written: " + problem);
+      add(which.c_str(), Severity::kMaintenanceRequired,
+          "the " + which + " cannot be written: " + problem);
   };
   if (journal_) add_journal("journal", journal_->problem());
-  if (samples_ != nullptr) add_journal("journal of samples", samples_->problem());
+  if (samples_ != nullptr) add_journal("journal of every sample", samples_->problem());
   if (!report_problem_.empty())
     add("reports", Severity::kMaintenanceRequired,
         "reports of diagnoses cannot be kept: " + report_problem_);
@@ -334,11 +344,11 @@ void UnitPipeline::judge_health(const std::vector<bus::Trouble>& troubles) {
   if (serious || (in_trouble && !waiting && !alarmed))
     set(to_string(troubles.front().severity), trouble_text_);
   else if (waiting)
-    set("function_check", "no complete data yet" + besides);
+    set("function_check", bus::kNoCompleteData + besides);
   else if (alarmed)
     set("maintenance_required", alarms + besides);
   else if (health_.matching + health_.mismatching == 0)
-    set("function_check", "nothing determined yet");
+    set("function_check", bus::kNothingDetermined);
   else
     set("normal", "");
 }

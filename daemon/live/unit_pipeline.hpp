@@ -41,10 +41,13 @@ class UnitPipeline {
   UnitPipeline& operator=(const UnitPipeline&) = delete;
 
   void push(const idl::SampleView& sample, Clock::time_point now);
-  /// What the control system says its values are; complains if the unit file says otherwise.
-  void check_layout(const mpm_Layout& layout);
+  /// What the control system says its values are, or that nobody says it of `kind` any more.
+  void hear(const mpm_Layout& layout) { inputs_.hear(layout); }
+  void forget_layout(const char* kind) { inputs_.forget_layout(kind); }
   /// Another monitor of this unit said something: `name`, as idl::name_of.
   void hear_other_monitor(std::string name, Clock::time_point now);
+  /// All others have left.
+  void hear_no_other_monitor() { other_monitor_.clear(); }
   /// Reports cannot be kept, and why; empty: they can.
   void set_report_problem(std::string problem) { report_problem_ = std::move(problem); }
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
@@ -60,7 +63,11 @@ class UnitPipeline {
 
  private:
   void on_frame(const Frame& frame);
+  void go_on(Clock::time_point now);
   void publish_initial_alarms();
+  [[nodiscard]] bool publish_alarm_state(const AlarmRecord& change);
+  void publish_alarms_again();
+  [[nodiscard]] bool other_monitor_speaks() const;
   void publish_performance();
   void publish_diagnosis();
   void publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around);
@@ -89,10 +96,11 @@ class UnitPipeline {
   Clock::duration stood_still_for_{};
   std::string other_monitor_;  // who, and when it was heard
   Clock::time_point other_monitor_heard_;
+  bool other_monitor_spoke_ = false;      // at the last health
+  std::vector<AlarmStateRecord> alarms_;  // of each channel, as last written
   std::string report_problem_;
   HealthRecord health_;
-  std::uint64_t incomplete_before_ = 0;  // at the last health
-  std::string wrong_layout_;             // kinds whose layout differs; empty = none known
+  std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
   host::RateLimiter refused_limit_, output_limit_, restart_limit_;
 };
 

@@ -12,5 +12,5 @@ with subprocess.Popen(command + sys.argv[3:], stdout=subprocess.PIPE, text=True)
             alarm = said["sample"]
             print("alarm", alarm["unit"], alarm["mv"], alarm["cv"], alarm["to"], flush=True)
         else:  # disposed, or its monitor has left
-            print("alarm", said["unit"], said["state"], flush=True)
+            print("alarm", said["unit"], said["mv"], said["cv"], said["state"], flush=True)
 sys.exit(echo.returncode)

@@ -92,6 +92,11 @@ TEST_CASE("mpm watch --json prints what the journal holds, byte for byte, at ful
   CHECK(records(folder.file("watch.out"), "channel") == written);
   CHECK(records(folder.file("watch.out"), "alarm") ==
         records(folder.file("journal.jsonl"), "alarm"));
+  bench.daemon.send(SIGTERM);
+  CHECK(idl::eventually([&] {
+    return read_file(folder.file("watch.out"))
+               .find("\n{\"record\":\"monitor_gone\",\"unit\":\"toy\"}\n") != std::string::npos;
+  }));
   watch.send(SIGINT);
   CHECK(watch.wait(std::chrono::seconds(2)) == 0);
 }

@@ -6,19 +6,9 @@
 namespace mpm::test {
 
 std::string unit_yaml(const std::string& unit) {
-  return "unit: " + unit + R"(
-sample_time: 1.0
-signals:
-  mv:
-    - {tag: u1, unit: "%"}
-    - {tag: u2, unit: "%"}
-  cv:
-    - {tag: y1, unit: degC}
-model:
-  channels:
-    - {cv: y1, mv: u1, gain: 2, time_constants: [5], dead_time: 1}
-    - {cv: y1, mv: u2, gain: 1, time_constants: [5], dead_time: 1}
-)";
+  const std::string shipped = read_file(MPM_SOURCE_DIR "/tests/hmi/toy.yaml");
+  const std::size_t name = shipped.find("toy");
+  return shipped.substr(0, name) + unit + shipped.substr(name + 3);
 }
 
 const Frame& Plant::next() {

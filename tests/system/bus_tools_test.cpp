@@ -217,6 +217,19 @@ TEST_CASE("mpm echo prints samples and ends when it has enough") {
   CHECK(lines_of(corner.err()).size() == 1);
 }
 
+TEST_CASE("commands say that CYCLONEDDS_URI is set and not used") {
+  const Corner corner("environment");
+  const std::vector<std::string> uri = {"CYCLONEDDS_URI=file:///none"};
+  const std::string out = corner.folder.file("out"), err = corner.folder.file("err");
+  Process echo(corner.on_bus({"mpm", "echo", "mpm/mv", "--once", "--duration", "0.2"}), out, err,
+               uri);
+  CHECK(echo.wait(kPatience) == 2);
+  CHECK(corner.err().find("mpm: CYCLONEDDS_URI is set, but not used; --dds-from-environment") == 0);
+  Process status(corner.on_bus({"mpm", "status", "--wait", "0.2"}), out, err, uri);
+  CHECK(status.wait(kPatience) == 2);
+  CHECK(corner.out().find("(CYCLONEDDS_URI is set, but not used)") != std::string::npos);
+}
+
 TEST_CASE("mpm hz and delay measure a topic, also one that is not ours") {
   const Corner corner("hz");
   Process hz = corner.start({"mpm", "hz", "mpm/cv", "--json", "--duration", "1.5"});
@@ -262,6 +275,22 @@ TEST_CASE("mpm hz and delay end in peace when the reader of their pipe has left"
     REQUIRE(idl::eventually([&] { return blocks_interrupts(process.pid()); }, kPatience));
     close(reader);
     CHECK(corner.publish_during(process) == 0);
+    CHECK(corner.err().empty());
+  }
+}
+
+TEST_CASE("mpm echo and watch end when the reader of their pipe has left, though nothing comes") {
+  const Corner corner("silent-left");
+  const std::string pipe = corner.folder.file("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  for (const auto& arguments : {std::vector<std::string>{"mpm", "echo", "mpm/alarm"},
+                                std::vector<std::string>{"mpm", "watch", "--json"}}) {
+    const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    REQUIRE(reader >= 0);
+    Process process(corner.on_bus(arguments), pipe, corner.folder.file("err"));
+    REQUIRE(idl::eventually([&] { return blocks_interrupts(process.pid()); }, kPatience));
+    close(reader);
+    CHECK(process.wait(kPatience) == 0);
     CHECK(corner.err().empty());
   }
 }

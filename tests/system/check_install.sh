@@ -21,9 +21,18 @@ cmp "$source/idl/mpm.idl" "$prefix/share/mpm/mpm.idl"
 "$prefix/bin/mpmsim" --config "$prefix/share/mpm/plants/shell3x3.yaml" --scenario hidden_gain \
   --samples 50 --csv "$prefix/run.csv" || fail "no scenarios"
 documents=$prefix/share/doc/mpm
-for file in docs/hmi.md tests/hmi/gateway.c; do
-  cmp "$source/$file" "$documents/$file" || fail "no $file"
+# Every link of a page leads to something that is there.
+find "$documents" -name '*.md' | while read -r page; do
+  grep -o '](\([^)# ]*\)' "$page" | sed 's/^](//' | grep -v '^http' | while read -r link; do
+    [ -z "$link" ] || [ -e "$(dirname "$page")/$link" ] || fail "${page#"$documents/"}: no $link"
+  done
 done
+# The clients are built with nothing else, and there is a unit file for what their gateways play.
+cmake -S "$documents/tests/hmi" -B "$prefix/hmi" -D MPM_IDL="$prefix/share/mpm/mpm.idl" >"$prefix/log" 2>&1 &&
+  cmake --build "$prefix/hmi" >>"$prefix/log" 2>&1 || { cat "$prefix/log" >&2; fail "no clients"; }
+rm -r "$prefix/hmi"
+[ -f "$documents/tests/hmi/loopback.xml" ] || fail "no network settings"
+"$prefix/bin/mpmd" --check --config "$documents/tests/hmi/toy.yaml" || fail "no unit to try"
 [ "$(find "$prefix" -path "$documents" -prune -o \
   \( -name '*.cpp' -o -name '*.a' -o -name 'CMakeLists.txt' \) -print | wc -l)" -eq 0 ] ||
   fail "what nobody asked for is installed"

@@ -124,13 +124,68 @@ TEST_CASE("two gateways with counters of their own are named, and do not flood t
 
 TEST_CASE("a monitor that stood still itself says so") {
   Bench bench("doctor-standstill");
+  // Also while samples wait for it, which are the first thing that it sees.
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kRealTime);
+  Plant plant(2.0);
+  const bool data = GENERATE(false, true);
+  if (data) bench.publish(publisher, plant, 30);
+  REQUIRE(bench.observe([&] { return bench.health().frames == (data ? 30u : 0u); }));
   bench.daemon.send(SIGSTOP);
+  if (data) bench.publish(publisher, plant, 3);  // before it is taken for dead
   std::this_thread::sleep_for(std::chrono::milliseconds(5500));
   bench.daemon.send(SIGCONT);
   CHECK(bench.observe([&] {
     return bench.health().detail.find("the monitor itself stood still for ") != std::string::npos;
   }));
   CHECK(bench.health().state == "out_of_specification");
+}
+
+TEST_CASE("a monitor that starts and leaves beside another one takes none of its alarms along") {
+  TemporaryFolder folder;
+  Bench bench("doctor-second");
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(3.5);
+  bench.publish(publisher, plant, 600);
+  const auto states = [&](const char* mv) {
+    std::vector<AlarmChange> to;
+    for (const auto& alarm : bench.seen<AlarmStateRecord>())
+      if (alarm.mv == mv) to.push_back(alarm.to);
+    return to;
+  };
+  const std::vector<AlarmChange> active = {AlarmChange::kCleared, AlarmChange::kActive};
+  REQUIRE(bench.observe([&] { return states("u1") == active; }));
+  REQUIRE(states("u2") == std::vector{AlarmChange::kCleared});
+
+  std::optional<Process> second;
+  second.emplace(std::vector<std::string>{"mpmd", "--config", bench.folder.file("toy.yaml"),
+                                          "--domain", std::to_string(bench.options.domain),
+                                          "--partition", bench.options.partition},
+                 folder.file("out2"), folder.file("err2"));
+  // It clears both, and the first one says again what stands.
+  CHECK(bench.observe([&] {
+    const auto to = states("u1");
+    return to.size() > 3 && to[2] == AlarmChange::kCleared && to.back() == AlarmChange::kActive &&
+           to[to.size() - 2] == AlarmChange::kActive;
+  }));
+  REQUIRE(states("u2").size() == 2);
+  second->send(SIGTERM);
+  CHECK(second->wait(std::chrono::seconds(10)) == 0);
+  CHECK(bench.observe([&] { return states("u2").size() == 3; }));
+  CHECK(states("u1").back() == AlarmChange::kActive);
+}
+
+TEST_CASE("doctor tells what ails a monitor beside its alarms") {
+  TemporaryFolder folder;
+  Bench bench("doctor-alarms", {"--journal-every-sample", "/dev/full"});
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(3.5);
+  bench.publish(publisher, plant, 600);
+  REQUIRE(bench.observe([&] { return bench.health().active_alarms == 1; }));
+  CHECK(run(mpm("doctor", bench.options,
+                {"--config", bench.folder.file("toy.yaml"), "--seconds", "2", "--json"}),
+            folder.file("out"), folder.file("err")) == 1);
+  const Json said = Json::parse(read_file(folder.file("out")));
+  CHECK(any_text(said["troubles"], "the journal of every sample cannot be written: No space left"));
 }
 
 TEST_CASE("two monitors of one unit, and what the disk does not take, are in health and status") {
@@ -146,7 +201,8 @@ TEST_CASE("two monitors of one unit, and what the disk does not take, are in hea
       if (health.detail.find(word) != std::string::npos) return true;
     return false;
   };
-  CHECK(bench.observe([&] { return said("the journal cannot be written: No space left"); }));
+  CHECK(bench.observe(
+      [&] { return said("the journal of every sample cannot be written: No space left"); }));
   CHECK(said("reports of diagnoses cannot be kept: /proc/none"));
 
   std::optional<Process> second;
@@ -160,7 +216,7 @@ TEST_CASE("two monitors of one unit, and what the disk does not take, are in hea
   }));
   const std::string log = read_file(bench.folder.file("mpmd.err"));
   CHECK(count_of(log, "another monitor watches this unit as well") == 1);
-  CHECK(count_of(log, "the journal cannot be written") == 1);
+  CHECK(count_of(log, "the journal of every sample cannot be written") == 1);
   CHECK(count_of(log, "CYCLONEDDS_URI is set, but") == 1);
 
   const std::string out = folder.file("out"), err = folder.file("err");

@@ -123,17 +123,30 @@ TEST_CASE("the daemon writes outputs only: never an input topic, never a layout"
                                         "mpm/health", "mpm/performance"});
 }
 
-TEST_CASE("a layout that differs from the unit file is noticed") {
+TEST_CASE("a layout that differs from the unit file is noticed, until it is right") {
   Bench bench("layout");
   UnitLayout layout;
   layout.unit = "toy";
   layout[SignalKind::kMv].tags = {"u2", "u1"};
   layout[SignalKind::kCv].tags = {"y1"};
-  const idl::UnitPublisher publisher(bench.participant, layout, idl::WriterPace::kLossless);
+  std::optional<idl::UnitPublisher> publisher;
+  publisher.emplace(bench.participant, layout, idl::WriterPace::kLossless);
   Plant plant(2.0);
-  bench.publish(publisher, plant, 30);
+  bench.publish(*publisher, plant, 30);
   CHECK(bench.observe([&] { return bench.health().state == "out_of_specification"; }));
-  CHECK(bench.health().detail == "layout differs from the unit file: mv");
+  CHECK(bench.health().detail == "layout differs from the unit file: mv (tags or their order)");
+  const auto file = [&](const char* name) { return bench.folder.file(name); };
+  CHECK(run({"mpm", "doctor", "--domain", std::to_string(bench.options.domain), "--partition",
+             bench.options.partition, "--config", file("toy.yaml"), "--seconds", "1"},
+            file("out"), file("err")) == 1);
+  CHECK(read_file(file("out")).find(". toy: layout differs from the unit file: mv (tags") !=
+        std::string::npos);
+
+  // A gateway that was put right takes its place.
+  publisher.reset();
+  const idl::UnitPublisher right = bench.publisher(idl::WriterPace::kLossless);
+  bench.publish(right, plant, 30);
+  CHECK(bench.observe([&] { return bench.health().detail == "nothing determined yet"; }));
 }
 
 TEST_CASE("partitions do not see each other") {

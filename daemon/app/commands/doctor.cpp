@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -44,10 +43,6 @@ struct Place {
   std::vector<bus::ExpectedInputs> units;
 };
 
-bool ignores_environment(const idl::DomainOptions& domain) {
-  return !domain.use_environment && std::getenv("CYCLONEDDS_URI") != nullptr;
-}
-
 bus::Findings examine(const Place& place, double seconds, host::StopSignal& stop) {
   if (seconds == 0.0) {
     seconds = kShortestS;
@@ -56,14 +51,13 @@ bus::Findings examine(const Place& place, double seconds, host::StopSignal& stop
     seconds = std::min(seconds, kLongestS);
   }
   const idl::Participant participant(place.domain);
-  bus::Examination examination(participant,
-                               bus::place_text(place.domain.domain, place.domain.partition),
-                               place.units, duration_of(seconds));
+  bus::Examination examination(participant, bus::place_text(place.domain), place.units,
+                               duration_of(seconds));
   const Clock::time_point end = Clock::now() + duration_of(seconds);
   while (!stop.received() && Clock::now() < end) examination.listen(kLongestWait);
   examination.listen(kLongestWait);
   bus::Findings findings = examination.findings();
-  if (ignores_environment(place.domain))
+  if (idl::ignores_environment(place.domain))
     findings.notes.emplace_back(
         "CYCLONEDDS_URI is set and was not used; --dds-from-environment takes it");
   return findings;

@@ -23,7 +23,13 @@ CLI::Option* add_domain_flags(CLI::App& command, idl::DomainOptions& domain, OnU
       "-c,--config", take_unit,
       "unit file whose DDS settings are taken, but for those that are given here");
   add_bus_flags(command, domain);
+  command.parse_complete_callback([&domain] { warn_of_environment(domain); });
   return config;
+}
+
+void warn_of_environment(const idl::DomainOptions& domain) {
+  if (idl::ignores_environment(domain))
+    std::cerr << "mpm: CYCLONEDDS_URI is set, but not used; --dds-from-environment takes it\n";
 }
 
 void add_bus_flags(CLI::App& command, idl::DomainOptions& domain) {

@@ -8,6 +8,9 @@
 
 namespace mpm::app {
 
+/// Says so on standard error where CYCLONEDDS_URI is set and not used.
+void warn_of_environment(const idl::DomainOptions& domain);
+
 using OnUnit = std::function<void(const config::UnitConfig&)>;
 
 /// The options of every command that needs no unit file to find the bus; one that is given with

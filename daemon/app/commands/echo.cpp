@@ -14,6 +14,7 @@
 #include "daemon/bus/sample_json.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "daemon/host/standard_output.hpp"
 #include "daemon/report/record_json.hpp"
 #include "idl/output_samples.hpp"
 #include "idl/reader.hpp"
@@ -26,6 +27,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kLongestWait{50};
+// After which it says that nothing has come.
+constexpr std::chrono::seconds kSilence{5};
 
 struct EchoOptions {
   std::string topic;
@@ -41,6 +44,14 @@ const char* state_name(const idl::SampleInfo& info) {
   return info.state == idl::InstanceState::kDisposed ? "disposed" : "no_writers";
 }
 
+// Which instance it is: of all else a sample without data has nothing.
+void add_key(nlohmann::ordered_json& line, const nlohmann::ordered_json& sample,
+             const idl::SampleInfo& info) {
+  line["state"] = state_name(info);
+  for (const char* key : {"unit", "mv", "cv", "kind"})
+    if (sample.contains(key)) line[key] = sample[key];
+}
+
 void print(const EchoOptions& options, const nlohmann::ordered_json& sample,
            const idl::SampleInfo& info) {
   if (options.json) {
@@ -48,7 +59,7 @@ void print(const EchoOptions& options, const nlohmann::ordered_json& sample,
     if (info.valid)
       line["sample"] = sample;
     else
-      line.update({{"state", state_name(info)}, {"unit", sample["unit"]}});
+      add_key(line, sample, info);
     std::cout << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
   } else if (info.valid) {
@@ -75,6 +86,8 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic, JsonOf json_o
   const Clock::time_point end =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options.duration_s));
+  const Clock::time_point silent = Clock::now() + kSilence;
+  bool told = false;
   std::uint64_t printed = 0;
   const auto on_sample = [&](const T& sample, const idl::SampleInfo& info) {
     const std::string unit = sample.unit == nullptr ? "" : sample.unit;
@@ -83,12 +96,18 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic, JsonOf json_o
     print(options, json_of(sample), info);
     if (info.valid) ++printed;
   };
-  while (printed < wanted && std::cout.good() && !stop.received()) {
+  // A silent topic writes nothing that would show that the pipe's reader has left.
+  const auto read = [] { return std::cout.good() && !host::reader_has_left(); };
+  while (printed < wanted && read() && !stop.received()) {
     if (wait_set.wait(kLongestWait)) reader.take_with_info(on_sample);
     std::cout.flush();
+    if (printed == 0 && !told && Clock::now() >= silent) {
+      std::cerr << "mpm echo: nothing has come on " << options.topic << " yet\n";
+      told = true;
+    }
     if (options.duration_s > 0.0 && Clock::now() >= end) break;
   }
-  if (printed == 0 && std::cout.good())
+  if (printed == 0 && read())
     std::cerr << "mpm echo: no sample of " << options.topic
               << (options.unit.empty() ? "" : " of unit " + options.unit) << " came\n";
   const bool bounded = options.once || options.count > 0;

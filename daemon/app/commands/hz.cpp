@@ -13,6 +13,7 @@
 #include "daemon/bus/window_statistics.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "daemon/host/standard_output.hpp"
 #include "idl/discovery.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/topic_catalog.hpp"
@@ -105,7 +106,7 @@ int measure_topic(const HzOptions& options, Measure measure) {
   const Clock::time_point end = start + std::chrono::duration_cast<Clock::duration>(
                                             std::chrono::duration<double>(options.duration_s));
   Clock::time_point next_report = start + kReportPeriod;
-  while (std::cout.good() && !stop.received()) {
+  while (std::cout.good() && !host::reader_has_left() && !stop.received()) {
     if (wait_set.wait(kLongestWait)) reader->take(on_sample);
     const Clock::time_point now = Clock::now();
     if (options.duration_s > 0.0 && now >= end) break;
@@ -115,6 +116,7 @@ int measure_topic(const HzOptions& options, Measure measure) {
     if (!last) std::cerr << options.topic << ": nothing has come yet\n";
     fresh = false;
   }
+  if (host::reader_has_left()) return 0;
   if (values.count() == 0) {
     std::cerr << "mpm: error: " << options.topic << ": too few samples came\n";
     return 2;

@@ -10,6 +10,7 @@
 #include "config/load_unit.hpp"
 #include "config/unit_layout.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bus/domain_options.hpp"
@@ -88,6 +89,7 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
   domain.domain = options.domain.value_or(domain.domain);
   domain.partition = options.partition.value_or(domain.partition);
   domain.use_environment = options.use_environment;
+  warn_of_environment(domain);
   const idl::Participant participant(domain);
   UnitLayout layout = config::unit_layout(unit);
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)

@@ -117,8 +117,7 @@ bus::PluginStatus ask(const std::vector<Place>& places, const StatusOptions& opt
   for (const Place& place : places)
     for (bus::MonitorWord& word : ask(place, options.wait_s, stop))
       words.push_back(std::move(word));
-  const idl::DomainOptions& first = places.front().domain;
-  return bus::plugin_status(words, options.limits, bus::place_text(first.domain, first.partition));
+  return bus::plugin_status(words, options.limits, bus::place_text(places.front().domain));
 }
 
 /// The units wanted, each where its file says; those without a file where the first file says.

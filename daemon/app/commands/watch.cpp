@@ -15,6 +15,7 @@
 #include "daemon/bus/watch/viewer.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "daemon/host/standard_output.hpp"
 #include "daemon/host/terminal.hpp"
 #include "idl/discovery.hpp"
 #include "idl/output_readers.hpp"
@@ -87,7 +88,7 @@ int watch(const WatchOptions& options) {
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(options.for_s));
   bool last_look = false;
-  while (viewer.has_reader() && !stop.received()) {
+  while (viewer.has_reader() && !host::reader_has_left() && !stop.received()) {
     const bool any = wait_set.wait(kLongestWait);
     const Clock::time_point now = Clock::now();
     if (any) {

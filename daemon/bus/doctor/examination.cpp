@@ -21,6 +21,9 @@ constexpr std::size_t kMostUnits = 1000;
 // A clock that is off by more is to be told; by more than a day it is a replay or a simulation.
 constexpr double kClockOffS = 10.0;
 constexpr double kOtherTimeS = 86400.0;
+// From which on samples that repeat an interval are told.
+constexpr std::uint64_t kFewestRepeated = 3;
+constexpr std::uint64_t kRepeatedInverseShare = 4;
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -119,10 +122,15 @@ void Examination::hear(SignalKind kind, const mpm_Sample& sample, std::uint64_t 
   stream.offsets_s.add(clock_offset_s(sample.source_time_ns));
 }
 
-// A unit that no file describes is what its control system says.
+// With a file it is compared; a unit that no file describes is what its control system says.
 void Examination::hear(const mpm_Layout& layout) {
+  if (!open_) {
+    const auto known = units_.find(layout.unit == nullptr ? "" : layout.unit);
+    if (known != units_.end()) known->second.inputs.hear(layout);
+    return;
+  }
   const auto kind = layout.kind == nullptr ? std::nullopt : kind_of(layout.kind, idl::kind_name);
-  if (!kind || !open_) return;
+  if (!kind) return;
   Unit* unit = unit_of(layout.unit);
   if (unit == nullptr) return;
   ExpectedInputs expected = unit->inputs.expected();
@@ -186,6 +194,13 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
              fmt::format("the source times of {} are {:.0f} s {} this machine's clock",
                          findings.topics.back().topic, off_s,
                          writer.clock_offset_s > 0.0 ? "behind" : "ahead of")});
+      if (writer.repeated >= kFewestRepeated &&
+          kRepeatedInverseShare * writer.repeated >= writer.samples)
+        findings.troubles.push_back(
+            {"repeats", Severity::kMaintenanceRequired,
+             fmt::format("{} of {} samples on {} from {} repeat the interval before",
+                         writer.repeated, writer.samples, findings.topics.back().topic,
+                         idl::name_of(writer.process))});
     }
   }
   if (unit.described) {
@@ -207,12 +222,13 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
          "two monitors watch it: " + idl::name_of(findings.monitors[0].process) + " and " +
              idl::name_of(findings.monitors[1].process)});
   // It knows more than the bus shows, of its disk for example. Alarms are what it is there for.
-  for (const MonitorFindings& monitor : findings.monitors)
-    if (monitor.state == "failure" || monitor.state == "out_of_specification" ||
-        (monitor.state == "maintenance_required" && monitor.active_alarms == 0))
+  for (const MonitorFindings& monitor : findings.monitors) {
+    const std::string said = troubles_in(monitor.detail, monitor.active_alarms);
+    if (!said.empty())
       findings.troubles.push_back(
           {"monitor says", Severity::kMaintenanceRequired,
-           idl::name_of(monitor.process) + " says " + monitor.state + ": " + monitor.detail});
+           idl::name_of(monitor.process) + " says " + monitor.state + ": " + said});
+  }
   sort_by_severity(findings.troubles);
   return findings;
 }

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// By the beginning of a trouble's key.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kAdvice = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kAdvice = {{
     {"no data", "See that the gateway runs, with this domain, partition and unit name."},
     {"silent", "Let the gateway publish it, or take its signals out of the unit file."},
     {"mismatch", "Give it the QoS of docs/hmi.md."},
@@ -26,6 +26,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kAdvice 
     {"standing", "Let the gateway count control intervals."},
     {"apart", "Give all topics of the unit the same number in the same interval."},
     {"jump", "The controller or its gateway was restarted, or lost so many samples."},
+    {"layout", "Give it the tags of the unit file, in its order, and its sample time."},
+    {"gaps", "See which samples the gateway does not publish, or with another number."},
+    {"pace", "Let the gateway publish one sample per sample time of the unit file."},
+    {"repeats", "Let the gateway publish each interval once."},
     {"clock offset", "Set the clock of the control system or of this machine."},
     {"clock", "See to the time synchronisation of the control system."},
     {"nobody", "Compare domain, partition, interface and peers with theirs."},

@@ -19,11 +19,13 @@ void print_line(const std::string& line) {
   std::fputc('\n', stdout);
 }
 
-// Layouts, an alarm's state, which follows its change, and a monitor's end are no lines.
+// Layouts and an alarm's state, which follows its change, are no lines.
 std::string json_line(const auto& record) { return report::json_text(report::json_of(record)); }
 std::string json_line(const idl::LayoutRecord&) { return ""; }
 std::string json_line(const AlarmStateRecord&) { return ""; }
-std::string json_line(const idl::MonitorGone&) { return ""; }
+std::string json_line(const idl::MonitorGone& gone) {
+  return report::json_text(nlohmann::ordered_json{{"record", "monitor_gone"}, {"unit", gone.unit}});
+}
 
 // Clears what the new picture does not cover, and only that: no flicker.
 std::string in_place(const std::string& picture) {

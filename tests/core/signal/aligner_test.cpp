@@ -39,6 +39,7 @@ struct Seen {
 struct Bench {
   std::vector<Seen> frames;
   Aligner aligner;
+  std::int64_t clock_ns = 0;  // what source times have beyond those that go with the numbers
 
   explicit Bench(const AlignerSettings& settings = {})
       : aligner(
@@ -58,7 +59,7 @@ struct Bench {
     const std::array<double, 2> values = {base, base + 0.5};
     aligner.push({kind,
                   interval,
-                  interval * 1000,
+                  interval * 1000 + clock_ns,
                   std::span(values).first(static_cast<std::size_t>(kCounts.of(kind))),
                   {}});
   }
@@ -340,6 +341,59 @@ TEST_CASE("aligner: a controller that starts again is followed, with increasing 
   CHECK(seen[151] == seen[101] + 50);
   CHECK(bench.frames[101].values[0] == 0.0);
   CHECK(bench.frames[101].source_time_ns == 0);
+}
+
+TEST_CASE("aligner: a controller that starts again just behind where it was is followed") {
+  Bench in_turn;
+  in_turn.push_all(1, 30);
+  in_turn.clock_ns = 100'000;
+  in_turn.push_all(1, 60);
+  CHECK(in_turn.aligner.counters().restarts == 1);
+  CHECK(in_turn.aligner.counters().late == 0);
+  CHECK(in_turn.aligner.counters().repeated == 0);
+  REQUIRE(in_turn.frames.size() == 90);
+  CHECK(in_turn.frames[29].values[0] == 300.0);
+  CHECK(in_turn.frames[30].values[0] == 10.0);
+  CHECK(in_turn.frames[30].source_time_ns == 101'000);
+  CHECK(in_turn.frames[30].interval > in_turn.frames[29].interval + 1);
+  CHECK(in_turn.intervals().back() == in_turn.frames[30].interval + 59);
+
+  // Whichever topic is read first, as where many samples have gathered.
+  Bench by_kind;
+  for (const SignalKind kind : kKinds) {
+    by_kind.clock_ns = 0;
+    for (std::int64_t k = 1; k <= 30; ++k) by_kind.push(kind, k);
+    by_kind.clock_ns = 100'000;
+    for (std::int64_t k = 1; k <= 60; ++k) by_kind.push(kind, k);
+  }
+  CHECK(by_kind.frames == in_turn.frames);
+}
+
+TEST_CASE("aligner: late and repeated blocks are no new beginning, whoever sends them") {
+  Bench late;
+  late.push_all(0, 30);
+  for (std::int64_t k = 10; k <= 30; ++k)  // again, as old as they were
+    for (const SignalKind kind : kKinds) late.push(kind, k);
+  late.push_all(31, 40);
+  CHECK(late.intervals() == range(0, 40));
+  CHECK(late.aligner.counters().restarts == 0);
+  CHECK(late.aligner.counters().repeated == 63);
+
+  // A second gateway that is five behind and whose clock is ahead: the first one goes on.
+  Bench pair;
+  for (std::int64_t k = 100; k <= 160; ++k) {
+    pair.clock_ns = 0;
+    pair.push_all(k, k);
+    pair.clock_ns = 50'000;
+    if (k >= 120) pair.push_all(k - 5, k - 5);
+  }
+  pair.clock_ns = 0;
+  pair.push_all(161, 161);
+  CHECK(pair.intervals() == range(100, 161));
+  CHECK(pair.aligner.counters().restarts == 0);
+  CHECK(pair.aligner.counters().repeated == 41 * 3);
+  CHECK(pair.aligner.counters().late == 0);
+  CHECK(pair.frames.back().values[0] == 1610.0);
 }
 
 TEST_CASE("aligner: a controller that was away is followed without a loss") {

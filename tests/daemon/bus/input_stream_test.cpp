@@ -34,6 +34,36 @@ TEST_CASE("an input stream counts per writer what was repeated and left out") {
   CHECK_FALSE(line.stream.clock_step());
 }
 
+TEST_CASE("a counter that goes back while the source time goes on begins anew") {
+  InputStream stream;
+  InputStream::Clock::time_point now{seconds(1000)};
+  std::int64_t time_s = 0;
+  for (std::int64_t k = 1; k <= 20; ++k) stream.push({1, k, ++time_s * kSecond, 1, 0}, 1.0, now);
+  stream.push({1, 10, 10 * kSecond, 1, 0}, 1.0, now);  // late
+  CHECK(stream.writers()[0].interval == 20);
+  CHECK_FALSE(stream.jump());
+  stream.push({1, 5, ++time_s * kSecond, 1, 0}, 1.0, now);
+  CHECK(stream.writers()[0].interval == 5);
+  REQUIRE(stream.jump());
+  CHECK(stream.jump()->from == 20);
+  CHECK(stream.jump()->to == 5);
+}
+
+TEST_CASE("a stall whose end comes as much later is no step of the clock") {
+  const bool stalled = GENERATE(true, false);
+  InputStream stream;
+  InputStream::Clock::time_point now{seconds(1000)};
+  std::int64_t time_s = 0;
+  for (std::int64_t k = 1; k <= 20; ++k) {
+    if (k == 10) {
+      time_s += 300;
+      if (stalled) now += seconds(299);  // not to the second
+    }
+    stream.push({1, k, ++time_s * kSecond, 1, 0}, 1.0, now += seconds(1));
+  }
+  CHECK(stream.clock_step().has_value() == !stalled);
+}
+
 TEST_CASE("more writers than there is room for push out the one that is silent for longest") {
   Line line;
   for (std::uint64_t writer = 1; writer <= InputStream::kMostWriters + 1; ++writer)

@@ -23,4 +23,15 @@ TEST_CASE("severities have the words of NAMUR NE 107") {
   CHECK(std::string(to_string(Severity::kMaintenanceRequired)) == "maintenance_required");
 }
 
+TEST_CASE("alarms and missing data are no troubles of a monitor, what follows them is") {
+  CHECK(troubles_in("1 alarm", 1).empty());
+  CHECK(troubles_in("no complete data yet", 0).empty());
+  CHECK(troubles_in("nothing determined yet", 0).empty());
+  CHECK(troubles_in("5 alarms; the journal cannot be written: a; b", 5) ==
+        "the journal cannot be written: a; b");
+  CHECK(troubles_in("no complete data yet; nothing on mpm/dv", 0) == "nothing on mpm/dv");
+  CHECK(troubles_in("the journal cannot be written: a", 0) == "the journal cannot be written: a");
+  CHECK(troubles_in("", 0).empty());
+}
+
 }  // namespace mpm::bus

@@ -21,7 +21,10 @@ struct Scene {
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv})
       expected.needed[static_cast<std::size_t>(kind)] = true;
     inputs.emplace(expected, now);
-    around.place = place_text(3, "plant-a");
+    idl::DomainOptions domain;
+    domain.domain = 3;
+    domain.partition = "plant-a";
+    around.place = place_text(domain);
     for (const char* topic : {"mpm/mv", "mpm/cv"}) add_writer(topic, kGateway, "gateway");
   }
 
@@ -95,6 +98,14 @@ TEST_CASE("a topic that stops is told with the time since, and no sooner than it
   for (int k = 0; k < 20; ++k) scene.second({kMv, kDv, kCv}, k);
   for (int k = 20; k < 24; ++k) scene.second({kMv, kCv}, k);
   CHECK(scene.text().find("mpm/dv for 5 s") != std::string::npos);  // sent at 19, it is 24 now
+  CHECK(scene.text().find("nobody writes it") != std::string::npos);
+  scene.add_writer("mpm/dv", kOtherGateway, "other");
+  CHECK(scene.text().find("other (process 12 on host plant1) writes it, but nothing of 'toy'") !=
+        std::string::npos);
+  scene.add_writer("mpm/dv", kGateway, "gateway");
+  CHECK(scene.text() ==
+        "nothing on mpm/dv for 5 s (gateway (process 12 on host plant1) has stopped writing it, or "
+        "was killed)");
   scene.now -= milliseconds(1);
   CHECK(scene.text().empty());
 }
@@ -111,6 +122,84 @@ TEST_CASE("a unit of which nothing comes says where it listens and whose samples
     scene.add_writer(topic, kGateway, "gateway");
   scene.around.strangers = {"Toy"};
   CHECK(scene.text() == "no data has come (mpm/mv ...: samples come of unit 'Toy' only)");
+}
+
+TEST_CASE("topics that leave out intervals are named with the share, until they are whole again") {
+  Scene scene;
+  for (int k = 0; k < 20; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.second({kMv, kCv}, 20);
+  CHECK(scene.text().empty());
+  for (int k = 21; k < 100; ++k) {
+    if (k % 2 == 1)
+      scene.second({kMv, kDv, kCv}, k);
+    else
+      scene.second({kMv, kCv}, k);
+  }
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+  CHECK(scene.text() == "intervals are missing: 32 of the last 64 on mpm/dv");
+  for (int k = 100; k < 155; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text() == "intervals are missing: 4 of the last 64 on mpm/dv");
+  for (int k = 155; k < 157; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text().empty());
+
+  // A late one is not missing, and two gateways that share the intervals leave none out.
+  Scene shared;
+  for (int k = 0; k < 100; ++k) {
+    if (k >= 5) shared.send(kMv, k - 5, k % 2 == 0 ? kGateway : kOtherGateway);
+    shared.second({kDv, kCv}, k);
+  }
+  CHECK(shared.text().find("missing") == std::string::npos);
+}
+
+TEST_CASE("at a slow sample time a few samples tell that every second one is missing") {
+  Scene scene;
+  ExpectedInputs expected = scene.inputs->expected();
+  expected.sample_time_s = 40.0;
+  expected.silence = seconds(400);
+  scene.inputs.emplace(expected, scene.now);
+  for (int k = 0; k < 5; ++k) {
+    for (const SignalKind kind : {kMv, kDv, kCv})
+      if (kind != kCv || k % 2 == 0)
+        scene.inputs->push(kind, {kGateway, k, 40 * k * kSecond, kind == kCv ? 2u : 1u, 0},
+                           scene.now);
+    scene.now += seconds(40);
+  }
+  CHECK(scene.text() == "intervals are missing: 2 of the last 5 on mpm/cv");
+}
+
+TEST_CASE("samples at another pace than the unit file's are told by their source times") {
+  Scene scene;
+  const auto at = [&](double period_s, int first, int last, std::int64_t from_ns) {
+    for (int k = first; k < last; ++k) {
+      for (const SignalKind kind : {kMv, kDv, kCv})
+        scene.inputs->push(kind,
+                           {kGateway, k, from_ns + static_cast<std::int64_t>(1e9 * period_s * k),
+                            kind == kCv ? 2u : 1u, 0},
+                           scene.now);
+      scene.now += milliseconds(100);
+    }
+  };
+  at(1.0, 0, 50, 0);  // a replay at ten times the speed
+  CHECK(scene.text().empty());
+  at(0.1, 50, 110, 45 * kSecond);
+  CHECK(scene.text() ==
+        "the source times on mpm/mv, mpm/dv, mpm/cv go on by 0.1 s an interval where the unit file "
+        "has 1 s");
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+
+  // Times of whole seconds at ten samples a second are only coarse.
+  Scene coarse;
+  ExpectedInputs expected = coarse.inputs->expected();
+  expected.sample_time_s = 0.1;
+  coarse.inputs.emplace(expected, coarse.now);
+  for (int k = 0; k < 300; ++k) {
+    for (const SignalKind kind : {kMv, kDv, kCv})
+      coarse.inputs->push(kind, {kGateway, k, k / 10 * kSecond, kind == kCv ? 2u : 1u, 0},
+                          coarse.now);
+    coarse.now += milliseconds(100);
+  }
+  CHECK(coarse.text().empty());
 }
 
 TEST_CASE("a stall of a minute is one failure") {
@@ -139,6 +228,24 @@ TEST_CASE("two gateways: with the same numbers a remark, with others a failure")
   if (!same) CHECK(scene.text().find("(5019, 19)") != std::string::npos);
 }
 
+TEST_CASE("of two gateways with the same numbers one leaves and no failure is told") {
+  Scene scene;
+  ExpectedInputs expected = scene.inputs->expected();
+  expected.sample_time_s = 0.1;
+  scene.inputs.emplace(expected, scene.now);
+  for (int k = 0; k < 200; ++k) {
+    for (const std::uint64_t writer : {kGateway, kOtherGateway})
+      for (const SignalKind kind : {kMv, kDv, kCv})
+        if (k < 100 || writer == kGateway)
+          scene.inputs->push(kind, {writer, k, k * (kSecond / 10), kind == kCv ? 2u : 1u, 0},
+                             scene.now);
+    scene.now += milliseconds(100);
+    for (const Trouble& trouble : scene.troubles())
+      CHECK(trouble.severity == Severity::kMaintenanceRequired);
+  }
+  CHECK(scene.text().empty());
+}
+
 TEST_CASE("a gateway that takes over from another one is not two") {
   Scene scene;
   for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
@@ -160,6 +267,20 @@ TEST_CASE("a jump of the interval number is told for a minute") {
   CHECK_FALSE(scene.text().empty());
   for (int k = 5069; k < 5071; ++k) scene.second({kMv, kDv, kCv}, k);
   CHECK(scene.text().empty());
+}
+
+TEST_CASE("what came while this process stood still is nobody else's fault") {
+  Scene scene;
+  for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.now += seconds(30);
+  CHECK_FALSE(scene.text().empty());
+  scene.inputs->stood_still(scene.now);
+  CHECK(scene.text().empty());
+  for (int k = 40; k < 42; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text().empty());
+  for (int k = 42; k < 50; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.second({kMv, kDv, kCv}, 80);
+  CHECK(scene.text() == "no intervals came between 49 and 80 on mpm/mv, mpm/dv, mpm/cv");
 }
 
 TEST_CASE("a clock that steps by an hour is told, whatever time it shows") {

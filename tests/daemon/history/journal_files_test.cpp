@@ -61,6 +61,31 @@ TEST_CASE("a full disk costs what it does not take, and no half a line stays") {
   CHECK(test::read_file(path) == "one\nthree\n");
 }
 
+TEST_CASE("a journal whose folder is removed begins a new one, or says why it cannot") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("journal");
+  JournalFiles files(place, "shell", 1'000'000);
+  REQUIRE(files.append("one\n"));
+  std::filesystem::remove_all(place);
+  CHECK_FALSE(files.append("lost\n"));
+  CHECK(files.problem() == "No such file or directory");
+  files.turn_over();
+  CHECK(files.empty());
+  CHECK(files.append("two\n"));
+  CHECK(files.problem().empty());
+  CHECK(test::read_file(place + "/shell-000002.jsonl") == "two\n");
+
+  std::filesystem::remove_all(place);
+  test::write_file(place, "in the way");
+  files.turn_over();
+  CHECK(files.problem() == "Not a directory");
+  CHECK_FALSE(files.append("lost\n"));
+  std::filesystem::remove(place);
+  files.turn_over();
+  CHECK(files.append("three\n"));
+  CHECK(test::read_file(place + "/shell-000003.jsonl") == "three\n");
+}
+
 TEST_CASE("a journal where none can be is refused at once") {
   const test::TemporaryFolder folder;
   CHECK_THROWS_AS(JournalFiles("/no/such/folder", "shell", 1000), std::system_error);
