@@ -182,7 +182,9 @@ inline constexpr double kLeastOwnGain = 0.02;
 /// boiler, seeds 1 to 8.
 inline constexpr double kBeyondShare = 0.1;
 inline constexpr double kHarmlessShare = 0.25;
-inline constexpr double kMostVariation = 10.0;  ///< said of a gain's variation; chosen
+/// No more is said of a variation than that the gain is anything from none to twice its own.
+/// Chosen.
+inline constexpr double kMostVariation = 1.0;
 }  // namespace curvature
 
 /// The search for the moment of a change.

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/cause.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/report/diagnosis/clock_text.hpp"
@@ -44,6 +45,21 @@ const char* name_of(DiagnosisVerdict verdict) {
   return "";
 }
 
+std::string difference_headline(const DiagnosisRun& run) {
+  const auto from_outside = [](const Finding& finding) {
+    const Place& place = finding.subject.place;
+    const Cause* cause = finding.subject.cause;
+    return place.input < 0 && place.aux < 0 &&
+           (cause == &causes::noise() || !cause->acts_through_channels());
+  };
+  const std::vector<Finding>& findings = run.diagnosis.findings;
+  const bool disturbed = !findings.empty() && run.diagnosis.unexplained.empty() &&
+                         std::all_of(findings.begin(), findings.end(), from_outside);
+  return "The model of " + run.unit.unit +
+         (disturbed ? " holds, but something that it does not know of disturbs the plant: "
+                    : " does not match the plant: ");
+}
+
 std::string verdict_headline(const DiagnosisRun& run) {
   const std::string& unit = run.unit.unit;
   switch (run.diagnosis.verdict) {
@@ -56,7 +72,7 @@ std::string verdict_headline(const DiagnosisRun& run) {
       break;
   }
   const std::size_t count = run.diagnosis.findings.size();
-  std::string text = "The model of " + unit + " does not match the plant: ";
+  std::string text = difference_headline(run);
   if (count == 0) text += "a difference is there, but none of the known causes explains it.";
   if (count == 1) text += "one cause was found.";
   if (count > 1) text += std::to_string(count) + " causes were found.";

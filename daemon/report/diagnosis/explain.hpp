@@ -8,6 +8,9 @@
 /// A diagnosis in plain sentences for operators and engineers.
 namespace mpm::report {
 
+/// How a sentence on what was found begins, up to its colon and a space: whether the model is
+/// wrong, or the plant disturbed from outside it.
+[[nodiscard]] std::string difference_headline(const DiagnosisRun& run);
 /// The verdict in one sentence, and what belongs to it in some more; the latter may be empty.
 [[nodiscard]] std::string verdict_headline(const DiagnosisRun& run);
 [[nodiscard]] std::string verdict_details(const DiagnosisRun& run);

@@ -47,7 +47,7 @@ std::string sentence(const DiagnosisRun& run) {
     named.push_back(place_text(run, findings[i].subject) + " (" + short_text(run, findings[i]) +
                     ")");
   if (findings.size() > kNamed) named.push_back(counted(findings.size() - kNamed, "more finding"));
-  return "The model of " + run.unit.unit + " does not match the plant: " + listed(named) + ".";
+  return difference_headline(run) + listed(named) + ".";
 }
 
 Json warnings(const DiagnosisRun& run) {
