@@ -361,3 +361,14 @@ TEST_CASE("A finding is one line of ordinary length, whatever the file holds") {
       CHECK(finding.find('\x1b') == std::string::npos);
     }
 }
+
+TEST_CASE("A list longer than anything takes is refused before it is a tree") {
+  std::string text =
+      "unit: u\nsample_time: 1\nsignals: {mv: [u1], cv: [y1]}\nmodel:\n"
+      "  channels: [{cv: y1, mv: u1, step_response: [0";
+  for (int i = 0; i < 200000; ++i) text += ",1";
+  const mpm::config::LoadResult loaded = mpm::config::load_unit_text(text + "]}]\n", "u.yaml");
+  REQUIRE(loaded.findings.size() == 1);
+  CHECK(format(loaded.findings[0]) ==
+        "u.yaml:5:46: error: has more values than anything here takes");
+}
