@@ -294,7 +294,7 @@ void Screen::follow_excursion(SignalKind kind, int index, Range& range) {
   } else if (range.out > 0) {
     end_excursion(kind, index, range);
   }
-  if (begins) range.out = 1;
+  if (begins) range.out = std::max(range.out, 1);
 }
 
 void Screen::reject_excursion(SignalKind kind, int index, Range& range) {
@@ -311,12 +311,22 @@ void Screen::reject_excursion(SignalKind kind, int index, Range& range) {
   jumps = {.spikes = jumps.spikes};
 }
 
-/// It has stayed, or comes back by and by: that is where the signal goes.
+/// Its first value has stayed, or comes back by and by: that is where the signal goes. What is far
+/// from there too is on another excursion.
 void Screen::end_excursion(SignalKind kind, int index, Range& range) {
-  for (int frames = 1; frames < range.out; ++frames)
-    if (ago(frames)[kind].usable(index)) range.extent.learn(ago(frames)[kind].values(index));
-  range.out = 0;
+  bool stayed = false;
+  int frames = std::exchange(range.out, 0) - 1;
   range.taken = false;
+  for (; frames >= 0; --frames) {
+    if (!ago(frames)[kind].usable(index)) continue;
+    const double value = ago(frames)[kind].values(index);
+    if (stayed && range.extent.beyond(value) > calibration::extent::kIsolated) {
+      range.out = frames + 1;
+      return;
+    }
+    if (frames > 0) range.extent.learn(value);
+    stayed = true;
+  }
 }
 
 // The first values as they come, later ones once two others have followed them and no excursion

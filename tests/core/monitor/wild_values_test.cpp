@@ -133,6 +133,11 @@ TEST_CASE("a burst of up to ten values of any size, at any time, in any signal l
   }
 }
 
+// The input has stood still for 40 samples.
+TEST_CASE("a burst upon a step that has not yet stayed is told from the step") {
+  check_healed(1.0, false, {SignalKind::kMv, 2140.0, 47, 5});
+}
+
 TEST_CASE("a signal that goes far away and stays there is taken, from its first sample on") {
   for (const int at : {5, 100, 1000}) {
     CAPTURE(at);
