@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <utility>
+
 #include "config/load_sections.hpp"
 #include "config/yaml_text.hpp"
+#include "core/identify/fit/calibration.hpp"
 #include "core/model/eigenvalues.hpp"
 #include "core/text/number_text.hpp"
 
@@ -8,6 +12,7 @@ namespace {
 
 constexpr Eigen::Index kMostStates = 500;
 constexpr double kUnitCircle = 1.0 + 1e-6;
+constexpr double kSettled = 1e-12;  // of the largest states that a pulse left
 
 std::string shape(Eigen::Index rows, Eigen::Index cols) {
   return std::to_string(rows) + " x " + std::to_string(cols);
@@ -46,6 +51,22 @@ bool has_shape(const Map& map, std::string_view key, const Eigen::MatrixXd& matr
   return false;
 }
 
+/// Whether every step response is made of numbers, as far as any program looks at one.
+bool stays_finite(const StateSpaceSpec& system) {
+  Eigen::MatrixXd states = system.b;
+  Eigen::MatrixXd response = system.d;
+  double largest = 0.0;
+  for (int k = 0; k < kLongestResponse + 2; ++k) {
+    response += system.c * states;
+    if (!response.allFinite()) return false;
+    const double size = states.cwiseAbs().maxCoeff();
+    largest = std::max(largest, size);
+    if (size <= kSettled * largest) break;
+    states = system.a * states;
+  }
+  return true;
+}
+
 }  // namespace
 
 void load_state_space(const Map& map, UnitConfig& config) {
@@ -79,13 +100,19 @@ void load_state_space(const Map& map, UnitConfig& config) {
     }
   }
   if (!fits) return;
+  StateSpaceSpec system{*a, *b, *c, *d, x0};
+  if (!stays_finite(system)) {
+    map.find("A")->error("has a response that no number can hold within " +
+                         std::to_string(kLongestResponse) + " samples");
+    return;
+  }
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(*a, false);
   if (solver.info() == Eigen::Success) {
     const double pole = solver.eigenvalues().cwiseAbs().maxCoeff();
     if (pole > kUnitCircle)
       map.find("A")->warning("is unstable: an eigenvalue at |z| = " + yaml_text(pole));
   }
-  config.model.state_space = StateSpaceSpec{*a, *b, *c, *d, x0};
+  config.model.state_space = std::move(system);
 }
 
 }  // namespace mpm::config

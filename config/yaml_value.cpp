@@ -37,43 +37,67 @@ std::string range_text(const Range& range) {
   return text;
 }
 
-/// Listens to a parser only to learn where documents begin.
-class DocumentCounter : public YAML::EventHandler {
+/// Values in a row, in one list, beyond what any key takes. As a tree each takes half a kilobyte.
+constexpr std::size_t kMostInRow = 100001;
+
+struct TooLong {
+  YAML::Mark mark;
+};
+
+/// Listens to a parser only to learn where documents begin, and of endless lists.
+class Scout : public YAML::EventHandler {
  public:
-  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] int documents() const { return documents_; }
   [[nodiscard]] const YAML::Mark& last_start() const { return last_start_; }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    ++count_;
+    ++documents_;
     last_start_ = mark;
+    begin(mark);
   }
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override { count(); }
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override { count(); }
   void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
+                const std::string&) override {
+    count();
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    begin(mark);
+  }
+  void OnSequenceEnd() override { in_row_ = 0; }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    begin(mark);
+  }
+  void OnMapEnd() override { in_row_ = 0; }
 
  private:
-  int count_ = 0;
-  YAML::Mark last_start_;
+  void begin(const YAML::Mark& mark) {
+    in_row_ = 0;
+    list_ = mark;
+  }
+  void count() {
+    if (++in_row_ > kMostInRow) throw TooLong{list_};
+  }
+
+  int documents_ = 0;
+  std::size_t in_row_ = 0;
+  YAML::Mark last_start_, list_;
 };
 
 /// YAML::Load drops whatever follows the first document without a word, and YAML::LoadAll does not
-/// come back from some broken ones (0.7): look for a second document and stop there.
-void check_single_document(const std::string& text, Report& report) {
+/// come back from some broken ones (0.7): look for a second document and stop there. Throws
+/// TooLong.
+void check_documents(const std::string& text, Report& report) {
   std::istringstream input(text);
   YAML::Parser parser(input);
-  DocumentCounter counter;
-  while (counter.count() < 2 && parser.HandleNextDocument(counter)) {
+  Scout scout;
+  while (scout.documents() < 2 && parser.HandleNextDocument(scout)) {
   }
-  if (counter.count() > 1)
-    report.add(Severity::kError, counter.last_start(), "",
+  if (scout.documents() > 1)
+    report.add(Severity::kError, scout.last_start(), "",
                "text after the end of the document; give one document per file");
 }
 
@@ -346,14 +370,16 @@ std::optional<Value> parse_yaml(const std::string& text, Report& report) {
     return std::nullopt;
   }
   try {
+    check_documents(text, report);
     const YAML::Node root = YAML::Load(text);
     if (!root.IsDefined() || root.IsNull()) {
       report.add(Severity::kError, start, "", "the file is empty");
       return std::nullopt;
     }
-    check_single_document(text, report);
     report.set_text(text);
     return Value(root, root.Mark(), "", report);
+  } catch (const TooLong& list) {
+    report.add(Severity::kError, list.mark, "", "has more values than anything here takes");
   } catch (const YAML::Exception& error) {
     report.add(Severity::kError, error.mark.is_null() ? start : error.mark, "",
                syntax_error(text, error));

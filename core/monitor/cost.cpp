@@ -38,7 +38,7 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   const double own = inputs * (derived.controlling_lags + 1.0);  // of the reported correlations
   const double responses = cvs * (derived.last_lag - derived.first_lag + 1.0);
   const double tree = (1.0 + std::log2(inputs)) * own * (0.5 * own + responses);
-  const double slowest = -1.0 / std::log(derived.tail_poles.front());
+  const double slowest = 1.0 / std::abs(std::log(derived.tail_poles.front()));  // of 1: infinite
   const double shapes = kTwice * inputs * cvs *
                         std::min(calibration::usual_errors::kTailFitTimeConstants * slowest,
                                  static_cast<double>(calibration::usual_errors::kTailFitMost));

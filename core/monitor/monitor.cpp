@@ -133,7 +133,7 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
   const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
   status.resize(channels);
   readings.resize(static_cast<std::size_t>(counts.cv));
-  transitions.reserve(channels);
+  transitions.reserve(channels * Screen::kLongestDelay);  // frames that leave at once
   for (int j = 0; j < counts.cv; ++j) cvs.emplace_back(counts.inputs());
 }
 
@@ -364,10 +364,10 @@ void Monitor::push(const Frame& frame) {
   }
   s.first = false;
   s.last_interval = frame.interval;
-  const Frame* screened = s.screen.push(frame);
-  s.counters.implausible = s.screen.counters();
+  s.screen.push(frame);
   if (s.screen.anew()) s.begin_anew();  // the screen keeps its frames
-  if (screened != nullptr) s.take_frame(*screened);
+  while (const Frame* screened = s.screen.next()) s.take_frame(*screened);
+  s.counters.implausible = s.screen.counters();
 }
 
 void Monitor::correlate() {

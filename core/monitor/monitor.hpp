@@ -49,7 +49,8 @@ class Monitor {
 
   /// Takes the frame of the next interval; frames come in increasing interval order, a jump is a
   /// gap, of which nothing is known. What is said after it rests on frames up to `Screen::kDelay`
-  /// before it.
+  /// before it, or `Screen::kLongestDelay` where a signal may be on an excursion; several are then
+  /// judged at once.
   void push(const Frame& frame);
 
   /// Brings the reported correlations up to the last frame. Not done by `push`: rows that wait for
@@ -65,8 +66,8 @@ class Monitor {
   [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> partial_correlations(int cv, int input) const;
   [[nodiscard]] int first_lag() const;
   [[nodiscard]] int last_lag() const;
-  /// The frame that the last `push` judged, `Screen::kDelay` before the one that it took: its
-  /// interval, and its CVs. Nothing where none left the screen.
+  /// The last frame that the last `push` judged, `Screen::kDelay` or more before the one that it
+  /// took: its interval, and its CVs. Nothing where none left the screen.
   [[nodiscard]] const std::optional<std::int64_t>& judged_interval() const;
   [[nodiscard]] const CvReading& reading(int cv) const;
   [[nodiscard]] const std::vector<CvReading>& readings() const;

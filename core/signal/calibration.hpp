@@ -43,18 +43,24 @@ inline constexpr double kBound = 3.0;
 }  // namespace spikes
 
 /// Values far outside what a signal has ever been (`Extent`, `Screen`). Chosen: an operator's step
-/// is often ten times what a controller did before, hardly ever ten thousand times.
+/// is often ten times what a controller did before, and stays; what an instrument or a gateway
+/// makes up is gone within a few samples, as abruptly as it came.
 namespace extent {
-/// Values by which a signal's range is first known, and how many of them at either end do not count
-/// where they lie absurdly far from the others.
+/// Values by which a signal's range is first known. It is that of the closest of them, all but so
+/// many, where the others were an excursion.
 inline constexpr std::size_t kFirstValues = 30;
-inline constexpr std::size_t kOutermost = 3;
 /// A range below this share of the level is the signal's last digits.
 inline constexpr double kDigits = 1e-6;
-/// So many widths outside, an input's value that is soon back is implausible: the next time it
-/// takes twice as many. Of an input that had stood still it is so often.
+/// So many widths outside, a value begins an excursion: the next time it takes twice as many. Of a
+/// signal that had stood still any value does, so often.
 inline constexpr double kIsolated = 10.0;
 inline constexpr int kOftenFromRest = 3;
+/// An excursion that is back within so many samples was none of the process.
+inline constexpr int kLongestBurst = 10;
+/// It is back within so many widths, or this share of how far it was one value before: the signal
+/// may have moved on meanwhile.
+inline constexpr double kHome = 1.0;
+inline constexpr double kBackShare = 0.1;
 /// So many widths outside, any value is, until so many have come in a row.
 inline constexpr double kTooFar = 1e4;
 inline constexpr int kPatience = 60;

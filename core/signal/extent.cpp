@@ -7,26 +7,44 @@
 namespace mpm {
 
 using calibration::extent::kDigits;
-using calibration::extent::kOutermost;
-using calibration::extent::kTooFar;
+using calibration::extent::kIsolated;
+using calibration::extent::kLongestBurst;
 
-bool Extent::learn(double value) {
+Extent::Verdict Extent::learn(double value) {
   if (known()) {
     low_ = std::min(low_, value);
     high_ = std::max(high_, value);
-    return true;
+    return {};
   }
   first_[taken_++] = value;
-  if (!known()) return true;
-  std::sort(first_.begin(), first_.end());
-  const double inner_low = first_[kOutermost], inner_high = first_[kFirst - 1 - kOutermost];
-  const double level = std::abs(first_[kFirst / 2]);
-  low_ = first_.front();
-  high_ = first_.back();
-  if (high_ - low_ <= kTooFar * std::max(inner_high - inner_low, kDigits * level)) return true;
-  low_ = inner_low;
-  high_ = inner_high;
-  return false;
+  return known() ? judge_first() : Verdict{};
+}
+
+// A burst leaves at least so many of them close together. What lies far from these, once, and was
+// back there from one value to the next, is an excursion; what comes back step by step, or twice,
+// is none.
+Extent::Verdict Extent::judge_first() {
+  constexpr std::size_t kClose = kFirst - kLongestBurst;
+  std::array<double, kFirst> sorted = first_;
+  std::sort(sorted.begin(), sorted.end());
+  std::size_t from = 0;
+  for (std::size_t i = 1; i + kClose <= kFirst; ++i)
+    if (sorted[i + kClose - 1] - sorted[i] < sorted[from + kClose - 1] - sorted[from]) from = i;
+  low_ = sorted[from];
+  high_ = sorted[from + kClose - 1];
+  const auto isolated = [this](double value) { return beyond(value) > kIsolated; };
+  const auto begin = std::find_if(first_.begin(), first_.end(), isolated);
+  auto end = begin;
+  while (end != first_.end() && (end == begin || isolated(*end) || !back(*end, *(end - 1)))) ++end;
+  const bool is_one = begin != first_.end() && (end == first_.end() || isolated(*(end - 1))) &&
+                      std::none_of(end, first_.end(), isolated);
+  for (auto value = first_.begin(); value != first_.end(); ++value) {
+    if (is_one && value >= begin && value < end) continue;
+    low_ = std::min(low_, *value);
+    high_ = std::max(high_, *value);
+  }
+  if (!is_one) return {};
+  return {end != first_.end(), end == first_.end() ? static_cast<int>(end - begin) : 0};
 }
 
 double Extent::width() const {
@@ -34,10 +52,17 @@ double Extent::width() const {
   return width > kDigits * std::max(std::abs(low_), std::abs(high_)) ? width : 0.0;
 }
 
+double Extent::outside(double value) const { return std::max({low_ - value, value - high_, 0.0}); }
+
 double Extent::beyond(double value) const {
-  const double outside = std::max({low_ - value, value - high_, 0.0});
-  if (outside == 0.0) return 0.0;
-  return width() > 0.0 ? outside / width() : std::numeric_limits<double>::infinity();
+  const double far = outside(value);
+  if (far == 0.0) return 0.0;
+  return width() > 0.0 ? far / width() : std::numeric_limits<double>::infinity();
+}
+
+bool Extent::back(double value, double before) const {
+  return beyond(value) <= calibration::extent::kHome ||
+         outside(value) < calibration::extent::kBackShare * outside(before);
 }
 
 }  // namespace mpm

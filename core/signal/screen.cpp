@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace mpm {
 
@@ -52,6 +53,8 @@ void Screen::Repeats::take(double value) {
   taken = std::min(taken + 1, 2);
 }
 
+void Screen::Repeats::forget_ends() { taken = run = 0; }
+
 bool Screen::Repeats::frozen() const {
   if (!coarse() && !may_be_held) return run > 0;
   if (may_be_held && run > calibration::repeats::kLongestOfInput) return false;
@@ -71,8 +74,8 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
       acts_(std::move(acts)),
       dead_time_(dead_time),
       since_rest_(static_cast<std::size_t>(counts.inputs()), 0),
-      ring_(kDelay + 1, Frame(counts)),
-      marked_(kDelay + 1),
+      ring_(kHeld, Frame(counts)),
+      marked_(kHeld),
       jumps_(static_cast<std::size_t>(counts.cv)),
       compression_(static_cast<std::size_t>(counts.cv)) {
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
@@ -87,11 +90,13 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
   }
 }
 
-const Frame* Screen::push(const Frame& frame) {
-  position_ = (position_ + 1) % (kDelay + 1);
+void Screen::push(const Frame& frame) {
+  position_ = (position_ + 1) % kHeld;
   ring_[static_cast<std::size_t>(position_)] = frame;
   marked_[static_cast<std::size_t>(position_)] = {};
-  held_ = std::min(held_ + 1, kDelay + 1);
+  held_ = std::min(held_ + 1, kHeld);
+  pushed_ = std::min(pushed_ + 1, kDelay + 1);
+  longest_out_ = 0;
   anew_ = false;
 
   for (const SignalKind kind : kScreened) {
@@ -112,16 +117,20 @@ const Frame* Screen::push(const Frame& frame) {
   }
   screen_repeats(SignalKind::kPrediction);
   screen_repeats(SignalKind::kCv);
-  if (held_ > kDelay)
+  if (pushed_ > kDelay)
     for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
-  if (held_ >= kDelay)
-    for (const SignalKind kind : kScreened) learn_range(kind);
-  if (held_ <= kDelay) return nullptr;
-  const ScreenCounters& marked = marked_[place(kDelay)];
+  for (const SignalKind kind : kScreened) learn_range(kind);
+}
+
+const Frame* Screen::next() {
+  const int age = held_ - 1;
+  if (age < std::max(kDelay, longest_out_)) return nullptr;
+  --held_;
+  const ScreenCounters& marked = marked_[place(age)];
   counters_.frozen += marked.frozen;
   counters_.clipped += marked.clipped;
   counters_.spikes += marked.spikes;
-  return &ago(kDelay);
+  return &ago(age);
 }
 
 void Screen::follow_predictions(const SignalBlock& predictions) {
@@ -166,7 +175,7 @@ void Screen::screen_repeats(SignalKind kind) {
     if (may_rest(kind, i) || (input && repeats.at_end())) continue;
     if (repeats.at_end()) mark(kind, i, 0, &ScreenCounters::clipped);
     if (!repeats.frozen()) continue;
-    for (int frames = 0; frames < std::min({repeats.run, kDelay + 1, held_}); ++frames)
+    for (int frames = 0; frames < std::min({repeats.run, kDelay + 1, pushed_}); ++frames)
       mark(kind, i, frames, &ScreenCounters::frozen);
   }
 }
@@ -227,58 +236,122 @@ void Screen::screen_spikes(int cv) {
 // Before anything is learnt from it.
 void Screen::screen_far(SignalKind kind) {
   for (int i = 0; i < ago(0)[kind].size(); ++i) {
-    if (!ago(0)[kind].usable(i)) continue;
     Range& range = ranges_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
-    if (range.left && range.former.beyond(ago(0)[kind].values(i)) <= 0.0) {
-      const Extent home = range.former;
-      range = Range{};
-      range.extent = home;
-      anew_ = true;  // it was not there in truth
+    const bool usable = ago(0)[kind].usable(i);
+    const bool marked = usable && absurd(kind, i, range);
+    if (range.out > 0)
+      ++range.out;
+    else if (!usable || marked)
       continue;
-    }
-    const bool far = range.extent.known() && range.extent.width() > 0.0 &&
-                     range.extent.beyond(ago(0)[kind].values(i)) > calibration::extent::kTooFar;
-    range.far = far ? range.far + 1 : 0;
-    if (!far) continue;
-    if (range.far <= calibration::extent::kPatience) {
-      mark(kind, i, 0, &ScreenCounters::spikes);
-      continue;
-    }
-    const Extent former = range.extent;
+    if (usable && !marked) follow_excursion(kind, i, range);
+    if (usable) range.last = ago(0)[kind].values(i);
+    if (range.out > kLongestDelay) end_excursion(kind, i, range);
+    longest_out_ = std::max(longest_out_, range.out);
+  }
+}
+
+/// Marks a value that is too far away for any process, until it has been there for long.
+bool Screen::absurd(SignalKind kind, int index, Range& range) {
+  const double value = ago(0)[kind].values(index);
+  if (range.left && range.former.beyond(value) <= 0.0) {
+    const Extent home = range.former;
     range = Range{};
-    range.former = former;
-    range.left = true;
-    anew_ = true;
+    range.extent = home;
+    anew_ = true;  // it was not there in truth
+    return false;
+  }
+  const bool far = range.extent.known() && range.extent.width() > 0.0 &&
+                   range.extent.beyond(value) > calibration::extent::kTooFar;
+  range.far = far ? range.far + 1 : 0;
+  if (!far) return false;
+  if (range.far <= calibration::extent::kPatience) {
+    mark(kind, index, 0, &ScreenCounters::spikes);
+    return true;
+  }
+  const Extent former = range.extent;
+  range = Range{};
+  range.former = former;
+  range.left = true;
+  anew_ = true;
+  return false;
+}
+
+/// Whether the signal goes far beyond all that it has been, and comes back as abruptly.
+void Screen::follow_excursion(SignalKind kind, int index, Range& range) {
+  if (!range.extent.known()) return;
+  const double value = ago(0)[kind].values(index);
+  const double away = range.extent.beyond(value);
+  if (range.out > 0 && !range.extent.back(value, range.last)) return;
+  const bool abrupt = range.extent.beyond(range.last) > calibration::extent::kIsolated;
+  const double enough = std::min(std::ldexp(calibration::extent::kIsolated, range.rejected),
+                                 calibration::extent::kTooFar);
+  const bool begins = range.extent.width() > 0.0
+                          ? away > enough
+                          : away > 0.0 && range.rejected < calibration::extent::kOftenFromRest;
+  if (range.out > 0 && abrupt) {
+    reject_excursion(kind, index, range);
+    range.rejected += begins ? 0 : 1;  // from one wild value to the next
+  } else if (range.out > 0) {
+    end_excursion(kind, index, range);
+  }
+  if (begins) range.out = std::max(range.out, 1);
+}
+
+void Screen::reject_excursion(SignalKind kind, int index, Range& range) {
+  for (int frames = range.out > 0 ? 1 : 0; frames < held_; ++frames)
+    if (ago(frames)[kind].usable(index) &&
+        range.extent.beyond(ago(frames)[kind].values(index)) > calibration::extent::kIsolated)
+      mark(kind, index, frames, &ScreenCounters::spikes);
+  range.out = 0;
+  repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(index)].forget_ends();
+  if (!std::exchange(range.taken, false)) return;
+  anew_ = true;
+  if (is_input(kind)) return;
+  Jumps& jumps = jumps_[static_cast<std::size_t>(index)];
+  jumps = {.spikes = jumps.spikes};
+}
+
+/// Its first value has stayed, or comes back by and by: that is where the signal goes. What is far
+/// from there too is on another excursion.
+void Screen::end_excursion(SignalKind kind, int index, Range& range) {
+  bool stayed = false;
+  int frames = std::exchange(range.out, 0) - 1;
+  range.taken = false;
+  for (; frames >= 0; --frames) {
+    if (!ago(frames)[kind].usable(index)) continue;
+    const double value = ago(frames)[kind].values(index);
+    if (stayed && range.extent.beyond(value) > calibration::extent::kIsolated) {
+      range.out = frames + 1;
+      return;
+    }
+    if (frames > 0) range.extent.learn(value);
+    stayed = true;
   }
 }
 
-// Of the oldest frame that is followed by two others.
+// The first values as they come, later ones once two others have followed them and no excursion
+// is open.
 void Screen::learn_range(SignalKind kind) {
-  for (int i = 0; i < ago(kDelay - 1)[kind].size(); ++i) {
-    if (!ago(kDelay - 1)[kind].usable(i)) continue;
+  for (int i = 0; i < ago(0)[kind].size(); ++i) {
     Range& range = ranges_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
-    if (is_input(kind) && soon_back(kind, i, range)) {
-      mark(kind, i, kDelay - 1, &ScreenCounters::spikes);
-      ++range.rejected;
-    } else if (!range.extent.learn(ago(kDelay - 1)[kind].values(i))) {
-      anew_ = true;
+    if (!range.extent.known()) {
+      if (ago(0)[kind].usable(i)) learn_first(kind, i, range);
+    } else if (range.out < kDelay && pushed_ >= kDelay && ago(kDelay - 1)[kind].usable(i)) {
+      range.extent.learn(ago(kDelay - 1)[kind].values(i));
     }
   }
 }
 
-bool Screen::soon_back(SignalKind kind, int index, const Range& range) {
-  if (!range.extent.known()) return false;
-  const double width = range.extent.width();
-  const double away = range.extent.beyond(ago(kDelay - 1)[kind].values(index));
-  const bool wild = width > 0.0
-                        ? away > std::ldexp(calibration::extent::kIsolated, range.rejected)
-                        : away > 0.0 && range.rejected < calibration::extent::kOftenFromRest;
-  if (!wild) return false;
-  for (int frames = 0; frames < kDelay - 1; ++frames)
-    if (ago(frames)[kind].usable(index) &&
-        range.extent.beyond(ago(frames)[kind].values(index)) <= 1.0)
-      return true;
-  return false;
+void Screen::learn_first(SignalKind kind, int index, Range& range) {
+  const Extent::Verdict verdict = range.extent.learn(ago(0)[kind].values(index));
+  range.taken = verdict.wild || verdict.out > held_;
+  if (verdict.wild) {
+    reject_excursion(kind, index, range);
+    ++range.rejected;
+  }
+  if (verdict.out == 0) return;
+  range.out = verdict.out;
+  longest_out_ = std::max(longest_out_, std::min(range.out, held_));
 }
 
 }  // namespace mpm

@@ -21,7 +21,9 @@ struct ScreenCounters {
 /// that repeats one value longer than its resolution explains (frozen), rests at the end of its
 /// range (clipped), jumps away and right back (spike), or lies absurdly far outside all that it has
 /// ever been (wild, counted with the spikes). To judge a value by what follows it,
-/// frames pass with a delay of `kDelay`.
+/// frames pass with a delay of `kDelay`. Where a signal goes far beyond all that it has been, they
+/// wait until it is back, which then was an excursion and none of the process, or has stayed: a
+/// step is taken whole, only later, `kLongestDelay` at most.
 ///
 /// Inputs may rest: a controller in manual or at a limit holds them, and some move only now and
 /// then. They count as frozen only where `inputs_matter` (predictions are simulated from them),
@@ -34,15 +36,17 @@ struct ScreenCounters {
 class Screen {
  public:
   static constexpr int kDelay = 3;
+  static constexpr int kLongestDelay = calibration::extent::kLongestBurst;
 
   /// `may_predict[j]`: a prediction of CV j may come with the frames. `acts[input * cvs + cv]`: the
   /// model has that channel; `dead_time`: its longest, samples.
   Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::vector<bool> acts,
          int dead_time);
 
-  /// Takes a frame; the one `kDelay` frames ago with its qualities as found, null for the first
-  /// ones. Valid until the next call.
-  [[nodiscard]] const Frame* push(const Frame& frame);
+  void push(const Frame& frame);
+  /// The next frame that leaves, with its qualities as found; null where there is none. Valid until
+  /// the next call.
+  [[nodiscard]] const Frame* next();
 
   [[nodiscard]] const ScreenCounters& counters() const { return counters_; }
   /// Whether with the last frame it turned out that what was learnt of some signal was of wild
@@ -60,6 +64,8 @@ class Screen {
   }
 
  private:
+  static constexpr int kHeld = kLongestDelay + 2;  // frames
+
   /// One signal's repetitions.
   struct Repeats {
     double last = 0.0, before_last = 0.0;
@@ -72,6 +78,7 @@ class Screen {
     int taken = 0;
     bool may_be_held = false;  // an input
     void take(double value);
+    void forget_ends();  // that were none of the process
     [[nodiscard]] bool coarse() const { return returns >= calibration::repeats::kReturns; }
     [[nodiscard]] bool frozen() const;
     [[nodiscard]] bool at_end() const;
@@ -90,10 +97,13 @@ class Screen {
     int far = 0;    // values in a row that are absurdly far outside
     Extent former;  // where it was before it stayed there
     bool left = false;
-    int rejected = 0;  // that came back
+    int out = 0;         // frames of an excursion
+    double last = 0.0;   // value
+    bool taken = false;  // some of it has left the screen
+    int rejected = 0;    // excursions that came back
   };
   [[nodiscard]] std::size_t place(int frames) const {
-    return static_cast<std::size_t>((position_ + kDelay + 1 - frames) % (kDelay + 1));
+    return static_cast<std::size_t>((position_ + kHeld - frames) % kHeld);
   }
   [[nodiscard]] Frame& ago(int frames) { return ring_[place(frames)]; }
   void follow_predictions(const SignalBlock& predictions);
@@ -103,8 +113,12 @@ class Screen {
   void mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter);
   void screen_spikes(int cv);
   void screen_far(SignalKind kind);
+  [[nodiscard]] bool absurd(SignalKind kind, int index, Range& range);
+  void follow_excursion(SignalKind kind, int index, Range& range);
+  void reject_excursion(SignalKind kind, int index, Range& range);
+  void end_excursion(SignalKind kind, int index, Range& range);
   void learn_range(SignalKind kind);
-  [[nodiscard]] bool soon_back(SignalKind kind, int index, const Range& range);
+  void learn_first(SignalKind kind, int index, Range& range);
   [[nodiscard]] bool level(int cv, int frames, double& value);
 
   SignalCounts counts_;
@@ -118,7 +132,9 @@ class Screen {
   std::vector<Frame> ring_;
   std::vector<ScreenCounters> marked_;  // of the same frames
   int position_ = 0;
-  int held_ = 0;
+  int held_ = 0;    // frames that have not left
+  int pushed_ = 0;  // frames, until there are enough to judge one by those after it
+  int longest_out_ = 0;
   bool anew_ = false;
   std::vector<std::vector<Repeats>> repeats_;  // per kind
   std::vector<std::vector<Range>> ranges_;     // per kind

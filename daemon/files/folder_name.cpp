@@ -2,11 +2,19 @@
 
 #include <array>
 #include <cctype>
+#include <cinttypes>
 #include <cstdio>
 
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::files {
+namespace {
+
+// A file system's names end at 255 bytes; numbers, times and endings come behind.
+constexpr std::size_t kLongest = 200, kEnding = 17;
+constexpr std::uint64_t kHashStart = 0xcbf29ce484222325, kHashFactor = 0x100000001b3;
+
+}  // namespace
 
 std::string time_folder(std::int64_t time_ns) {
   constexpr std::int64_t kSecond = 1'000'000'000;
@@ -35,7 +43,12 @@ std::string folder_name(const std::string& name) {
     std::snprintf(text.data(), text.size(), "%%%02X", static_cast<unsigned>(code));
     result += text.data();
   }
-  return result;
+  if (result.size() <= kLongest) return result;
+  std::uint64_t hash = kHashStart;  // FNV-1a (Fowler, Noll, Vo): of names that begin alike
+  for (const char letter : name) hash = (hash ^ static_cast<unsigned char>(letter)) * kHashFactor;
+  std::array<char, 24> ending{};
+  std::snprintf(ending.data(), ending.size(), "~%016" PRIx64, hash);
+  return result.substr(0, kLongest - kEnding) + ending.data();
 }
 
 }  // namespace mpm::files

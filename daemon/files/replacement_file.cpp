@@ -35,6 +35,9 @@ ReplacementFile::ReplacementFile(const std::string& path) : path_(fs::absolute(p
   std::error_code ignored;
   const fs::path folder = path_.parent_path();
   if (!path_.has_filename() || fs::is_directory(path_, ignored)) refuse("is a folder, not a file");
+  const fs::file_status there = fs::symlink_status(path_, ignored);
+  if (fs::exists(there) && !fs::is_regular_file(there))
+    refuse("is a link, a device or a pipe, which a file would replace; give the name of a file");
   if (!fs::is_directory(folder, ignored)) refuse("there is no folder " + folder.string());
   temporary_ = folder / ("." + path_.filename().string() + unforeseen_ending());
   descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUsualMode);

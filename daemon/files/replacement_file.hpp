@@ -6,7 +6,8 @@
 namespace mpm::files {
 
 /// A file that appears when it is whole, or not at all: written under a temporary name beside its
-/// place and renamed by commit(). An older file of that name stays until then.
+/// place and renamed by commit(). An older file of that name stays until then. What is there and
+/// is no regular file (a device, a pipe, a link to either) is never replaced.
 class ReplacementFile {
  public:
   /// Makes the temporary file, under a name that nobody can foresee and that was not there: what

@@ -120,8 +120,16 @@ TEST_CASE("Every mistake in a section is told at its place") {
        "u.yaml:7:48: error: model.state_space.x0: must have 1 number, one per state"},
       {"model:\n  state_space: {A: [[1, 0], [1]], B: [[1, 2], [1, 2]], C: [[1, 0]]}\n",
        "u.yaml:7:29: error: model.state_space.A[1]: this row has 1 number, the first one 2"},
-      {"model:\n  state_space: {A: -1.25, B: [[1, 2]], C: 1}\n",
-       "u.yaml:7:20: warning: model.state_space.A: is unstable: an eigenvalue at |z| = 1.25"},
+      {"model:\n  state_space: {A: -1.05, B: [[1, 2]], C: 1}\n",
+       "u.yaml:7:20: warning: model.state_space.A: is unstable: an eigenvalue at |z| = 1.05"},
+      {"model:\n  state_space: {A: 1.5, B: [[1, 2]], C: 1}\n",
+       "u.yaml:7:20: error: model.state_space.A: has a response that no number can hold within "
+       "5000 "
+       "samples"},
+      {"model:\n  state_space: {A: 0.5, B: [[1e308, 2]], C: 1}\n",
+       "u.yaml:7:20: error: model.state_space.A: has a response that no number can hold within "
+       "5000 "
+       "samples"},
       {"model:\n  state_space: {A: 0.5, B: [[1, 2]]}\n",
        "u.yaml:7:16: error: model.state_space: `C` is missing"},
       {"model:\n  channels: [{cv: y1, mv: u1, gain: 2}]\n  state_space: {A: 0, B: [[1, 2]], C: "
@@ -352,4 +360,15 @@ TEST_CASE("A finding is one line of ordinary length, whatever the file holds") {
       CHECK(finding.find('\n') == std::string::npos);
       CHECK(finding.find('\x1b') == std::string::npos);
     }
+}
+
+TEST_CASE("A list longer than anything takes is refused before it is a tree") {
+  std::string text =
+      "unit: u\nsample_time: 1\nsignals: {mv: [u1], cv: [y1]}\nmodel:\n"
+      "  channels: [{cv: y1, mv: u1, step_response: [0";
+  for (int i = 0; i < 200000; ++i) text += ",1";
+  const mpm::config::LoadResult loaded = mpm::config::load_unit_text(text + "]}]\n", "u.yaml");
+  REQUIRE(loaded.findings.size() == 1);
+  CHECK(format(loaded.findings[0]) ==
+        "u.yaml:5:46: error: has more values than anything here takes");
 }

@@ -7,6 +7,7 @@
 
 #include "config/load_unit.hpp"
 #include "core/text/number_text.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
 
 namespace mpm::report {
@@ -29,10 +30,14 @@ std::string comment(const std::string& text, const std::string& indent) {
   return lines + line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
 }
 
+/// A path, in which any byte may stand.
+std::string in_full(const std::string& path) { return printable(path, std::string::npos); }
+
 std::string header(const DiagnosisRun& run) {
   const Diagnosis& diagnosis = run.diagnosis;
-  std::string text = comment(
-      "Written by " + run.program + " from " + run.config_file + " and " + run.data_file + ".", "");
+  std::string text = comment("Written by " + run.program + " from " + in_full(run.config_file) +
+                                 " and " + in_full(run.data_file) + ".",
+                             "");
   text += comment(verdict_sentence(run), "");
   if (diagnosis.findings.empty()) return text + comment("The model is the unit file's own.", "");
   text +=

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "config/load_unit.hpp"
+#include "core/text/printable.hpp"
 
 namespace mpm::report {
 namespace {
@@ -37,7 +38,8 @@ std::string without_model(const std::string& text, std::size_t& at) {
 }
 
 std::string header(const IdentificationRun& run) {
-  return "# The model was identified by " + run.program + " from " + run.data_file + ".\n";
+  return "# The model was identified by " + run.program + " from " +
+         printable(run.data_file, std::string::npos) + ".\n";
 }
 
 bool loads(const std::string& text, const IdentificationRun& run) {

@@ -38,7 +38,7 @@ struct Unit {
     set(SignalKind::kMv, u);
     set(SignalKind::kCv, plant.output()(0) + 1.0);
     set(SignalKind::kPrediction, predicted);
-    (void)screen.push(frame);
+    screen.push(frame);
     if (predictions.simulates()) predictions.follow(screen, [&](int) { ++begun; });
     unknown_inputs = inputs.read(frame);
     predictions.begin(frame, inputs);

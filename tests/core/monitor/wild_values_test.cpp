@@ -1,9 +1,14 @@
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "core/monitor/monitor.hpp"
+#include "tests/core/counter_noise.hpp"
 #include "tests/core/open_loop_unit.hpp"
 
 namespace mpm {
@@ -15,6 +20,13 @@ struct Injury {
   SignalKind kind = SignalKind::kMv;
   double value = 0.0;
   int from = 0, samples = 0;
+  int index = 0;             // of the signal
+  bool alternating = false;  // in sign, around the value that it had
+  double around = 0.0;
+
+  [[nodiscard]] double at(int sample) const {
+    return around + (alternating && sample % 2 != 0 ? -value : value);
+  }
 };
 
 struct Outcome {
@@ -29,7 +41,7 @@ Outcome outcome(const test::OpenLoopUnit& unit, bool predictions, const Injury& 
   Outcome result;
   unit.run(samples, [&](Frame frame) {
     const auto at = static_cast<int>(frame.interval) - injury.from;
-    if (at >= 0 && at < injury.samples) frame[injury.kind].values(0) = injury.value;
+    if (at >= 0 && at < injury.samples) frame[injury.kind].values(injury.index) = injury.at(at);
     monitor.push(frame);
     for (const AlarmTransition& moved : monitor.transitions())
       result.transitions += std::to_string(moved.cv) + std::to_string(moved.input) + ' ';
@@ -71,6 +83,76 @@ TEST_CASE("a burst of wild values is forgotten within two memories", "[trials]")
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kPrediction})
       check_healed(1.0, true, {kind, value, 1500, 7});
   check_healed(0.75, true, {SignalKind::kMv, 1e60, 1500, 7});
+}
+
+struct Range {
+  double low = 1e9, high = -1e9;
+};
+
+// All that the signal ever is, uninjured: an injury of so many of these is at least as many of what
+// it was before.
+Range range_of(const test::OpenLoopUnit& unit, SignalKind kind, int index, int samples) {
+  Range range;
+  unit.run(samples, [&](const Frame& frame) {
+    range.low = std::min(range.low, frame[kind].values(index));
+    range.high = std::max(range.high, frame[kind].values(index));
+  });
+  return range;
+}
+
+TEST_CASE("a burst of up to ten values of any size, at any time, in any signal leaves no trace",
+          "[trials]") {
+  constexpr int kTrials = 48, kLast = 1500;
+  constexpr int kSamples = kLast + 10 + 2 * kMemory;
+  constexpr std::array kKinds = {SignalKind::kMv, SignalKind::kCv, SignalKind::kPrediction};
+  std::map<std::pair<double, bool>, Outcome> twins;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto draw = [&](std::uint64_t stream) {  // 0 .. 1
+      return 0.5 + 0.5 * test::uniform(900 + stream, trial);
+    };
+    test::OpenLoopUnit unit;
+    unit.gain_ratio = trial % 2 == 0 ? 1.0 : 0.75;
+    const bool predictions = trial % 3 != 0;
+    Injury injury;
+    injury.kind = kKinds[static_cast<std::size_t>(trial / 2) % (predictions ? 3 : 2)];
+    injury.index = trial / 6 % 2;
+    injury.samples = 1 + static_cast<int>(draw(0) * 9.999);
+    injury.from =
+        static_cast<int>(trial % 4 < 2 ? draw(1) * 60.0 : 60.0 + draw(1) * (kLast - 60.0));
+    injury.alternating = draw(2) < 0.5;
+    const Range range = range_of(unit, injury.kind, injury.index, kLast);
+    injury.around = draw(3) < 0.5 ? range.low : range.high;
+    injury.value = std::pow(10.0, 1.05 + 4.95 * draw(4)) * (range.high - range.low);
+    const auto [twin, is_new] = twins.try_emplace({unit.gain_ratio, predictions});
+    if (is_new) twin->second = outcome(unit, predictions, {}, kSamples);
+    CAPTURE(trial, predictions, static_cast<int>(injury.kind), injury.index, injury.value,
+            injury.from, injury.samples, injury.alternating);
+    const Outcome injured = outcome(unit, predictions, injury, kSamples);
+    CHECK(injured.verdicts == twin->second.verdicts);
+    if (injury.from >= 60) CHECK(injured.bad_values > 0);  // earlier, all may begin anew
+  }
+}
+
+// The input has stood still for 40 samples.
+TEST_CASE("a burst upon a step that has not yet stayed is told from the step") {
+  check_healed(1.0, false, {SignalKind::kMv, 2140.0, 47, 5});
+}
+
+TEST_CASE("a signal that goes far away and stays there is taken, from its first sample on") {
+  for (const int at : {5, 100, 1000}) {
+    CAPTURE(at);
+    const test::OpenLoopUnit unit;
+    Monitor monitor(unit.model, unit.counts, {true, true}, {}, {});
+    unit.run(1500, [&](Frame frame) {
+      if (frame.interval >= at)
+        for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kPrediction})
+          frame[kind].values.array() += 5000.0;
+      monitor.push(frame);
+    });
+    CHECK(monitor.counters().bad_values == 0);
+    CHECK(monitor.counters().implausible.spikes == 0);
+    CHECK(monitor.channel(0, 0).verdict == Verdict::kMatch);
+  }
 }
 
 TEST_CASE("what is simulated from a wild input is forgotten too") {

@@ -1,5 +1,6 @@
 #include "daemon/files/replacement_file.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -66,4 +67,21 @@ TEST_CASE("what is not committed leaves nothing behind") {
   CHECK(entries_of(folder.file(".")) == 0);
   CHECK_THROWS_AS(ReplacementFile(folder.file("nowhere/out.csv")), mpm::config::InputError);
   CHECK_THROWS_AS(ReplacementFile(folder.file(".")), mpm::config::InputError);
+}
+
+TEST_CASE("a pipe, a device or a link is not replaced by a file") {
+  namespace fs = std::filesystem;
+  TemporaryFolder folder;
+  REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  fs::create_symlink("/dev/null", folder.file("device"));
+  fs::create_symlink("nowhere", folder.file("broken"));
+  write_file(folder.file("file"), "precious");
+  fs::create_symlink("file", folder.file("link"));
+  for (const char* name : {"pipe", "device", "broken", "link"}) {
+    const std::string path = folder.file(name);
+    const fs::file_type before = fs::symlink_status(path).type();
+    CHECK_THROWS_WITH(ReplacementFile(path), Catch::Contains("which a file would replace"));
+    CHECK(fs::symlink_status(path).type() == before);
+  }
+  CHECK(entries_of(folder.file(".")) == 5);
 }

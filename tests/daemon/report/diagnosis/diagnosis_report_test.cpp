@@ -192,8 +192,11 @@ TEST_CASE("extended.yaml says what was changed and loads back as it was found") 
   REQUIRE(model.disturbances.size() == 1);
   CHECK(model.disturbances[0].onset_s == 2100.0);
 
-  const config::LoadResult same =
-      config::load_unit_text(report::extended_yaml(matching_run()), "extended.yaml");
+  DiagnosisRun matching = matching_run();
+  matching.data_file = "y\xFF/x.csv";
+  const std::string unchanged = report::extended_yaml(matching);
+  CHECK(holds(unchanged, "y\\xff/x.csv"));
+  const config::LoadResult same = config::load_unit_text(unchanged, "extended.yaml");
   REQUIRE(same.ok());
   CHECK(same.config.model.channels.size() == 9);
 }

@@ -36,4 +36,13 @@ TEST_CASE("a unit file in one line is written as the program sees it") {
   CHECK(back.config.model.channels.size() == 1);
 }
 
+TEST_CASE("what is written can be read, whatever bytes the path of the data holds") {
+  report::IdentificationRun run = small_run();
+  run.data_file = "y\xFF/x.csv";
+  const std::string text = "unit: u\nsample_time: 1\n" + std::string(kSignals);
+  const std::string yaml = new_unit_yaml(run, text);
+  CHECK(yaml.find("from y\\xff/x.csv.\n") != std::string::npos);
+  CHECK(config::load_unit_text(yaml, "new").ok());
+}
+
 }  // namespace mpm::test
