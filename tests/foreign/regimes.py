@@ -14,6 +14,7 @@ finely_compressed     CVs are logged again only once they have moved by a twenti
 analyser              one CV is read every 2 to 12 samples, and the reading stands until the next
 late                  drift, step or noise x 2.9 from the last third on
 injected_steps        constant set-points, and load steps that the loop answers
+noisy_walk            what disturbs the CVs integrates slowly, under measurement noise
 """
 import dataclasses
 
@@ -21,7 +22,7 @@ import numpy as np
 
 REGIMES = ["stationary", "random_walk", "day_night", "constant_setpoints", "rare_moves",
            "hidden_feedforward", "aux_disturbance", "setpoint_disturbance", "quantised",
-           "compressed", "finely_compressed", "analyser", "late", "injected_steps"]
+           "compressed", "finely_compressed", "analyser", "late", "injected_steps", "noisy_walk"]
 STILL = ("constant_setpoints", "rare_moves", "injected_steps")  # neither set-points nor the DV move
 
 
@@ -61,6 +62,10 @@ def noise_of(regime, plant, rng):
         if regime == "random_walk":
             models.append(Noise(0.0, float(rng.uniform(-0.7, -0.2)), True,
                                 float(rng.uniform(0.015, 0.04)) * scale))
+            continue
+        if regime == "noisy_walk":  # a walk under white noise is IMA(1, 1) (Muth 1960)
+            models.append(Noise(0.0, float(rng.uniform(-0.96, -0.8)), True,
+                                float(rng.uniform(0.03, 0.09)) * scale))
             continue
         pole, zero = float(rng.uniform(*plant.noise_pole)), float(rng.uniform(-0.4, 0.3))
         sd = float(rng.uniform(0.03, 0.09)) * scale
