@@ -17,15 +17,11 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Without means of the CVs' own past: a loop that swings by itself, as with a sticking valve, is
+/// predicted by these as well as by its input.
 RegressionShape shape_of(const ModelSpec& model, const DerivedSettings& derived) {
-  return {model.input_count,
-          model.cv_count,
-          derived.fir_lags,
-          derived.residual_order,
-          derived.tail_poles,
-          {},
-          0,
-          derived.residual_poles};
+  return {model.input_count, model.cv_count, derived.fir_lags, derived.residual_order,
+          derived.tail_poles};
 }
 
 /// The monitor's regression, with ever fewer lags until the rows suffice for it; nothing where they

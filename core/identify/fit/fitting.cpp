@@ -24,9 +24,10 @@ double log_square(double value) { return 2.0 * std::log(std::max(kTiny, std::abs
 /// what is left of it is its square-root information on the free coordinates, which all CVs share.
 class Problem::Fitting {
  public:
+  /// `at_level`: a single run starts at its own level where that is far off.
   Fitting(Problem& problem, std::vector<Effect> effects, std::size_t first_free,
-          const std::vector<int>& cvs)
-      : problem_(problem), effects_(std::move(effects)) {
+          const std::vector<int>& cvs, bool at_level)
+      : problem_(problem), effects_(std::move(effects)), at_level_(at_level) {
     for (std::size_t e = first_free; e < effects_.size(); ++e)
       for (std::size_t c = 0; c < effects_[e].coordinates.size(); ++c) free_.push_back({e, c});
     for (const int cv : cvs) {
@@ -38,6 +39,9 @@ class Problem::Fitting {
       small_.push_back(problem_.nuisances(effects_, cv));
     }
   }
+
+  /// Whether some CV has a single run whose level is far off.
+  [[nodiscard]] bool has_far_level() const { return far_level_; }
 
   Fit run(int iterations) {
     Fit best;
@@ -83,9 +87,8 @@ class Problem::Fitting {
     std::vector<Index> where;  ///< its coordinates among the free ones
   };
 
-  /// Runs far apart in level, or a level far off beside all that moves, would at first look like
-  /// one wandering noise, which leaves the levels free and holds the fit there: so each of several
-  /// runs starts at its own, and a single one where that is far off.
+  /// Runs far apart in level would at first look like one wandering noise, which leaves the levels
+  /// free and holds the fit there: so each of several runs starts at its own.
   void start_at_levels(CvFit& state) {
     const CvData& data = problem_.data(state.cv);
     const VectorXd misfit =
@@ -97,7 +100,9 @@ class Problem::Fitting {
       const double known = std::max(1.0, data.known.segment(first, count).sum());
       const double level = misfit.segment(first, count).sum() / known;
       const double square = misfit.segment(first, count).squaredNorm() / known;
-      if (data.runs.size() == 1 && level * level < kLevelFarOff * square) return;
+      const bool far = level * level >= kLevelFarOff * square;
+      far_level_ = far_level_ || (data.runs.size() == 1 && far);
+      if (data.runs.size() == 1 && !(far && at_level_)) return;
       state.beta(column) = level / data.nuisances(first, column);
     }
   }
@@ -245,6 +250,8 @@ class Problem::Fitting {
 
   Problem& problem_;
   std::vector<Effect> effects_;
+  bool at_level_;
+  bool far_level_ = false;
   std::vector<Free> free_;
   std::vector<CvFit> states_;
   std::vector<MatrixXd> small_;  // the nuisances of each CV
@@ -257,7 +264,13 @@ class Problem::Fitting {
 
 Fit Problem::fit(std::vector<Effect> effects, std::size_t first_free, const std::vector<int>& cvs,
                  int iterations) {
-  return Fitting(*this, std::move(effects), first_free, cvs).run(iterations);
+  Fitting from_zero(*this, effects, first_free, cvs, false);
+  Fit fit = from_zero.run(iterations);
+  if (!from_zero.has_far_level()) return fit;
+  // A level far off beside all that moves may be one, or what a wrong gain makes of an input that
+  // is never negative, or noise that wanders.
+  Fit other = Fitting(*this, std::move(effects), first_free, cvs, true).run(iterations);
+  return other.cost < fit.cost ? other : fit;
 }
 
 }  // namespace mpm

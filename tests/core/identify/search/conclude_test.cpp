@@ -68,15 +68,14 @@ TEST_CASE("a level within the noise is a small error") {
   CHECK(bench.result.fit.cvs[0].beta == beta);
 }
 
-TEST_CASE("the level of a CV with a new input is that input's operating point") {
+TEST_CASE("what a new input moves its CV by may be a level that its operating point makes") {
   const VectorXd u = test::telegraph(1, kRows, 12);
-  Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.5);
-  Named named;
-  named.effect.edit = &causes::unmodelled_input();
-  named.effect.place = {0, -1, 0};
-  bench.result.named.push_back(named);
+  const double level = GENERATE(0.5, 5.0);  // the input takes the CV 1 up and down
+  Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + level);
+  const Quantity& gain = test::quantity_of(causes::unmodelled_input(), "gain");
+  bench.result.fit.effects.push_back({&causes::unmodelled_input(), {0, 0}, {{&gain, 1.0}}});
   name_levels(bench.problem, {}, bench.result);
-  CHECK(bench.result.named.size() == 1);
+  CHECK(bench.result.named.size() == (level > 2.0 ? 1 : 0));
 }
 
 VectorXd play(const VectorXd& u, double width) {
