@@ -23,7 +23,7 @@ constexpr double kPerCv = 1.0 + 2.0;  // residual, weight and scale
 MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings) {
   const DerivedSettings derived = derive_settings(spec, LinearModel(spec), settings, {});
   const double inputs = spec.input_count, cvs = spec.cv_count;
-  const double tails = static_cast<double>(derived.tail_poles.size());
+  const auto tails = static_cast<double>(derived.tail_poles.size());
   const double block = derived.fir_lags + tails;
   const auto memories = static_cast<double>(derived.memories.size());
   MonitorCost cost;

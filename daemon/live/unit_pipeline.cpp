@@ -118,7 +118,7 @@ bool UnitPipeline::publish_alarm_state(const AlarmRecord& change) {
   AlarmStateRecord record(change);
   const bool written = outputs_.write(record);
   for (AlarmStateRecord& alarm : alarms_)
-    if (alarm.mv == record.mv && alarm.cv == record.cv) alarm = std::move(record);
+    if (alarm.mv == record.mv && alarm.cv == record.cv) alarm = record;
   return written;
 }
 

@@ -44,11 +44,9 @@ std::string header(const IdentificationRun& run) {
 
 bool loads(const std::string& text, const IdentificationRun& run) {
   const config::LoadResult back = config::load_unit_text(text, run.out_file);
-  if (!back.ok() || back.config.input_tags() != run.unit.input_tags() ||
-      back.config.cv_tags() != run.unit.cv_tags() ||
-      back.config.model.channels.size() != run.identification.model.channels.size())
-    return false;
-  return true;
+  return back.ok() && back.config.input_tags() == run.unit.input_tags() &&
+         back.config.cv_tags() == run.unit.cv_tags() &&
+         back.config.model.channels.size() == run.identification.model.channels.size();
 }
 
 }  // namespace
