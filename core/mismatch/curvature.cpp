@@ -91,7 +91,7 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
   }
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(first + count);
   factor.solve(0, first + count, coefficients);
-  Eigen::VectorXd past(shape.residual_order + shape.means());
+  Eigen::VectorXd past(shape.past());
   shape.own_past(cv, coefficients, past);
   const double own = std::max(1.0 - past.sum(), limits::kLeastOwnGain);
 

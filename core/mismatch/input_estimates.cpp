@@ -24,7 +24,7 @@ InputEstimates::InputEstimates(const RegressionShape& shape)
   rotated_.setZero(all);
   estimate_.setZero(all);
   coefficients_.setZero(shape.columns() + VolterraTerms::most_columns());
-  own_past_.setZero(shape.residual_order + shape.means());
+  own_past_.setZero(shape.past());
 }
 
 void InputEstimates::read(int cv, const GivensQr& factor) {

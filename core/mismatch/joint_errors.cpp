@@ -22,7 +22,7 @@ JointErrors::JointErrors(const RegressionShape& shape)
       error_(Eigen::VectorXd::Zero(shape.block())),
       sizes_(Eigen::VectorXd::Zero(shape.inputs * kUsualErrors)),
       lead_in_(Eigen::VectorXd::Zero(shape.lead_in() + VolterraTerms::most_columns())),
-      own_past_(Eigen::VectorXd::Zero(shape.residual_order + shape.means())),
+      own_past_(Eigen::VectorXd::Zero(shape.past())),
       learnt_(own_past_),
       feed_(shape.inputs * (kUsualErrors + kShifts) + shape.block() + 1),
       all_(shape.inputs * kUsualErrors, 1 + shape.inputs * kShifts),

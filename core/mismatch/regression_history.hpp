@@ -23,6 +23,8 @@ struct RegressionShape {
   std::vector<double> residual_poles = {};  ///< q_t in (0, 1)
 
   [[nodiscard]] int block() const { return fir_lags + static_cast<int>(tail_poles.size()); }
+  /// Columns of a CV's own past.
+  [[nodiscard]] int past() const { return residual_order + means(); }
   [[nodiscard]] int means() const { return static_cast<int>(residual_poles.size()); }
   /// Where the lags of a CV begin, and the means.
   [[nodiscard]] int lags_of(int cv) const { return 1 + cv * residual_order; }

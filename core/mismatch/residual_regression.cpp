@@ -27,8 +27,6 @@ ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
                                        const std::vector<MemoryLength>& lengths, int remembered)
     : cv_(cv),
       shape_(shape),
-      lead_in_(shape.lead_in()),
-      means_at_(shape.means_at()),
       next_ask_(calibration::long_past::kAskedRowsPerColumn * shape.columns()),
       columns_(shape.columns()),
       remembered_(remembered),

@@ -45,12 +45,12 @@ class ResidualRegression {
   /// Those taken in; null before.
   [[nodiscard]] const VolterraTerms* terms() const { return terms_ ? &*terms_ : nullptr; }
   /// Columns before the inputs' blocks.
-  [[nodiscard]] int lead_in() const { return lead_in_ + (terms_ ? terms_->columns() : 0); }
+  [[nodiscard]] int lead_in() const { return shape_.lead_in() + (terms_ ? terms_->columns() : 0); }
   /// Theirs, of the row whose response is `age` samples old.
   void fill_lead_in(const RegressionHistory& history, int age, double* row) const {
     history.fill_lead_in(age, row);
-    if (takes_means_) history.fill_means(cv_, age, row + means_at_);
-    if (terms_) terms_->fill(age, row + lead_in_);
+    if (takes_means_) history.fill_means(cv_, age, row + shape_.means_at());
+    if (terms_) terms_->fill(age, row + shape_.lead_in());
   }
   /// The whole row.
   void fill(const RegressionHistory& history, int age, double* row) const {
@@ -109,8 +109,6 @@ class ResidualRegression {
 
   int cv_;
   RegressionShape shape_;
-  int lead_in_;  // of the history
-  int means_at_;
   bool takes_means_ = false;
   bool slow_noise_ = false;  // seen to be, before there were rows enough
   int next_ask_;             // rows

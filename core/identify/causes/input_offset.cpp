@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/identify/causes/actuator_moments.hpp"
 #include "core/identify/causes/catalog.hpp"
@@ -29,18 +30,21 @@ constexpr double kWandering = 20.0;
 /// after.
 constexpr double kMovedAlong = 0.3;
 
-/// The column that moved most from before the onset to after it; -1: none did so clearly.
-int moves_along(const Eigen::MatrixXd& signals, Eigen::Index onset) {
+/// Of the first `columns` the one that moved most from before the onset to after it; -1: none
+/// did so clearly.
+int moves_along(const Eigen::MatrixXd& signals, Eigen::Index columns, Eigen::Index onset) {
   int best = -1;
   double most = kMovedAlong;
-  for (Eigen::Index a = 0; a < signals.cols(); ++a) {
+  for (Eigen::Index a = 0; a < columns; ++a) {
     double count[2] = {}, sum[2] = {}, square = 0.0;
+    double origin = std::numeric_limits<double>::quiet_NaN();  // the first known value
     for (Eigen::Index k = 0; k < signals.rows(); ++k) {
-      const double value = signals(k, a);
-      if (!std::isfinite(value)) continue;
+      if (!std::isfinite(signals(k, a))) continue;
+      if (!std::isfinite(origin)) origin = signals(k, a);
+      const double value = signals(k, a) - origin;
       ++count[k >= onset];
-      sum[k >= onset] += value - signals(0, a);
-      square += (value - signals(0, a)) * (value - signals(0, a));
+      sum[k >= onset] += value;
+      square += value * value;
     }
     if (count[0] == 0.0 || count[1] == 0.0) continue;
     const double all = sum[0] + sum[1];
@@ -88,13 +92,16 @@ class InputOffsetCause : public InputBlockCause {
   [[nodiscard]] bool acts_through_channels() const override { return false; }
 
   /// What the input feeds may have changed instead, and a signal that the model leaves out have
-  /// seen it: the one that moved most at that moment, acting on the same CVs.
+  /// seen it: the one that moved most at that moment, acting on the same CVs. Set-points, which
+  /// stand behind the aux signals, are none.
   [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
                                               const Problem& problem,
                                               const Tolerances&) const override {
     const Effect& offset = accepted[mine];
     const ModelSpec& model = problem.model();
-    const int aux = moves_along(problem.recording().aux, offset.onset);
+    const Recording& recording = problem.recording();
+    const int aux =
+        moves_along(recording.aux, recording.aux.cols() - recording.setpoints.cols(), offset.onset);
     if (aux < 0) return {};
     Rewrite rewrite{{mine}, {}};
     for (const ChannelSpec& channel : model.channels) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/identify/causes/catalog.hpp"
 #include "tests/core/identify/causes/actuator_bench.hpp"
@@ -37,6 +38,34 @@ TEST_CASE("where the actuators do as they are told neither is named") {
     const MatrixXd inputs = commands(seed);
     CHECK(diagnosed(inputs, inputs.col(0), 100 + seed).findings.empty());
   }
+}
+
+// Not a leak but what the actuator feeds, if a signal saw it change; a set-point saw nothing.
+TEST_CASE("an offset may be said as a signal that moved at the same moment") {
+  const MatrixXd inputs = commands(31);
+  Recording recording = recording_of(
+      inputs, respond(offset(inputs.col(0), kActuatorOnset), inputs.col(1)) + noise(131, 2));
+  Effect leak{&causes::input_offset(), {-1, 0}, {}};
+  leak.onset = kActuatorOnset;
+  const auto rewrites = [&] {
+    const Problem problem(with_aux_inputs(both(), recording), 2, recording, Tolerances{},
+                          NoiseModel{});
+    return causes::input_offset().rewrites(0, {leak}, problem, Tolerances{});
+  };
+  recording.aux = noise(231, 2);
+  CHECK(rewrites().empty());
+  recording.aux.col(1).tail(kActuatorRows - kActuatorOnset).array() += 5.0;
+  recording.aux(0, 1) = std::nan("");
+  const std::vector<Rewrite> found = rewrites();
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].without == std::vector<std::size_t>{0});
+  REQUIRE_FALSE(found[0].with.empty());
+  for (const Effect& effect : found[0].with) {
+    CHECK(effect.edit == &causes::unmodelled_input());
+    CHECK(effect.place.aux == 1);
+  }
+  recording.setpoints = recording.aux.col(1);
+  CHECK(rewrites().empty());
 }
 
 // One CV moves up through a lag of its own: no actuator moves both.
