@@ -1,13 +1,21 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace mpm {
 
-/// One CV in the frame judged last, CV units; NaN where unknown.
+/// One CV in a frame that was judged, CV units; NaN where unknown.
 struct CvReading {
   double measured = std::numeric_limits<double>::quiet_NaN();
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< measured minus predicted
+};
+
+/// A frame as the monitor judged it.
+struct JudgedFrame {
+  std::int64_t interval = 0;
+  std::vector<CvReading> readings;  ///< per CV
 };
 
 }  // namespace mpm

@@ -79,8 +79,8 @@ struct Monitor::State {
   std::vector<Cv> cvs;
   std::vector<ChannelStatus> status;
   std::vector<AlarmTransition> transitions;
-  std::vector<CvReading> readings;
-  std::optional<std::int64_t> judged_interval;  // by the last push
+  std::vector<JudgedFrame> judged_frames;  // room for all that may leave the screen at once
+  std::size_t judged_count = 0;            // by the last push
   MonitorCounters counters;
   bool first = true;
   std::int64_t last_interval = 0;   // pushed
@@ -132,7 +132,8 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
       judge(counts, settings) {
   const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
   status.resize(channels);
-  readings.resize(static_cast<std::size_t>(counts.cv));
+  judged_frames.resize(Screen::kHeld);
+  for (JudgedFrame& one : judged_frames) one.readings.resize(static_cast<std::size_t>(counts.cv));
   transitions.reserve(channels * Screen::kLongestDelay);  // frames that leave at once
   for (int j = 0; j < counts.cv; ++j) cvs.emplace_back(counts.inputs());
 }
@@ -173,10 +174,11 @@ void Monitor::State::take_frame(const Frame& frame) {
   evaluate();
   move_alarms();
   judge_channels();
-  judged_interval = frame.interval;
+  JudgedFrame& as_judged = judged_frames[judged_count++];
+  as_judged.interval = frame.interval;
   const SignalBlock& measured = frame[SignalKind::kCv];
   for (int j = 0; j < counts.cv; ++j)
-    readings[static_cast<std::size_t>(j)] = {
+    as_judged.readings[static_cast<std::size_t>(j)] = {
         measured.usable(j) ? measured.values(j) : std::numeric_limits<double>::quiet_NaN(),
         residuals.values()(j)};
 }
@@ -356,7 +358,7 @@ Monitor::~Monitor() = default;
 void Monitor::push(const Frame& frame) {
   State& s = *state_;
   s.transitions.clear();
-  s.judged_interval.reset();
+  s.judged_count = 0;
   ++s.counters.frames;
   if (!s.first && frame.interval <= s.last_interval) {
     ++s.counters.out_of_order;
@@ -392,13 +394,9 @@ Eigen::Ref<const Eigen::VectorXd> Monitor::partial_correlations(int cv, int inpu
 }
 int Monitor::first_lag() const { return state_->settings.first_lag; }
 int Monitor::last_lag() const { return state_->settings.last_lag; }
-const std::optional<std::int64_t>& Monitor::judged_interval() const {
-  return state_->judged_interval;
+std::span<const JudgedFrame> Monitor::judged() const {
+  return std::span<const JudgedFrame>(state_->judged_frames).first(state_->judged_count);
 }
-const CvReading& Monitor::reading(int cv) const {
-  return state_->readings[static_cast<std::size_t>(cv)];
-}
-const std::vector<CvReading>& Monitor::readings() const { return state_->readings; }
 const std::vector<AlarmTransition>& Monitor::transitions() const { return state_->transitions; }
 const MonitorCounters& Monitor::counters() const { return state_->counters; }
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/alarm/condition.hpp"
@@ -66,11 +66,9 @@ class Monitor {
   [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> partial_correlations(int cv, int input) const;
   [[nodiscard]] int first_lag() const;
   [[nodiscard]] int last_lag() const;
-  /// The last frame that the last `push` judged, `Screen::kDelay` or more before the one that it
-  /// took: its interval, and its CVs. Nothing where none left the screen.
-  [[nodiscard]] const std::optional<std::int64_t>& judged_interval() const;
-  [[nodiscard]] const CvReading& reading(int cv) const;
-  [[nodiscard]] const std::vector<CvReading>& readings() const;
+  /// The frames that the last `push` judged, oldest first, `Screen::kDelay` or more before the one
+  /// that it took. Valid until the next one.
+  [[nodiscard]] std::span<const JudgedFrame> judged() const;
   /// Changes caused by the last `push`; valid until the next one.
   [[nodiscard]] const std::vector<AlarmTransition>& transitions() const;
   [[nodiscard]] const MonitorCounters& counters() const;

@@ -65,9 +65,8 @@ void PerformanceMeter::take_mvs(const Frame& frame, bool next, PerformanceSums& 
   sums.acting += acts ? 1 : 0;
 }
 
-void PerformanceMeter::judge(std::int64_t interval, std::span<const CvReading> readings,
-                             PerformanceSums& sums) {
-  predictions_.push(interval, readings,
+void PerformanceMeter::judge(const JudgedFrame& judged, PerformanceSums& sums) {
+  predictions_.push(judged.interval, judged.readings,
                     [&](std::size_t cv, std::size_t horizon) -> PredictionSums& {
                       return sums.cvs[cv].predictions[horizon];
                     });

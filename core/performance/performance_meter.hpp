@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/monitor/cv_reading.hpp"
@@ -25,9 +24,8 @@ class PerformanceMeter {
   }
   /// Set-points, limits and moves of the next frame.
   void take(const Frame& frame, PerformanceSums& sums);
-  /// Predictions: what the monitor read of an interval (`Monitor::judged_interval`, `readings`),
-  /// a later one each time.
-  void judge(std::int64_t interval, std::span<const CvReading> readings, PerformanceSums& sums);
+  /// Predictions: what the monitor read (`Monitor::judged`), of a later interval each time.
+  void judge(const JudgedFrame& judged, PerformanceSums& sums);
   /// What follows is another run: no move and no prediction goes across, and its intervals may
   /// begin anywhere.
   void begin_run();

@@ -19,8 +19,7 @@ PerformanceWindow::PerformanceWindow(PerformanceSetup setup, double samples)
 
 std::int64_t PerformanceWindow::samples() const { return kBlocks * block_samples_; }
 
-bool PerformanceWindow::push(const Frame& frame, const std::optional<std::int64_t>& judged,
-                             std::span<const CvReading> readings) {
+bool PerformanceWindow::push(const Frame& frame, std::span<const JudgedFrame> judged) {
   if (!meter_.takes(frame)) return false;
   if (!begun_) first_ = frame.interval;
   begun_ = true;
@@ -29,7 +28,7 @@ bool PerformanceWindow::push(const Frame& frame, const std::optional<std::int64_
   slide_to(block);
   PerformanceSums& sums = blocks_[static_cast<std::size_t>(block % kBlocks)];
   meter_.take(frame, sums);
-  if (judged) meter_.judge(*judged, readings, sums);
+  for (const JudgedFrame& one : judged) meter_.judge(one, sums);
   open_ = (since + 1) % block_samples_ != 0;
   return ended || !open_;
 }

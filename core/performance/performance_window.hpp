@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,11 +20,9 @@ class PerformanceWindow {
   /// Of a full window.
   [[nodiscard]] std::int64_t samples() const;
 
-  /// A frame, and what the monitor judged with it (`Monitor::judged_interval`, `readings`). Whether
-  /// a block has ended: with its last interval or, where that did not come, with the next one that
-  /// did.
-  bool push(const Frame& frame, const std::optional<std::int64_t>& judged,
-            std::span<const CvReading> readings);
+  /// A frame, and what the monitor judged with it (`Monitor::judged`). Whether a block has ended:
+  /// with its last interval or, where that did not come, with the next one that did.
+  bool push(const Frame& frame, std::span<const JudgedFrame> judged);
   /// Over the window; valid until the next call.
   [[nodiscard]] const PerformanceSums& total();
 

@@ -37,6 +37,7 @@ class Screen {
  public:
   static constexpr int kDelay = 3;
   static constexpr int kLongestDelay = calibration::extent::kLongestBurst;
+  static constexpr int kHeld = kLongestDelay + 2;  ///< frames; no more leave at once
 
   /// `may_predict[j]`: a prediction of CV j may come with the frames. `acts[input * cvs + cv]`: the
   /// model has that channel; `dead_time`: its longest, samples.
@@ -64,8 +65,6 @@ class Screen {
   }
 
  private:
-  static constexpr int kHeld = kLongestDelay + 2;  // frames
-
   /// One signal's repetitions.
   struct Repeats {
     double last = 0.0, before_last = 0.0;

@@ -116,16 +116,17 @@ void DigestMaker::take(const Monitor& monitor) {
 }
 
 void DigestMaker::take_readings(const Monitor& monitor) {
-  if (!monitor.judged_interval()) return;
-  for (std::size_t j = 0; j < cvs_.size(); ++j) {
-    const double residual = monitor.reading(static_cast<int>(j)).residual;
-    if (!std::isfinite(residual)) continue;
-    ++cvs_[j].known;
-    cvs_[j].residual_square += residual * residual;
+  for (const JudgedFrame& judged : monitor.judged()) {
+    for (std::size_t j = 0; j < cvs_.size(); ++j) {
+      const double residual = judged.readings[j].residual;
+      if (!std::isfinite(residual)) continue;
+      ++cvs_[j].known;
+      cvs_[j].residual_square += residual * residual;
+    }
+    predictions_.push(
+        judged.interval, judged.readings,
+        [this](std::size_t cv, std::size_t) -> PredictionSums& { return cvs_[cv].predictions; });
   }
-  predictions_.push(
-      *monitor.judged_interval(), monitor.readings(),
-      [this](std::size_t cv, std::size_t) -> PredictionSums& { return cvs_[cv].predictions; });
 }
 
 ChannelDigest DigestMaker::digest_of(std::size_t channel) const {

@@ -201,8 +201,7 @@ void UnitPipeline::on_frame(const Frame& frame) {
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
-  if (performance_.push(frame, monitor_.monitor().judged_interval(), monitor_.monitor().readings()))
-    publish_performance();
+  if (performance_.push(frame, monitor_.monitor().judged())) publish_performance();
   // Of either the problem is in the health.
   if (journal_) journal_->push(monitor_);
   if (samples_ != nullptr) (void)samples_->write(monitor_.channels(), monitor_.alarms());

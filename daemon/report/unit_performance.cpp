@@ -79,8 +79,7 @@ PerformanceTally::PerformanceTally(const config::UnitConfig& unit)
 void PerformanceTally::push(const Frame& frame, const Monitor& monitor) {
   if (!meter_.takes(frame)) return;
   meter_.take(frame, sums_);
-  if (monitor.judged_interval())
-    meter_.judge(*monitor.judged_interval(), monitor.readings(), sums_);
+  for (const JudgedFrame& judged : monitor.judged()) meter_.judge(judged, sums_);
 }
 
 PerformanceRecord PerformanceTally::record() const {

@@ -33,6 +33,15 @@ bool any_text(const Json& troubles, const std::string& word) {
 
 }  // namespace
 
+/// Of the bench's unit, beside its own.
+void start_another_monitor(const Bench& bench, const TemporaryFolder& folder,
+                           std::optional<Process>& monitor) {
+  monitor.emplace(std::vector<std::string>{"mpmd", "--config", bench.folder.file("toy.yaml"),
+                                           "--domain", std::to_string(bench.options.domain),
+                                           "--partition", bench.options.partition},
+                  folder.file("out2"), folder.file("err2"));
+}
+
 TEST_CASE(
     "health and doctor name the topic that nobody writes and the writer that does not match") {
   TemporaryFolder folder;
@@ -157,10 +166,7 @@ TEST_CASE("a monitor that starts and leaves beside another one takes none of its
   REQUIRE(states("u2") == std::vector{AlarmChange::kCleared});
 
   std::optional<Process> second;
-  second.emplace(std::vector<std::string>{"mpmd", "--config", bench.folder.file("toy.yaml"),
-                                          "--domain", std::to_string(bench.options.domain),
-                                          "--partition", bench.options.partition},
-                 folder.file("out2"), folder.file("err2"));
+  start_another_monitor(bench, folder, second);
   // It clears both, and the first one says again what stands.
   CHECK(bench.observe([&] {
     const auto to = states("u1");
@@ -206,10 +212,7 @@ TEST_CASE("two monitors of one unit, and what the disk does not take, are in hea
   CHECK(said("reports of diagnoses cannot be kept: /proc/none"));
 
   std::optional<Process> second;
-  second.emplace(std::vector<std::string>{"mpmd", "--config", bench.folder.file("toy.yaml"),
-                                          "--domain", std::to_string(bench.options.domain),
-                                          "--partition", bench.options.partition},
-                 folder.file("out2"), folder.file("err2"));
+  start_another_monitor(bench, folder, second);
   CHECK(bench.observe([&] {
     return said(("mpmd (process " + std::to_string(second->pid())).c_str()) &&
            said(("mpmd (process " + std::to_string(bench.daemon.pid())).c_str());

@@ -517,6 +517,22 @@ TEST_CASE("gaps, bad values and repeats are counted and skew nothing") {
     for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
 }
 
+TEST_CASE("each frame is judged once, in order, also where several wait for one") {
+  const Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  std::int64_t next = 0;
+  std::size_t at_once = 0;
+  experiment.run(600, [&](const Frame& original) {
+    Frame frame = original;
+    if (frame.interval >= 400) frame[SignalKind::kMv].values(0) += 1e3;  // a step that stays
+    monitor.push(frame);
+    at_once = std::max(at_once, monitor.judged().size());
+    for (const JudgedFrame& judged : monitor.judged()) CHECK(judged.interval == next++);
+  });
+  CHECK(at_once > 1);
+  CHECK(next == 600 - Screen::kDelay);
+}
+
 TEST_CASE("a signal that stays bad turns every verdict to undetermined") {
   const Experiment experiment;
   Monitor monitor = experiment.monitor();

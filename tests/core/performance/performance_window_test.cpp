@@ -15,7 +15,7 @@ using calibration::performance::kBlocks;
 /// Frames with noise, holes and, twice, gaps; the reading of a frame is its CV.
 struct Frames {
   std::vector<Frame> frames;
-  std::vector<std::array<CvReading, 1>> readings;
+  std::vector<JudgedFrame> judged;
 
   explicit Frames(int count) {
     for (int k = 0; k < count; ++k) {
@@ -24,7 +24,7 @@ struct Frames {
       const double y = k % 17 == 0 ? test::kUnknown : 5.0 + noise(1);
       frames.push_back(test::made_frame(k, 50.0 + 60.0 * noise(2), k < 600 ? noise(3) : 0.0, y,
                                         k % 23 == 0 ? test::kUnknown : 5.0));
-      readings.push_back({CvReading{y, y - 5.0}});
+      judged.push_back({k, {CvReading{y, y - 5.0}}});
     }
   }
 };
@@ -68,7 +68,7 @@ TEST_CASE("what slides out of the window is as if it had never been") {
   int ends = 0;
   for (std::size_t at = 0; at < made.frames.size(); ++at) {
     const std::int64_t k = made.frames[at].interval;
-    const bool ended = window.push(made.frames[at], k, made.readings[at]);
+    const bool ended = window.push(made.frames[at], {&made.judged[at], 1});
     CAPTURE(k);
     const bool after_gap = at > 0 && made.frames[at - 1].interval != k - 1 &&
                            made.frames[at - 1].interval % block != block - 1;
@@ -83,7 +83,7 @@ TEST_CASE("what slides out of the window is as if it had never been") {
     for (std::size_t i = 0; i <= at; ++i) {
       PerformanceSums& sums = made.frames[i].interval < from ? before : inside;
       meter.take(made.frames[i], sums);
-      meter.judge(made.frames[i].interval, made.readings[i], sums);
+      meter.judge(made.judged[i], sums);
     }
     check_equal(window.total(), inside);
   }
@@ -92,10 +92,9 @@ TEST_CASE("what slides out of the window is as if it had never been") {
 
 TEST_CASE("a frame that is not newer leaves the window alone") {
   PerformanceWindow window(test::made_setup(), 100.0);
-  const std::array<CvReading, 1> readings{};
   const Frame frame = test::made_frame(7, 1.0, 2.0, 0.0, 0.0);
-  CHECK_FALSE(window.push(frame, std::nullopt, readings));
-  CHECK_FALSE(window.push(frame, std::nullopt, readings));
+  CHECK_FALSE(window.push(frame, {}));
+  CHECK_FALSE(window.push(frame, {}));
   CHECK(window.total().samples == 1);
 }
 
@@ -105,8 +104,7 @@ TEST_CASE("indices of control performance allocate nothing per sample") {
   std::int64_t samples = 0;
   const std::uint64_t before = test::allocation_count();
   for (std::size_t at = 0; at < made.frames.size(); ++at)
-    if (window.push(made.frames[at], made.frames[at].interval, made.readings[at]))
-      samples += window.total().samples;
+    if (window.push(made.frames[at], {&made.judged[at], 1})) samples += window.total().samples;
   CHECK(test::allocation_count() == before);
   CHECK(samples > 0);
 }
