@@ -18,12 +18,15 @@ inline constexpr double kTimeConstant = 0.10;    ///< relative
 inline constexpr double kDeadTimeSamples = 0.5;  ///< half the resolution of a control interval
 }  // namespace materiality
 
-/// In a regression on its own past F is too large on few rows, by 1 + factor columns / freedom
-/// (Bartlett 1937 on such factors): the residuals' lags come out too fast, and what moves slowly
-/// seems too certain. Fitted on Shell, seeds from 100001 on (docs/validation.md)
+/// In a regression on its own past F is too large on few rows, by 1 + factor c + factor c^2 with
+/// c = columns / freedom (Bartlett 1937 on such factors): the residuals' past comes out too fast,
+/// and what moves slowly seems too certain. Fitted on Shell, seeds from 100001 on, the squares with
+/// those of noisy walks (docs/validation.md)
 namespace few_rows {
 inline constexpr double kDirected = 1.35;  ///< of the test for the usual errors, 1
-inline constexpr double kBlock = 0.26;     ///< of the test of the whole block, 1
+inline constexpr double kDirectedSquare = 6.0;
+inline constexpr double kBlock = 0.26;  ///< of the test of the whole block, 1
+inline constexpr double kBlockSquare = 1.0;
 }  // namespace few_rows
 
 /// Rows that a memory must hold before anything is said. With four per column p < 1e-4 still comes
@@ -32,19 +35,7 @@ inline constexpr double kBlock = 0.26;     ///< of the test of the whole block, 
 namespace rows_needed {
 inline constexpr double kPerColumn = 5.0;
 inline constexpr double kMorePerColumn = 20.0;  ///< where tails are as heavy as below
-/// Where a CV's noise remembers longer than its lags: with five p < 0.01 came four times too often,
-/// with ten twice, with more as often as it should (`./run study`, seeds 100001 to 100040). Chosen.
-inline constexpr double kMoreForSlowNoise = 10.0;
 }  // namespace rows_needed
-
-/// When a CV's own past is more than its lags (`ResidualRegression::take_means_in`): from so many
-/// rows per column on, and from fewer on where noise is beyond this p-value seen to be slow.
-/// Chosen: as many rows as slow noise asks for.
-namespace long_past {
-inline constexpr int kRowsPerColumn = 15;
-inline constexpr int kAskedRowsPerColumn = 5;
-inline constexpr double kPValue = 1e-4;
-}  // namespace long_past
 
 /// Shares of clipped rows (beyond row_weights::kClip) from which on tails count as somewhat and as
 /// very heavy; normal noise has 0.0027. With heavy tails and 528 rows p < 0.01 came in 10 % of

@@ -10,8 +10,8 @@ EstimateNoise estimate_noise(const RegressionMemory& memory) {
                           (freedom + memory.factor.columns()) / freedom;
   const double inflated = variance * memory.weight_square / memory.weight_sum;
   const double per_freedom = memory.factor.columns() / freedom;
-  return {inflated * (1.0 + calibration::few_rows::kDirected * per_freedom),
-          inflated * (1.0 + calibration::few_rows::kBlock * per_freedom), freedom};
+  return {inflated * directed_inflation(per_freedom), inflated * block_inflation(per_freedom),
+          freedom};
 }
 
 }  // namespace mpm

@@ -1,8 +1,18 @@
 #pragma once
 
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/regression_memory.hpp"
 
 namespace mpm {
+
+/// By how much F is too large in a regression on its own past, >= 1, in the directions of the usual
+/// errors and over a whole block. `c`: columns per degree of freedom.
+[[nodiscard]] constexpr double directed_inflation(double c) {
+  return 1.0 + c * (calibration::few_rows::kDirected + c * calibration::few_rows::kDirectedSquare);
+}
+[[nodiscard]] constexpr double block_inflation(double c) {
+  return 1.0 + c * (calibration::few_rows::kBlock + c * calibration::few_rows::kBlockSquare);
+}
 
 /// How much the estimates of a regression scatter: the variance of a coefficient of which the
 /// covariance factor has norm 1, and its degrees of freedom. Forgetting makes the estimate noisier

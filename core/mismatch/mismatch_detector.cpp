@@ -44,7 +44,6 @@ void MismatchDetector::fold(int cv) {
 
 void MismatchDetector::evaluate(int cv, int memory) {
   fold(cv);
-  regressions_[static_cast<std::size_t>(cv)].take_means_in(history_, work_);
   evaluator_.evaluate(cv, regression(cv).memory(memory), &evidence_[first_evidence(cv, memory)]);
   if (memory == 0) explained_[static_cast<std::size_t>(cv)] = evaluator_.explained();
 }

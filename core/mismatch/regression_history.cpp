@@ -130,24 +130,19 @@ void RegressionHistory::skip(std::int64_t missing) {
     push(unknown_.head(shape_.inputs), unknown_.head(shape_.cvs));
 }
 
-void RegressionHistory::fill(int age, double* row) const {
-  fill_lead_in(age, row);
+void RegressionHistory::fill(int cv, int age, double* row) const {
+  fill_lead_in(cv, age, row);
   fill_inputs(age, row + shape_.lead_in());
 }
 
-void RegressionHistory::fill_lead_in(int age, double* row) const {
+void RegressionHistory::fill_lead_in(int cv, int age, double* row) const {
   *row++ = 1.0;
   for (const LagWindow& residual : residual_windows_)
     row = std::copy_n(residual.window() + age + 1, shape_.residual_order, row);
-  row = std::fill_n(row, shape_.means(), 0.0);
+  const auto first = static_cast<std::size_t>(cv * shape_.means());
+  for (std::size_t t = 0; t < shape_.residual_poles.size(); ++t)
+    *row++ = mean_windows_[first + t].window()[age + shape_.residual_order + 1];
   for (const LagWindow& start : start_windows_) *row++ = start.window()[age];
-}
-
-void RegressionHistory::fill_means(int cv, int age, double* means) const {
-  const int count = shape_.means();
-  for (int t = 0; t < count; ++t)
-    means[t] = mean_windows_[static_cast<std::size_t>(cv * count + t)]
-                   .window()[age + shape_.residual_order + 1];
 }
 
 void RegressionHistory::fill_inputs(int age, double* row) const {

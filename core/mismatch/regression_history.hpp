@@ -12,6 +12,10 @@ namespace mpm {
 /// all CVs, beyond them one exponentially weighted mean of its own per residual pole, what a wrong
 /// start may leave behind (a decay per start pole), and per input a block: its last `fir_lags`
 /// values and, beyond them, one exponentially weighted mean per tail pole.
+///
+/// The means are for noise that remembers longer than the lags, as a walk under measurement noise
+/// does (Muth 1960): it passes for what slow inputs do otherwise, and draws gains that are wrong
+/// towards the model's.
 struct RegressionShape {
   int inputs = 1;
   int cvs = 1;
@@ -73,13 +77,10 @@ class RegressionHistory {
   [[nodiscard]] int settled() const { return settled_; }
   /// Whether the newest row serves this CV.
   [[nodiscard]] bool usable(int cv) const { return usable_[static_cast<std::size_t>(cv)]; }
-  /// The row whose response is `age` samples old, 0 <= age < depth: columns() values, without the
-  /// means.
-  void fill(int age, double* row) const;
-  /// The same in two parts: the constant and residual lags, with zeros in place of the means, and
-  /// the inputs' blocks.
-  void fill_lead_in(int age, double* row) const;
-  void fill_means(int cv, int age, double* means) const;
+  /// A CV's row whose response is `age` samples old, 0 <= age < depth: columns() values.
+  void fill(int cv, int age, double* row) const;
+  /// The same in two parts: what comes before the inputs' blocks, and these, which are no CV's own.
+  void fill_lead_in(int cv, int age, double* row) const;
   void fill_inputs(int age, double* row) const;
   /// Of the sample `age` samples ago, in its own units; unknown ones as unchanged.
   [[nodiscard]] double input(int input, int age) const {

@@ -24,7 +24,6 @@ struct RegressionMemory {
   double weight_square = 0.0;  ///< W2 = sum lambda^(2 age)
   int rows = 0;
   double heavy_tails = 0.0;  ///< 0..1, asks for more rows
-  bool slow_noise = false;   ///< likewise
 
   /// Takes the first `count` rows of a batch, oldest first; consumes them.
   void take(RowBatch& batch, int count) {
@@ -49,7 +48,6 @@ struct RegressionMemory {
   /// Enough rows for the evidence to mean anything.
   [[nodiscard]] double needed_rows() const {
     return (calibration::rows_needed::kPerColumn +
-            (slow_noise ? calibration::rows_needed::kMoreForSlowNoise : 0.0) +
             calibration::rows_needed::kMorePerColumn * heavy_tails) *
            factor.columns();
   }

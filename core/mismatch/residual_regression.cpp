@@ -5,9 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/regression/row_feed.hpp"
-#include "core/statistics/f_distribution.hpp"
-
 namespace mpm {
 namespace {
 
@@ -27,7 +24,6 @@ ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
                                        const std::vector<MemoryLength>& lengths, int remembered)
     : cv_(cv),
       shape_(shape),
-      next_ask_(calibration::long_past::kAskedRowsPerColumn * shape.columns()),
       columns_(shape.columns()),
       remembered_(remembered),
       weights_(remembered),
@@ -47,56 +43,8 @@ void ResidualRegression::take_in(VolterraTerms terms, const RegressionHistory& h
   fold(history, work);
   columns_ += terms.columns() - (terms_ ? terms_->columns() : 0);
   terms_ = std::move(terms);
-  for (RegressionMemory& memory : memories_) {
-    memory = RegressionMemory(columns_, memory.length);
-    memory.slow_noise = slow_noise_;
-  }
+  for (RegressionMemory& memory : memories_) memory = RegressionMemory(columns_, memory.length);
   start_afresh(span_, history, work);
-}
-
-bool ResidualRegression::take_means_in(const RegressionHistory& history, RowWorkspace& work) {
-  if (takes_means_ || shape_.means() == 0 || memories_.front().rows < next_ask_) return false;
-  fold(history, work);
-  const int enough = calibration::long_past::kRowsPerColumn * columns_;
-  slow_noise_ = memories_.front().rows < enough && follows_means(history);
-  takes_means_ = slow_noise_ || memories_.front().rows >= enough;
-  next_ask_ = enough;
-  if (!takes_means_) return false;
-  start_afresh(span_, history, work);
-  return true;
-}
-
-// F of the means on the prediction errors, beside the own lags: a score test (Breusch 1978, Godfrey
-// 1978). The errors are orthogonal to the inputs already, and the means' part that these explain is
-// left in, so it finds too little rather than too much.
-bool ResidualRegression::follows_means(const RegressionHistory& history) const {
-  const int lags = 1 + shape_.residual_order, columns = lags + shape_.means();
-  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(columns_);
-  memories_.front().factor.solve(0, columns_, coefficients);
-  Eigen::VectorXd all(columns_);
-  GivensQr factor(columns, 1);
-  RowFeed feed(columns + 1);
-  int rows = 0;
-  for (int age = span_ - 1; age >= 0; --age) {
-    const double weight = row_weight(age);
-    if (!(weight > 0.0)) continue;
-    fill(history, age, all.data());
-    double* row = feed.next_row(factor);
-    row[0] = 1.0;
-    std::copy_n(all.data() + shape_.lags_of(cv_), shape_.residual_order, row + 1);
-    history.fill_means(cv_, age, row + lags);
-    row[columns] = history.residual(cv_, age) - coefficients.dot(all);
-    for (int c = 0; c <= columns; ++c) row[c] *= weight;
-    ++rows;
-  }
-  feed.flush(factor);
-  const double freedom = rows - columns_ - shape_.means();
-  double explained = 0.0;
-  for (int c = lags; c < columns; ++c) explained += std::pow(factor.z(c, 0), 2);
-  const double variance = factor.residual_square(0) / freedom;
-  return freedom > 0.0 && variance > 0.0 &&
-         f_upper_tail(explained / shape_.means() / variance, shape_.means(), freedom) <
-             calibration::long_past::kPValue;
 }
 
 void ResidualRegression::add_sample(const RegressionHistory& history, RowWorkspace& work) {
@@ -244,13 +192,7 @@ void ResidualRegression::start_afresh(int samples, const RegressionHistory& hist
                                       RowWorkspace& work) {
   fold(history, work);
   span_ = std::min(samples, span_);
-  const auto rows = std::count_if(weights_.window(), weights_.window() + span_,
-                                  [](double weight) { return weight > 0.0; });
-  takes_means_ = slow_noise_ || rows >= calibration::long_past::kRowsPerColumn * columns_;
-  for (RegressionMemory& memory : memories_) {
-    memory.clear();
-    memory.slow_noise = slow_noise_;
-  }
+  for (RegressionMemory& memory : memories_) memory.clear();
   std::fill(slides_.begin(), slides_.end(), 0);
   if (span_ == 0) return;
   noise_.restart(scales_.window()[span_ - 1]);

@@ -48,8 +48,7 @@ class ResidualRegression {
   [[nodiscard]] int lead_in() const { return shape_.lead_in() + (terms_ ? terms_->columns() : 0); }
   /// Theirs, of the row whose response is `age` samples old.
   void fill_lead_in(const RegressionHistory& history, int age, double* row) const {
-    history.fill_lead_in(age, row);
-    if (takes_means_) history.fill_means(cv_, age, row + shape_.means_at());
+    history.fill_lead_in(cv_, age, row);
     if (terms_) terms_->fill(age, row + shape_.lead_in());
   }
   /// The whole row.
@@ -57,13 +56,6 @@ class ResidualRegression {
     fill_lead_in(history, age, row);
     history.fill_inputs(age, row + lead_in());
   }
-
-  /// Takes the means of its own past in once there are rows enough for them, or earlier where its
-  /// prediction errors follow them: noise that remembers longer than its lags, as a walk under
-  /// measurement noise does (Muth 1960), passes for what slow inputs do otherwise, and draws gains
-  /// that are wrong towards the model's. True where it did, and begins with all samples that it
-  /// rests on. Of fewer samples it does without them again, but where noise was seen to be slow.
-  bool take_means_in(const RegressionHistory& history, RowWorkspace& work);
 
   /// After the history took a sample.
   void add_sample(const RegressionHistory& history, RowWorkspace& work);
@@ -105,13 +97,8 @@ class ResidualRegression {
   void refill(RegressionMemory& memory, int samples, const RegressionHistory& history,
               RowWorkspace& work) const;
 
-  [[nodiscard]] bool follows_means(const RegressionHistory& history) const;
-
   int cv_;
   RegressionShape shape_;
-  bool takes_means_ = false;
-  bool slow_noise_ = false;  // seen to be, before there were rows enough
-  int next_ask_;             // rows
   int columns_;
   int remembered_;
   int span_ = 0;

@@ -19,8 +19,6 @@
 namespace mpm::calibrate {
 namespace {
 
-namespace few_rows = calibration::few_rows;
-
 const std::string kConfig = std::string(MPM_SOURCE_DIR) + "/config/";
 
 template <typename Result>
@@ -75,9 +73,9 @@ void read(int rows_per_column, MismatchDetector& detector, Run& run) {
       if (evidence.numerator_freedom == 0.0) continue;
       run.readings.push_back(
           {.rows_per_column = rows_per_column,
-           .directed = evidence.directed_statistic * (1.0 + few_rows::kDirected * per_freedom),
+           .directed = evidence.directed_statistic * directed_inflation(per_freedom),
            .directed_freedom = evidence.directed_freedom,
-           .block = evidence.block_statistic * (1.0 + few_rows::kBlock * per_freedom),
+           .block = evidence.block_statistic * block_inflation(per_freedom),
            .block_freedom = shape.block(),
            .columns_per_freedom = per_freedom,
            .freedom = noise.freedom});

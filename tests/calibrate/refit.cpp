@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/mismatch/calibration.hpp"
+#include "core/mismatch/estimate_noise.hpp"
 #include "core/statistics/f_distribution.hpp"
 
 namespace mpm::calibrate {
@@ -51,11 +52,11 @@ Refit bootstrap(const std::vector<Run>& runs,
 /// As `ChannelEvaluator` has it: of the two tests the one that says more, doubled.
 double p_value(const Reading& reading) {
   const double c = reading.columns_per_freedom;
-  double p = f_upper_tail(reading.block / (1.0 + few_rows::kBlock * c), reading.block_freedom,
-                          reading.freedom);
+  double p =
+      f_upper_tail(reading.block / block_inflation(c), reading.block_freedom, reading.freedom);
   if (reading.directed_freedom == 0) return p;
-  p = std::min(p, f_upper_tail(reading.directed / (1.0 + few_rows::kDirected * c),
-                               reading.directed_freedom, reading.freedom));
+  p = std::min(p, f_upper_tail(reading.directed / directed_inflation(c), reading.directed_freedom,
+                               reading.freedom));
   return std::min(1.0, 2.0 * p);
 }
 
@@ -103,8 +104,11 @@ Refit refit_few_rows(const std::vector<Run>& runs, Test test, int fewest, int mo
       if (freedom == 0 || reading.rows_per_column < fewest || reading.rows_per_column > most)
         continue;
       const double statistic = test == Test::kDirected ? reading.directed : reading.block;
-      of_run.push_back((statistic / f_quantile(kLevel, freedom, reading.freedom) - 1.0) /
-                       reading.columns_per_freedom);
+      const double c = reading.columns_per_freedom;
+      const double square =
+          test == Test::kDirected ? few_rows::kDirectedSquare : few_rows::kBlockSquare;
+      of_run.push_back((statistic / f_quantile(kLevel, freedom, reading.freedom) - 1.0) / c -
+                       square * c);
     }
   }
   Refit refit = bootstrap(runs, [&](const Sample& sample) {

@@ -8,8 +8,11 @@
 namespace mpm::calibrate {
 namespace {
 
-/// F with 4 and 40 degrees of freedom as the ratio of two mean squares, times 1 + factor 10 / 40:
-/// what a test on a regression of 10 columns and 50 rows gives whose factor is `factor`.
+namespace few_rows = calibration::few_rows;
+
+/// F with 4 and 40 degrees of freedom as the ratio of two mean squares, times 1 + factor 10 / 40
+/// and the square's part: what a test on a regression of 10 columns and 50 rows gives whose factor
+/// is `factor`.
 std::vector<Run> runs_with(double factor, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::chi_squared_distribution<double> numerator(4.0);
@@ -17,14 +20,16 @@ std::vector<Run> runs_with(double factor, std::uint64_t seed) {
   std::vector<Run> runs(400);
   for (Run& run : runs)
     for (int channel = 0; channel < 9; ++channel)
-      run.readings.push_back({.rows_per_column = 5,
-                              .directed = numerator(random) / 4.0 / (denominator(random) / 40.0) *
-                                          (1.0 + factor * 0.25),
-                              .directed_freedom = 4,
-                              .block = numerator(random) / 4.0 / (denominator(random) / 40.0),
-                              .block_freedom = 4,
-                              .columns_per_freedom = 0.25,
-                              .freedom = 40.0});
+      run.readings.push_back(
+          {.rows_per_column = 5,
+           .directed = numerator(random) / 4.0 / (denominator(random) / 40.0) *
+                       (1.0 + factor * 0.25 + few_rows::kDirectedSquare * 0.0625),
+           .directed_freedom = 4,
+           .block = numerator(random) / 4.0 / (denominator(random) / 40.0) *
+                    (1.0 + few_rows::kBlockSquare * 0.0625),
+           .block_freedom = 4,
+           .columns_per_freedom = 0.25,
+           .freedom = 40.0});
   return runs;
 }
 

@@ -97,7 +97,7 @@ TEST_CASE(
       continue;
     }
     std::vector<double> row(static_cast<std::size_t>(shape.columns()));
-    history.fill(0, row.data());
+    history.fill(0, 0, row.data());
     rows.row(count - 1) = Eigen::Map<Eigen::RowVectorXd>(row.data(), shape.columns());
     y(count - 1) = history.residual(0, 0);
     std::copy(row.begin(), row.end(), factor.row());

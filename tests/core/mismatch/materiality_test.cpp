@@ -117,8 +117,8 @@ TEST_CASE("an error of another kind matters where no allowed combination comes n
 }
 
 TEST_CASE("few rows and forgetting make the estimates noisier") {
-  // Two columns, weights alike: W1 = W2 = rows. Variance = RSS / freedom, times 1 + 1.35 (0.26)
-  // columns / freedom, the factors of docs/validation.md.
+  // Two columns, weights alike: W1 = W2 = rows. Variance = RSS / freedom, times 1 + 1.35 c
+  // + 6 c^2 (0.26, 1), c = columns / freedom, the factors of docs/validation.md.
   RegressionMemory memory(2, {});
   RowBatch batch(3, 1);
   for (int k = 0; k < 42; ++k) {
@@ -130,8 +130,9 @@ TEST_CASE("few rows and forgetting make the estimates noisier") {
   const double variance = memory.factor.residual_square(0) / 40.0;
   const EstimateNoise noise = estimate_noise(memory);
   CHECK(noise.freedom == 40.0);
-  CHECK(noise.variance == Approx(variance * (1.0 + 1.35 * 2.0 / 40.0)).epsilon(1e-12));
-  CHECK(noise.block_variance == Approx(variance * (1.0 + 0.26 * 2.0 / 40.0)).epsilon(1e-12));
+  CHECK(noise.variance == Approx(variance * (1.0 + 1.35 * 0.05 + 6.0 * 0.0025)).epsilon(1e-12));
+  CHECK(noise.block_variance ==
+        Approx(variance * (1.0 + 0.26 * 0.05 + 1.0 * 0.0025)).epsilon(1e-12));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST_CASE("the mismatch detector equals brute-force batch fits") {
       const double per_freedom = detector.shape().columns() / detector.memory(j).freedom();
       const double plain =
           oracle["statistics"][static_cast<std::size_t>(j)][static_cast<std::size_t>(i)];
-      const double expected = plain / (1.0 + 0.26 * per_freedom);
+      const double expected = plain / (1.0 + 0.26 * per_freedom + 1.0 * per_freedom * per_freedom);
       CAPTURE(j, i);
       const ChannelEvidence& evidence = detector.evidence(j, i);
       CHECK(evidence.block_statistic == Approx(expected).epsilon(1e-8));

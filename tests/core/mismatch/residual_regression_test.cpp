@@ -41,59 +41,6 @@ TEST_CASE("rows wait once there are ten per column, and are taken when asked for
   CHECK(run.regression.row_weight(0) > 0.0);
 }
 
-TEST_CASE("the means of the own past are taken in from fifteen rows per column on") {
-  RegressionShape shape = kShape;
-  shape.residual_poles = {0.9};
-  RegressionHistory history(shape, 500);
-  ResidualRegression regression(shape, 0, {{1.0, 0}}, 500);
-  RowWorkspace work(shape.columns(), 1);
-  const auto sample = [&](int k) {
-    Eigen::VectorXd u(1), e(1);
-    u(0) = test::coloured(1, k);
-    e(0) = test::uniform(2, k);  // white: nothing to take them in for before
-    history.push(u, e);
-    regression.add_sample(history, work);
-  };
-  const auto mean = [&] {
-    std::vector<double> row(static_cast<std::size_t>(shape.columns()));
-    regression.fill(history, 0, row.data());
-    return row[static_cast<std::size_t>(shape.means_at())];
-  };
-  int k = 0;
-  for (; regression.memory(0).rows < 14 * shape.columns(); ++k) sample(k);
-  CHECK_FALSE(regression.take_means_in(history, work));
-  CHECK(mean() == 0.0);
-  for (; regression.memory(0).rows < 15 * shape.columns(); ++k) sample(k);
-  const int rows = regression.memory(0).rows;
-  CHECK(regression.take_means_in(history, work));
-  CHECK(mean() != 0.0);
-  CHECK(regression.memory(0).rows == rows);
-  CHECK_FALSE(regression.take_means_in(history, work));
-  // On few rows it does without them again.
-  regression.start_afresh(5 * shape.columns(), history, work);
-  CHECK(mean() == 0.0);
-}
-
-TEST_CASE("slow noise is seen on fewer rows, and asks for more") {
-  RegressionShape shape{1, 1, 20, 1, {0.5}};  // 24 columns
-  shape.residual_poles = {0.9};
-  RegressionHistory history(shape, 500);
-  ResidualRegression regression(shape, 0, {{1.0, 0}}, 500);
-  RowWorkspace work(shape.columns(), 1);
-  double walk = 0.0;
-  for (int k = 0; regression.memory(0).rows < 14 * shape.columns(); ++k) {
-    Eigen::VectorXd u(1), e(1);
-    u(0) = test::coloured(1, k);
-    walk += test::uniform(3, k);
-    e(0) = walk + 3.0 * test::uniform(2, k);
-    history.push(u, e);
-    regression.add_sample(history, work);
-  }
-  CHECK(regression.memory(0).needed_rows() < 10 * shape.columns());
-  CHECK(regression.take_means_in(history, work));
-  CHECK(regression.memory(0).needed_rows() >= 15 * shape.columns());
-}
-
 TEST_CASE("a sliding window holds what it says") {
   // It is rebuilt each time it has grown by an eighth: never more than 100 + 12 rows, and every
   // sample gives one.
