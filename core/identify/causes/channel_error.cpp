@@ -99,13 +99,14 @@ bool has_own_gain(const ChannelSpec& channel) {
 
 Place place_of(const ChannelSpec& channel) { return {channel.cv, channel.input}; }
 
-std::vector<Index> error_onsets(Index samples) {
+std::vector<Index> error_onsets(const Recording& recording) {
   std::vector<Index> onsets;
   for (int i = 0; i < kOnsets; ++i) {
     const double share =
         kOnsetMargin + (1.0 - 2.0 * kOnsetMargin) * (i + 0.5) / static_cast<double>(kOnsets);
-    onsets.push_back(static_cast<Index>(share * static_cast<double>(samples)));
+    onsets.push_back(static_cast<Index>(share * static_cast<double>(recording.samples())));
   }
+  if (recording.changed) onsets.push_back(*recording.changed);
   return onsets;
 }
 

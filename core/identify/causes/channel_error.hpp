@@ -26,9 +26,9 @@ void edit_channels(const Effect& effect, const Surroundings& surroundings, Model
 [[nodiscard]] bool has_own_gain(const ChannelSpec& channel);
 [[nodiscard]] Place place_of(const ChannelSpec& channel);
 
-/// Rows from which on an error may have begun inside the data, and what each costs beside one that
-/// was there throughout.
-[[nodiscard]] std::vector<Eigen::Index> error_onsets(Eigen::Index samples);
+/// Rows from which on an error may have begun inside the data, the one that was seen among them,
+/// and what each costs beside one that was there throughout.
+[[nodiscard]] std::vector<Eigen::Index> error_onsets(const Recording& recording);
 [[nodiscard]] double error_onset_cost();
 
 /// How many of a channel's errors in the effect are beyond what a model may be wrong by.

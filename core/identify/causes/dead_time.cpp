@@ -25,7 +25,7 @@ class DeadTime : public SingleChannelError {
       for (const double start : dead_time_starts(removable))
         found.push_back(
             effect(place_of(channel), {dead_time_coordinate(start, removable)}, members));
-      for (const Eigen::Index onset : error_onsets(outlook.problem.samples())) {
+      for (const Eigen::Index onset : error_onsets(outlook.problem.recording())) {
         const auto add = [&](double start) {
           found.push_back(effect(place_of(channel), {dead_time_coordinate(start, removable)},
                                  members + error_onset_cost(), onset));

@@ -16,7 +16,7 @@ class Gain : public SingleChannelError {
     for (const ChannelSpec& channel : outlook.model().channels) {
       if (!has_own_gain(channel)) continue;
       found.push_back(effect(place_of(channel), {gain_ratio_coordinate()}, members));
-      for (const Eigen::Index onset : error_onsets(outlook.problem.samples()))
+      for (const Eigen::Index onset : error_onsets(outlook.problem.recording()))
         found.push_back(effect(place_of(channel), {gain_ratio_coordinate()},
                                members + error_onset_cost(), onset));
     }

@@ -20,7 +20,7 @@ class TimeConstant : public SingleChannelError {
     for (const ChannelSpec& channel : outlook.model().channels) {
       for (const double start : kStarts)
         found.push_back(effect(place_of(channel), {time_constant_coordinate(start)}, members));
-      for (const Eigen::Index onset : error_onsets(outlook.problem.samples()))
+      for (const Eigen::Index onset : error_onsets(outlook.problem.recording()))
         found.push_back(effect(place_of(channel), {time_constant_coordinate(kStartFromOnset)},
                                members + error_onset_cost(), onset));
     }

@@ -184,26 +184,27 @@ Recording without_readbacks(Recording recording) {
 Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {
   const Recording measured = without_readbacks(whole);
-  const Recording recording = with_setpoints(measured);
+  Recording recording = with_setpoints(measured);
   std::optional<Recording> validation;
   if (unseen_runs != nullptr) validation = with_setpoints(*unseen_runs);
   const auto aux = static_cast<int>(measured.aux.cols());
   const Index samples = recording.samples();
   Diagnosis diagnosis;
   diagnosis.samples = samples;
-  diagnosis.fit_samples = validation ? samples : fitted_rows(recording, settings.fit_share);
-  diagnosis.validation_samples =
-      validation ? validation->samples() : samples - diagnosis.fit_samples;
   diagnosis.extended = given;
 
   const ModelSpec base = in_channels(given);
   const ModelSpec model = with_aux_inputs(base, recording);
-  const Recording fitted = part(recording, 0, diagnosis.fit_samples);
   const MatrixXd residuals = free_run_residuals(model, recording);
   diagnosis.reason = why_not_judged(residuals);
   if (!diagnosis.reason.empty()) return diagnosis;
   const ModelSpec tested = with_aux_inputs(base, measured);
   const ChannelTests tests(tested, measured, residuals);
+  recording.changed = tests.change_row();
+  diagnosis.fit_samples = validation ? samples : fitted_rows(recording, settings.fit_share);
+  diagnosis.validation_samples =
+      validation ? validation->samples() : samples - diagnosis.fit_samples;
+  const Recording fitted = part(recording, 0, diagnosis.fit_samples);
   const std::vector<std::optional<double>> outside = outside_shares(recording, residuals);
 
   SearchSettings search_settings;

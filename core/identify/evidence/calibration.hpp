@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 /// Numbers that decide what the data may be asked at all. Chosen by hand where nothing else is
 /// said; what they give together is scored by `mpm_hidden` and tests/foreign.
 namespace mpm {
@@ -13,6 +15,10 @@ inline constexpr double kRejected = 0.05;
 /// no smaller than this.
 inline constexpr double kTestRowsPerColumn = 6.0;
 inline constexpr int kFewestLags = 2, kFewestResidualLags = 2;
+
+/// Rows in which a change is looked for; of longer recordings none is dated. Chosen: a hundred
+/// megabytes for ten inputs.
+inline constexpr Eigen::Index kMostRemembered = 100'000;
 
 /// Order of the joint autoregression of residuals and inputs that says where inputs move from, and
 /// rows that each of its columns takes.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/mismatch/change_scan.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/derived_settings.hpp"
@@ -73,8 +74,9 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       settings_for(model, linear, fewest_known(residuals));
   if (!settings) return;
   const RegressionShape shape = shape_of(model, *settings);
-  MismatchDetector detector(shape, {MemoryLength{}}, settings->remembered,
-                            settings->evaluation_stride, linear);
+  const auto remembered = static_cast<int>(std::min(recording.samples(), kMostRemembered));
+  MismatchDetector detector(shape, {MemoryLength{}}, remembered, settings->evaluation_stride,
+                            linear);
   VectorXd inputs(model.input_count);
   auto border = recording.borders.begin();
   for (Index k = 0; k < recording.samples(); ++k) {
@@ -98,6 +100,24 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       p_values_[channel] = evidence.p_value;
       wrong_[channel] = evidence.statistic * steps;
     }
+  }
+  if (recording.borders.empty() && recording.samples() <= kMostRemembered)
+    date_change(detector, recording.samples());
+}
+
+// Of CVs whose channels match nothing is asked: what wanders would be dated.
+void ChannelTests::date_change(const MismatchDetector& detector, Index samples) {
+  const RegressionShape& shape = detector.shape();
+  ChangeScan scan(shape);
+  double gain = 0.0;
+  for (int cv = 0; cv < cvs_; ++cv) {
+    std::vector<std::pair<int, int>> channels;
+    for (int input = 0; input < shape.inputs; ++input) channels.emplace_back(cv, input);
+    if (!reject(channels)) continue;
+    const std::optional<ChangePoint> change = scan.scan(detector, cv);
+    if (!change || change->kind == ChangeKind::kEnded || !(change->gain > gain)) continue;
+    gain = change->gain;
+    change_row_ = samples - change->samples;
   }
 }
 

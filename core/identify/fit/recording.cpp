@@ -49,6 +49,8 @@ Recording part(const Recording& recording, Index first, Index count) {
       result.borders.push_back({border.row - first, border.ahead_s - ahead_s});
   }
   result.start_s += ahead_s;
+  if (recording.changed && *recording.changed > first && *recording.changed < first + count)
+    result.changed = *recording.changed - first;
   return result;
 }
 

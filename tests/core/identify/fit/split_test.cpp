@@ -22,6 +22,12 @@ TEST_CASE("one run or two are cut at the share of the rows") {
   CHECK(fitted_rows(of_lengths({1000}), 2.0 / 3) == 666);
   CHECK(fitted_rows(of_lengths({500, 500}), 2.0 / 3) == 666);
   CHECK(fitted_rows(of_lengths({500, 500}), 0.25) == 250);
+  // What came after a change is parted by that share, if the change is in the part that is fitted.
+  Recording changed = of_lengths({1000});
+  changed.changed = 400;
+  CHECK(fitted_rows(changed, 2.0 / 3) == 800);
+  changed.changed = 700;
+  CHECK(fitted_rows(changed, 2.0 / 3) == 666);
 }
 
 TEST_CASE("of three runs and more the last are left out whole") {
