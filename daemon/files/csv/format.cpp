@@ -16,6 +16,7 @@ namespace {
 constexpr int kLinesAbove = 20;     // that may stand above a header
 constexpr int kRowsBelow = 3;       // that may stand between a header and the first time
 constexpr std::size_t kRows = 200;  // read of any file
+constexpr double kSecondsPerNs = 1e-9;
 
 bool is_date(const TimeStyle& times, std::string_view text) {
   return times.format ? times.format->parse(text).has_value() : parse_calendar(text).has_value();
@@ -145,6 +146,7 @@ class Survey {
     if (text.find_first_of("0123456789") == std::string::npos) return;
     there_ = true;
     if (format_.times.format) return;
+    if (columns.clock) refuse_day_number(cells_[columns.time]);
     if (const std::optional<CalendarTime> written = parse_calendar(text)) {
       two_numbers_ = two_numbers_ || written->two_numbers;
       const Layout& layout = format_.layout;
@@ -154,8 +156,17 @@ class Survey {
       const std::optional<std::int64_t> number = parse_seconds(text, problem);
       if (!number || serial_checked_) return;
       if (days_.empty()) first_number_ = {lines_.number(), cells_[columns.time].column, text};
-      days_.push_back(static_cast<double>(*number) * 1e-9);
+      days_.push_back(static_cast<double>(*number) * kSecondsPerNs);
     }
+  }
+
+  /// Of a date that has a column for the time of day beside it.
+  void refuse_day_number(const Cell& date) const {
+    std::string none;
+    const std::optional<std::int64_t> number = parse_seconds(date.text, none);
+    if (!number || serial_checked_) return;
+    const std::string problem = serial_day_problem(static_cast<double>(*number) * kSecondsPerNs);
+    if (!problem.empty()) lines_.fail(date.column, "'" + std::string(date.text) + "' " + problem);
   }
 
   void look_at_qualities() {

@@ -5,6 +5,7 @@
 
 #include "daemon/files/csv/cell.hpp"
 #include "daemon/files/csv/column_names.hpp"
+#include "daemon/files/csv/tag_names.hpp"
 
 namespace mpm::files {
 namespace {
@@ -83,7 +84,7 @@ std::optional<Layout> find_long(const Names& header, const TagTable* tags) {
 }
 
 /// The tag that a column `FIC101.Quality`, `FIC101 Status`, `FIC101_Q` or `FIC101 (Quality)`
-/// qualifies, and how; the tag is a column of its own.
+/// qualifies, and how; the tag is a column of its own, plainly or as `FIC101.Value`.
 std::optional<QualityColumn> qualifies(const Names& header, std::size_t at) {
   std::string_view name = header[at].text;
   const bool bracket = !name.empty() && (name.back() == ')' || name.back() == ']');
@@ -95,7 +96,7 @@ std::optional<QualityColumn> qualifies(const Names& header, std::size_t at) {
     std::string_view tag = name.substr(0, cut);
     while (!tag.empty() && tag.back() == ' ') tag.remove_suffix(1);
     for (std::size_t i = 0; i < header.size(); ++i)
-      if (i != at && header[i].text == tag)
+      if (i != at && (header[i].text == tag || without_value_word(header[i].text) == tag))
         return QualityColumn{at, i, *kind, same_word(name.substr(cut), kQualitySuffix)};
   }
   return std::nullopt;

@@ -487,6 +487,45 @@ TEST_CASE("Day numbers of a spreadsheet are refused rather than taken as seconds
   CHECK(frame.source_time_ns == 46'107'586'810'000);
 }
 
+TEST_CASE("Names that a historian decorated are read as the unit's tags, by both readers") {
+  const std::string file = GENERATE("pi_server_names.csv", "ignition_tag_paths.csv",
+                                    "names_with_units.csv", "value_and_quality_columns.csv");
+  CAPTURE(file);
+  const TimeStyle berlin{std::make_shared<TimeZone>(kBerlin), nullptr};
+  const config::UnitConfig known = unit(60.0);
+  CsvReader reader(path(file), known, berlin);
+  CsvRows rows(path(file), berlin, &known);
+  REQUIRE(rows.columns().size() == 2);
+  CHECK(rows.columns()[0].tag == "FIC101.PV");
+  CHECK(rows.columns()[1].tag == "TIC102.PV");
+  Signal fic, tic, fic_row, tic_row;
+  std::vector<std::int64_t> times_ns;
+  Frame frame, row;
+  while (reader.next(frame) && rows.next(row)) {
+    fic.add(frame[SignalKind::kMv], 0);
+    tic.add(frame[SignalKind::kCv], 0);
+    fic_row.add(row[SignalKind::kAux], 0);
+    tic_row.add(row[SignalKind::kAux], 1);
+    times_ns.push_back(frame.source_time_ns);
+  }
+  const bool bad_not_missing = file == "value_and_quality_columns.csv";
+  const double second = bad_not_missing ? 181.75 : kNone;
+  check(fic, {50.25, 50.75, 51}, "ggg");
+  check(tic, {181.5, second, 182}, "gbg");
+  check(fic_row, {50.25, 50.75, 51}, "ggg");
+  check(tic_row, {181.5, second, 182}, "gbg");
+  CHECK(utc_text(times_ns.front()) == kAt1305);
+  CHECK(contains(notices_of(file, berlin), "columns read as tags of the unit file: "));
+}
+
+TEST_CASE("Day numbers with the time of day beside them are refused with the way out") {
+  const std::string error = error_of("excel_serial_numbers_two_columns.csv", {});
+  CHECK(contains(error,
+                 "excel_serial_numbers_two_columns.csv:2:1: error: '46107' is a day number of a "
+                 "spreadsheet (2026-03-26), not a date: "));
+  CHECK(contains(error, "hh:mm:ss"));
+}
+
 TEST_CASE("What was assumed is said") {
   const TimeStyle berlin{std::make_shared<TimeZone>(kBerlin), nullptr};
   const auto says = [&](const std::string& file, const std::string& notice) {
