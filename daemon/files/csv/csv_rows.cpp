@@ -11,6 +11,8 @@ namespace {
 
 std::vector<std::string> wide_tags(const Layout& layout, const std::vector<Cell>& header) {
   std::vector<std::string> tags;
+  for (const PairedColumns& pair : layout.pairs)
+    if (!pair.name.empty()) tags.push_back(pair.name);
   for (const std::size_t cell : layout.values) tags.emplace_back(header[cell].text);
   return tags;
 }
@@ -62,8 +64,7 @@ CsvRows::CsvRows(const std::string& path, const TimeStyle& times, const config::
   lines_.split(format_.delimiter, header);
   tags_ = std::make_unique<TagTable>(unit);
   const SignalCounts counts = unit.counts();
-  rows_ = format_.layout.is_long ? read_long(lines_, format_, *tags_, counts, notices_)
-                                 : read_wide(lines_, format_, header, *tags_, counts, notices_);
+  rows_ = read_rows(lines_, format_, header, *tags_, counts, notices_);
   if (!unit.calc.empty()) rows_ = std::make_unique<CalculatedRows>(std::move(rows_), unit);
 }
 
@@ -77,6 +78,11 @@ void CsvRows::call_as(const config::UnitConfig& known, int header_line,
     notices_.push_back(std::move(readings));
   for (std::string& tag : tags)
     if (const std::string* called = names.tag_of(tag)) tag = *called;
+}
+
+const char* CsvRows::layout() const {
+  if (format_.layout.is_long) return "long";
+  return format_.layout.pairs.empty() ? "wide" : "pairs";
 }
 
 bool CsvRows::next(Frame& frame) {

@@ -25,7 +25,8 @@ class CsvRows : public FrameSource {
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
   /// In the order of the file, then what is calculated.
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
-  [[nodiscard]] bool is_long() const { return format_.layout.is_long; }
+  /// `wide`, `long` or `pairs`.
+  [[nodiscard]] const char* layout() const;
   [[nodiscard]] char delimiter() const { return format_.delimiter; }
 
  private:

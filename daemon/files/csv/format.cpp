@@ -50,14 +50,28 @@ bool names_stand_above(const std::vector<bool>& above, const Layout& layout) {
          static_cast<std::ptrdiff_t>(layout.width);
 }
 
+/// Names of the line above for pairs of columns that have none: over the value, else over the time.
+void take_names_above(const std::vector<std::string>& names, Layout& layout) {
+  const auto name = [&names](std::size_t i) { return i < names.size() ? names[i] : std::string(); };
+  for (PairedColumns& pair : layout.pairs) {
+    if (pair.name.empty()) pair.name = name(pair.value);
+    if (pair.name.empty()) pair.name = name(pair.time);
+  }
+}
+
 std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
   std::vector<bool> above;  // which cells of the line before are not empty
+  std::vector<std::string> names_above;
   int line_above = 0;
   for (int i = 0; i <= kLinesAbove && (i == 0 || lines.next()); ++i) {
     const char delimiter = find_delimiter(lines.text());
     const std::vector<Cell> cells = split_header(lines, delimiter);
     if (cells.size() < 2) continue;
-    if (const std::optional<Layout> layout = find_layout(cells, tags)) {
+    if (std::optional<Layout> layout = find_layout(cells, tags)) {
+      if (!layout->pairs.empty()) {
+        take_names_above(names_above, *layout);
+        return Header{lines.number(), delimiter, *layout, true};
+      }
       if (!names_stand_above(above, *layout))
         return Header{lines.number(), delimiter, *layout, true};
       return_to(lines, line_above);
@@ -65,7 +79,11 @@ std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
       return Header{line_above, delimiter, layout_with_time(names, layout->time, tags), true};
     }
     above.clear();
-    for (const Cell& cell : cells) above.push_back(!cell.text.empty());
+    names_above.clear();
+    for (const Cell& cell : cells) {
+      above.push_back(!cell.text.empty());
+      names_above.emplace_back(cell.text);
+    }
     line_above = lines.number();
   }
   return std::nullopt;
@@ -79,9 +97,15 @@ std::optional<Header> header_by_dates(LineReader& lines, int line, const TimeSty
   for (int i = 0; i <= kRowsBelow && lines.next(); ++i) {
     const std::vector<Cell> cells = split_header(lines, delimiter);
     if (cells.size() < 2 || !is_date(times, cells[0].text)) continue;
+    std::vector<std::size_t> dates;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell)
+      if (is_date(times, cells[cell].text)) dates.push_back(cell);
     return_to(lines, line);
     const std::vector<Cell> header = split_header(lines, delimiter);
-    return Header{line, delimiter, layout_with_time(header, {}, tags), false};
+    const bool pairs = dates.size() > 1 && dates.back() < header.size() && dates[1] > 1;
+    return Header{line, delimiter,
+                  pairs ? layout_of_pairs(header, dates) : layout_with_time(header, {}, tags),
+                  false};
   }
   return std::nullopt;
 }
@@ -99,7 +123,7 @@ class Survey {
     for (std::size_t row = 0; (row < kRows || open()) && lines_.next(); ++row) {
       lines_.split(format_.delimiter, cells_);
       if (cells_.size() < format_.layout.width) continue;
-      look_at_time();
+      look_at_times();
       look_at_qualities();
       if (row + 1 == kRows) check_serial_dates();
     }
@@ -131,8 +155,20 @@ class Survey {
     return (two_numbers_ && !dates_.settled()) || codes_ == Codes::kZeroIsGood;
   }
 
-  void look_at_time() {
-    TimeColumns& columns = format_.layout.time;
+  void look_at_times() {
+    Layout& layout = format_.layout;
+    if (layout.pairs.empty()) {
+      look_at_time(layout.time, layout.is_long ? cells_[layout.tag].text : std::string_view());
+      return;
+    }
+    for (const PairedColumns& pair : layout.pairs) {
+      TimeColumns time{pair.time, std::nullopt};
+      look_at_time(time, pair.name);
+    }
+  }
+
+  /// Days follow one another among the rows of one `series`.
+  void look_at_time(TimeColumns& columns, std::string_view series) {
     if (columns.clock && !there_) {
       const std::string_view clock = cells_[*columns.clock].text;
       if (clock.empty()) return;
@@ -149,12 +185,11 @@ class Survey {
     if (columns.clock) refuse_day_number(cells_[columns.time]);
     if (const std::optional<CalendarTime> written = parse_calendar(text)) {
       two_numbers_ = two_numbers_ || written->two_numbers;
-      const Layout& layout = format_.layout;
-      dates_.add(*written, layout.is_long ? cells_[layout.tag].text : std::string_view());
+      dates_.add(*written, series);
     } else {
       std::string problem;
       const std::optional<std::int64_t> number = parse_seconds(text, problem);
-      if (!number || serial_checked_) return;
+      if (!number || serial_checked_ || columns.time != format_.layout.time.time) return;
       if (days_.empty()) first_number_ = {lines_.number(), cells_[columns.time].column, text};
       days_.push_back(static_cast<double>(*number) * kSecondsPerNs);
     }
@@ -197,7 +232,7 @@ class Survey {
     for (std::size_t i = 0; i < layout.qualities.size(); ++i) {
       if (checked_[i] != Check::kIsNot)
         kept.push_back(layout.qualities[i]);
-      else if (!layout.is_long)
+      else if (!layout.is_long && layout.pairs.empty())
         layout.values.push_back(layout.qualities[i].cell);
     }
     std::sort(layout.values.begin(), layout.values.end());

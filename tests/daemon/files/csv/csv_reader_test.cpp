@@ -347,3 +347,182 @@ TEST_CASE("Names read as tags are told; two that may be one tag are an error") {
   CHECK(error_of("time,u1,u2,\\\\SRV\\yy1.PV\n0,1,2,3\n")
             .find("cv 'y1' (did you mean '\\\\SRV\\yy1.PV'?)") != std::string::npos);
 }
+
+namespace {
+
+bool says(const CsvReader& csv, const std::string& part) {
+  return std::any_of(csv.notices().begin(), csv.notices().end(), [&](const std::string& notice) {
+    return notice.find(part) != std::string::npos;
+  });
+}
+
+/// A row only where a tag changed: y1 each second but from 10 to 12, u1 at 5 and 15; u2 is lost
+/// from 8 until 10.
+std::string changes(bool by_tag) {
+  std::vector<std::pair<int, std::string>> rows = {{0, "u1,0,1"}, {5, "u1,5,2"},   {15, "u1,15,3"},
+                                                   {0, "u2,0,5"}, {8, "u2,8,Bad"}, {10, "u2,10,6"}};
+  for (int k = 0; k < 25; ++k)
+    if (k < 10 || k > 12)
+      rows.emplace_back(k, "y1," + std::to_string(k) + "," + std::to_string(10 + k));
+  if (!by_tag)
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::string text = "tag,time,value\n";
+  for (const auto& [time, row] : rows) text += row + '\n';
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("Where a tag has a row only when it changed, it is held until the next one") {
+  CsvReader csv = reader(changes(GENERATE(false, true)));
+  CHECK(says(csv, "held from one to the next"));
+  const std::vector<Frame> frames = frames_of(std::move(csv));
+  REQUIRE(frames.size() == 25);
+  for (int k = 0; k < 25; ++k) {
+    CAPTURE(k);
+    const Frame& frame = frames[static_cast<std::size_t>(k)];
+    CHECK(frame.interval == k);
+    CHECK(mv(frame, 0) == Approx(k < 5 ? 1 : k < 15 ? 2 : 3));
+    const bool lost = k == 8 || k == 9;
+    CHECK((frame[SignalKind::kMv].quality[1] == Quality::kBad) == lost);
+    if (!lost) CHECK(mv(frame, 1) == Approx(k < 8 ? 5 : 6));
+    CHECK(frame[SignalKind::kCv].values(0) == (k < 10 || k > 12 ? 10 + k : 19));
+  }
+}
+
+TEST_CASE("A recording takes what is held, one row for each interval") {
+  CsvReader csv(std::make_unique<std::istringstream>(changes(false)), "d.csv", unit(), {},
+                Purpose::kKeep);
+  const std::vector<Frame> frames = frames_of(std::move(csv));
+  REQUIRE(frames.size() == 25);
+  CHECK(mv(frames[14], 0) == 2);
+  CHECK(mv(frames[15], 0) == 3);
+  CHECK(frames[12][SignalKind::kCv].values(0) == 19);
+}
+
+TEST_CASE("Where no tag had a row for long, nothing is held") {
+  std::string text = changes(false);
+  for (int k = 0; k < 3; ++k) text += "y1," + std::to_string(8000 + k) + ",1\n";
+  const std::vector<Frame> frames = frames_of(text);
+  REQUIRE(frames.size() == 28);
+  CHECK(frames[24].interval == 24);
+  CHECK(frames[25].interval == 8000);
+  CHECK(mv(frames[25], 0) == Approx(3));  // set before
+}
+
+TEST_CASE("Few tags of a table that is sampled lack a row: it is missing, not held") {
+  std::string text = "tag,time,value\n";
+  for (int k = 0; k < 40; ++k) {
+    for (const char* tag : {"u1", "u2", "y1"})
+      if (tag[0] != 'y' || k % 10 != 3) text += std::string(tag) + "," + std::to_string(k) + ",1\n";
+  }
+  const std::vector<Frame> frames = frames_of(text);
+  REQUIRE(frames.size() == 40);
+  CHECK(frames[13][SignalKind::kCv].quality[0] == Quality::kBad);
+  CHECK(frames[14][SignalKind::kCv].quality[0] == Quality::kGood);
+}
+
+TEST_CASE("Columns of times and values in turn: inputs that are set are held, others on the line") {
+  const std::string text = GENERATE(values<std::string>({
+      "time,u1,time,u2,time,y1\n0,1,0,5,0,10\n3,2,,,4,18\n,,,,6,18\n",
+      "u1,,u2,,y1,\nTimestamp,Value,Timestamp,Value,Timestamp,Value\n"
+      "2024-05-01T12:00:00Z,1,2024-05-01T12:00:00Z,5,2024-05-01T12:00:00Z,10\n"
+      "2024-05-01T12:00:03Z,2,,,2024-05-01T12:00:04Z,18\n,,,,2024-05-01T12:00:06Z,18\n",
+      ",u1,,u2,,y1\n"
+      "2024-05-01T12:00:00Z,1,2024-05-01T12:00:00Z,5,2024-05-01T12:00:00Z,10\n"
+      "2024-05-01T12:00:03Z,2,,,2024-05-01T12:00:04Z,18\n,,,,2024-05-01T12:00:06Z,18\n",
+      "u1,,u2,,y1,\n"
+      "2024-05-01T12:00:00Z,1,2024-05-01T12:00:00Z,5,2024-05-01T12:00:00Z,10\n"
+      "2024-05-01T12:00:03Z,2,,,2024-05-01T12:00:04Z,18\n,,,,2024-05-01T12:00:06Z,18\n",
+      "time,u1,Quality,,time,[u2],,time,y1.PV\n0,1,Good,,0,5,,0,10\n3,2,Good,,,,,4,18\n,,,,,,,6,"
+      "18\n",
+  }));
+  CAPTURE(text);
+  CsvReader csv = reader(text);
+  CHECK(says(csv, "MVs and set-points are held"));
+  const std::vector<Frame> frames = frames_of(std::move(csv));
+  REQUIRE(frames.size() == 7);
+  for (int k = 0; k < 7; ++k) {
+    CAPTURE(k);
+    const Frame& frame = frames[static_cast<std::size_t>(k)];
+    CHECK(mv(frame, 0) == Approx(k < 3 ? 1 : 2));
+    CHECK(mv(frame, 1) == Approx(5));
+    CHECK(frame[SignalKind::kCv].values(0) == Approx(k < 4 ? 10 + 2 * k : 18));
+  }
+}
+
+TEST_CASE("No line leads to or from a value that is bad") {
+  const std::vector<Frame> frames =
+      frames_of("time,u1,time,u2,time,y1\n0,1,0,5,0,10\n,,,,2,Bad\n,,,,4,18\n,,,,6,20\n");
+  REQUIRE(frames.size() == 7);
+  const auto y = [&](std::size_t k) { return frames[k][SignalKind::kCv].values(0); };
+  CHECK(y(1) == 10);
+  CHECK(y(2) == 10);  // of half an interval before: good is taken
+  CHECK(std::isnan(y(3)));
+  CHECK(y(4) == 18);
+  CHECK(y(5) == Approx(19));
+}
+
+TEST_CASE("Mistakes in columns of times and values in turn are told at their place") {
+  CHECK(error_of("time,u1,time,u2,time,y1\n0,1,0,5,0,10\n1,2,,3,1,2\n") ==
+        "d.csv:3:5: error: '' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z, "
+        "or say how it is written with --time-format");
+  CHECK(error_of("time,u1,time,u2,time,y1\n0,1,0,5,0,1.2.3\n").substr(0, 12) == "d.csv:2:11: ");
+  CHECK(error_of("time,u1,time,u1,time,u2,time,y1\n0,1,0,5,0,1,0,2\n")
+            .find("'u1' stands above two pairs of columns") != std::string::npos);
+  CHECK(error_of("time,u1,time,u2\n0,1,0,5\n").find("does not hold cv 'y1'") != std::string::npos);
+}
+
+TEST_CASE("Of the columns for each type of value the one that is filled counts") {
+  const std::vector<Frame> frames = frames_of(
+      "tagpath,intvalue,floatvalue,stringvalue,datevalue,dataintegrity,t_stamp\n"
+      "u1,1,,,,192,0\nu2,,-2.5,,,192,0\ny1,,3.25,,,192,0\n"
+      "u1,4,,,,192,1\nu2,,,Stopped,,192,1\ny1,,6,,,300,1\n");
+  REQUIRE(frames.size() == 2);
+  CHECK(mv(frames[0], 0) == 1);
+  CHECK(mv(frames[0], 1) == -2.5);
+  CHECK(mv(frames[1], 0) == 4);
+  CHECK(frames[1][SignalKind::kMv].quality[1] == Quality::kBad);
+  CHECK(frames[1][SignalKind::kCv].quality[0] == Quality::kBad);
+  CHECK(error_of("tagid,intvalue,floatvalue,dataintegrity,t_stamp\n1,1,,192,0\n2,,1,192,0\n")
+            .find("export it with the names that its numbers stand for") != std::string::npos);
+}
+
+TEST_CASE("Rows whose seconds are cut off are spread over their minute, if all have equally many") {
+  const auto text = [](std::vector<int> counts) {
+    std::string rows = "time,u1,u2,y1\n";
+    int value = 0;
+    for (std::size_t m = 0; m < counts.size(); ++m)
+      for (int i = 0; i < counts[m]; ++i)
+        rows += "2024-05-01T12:0" + std::to_string(m) + "Z," + std::to_string(value++) + ",2,3\n";
+    return rows;
+  };
+  CsvReader csv = reader(text({2, 4, 4, 4, 1}), unit(15.0));
+  CHECK(says(csv, "cut off: the 4 rows of each minute are spread evenly over it"));
+  const std::vector<Frame> frames = frames_of(std::move(csv));
+  REQUIRE(frames.size() == 15);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    CHECK(frames[k].interval == static_cast<std::int64_t>(k));
+    CHECK(mv(frames[k], 0) == static_cast<double>(k));
+  }
+  // 12:00:30
+  CHECK(frames[0].source_time_ns % 60'000'000'000 == 30'000'000'000);
+  CHECK(error_of(text({4, 4, 3, 4, 4}), unit(15.0)) ==
+        "d.csv:1:1: error: several rows have the same minute for their time, and not each minute "
+        "equally many: the seconds are cut off, export them");
+  CHECK(error_of(text({4, 4, 4, 4, 4}), unit(10.0)).find("the rows are 15 s apart") !=
+        std::string::npos);
+  // A row twice in a file of a row a minute is no such file.
+  CHECK(frames_of(text({1, 1, 2, 1, 1}), unit(60.0)).size() == 6);
+}
+
+TEST_CASE("A minute with another number of rows is told, wherever it comes") {
+  std::string rows = "time,u1,u2,y1\n";
+  for (int m = 0; m < 59; ++m)
+    for (int i = 0; i < (m == 57 ? 5 : 6); ++i)
+      rows += "2024-05-01T12:" + std::string(m < 10 ? "0" : "") + std::to_string(m) + "Z,1,2,3\n";
+  CHECK(error_of(rows, unit(10.0)) ==
+        "d.csv:1:1: error: the minute of 2024-05-01T12:57:00Z has 5 rows, those before it 6: its "
+        "seconds are cut off, export them");
+}
