@@ -89,6 +89,16 @@ std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
   return std::nullopt;
 }
 
+/// Whether columns of dates have a column of values each: one of the two has a name, or all the
+/// dates have the same. Else they are dates of something else.
+bool are_pairs(const std::vector<Cell>& header, const std::vector<std::size_t>& dates) {
+  if (dates.size() < 2 || dates[1] < 2 || dates.back() >= header.size()) return false;
+  return std::all_of(dates.begin(), dates.end(), [&](std::size_t date) {
+    const bool nameless = date + 1 >= header.size() || header[date + 1].text.empty();
+    return nameless || header[date].text.empty() || header[date].text == header[dates[0]].text;
+  });
+}
+
 /// A first column of any name, with dates below.
 std::optional<Header> header_by_dates(LineReader& lines, int line, const TimeStyle& times,
                                       const TagTable* tags) {
@@ -102,7 +112,7 @@ std::optional<Header> header_by_dates(LineReader& lines, int line, const TimeSty
       if (is_date(times, cells[cell].text)) dates.push_back(cell);
     return_to(lines, line);
     const std::vector<Cell> header = split_header(lines, delimiter);
-    const bool pairs = dates.size() > 1 && dates.back() < header.size() && dates[1] > 1;
+    const bool pairs = are_pairs(header, dates);
     return Header{line, delimiter,
                   pairs ? layout_of_pairs(header, dates) : layout_with_time(header, {}, tags),
                   false};

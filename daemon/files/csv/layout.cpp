@@ -49,9 +49,10 @@ std::optional<TimeColumns> find_time(const Names& header, const TagTable* tags) 
   return time ? std::optional(TimeColumns{*time, std::nullopt}) : std::nullopt;
 }
 
-/// Columns that are called as the same time.
+/// Columns that are called as the same time; none where a time of day stands beside a date.
 std::vector<std::size_t> repeated_times(const Names& header, const TagTable* tags) {
   std::vector<std::size_t> times;
+  if (const auto time = find_time(header, tags); time && time->clock) return times;
   for (std::size_t i = 0; i < header.size(); ++i) {
     const std::string_view name = header[i].text;
     if (is_time_name(name) && !names_signal(tags, name) &&

@@ -45,6 +45,17 @@ TEST_CASE("No line leads to or from a value that is bad") {
   CHECK(y(5) == Approx(19));
 }
 
+TEST_CASE("Dates of something else beside the time are no times of their own") {
+  const std::vector<Frame> frames = frames_of(
+      "when,u1,batch begun,u2,y1\n"
+      "2024-05-01T12:00:00Z,1,2024-04-30T08:00:00Z,5,10\n"
+      "2024-05-01T12:00:01Z,2,2024-04-30T08:00:00Z,6,11\n");
+  REQUIRE(frames.size() == 2);
+  CHECK(mv(frames[1], 1) == 6);
+  CHECK(error_of("Date,Time,u1,Date,Time,u2,y1\n1/13/2024,12:00,1,1/13/2024,12:00,2,3\n")
+            .find("a second column 'Date'") != std::string::npos);
+}
+
 TEST_CASE("Mistakes in columns of times and values in turn are told at their place") {
   CHECK(error_of("time,u1,time,u2,time,y1\n0,1,0,5,0,10\n1,2,,3,1,2\n") ==
         "d.csv:3:5: error: '' is no time: give seconds or ISO 8601 such as 2024-05-01T12:00:00Z, "
