@@ -34,8 +34,6 @@ void DetectReport::take_counters(const Monitor& monitor, const config::UnitConfi
     for (std::size_t i = 0; i < counters.bad_of[kind].size(); ++i)
       if (counters.bad_of[kind][i] > 0) bad_tags.emplace_back(tags[i], counters.bad_of[kind][i]);
   }
-  std::stable_sort(bad_tags.begin(), bad_tags.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
   for (std::size_t cv = 0; cv < config.cv.size(); ++cv)
     samples_needed[config.cv[cv].tag] = monitor.samples_needed(static_cast<int>(cv));
 }

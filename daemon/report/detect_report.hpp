@@ -25,7 +25,7 @@ struct DetectReport {
   std::uint64_t missing = 0;               ///< intervals without a row
   std::uint64_t out_of_order = 0;          ///< rows whose time did not grow
   std::uint64_t bad_values = 0;
-  std::vector<std::pair<std::string, std::uint64_t>> bad_tags;  ///< whose they are, most first
+  std::vector<std::pair<std::string, std::uint64_t>> bad_tags;  ///< whose they are
   std::uint64_t frozen = 0, clipped = 0, spikes = 0;            ///< of these: only by their look
   /// From the first row to the last of each stretch, where a part of the file was chosen.
   std::vector<files::Stretch> used;

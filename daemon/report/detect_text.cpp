@@ -9,6 +9,7 @@
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/matrix_text.hpp"
 #include "daemon/report/moment_text.hpp"
+#include "daemon/report/worst_tags.hpp"
 
 namespace mpm::report {
 namespace {
@@ -21,18 +22,6 @@ void add_once(std::vector<std::string>& tags, const std::string& tag) {
 double rounded_up(double count) {
   const double step = std::pow(10.0, std::max(0.0, std::floor(std::log10(count)) - 1.0));
   return std::ceil(count / step) * step;
-}
-
-/// ", of y1 (9), u1 (2)": whose bad values they are, the most first.
-std::string worst_tags(const DetectReport& report) {
-  constexpr std::size_t kNamed = 3;
-  std::string text;
-  for (std::size_t i = 0; i < report.bad_tags.size() && i < kNamed; ++i)
-    text += (i == 0 ? ", of " : ", ") + printable(report.bad_tags[i].first) + " (" +
-            std::to_string(report.bad_tags[i].second) + ")";
-  return report.bad_tags.size() > kNamed
-             ? text + " and " + counted(report.bad_tags.size() - kNamed, "other")
-             : text;
 }
 
 std::string head(const DetectReport& report, const MomentText& moment) {
@@ -57,7 +46,7 @@ std::string head(const DetectReport& report, const MomentText& moment) {
   look(report.clipped, "clipped");
   look(report.spikes, report.spikes == 1 ? "spike" : "spikes");
   if (!looks.empty()) text += " (" + looks + ")";
-  return text + worst_tags(report);
+  return text + worst_tags(report.bad_tags);
 }
 
 MatrixCell cell_of(const ChannelRecord& channel) {
