@@ -7,6 +7,7 @@ set(program_headers ${basic_headers} <chrono> <filesystem> <fstream> <sstream>
   <nlohmann/json.hpp>)
 
 target_precompile_headers(mpm_core PRIVATE ${basic_headers})
+target_precompile_headers(mpm_cli PRIVATE <CLI/CLI.hpp>)
 foreach(library mpm_config mpm_idl mpm_sim)
   target_precompile_headers(${library} REUSE_FROM mpm_core)
 endforeach()

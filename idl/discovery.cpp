@@ -59,6 +59,11 @@ std::string property(const dds_qos_t* qos, const char* name) {
   return text;
 }
 
+Process process_of(const dds_builtintopic_participant_t& participant) {
+  return {property(participant.qos, "__Hostname"), property(participant.qos, "__ProcessName"),
+          property(participant.qos, "__Pid")};
+}
+
 std::vector<std::string> mismatch_of(const dds_builtintopic_endpoint_t& endpoint, bool writer) {
   const KnownTopic* topic = find_known_topic(endpoint.topic_name);
   if (topic == nullptr) return {};
@@ -98,9 +103,7 @@ std::vector<Endpoint> Discovery::endpoints() const {
   std::map<Guid, Process> processes;
   Loan<dds_builtintopic_participant_t>(participants_.get())
       .for_each([&](const dds_builtintopic_participant_t& participant, std::uint64_t) {
-        processes[bytes_of(participant.key)] = {property(participant.qos, "__Hostname"),
-                                                property(participant.qos, "__ProcessName"),
-                                                property(participant.qos, "__Pid")};
+        processes[bytes_of(participant.key)] = process_of(participant);
       });
   dds_guid_t own{};
   check(dds_get_guid(participant_, &own), "own identity");
@@ -120,6 +123,17 @@ std::vector<Endpoint> Discovery::endpoints() const {
     return std::tie(a.topic, a.type, b.writer) < std::tie(b.topic, b.type, a.writer);
   });
   return endpoints;
+}
+
+Process Discovery::own() const {
+  dds_guid_t own{};
+  check(dds_get_guid(participant_, &own), "own identity");
+  Process process;
+  Loan<dds_builtintopic_participant_t>(participants_.get())
+      .for_each([&](const dds_builtintopic_participant_t& participant, std::uint64_t) {
+        if (bytes_of(participant.key) == bytes_of(own)) process = process_of(participant);
+      });
+  return process;
 }
 
 DiscoveredType Discovery::type_of(const std::string& topic) const {

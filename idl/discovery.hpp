@@ -43,6 +43,8 @@ class Discovery {
 
   /// All endpoints of others that are known by now and still there, by topic.
   [[nodiscard]] std::vector<Endpoint> endpoints() const;
+  /// This process, as others see it.
+  [[nodiscard]] Process own() const;
   /// The type of `topic` as one of its writers describes it (XTypes); null if none does, or in a
   /// way that Cyclone 0.10 cannot use. May take up to a second.
   [[nodiscard]] DiscoveredType type_of(const std::string& topic) const;

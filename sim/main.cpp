@@ -7,10 +7,14 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "cli/command_tree.hpp"
+#include "cli/help_format.hpp"
+#include "cli/slips.hpp"
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
 #include "config/time_text.hpp"
@@ -170,14 +174,20 @@ int run(const Options& options) {
 }
 
 int parse_and_run(int argc, char** argv) {
-  CLI::App app("Simulates an MPC-controlled plant whose process may differ from the model.");
+  CLI::App app("Simulates an MPC-controlled plant whose process may differ from the model.",
+               "mpmsim");
+  app.formatter(std::make_shared<cli::HelpFormat>());
   Options options;
   declare(app, options);
   app.set_version_flag("--version", idl::version_text("mpmsim"));
+  cli::add_self_description(app, idl::version_text("mpmsim"));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
+    const std::string slips = error.get_exit_code() == 0 ? "" : cli::slips_text(app);
+    if (slips.empty()) return app.exit(error) == 0 ? kDone : kBadInput;
+    std::cerr << slips << "Run with --help for more information.\n";
+    return kBadInput;
   }
   spdlog::set_default_logger(spdlog::stderr_color_mt("mpmsim"));
   spdlog::set_pattern("%n: %^%l%$: %v");

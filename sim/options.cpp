@@ -51,7 +51,7 @@ void declare(CLI::App& app, Options& options) {
       "Examples:\n"
       "  mpmsim --config shell3x3.yaml --scenario hidden_gain --seed 7 --csv run.csv\n"
       "  mpmsim --config shell3x3.yaml --scenario s3_delay --speed 10\n"
-      "  mpmsim --config shell3x3.yaml --bad-data missing=5% --bad-data gaps=1% --csv run.csv\n"
+      "  mpmsim --config shell3x3.yaml --bad-data missing=5% --csv run.csv\n"
       "  mpmsim --config shell3x3.yaml --limits 20\n"
       "Exit codes: 0 done, 2 the run failed, 3 bad usage or bad input");
 }

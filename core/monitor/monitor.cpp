@@ -48,6 +48,7 @@ struct Monitor::State {
   [[nodiscard]] Cv& of(int cv) { return cvs[static_cast<std::size_t>(cv)]; }
 
   void take_frame(const Frame& frame);
+  void count_bad(const Frame& frame);
   void follow_compression();
   void take_outside(const Frame& frame);
   void pass_gap(std::int64_t missing);
@@ -136,6 +137,10 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
   for (JudgedFrame& one : judged_frames) one.readings.resize(static_cast<std::size_t>(counts.cv));
   transitions.reserve(channels * Screen::kLongestDelay);  // frames that leave at once
   for (int j = 0; j < counts.cv; ++j) cvs.emplace_back(counts.inputs());
+  for (const SignalKind kind :
+       {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction})
+    counters.bad_of[static_cast<std::size_t>(kind)].resize(
+        static_cast<std::size_t>(counts.of(kind)));
 }
 
 void Monitor::State::begin_anew() {
@@ -149,7 +154,7 @@ void Monitor::State::begin_anew() {
   }
   fresh.status = std::move(status);
   fresh.transitions = std::move(transitions);
-  fresh.counters = counters;
+  fresh.counters = std::move(counters);
   fresh.first = first;
   fresh.last_interval = last_interval;
   fresh.taken_interval = taken_interval;
@@ -168,6 +173,7 @@ void Monitor::State::take_frame(const Frame& frame) {
   counters.bad_values += static_cast<std::uint64_t>(inputs.read(frame));
   predictions.begin(frame, inputs);
   counters.bad_values += static_cast<std::uint64_t>(residuals.read(frame, predictions));
+  count_bad(frame);
   predictions.advance(inputs);
   take_sample(frame);
   take_outside(frame);
@@ -181,6 +187,14 @@ void Monitor::State::take_frame(const Frame& frame) {
     as_judged.readings[static_cast<std::size_t>(j)] = {
         measured.usable(j) ? measured.values(j) : std::numeric_limits<double>::quiet_NaN(),
         residuals.values()(j)};
+}
+
+void Monitor::State::count_bad(const Frame& frame) {
+  for (const SignalKind kind :
+       {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction})
+    for (int i = 0; i < counts.of(kind); ++i)
+      if (!frame[kind].usable(i) && (kind != SignalKind::kPrediction || predictions.given(i)))
+        ++counters.bad_of[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
 }
 
 // What was learnt of held values and drawn lines says nothing once the CV is measured again.
@@ -399,5 +413,9 @@ std::span<const JudgedFrame> Monitor::judged() const {
 }
 const std::vector<AlarmTransition>& Monitor::transitions() const { return state_->transitions; }
 const MonitorCounters& Monitor::counters() const { return state_->counters; }
+double Monitor::samples_needed(int cv) const {
+  const RegressionMemory& memory = state_->detector.memory(cv);
+  return std::max(0.0, memory.needed_rows() - static_cast<double>(memory.rows));
+}
 
 }  // namespace mpm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -31,6 +32,8 @@ struct MonitorCounters {
   std::uint64_t bad_values = 0;    ///< non-finite or bad values of signals that are needed, in the
                                    ///< frames that have left the screen
   ScreenCounters implausible;      ///< of these: good by their quality, but not by their look
+  /// Whose they are: per kind and signal, empty where the kind is not needed.
+  std::array<std::vector<std::uint64_t>, kSignalKindCount> bad_of;
 };
 
 /// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
@@ -72,6 +75,8 @@ class Monitor {
   /// Changes caused by the last `push`; valid until the next one.
   [[nodiscard]] const std::vector<AlarmTransition>& transitions() const;
   [[nodiscard]] const MonitorCounters& counters() const;
+  /// How many more samples the CV's verdicts need at least, if all of them serve; 0 = none.
+  [[nodiscard]] double samples_needed(int cv) const;
 
  private:
   struct State;

@@ -34,6 +34,13 @@ std::string percent_text(double share, int digits) {
   return number_text(100.0 * share, digits) + " %";
 }
 
+std::string confidence_text(double probability) {
+  constexpr double kNoSurer = 0.999;
+  if (probability > kNoSurer) return "> " + number_text(kNoSurer);
+  const std::string text = number_text(probability, 2);
+  return text == "1" ? number_text(probability) : text;
+}
+
 std::string counted(std::uint64_t count, std::string_view what) {
   std::string text = std::to_string(count) + " ";
   text.append(what);

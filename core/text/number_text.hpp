@@ -13,6 +13,8 @@ namespace mpm {
 [[nodiscard]] std::string interval_text(double low, double high, int digits = 3);
 /// "25 %" of 0.25
 [[nodiscard]] std::string percent_text(double share, int digits = 2);
+/// How sure something is, of 0..1: "0.95", "0.996", "> 0.999"; never "1".
+[[nodiscard]] std::string confidence_text(double probability);
 /// "1 sample", "2 samples" of "sample"
 [[nodiscard]] std::string counted(std::uint64_t count, std::string_view what);
 

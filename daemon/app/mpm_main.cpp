@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
+#include "cli/help_format.hpp"
+#include "cli/slips.hpp"
 #include "daemon/app/commands/commands.hpp"
-#include "daemon/app/commands/help_format.hpp"
-#include "daemon/app/commands/slips.hpp"
 #include "daemon/host/standard_output.hpp"
 #include "idl/version.hpp"
 
@@ -17,7 +17,7 @@ int run(int argc, char** argv) {
   // Exit codes of all programs of the project: 0 done, 1 found, 2 failed, 3 bad usage or input.
   int exit_code = 0;
   CLI::App app("The engineer's side of the model-plant-mismatch monitor.", "mpm");
-  app.formatter(std::make_shared<HelpFormat>());
+  app.formatter(std::make_shared<cli::HelpFormat>());
   app.set_version_flag("--version", idl::version_text("mpm"));
   app.require_subcommand(1);
   add_detect(app, exit_code);
@@ -54,7 +54,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    const std::string slips = slips_text(app);
+    const std::string slips = cli::slips_text(app);
     if (slips.empty())
       app.exit(error);
     else

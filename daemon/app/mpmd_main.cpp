@@ -10,12 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "cli/command_tree.hpp"
+#include "cli/help_format.hpp"
+#include "cli/slips.hpp"
 #include "config/load_unit.hpp"
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
-#include "daemon/app/commands/help_format.hpp"
 #include "daemon/app/commands/quantity.hpp"
-#include "daemon/app/commands/slips.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/standard_output.hpp"
@@ -79,6 +80,7 @@ void declare(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
   app.set_version_flag("--version", idl::version_text("mpmd"));
+  cli::add_self_description(app, idl::version_text("mpmd"));
   app.footer(
       "Examples:\n"
       "  mpmd --config /etc/mpm/shell.yaml\n"
@@ -148,14 +150,14 @@ int run(const Options& options) {
 int parse_and_run(int argc, char** argv) {
   CLI::App app("Monitors MPC units for model-plant mismatch: DDS in, verdicts and alarms out.",
                "mpmd");
-  app.formatter(std::make_shared<HelpFormat>());
+  app.formatter(std::make_shared<cli::HelpFormat>());
   Options options;
   declare(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    const std::string slips = slips_text(app);
+    const std::string slips = cli::slips_text(app);
     if (slips.empty())
       app.exit(error);
     else

@@ -238,7 +238,7 @@ class RowClock {
 
 void inspect_csv(FileInfo& info, const files::TimeStyle& times, const files::TimeChoice& choice) {
   files::CsvRows rows(info.path, times);
-  info.is_long = rows.is_long();
+  info.layout = rows.layout();
   info.delimiter = rows.delimiter();
   for (const files::Column& column : rows.columns()) {
     info.signals.emplace_back();

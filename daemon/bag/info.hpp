@@ -83,7 +83,7 @@ struct FileInfo {
   std::map<std::string, UnitTally> units;
 
   // CSV
-  bool is_long = false;
+  std::string layout = "wide";  ///< long: a row for each tag and time; pairs: a time for each tag
   char delimiter = ',';
   double step_s = 0.0;  ///< median of the first rows
   std::vector<SignalTally> signals;

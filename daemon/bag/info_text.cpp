@@ -167,7 +167,7 @@ std::string mcap_text(const FileInfo& info) {
 }
 
 std::string csv_text(const FileInfo& info) {
-  std::string text = std::string("  layout: ") + (info.is_long ? "long" : "wide") + ", cells by " +
+  std::string text = "  layout: " + info.layout + ", cells by " +
                      (info.delimiter == '\t' ? std::string("tab") : std::string(1, info.delimiter));
   if (info.step_s > 0.0) text += line("; rows every %.6g s", info.step_s);
   text += "; " + gaps_text(info.times) + order_text(info.times) + "\n  signals:\n";
@@ -204,7 +204,7 @@ Json to_json(const FileInfo& info) {
     add_mcap(info, json);
     return json;
   }
-  json["layout"] = info.is_long ? "long" : "wide";
+  json["layout"] = info.layout;
   json["delimiter"] = std::string(1, info.delimiter);
   json["step_s"] = info.step_s;
   json["gaps"] = gaps_json(info.times);

@@ -106,9 +106,7 @@ Table open_csv(const std::string& path, const TableOptions& options) {
     table.frames = std::move(reader);
     return table;
   }
-  auto rows = std::make_unique<files::CsvRows>(
-      path, options.times,
-      options.unit != nullptr ? options.unit->calc : std::vector<config::CalculatedSignal>());
+  auto rows = std::make_unique<files::CsvRows>(path, options.times, options.unit);
   table.columns = rows->columns();
   table.frames = std::move(rows);
   if (options.unit == nullptr) return table;

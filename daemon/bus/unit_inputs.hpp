@@ -36,6 +36,7 @@ struct ExpectedInputs {
 /// What else is known of the domain that a unit is on.
 struct Surroundings {
   std::string place;                     ///< "domain 3, partition 'a'"
+  std::string self;                      ///< this process, as idl::name_of
   std::vector<idl::Endpoint> endpoints;  ///< of others; an outdated list only costs a name
   std::set<std::string> strangers;       ///< units whose samples come though no unit file has them
 };

@@ -1,10 +1,12 @@
 #include "daemon/files/read_recording.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "config/finding.hpp"
+#include "config/unit_layout.hpp"
 #include "core/identify/fit/runs.hpp"
 #include "core/text/number_text.hpp"
 
@@ -21,7 +23,10 @@ constexpr double kStill = 1e-9;
 class Table {
  public:
   explicit Table(const SignalCounts& counts)
-      : counts_(counts), width_(counts.inputs() + 2 * counts.cv + counts.aux) {}
+      : counts_(counts), width_(counts.inputs() + 2 * counts.cv + counts.aux) {
+    for (const SignalKind kind : kNeeded)
+      bad_[static_cast<std::size_t>(kind)].resize(static_cast<std::size_t>(counts.of(kind)));
+  }
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] std::int64_t rows() const {
@@ -41,10 +46,24 @@ class Table {
         const bool usable = block.usable(i);
         values_.push_back(usable ? block.values(i) : std::numeric_limits<double>::quiet_NaN());
         const bool needed = kind != SignalKind::kAux && kind != SignalKind::kSetpoint;
-        bad += !usable && needed ? 1 : 0;
+        if (usable || !needed) continue;
+        ++bad;
+        ++bad_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
       }
     }
     return bad;
+  }
+  /// How many values of each tag are unusable; those that have such.
+  [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> bad_tags(
+      const config::UnitConfig& unit) const {
+    std::vector<std::pair<std::string, std::uint64_t>> tags;
+    for (const SignalKind kind : kNeeded) {
+      const std::vector<std::string> names = config::tags_of(unit, kind);
+      for (std::size_t i = 0; i < names.size(); ++i)
+        if (const std::uint64_t bad = bad_[static_cast<std::size_t>(kind)][i]; bad > 0)
+          tags.emplace_back(names[i], bad);
+    }
+    return tags;
   }
   void copy_to(Recording& recording) const {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -56,7 +75,10 @@ class Table {
   }
 
  private:
+  static constexpr std::array kNeeded = {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv};
+
   SignalCounts counts_;
+  std::array<std::vector<std::uint64_t>, kSignalKindCount> bad_;
   int width_;
   std::vector<double> values_;
 };
@@ -134,6 +156,7 @@ RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit
     next = row + 1;
   }
   if (table.rows() == 0 && left_out > 0) refuse(nothing_chosen(first_ns, last_ns));
+  file.bad_tags = table.bad_tags(unit);
   table.copy_to(recording);
   const Eigen::Index rows = recording.samples();
   recording = without_scraps(recording);

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "config/unit_config.hpp"
 #include "core/identify/fit/recording.hpp"
@@ -16,9 +18,10 @@ struct RecordingFile {
   std::int64_t missing = 0;       ///< intervals without a row; a row of NaN stands for each
   std::int64_t out_of_order = 0;  ///< rows whose time did not grow; left out
   std::int64_t bad_values = 0;    ///< of inputs and CVs in the rows that are there
-  std::int64_t long_gaps = 0;     ///< after each a new run begins
-  std::int64_t longest_gap = 0;   ///< intervals that a run goes on across
-  std::int64_t scraps = 0;        ///< rows of runs too short to tell anything; left out
+  std::vector<std::pair<std::string, std::uint64_t>> bad_tags;  ///< whose they are
+  std::int64_t long_gaps = 0;                                   ///< after each a new run begins
+  std::int64_t longest_gap = 0;  ///< intervals that a run goes on across
+  std::int64_t scraps = 0;       ///< rows of runs too short to tell anything; left out
 };
 
 /// Reads all frames that `choice` takes. What is bad, missing or implausible becomes NaN. A new run

@@ -23,6 +23,7 @@ Domain::Domain(const idl::DomainOptions& options)
       other_monitors_(participant_, idl::kHealthTopic, idl::neighbour_health_qos()),
       outputs_(participant_) {
   around_.place = bus::place_text(options);
+  around_.self = idl::name_of(discovery_.own());
 }
 
 UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, SampleJournal* samples,
@@ -71,7 +72,7 @@ void Domain::hear_other_monitors(Clock::time_point now) {
     if (it == units_.end()) return;
     if (!info.valid) return it->second->hear_no_other_monitor();
     if (bus::find_writer(around_, info.writer) == nullptr) look_around(now);
-    it->second->hear_other_monitor(bus::writer_name(around_, info.writer), now);
+    it->second->hear_other_monitor(info.writer, bus::writer_name(around_, info.writer), now);
   });
 }
 

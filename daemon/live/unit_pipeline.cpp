@@ -3,9 +3,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 
+#include "config/suggest.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
@@ -137,7 +139,20 @@ void UnitPipeline::publish_alarms_again() {
 }
 
 bool UnitPipeline::other_monitor_speaks() const {
-  return !other_monitor_.empty() && now_ - other_monitor_heard_ < kOtherMonitorGone;
+  return std::any_of(other_monitors_.begin(), other_monitors_.end(), [this](const auto& other) {
+    return now_ - other.second.heard < kOtherMonitorGone;
+  });
+}
+
+// In the same words from each of them: a reader gets what they say in turn.
+std::string UnitPipeline::monitors_text(const std::string& self) const {
+  std::vector<std::string> names = {self};
+  for (const auto& [writer, other] : other_monitors_)
+    if (now_ - other.heard < kOtherMonitorGone) names.push_back(other.name);
+  std::sort(names.begin(), names.end());
+  return std::to_string(names.size()) +
+         " monitors watch this unit: " + config::join(names, kMostInDetail) +
+         "; readers see them in turn";
 }
 
 void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
@@ -243,9 +258,12 @@ void UnitPipeline::publish_diagnosis() {
     spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
 }
 
-void UnitPipeline::hear_other_monitor(std::string name, Clock::time_point now) {
-  other_monitor_ = std::move(name);
-  other_monitor_heard_ = now;
+void UnitPipeline::hear_other_monitor(std::uint64_t writer, std::string name,
+                                      Clock::time_point now) {
+  other_monitors_[writer] = {std::move(name), now};
+  for (auto other = other_monitors_.begin(); other != other_monitors_.end();)
+    other = now - other->second.heard < kOtherMonitorGone ? std::next(other)
+                                                          : other_monitors_.erase(other);
 }
 
 void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
@@ -311,9 +329,7 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
             "the monitor itself stood still for {} s: its machine is too busy or was asleep",
             std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
   if (other_monitor_speaks())
-    add("other monitor", Severity::kMaintenanceRequired,
-        "another monitor watches this unit as well: " + other_monitor_ +
-            "; readers see both in turn");
+    add("other monitor", Severity::kMaintenanceRequired, monitors_text(around.self));
   const auto add_journal = [&](const std::string& which, const std::string& problem) {
     if (!problem.empty())
       add(which.c_str(), Severity::kMaintenanceRequired,

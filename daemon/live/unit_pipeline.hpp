@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,10 +45,11 @@ class UnitPipeline {
   /// What the control system says its values are, or that nobody says it of `kind` any more.
   void hear(const mpm_Layout& layout) { inputs_.hear(layout); }
   void forget_layout(const char* kind) { inputs_.forget_layout(kind); }
-  /// Another monitor of this unit said something: `name`, as idl::name_of.
-  void hear_other_monitor(std::string name, Clock::time_point now);
+  /// Another monitor of this unit said something: `name`, as idl::name_of; `writer`, as in
+  /// idl::SampleInfo.
+  void hear_other_monitor(std::uint64_t writer, std::string name, Clock::time_point now);
   /// All others have left.
-  void hear_no_other_monitor() { other_monitor_.clear(); }
+  void hear_no_other_monitor() { other_monitors_.clear(); }
   /// Reports cannot be kept, and why; empty: they can.
   void set_report_problem(std::string problem) { report_problem_ = std::move(problem); }
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
@@ -68,6 +70,7 @@ class UnitPipeline {
   [[nodiscard]] bool publish_alarm_state(const AlarmRecord& change);
   void publish_alarms_again();
   [[nodiscard]] bool other_monitor_speaks() const;
+  [[nodiscard]] std::string monitors_text(const std::string& self) const;
   void publish_performance();
   void publish_diagnosis();
   void publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around);
@@ -94,10 +97,14 @@ class UnitPipeline {
   Clock::time_point next_health_;
   std::optional<Clock::time_point> stood_still_;  // when this process went on
   Clock::duration stood_still_for_{};
-  std::string other_monitor_;  // who, and when it was heard
-  Clock::time_point other_monitor_heard_;
-  bool other_monitor_spoke_ = false;      // at the last health
-  std::vector<AlarmStateRecord> alarms_;  // of each channel, as last written
+  /// Who, and when it was heard.
+  struct OtherMonitor {
+    std::string name;
+    Clock::time_point heard;
+  };
+  std::map<std::uint64_t, OtherMonitor> other_monitors_;  // by writer
+  bool other_monitor_spoke_ = false;                      // at the last health
+  std::vector<AlarmStateRecord> alarms_;                  // of each channel, as last written
   std::string report_problem_;
   HealthRecord health_;
   std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was

@@ -71,14 +71,32 @@ std::string dead_time_part(const ChannelRecord& channel, const ChannelFile& file
   return "dead time " + signed_text(channel.dead_time_error_s) + " s (" + seconds.text() + ")";
 }
 
+bool nobody_moves(const std::string& tag, const ChannelFile& file) {
+  return std::find(file.disturbances.begin(), file.disturbances.end(), tag) !=
+         file.disturbances.end();
+}
+
 std::string not_excited_text(const ChannelRecord& channel, const ChannelFile& file) {
+  const std::string advice = nobody_moves(channel.mv, file)
+                                 ? "wait until " + printable(channel.mv) + " moves"
+                                 : "move " + printable(channel.mv);
   if (!file.modelled)
-    return "moved too little to show whether " + printable(channel.cv) + " answers it; move " +
-           printable(channel.mv);
+    return "moved too little to show whether " + printable(channel.cv) + " answers it; " + advice;
   if (channel.smallest_error <= 0.0 || channel.smallest_error > 1.0)
-    return "moved too little to tell anything; move " + printable(channel.mv);
-  return "needs a gain error of " + percent_text(channel.smallest_error) + " to show; move " +
-         printable(channel.mv);
+    return "moved too little to tell anything; " + advice;
+  return "needs a gain error of " + percent_text(channel.smallest_error) + " to show; " + advice;
+}
+
+std::string collinear_text(const ChannelRecord& channel, const ChannelFile& file) {
+  const std::string mv = printable(channel.mv), other = printable(channel.confounder);
+  std::string advice = "move one without the other";
+  if (nobody_moves(channel.mv, file) && nobody_moves(channel.confounder, file))
+    advice = "wait until one moves without the other";
+  else if (nobody_moves(channel.mv, file))
+    advice = "move " + other + " without it";
+  else if (nobody_moves(channel.confounder, file))
+    advice = "move " + mv + " without it";
+  return "moved only together with " + other + "; " + advice;
 }
 
 }  // namespace
@@ -94,6 +112,8 @@ ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
   };
   file.mv_unit = unit_of(unit.mv, mv) + unit_of(unit.dv, mv);  // one of which is empty
   file.cv_unit = unit_of(unit.cv, cv);
+  for (const config::InputSignal& disturbance : unit.dv)
+    file.disturbances.push_back(disturbance.tag);
   const auto& channels = unit.model.channels;
   file.modelled = unit.model.state_space.has_value() ||
                   std::any_of(channels.begin(), channels.end(), [&](const ChannelSpec& channel) {
@@ -125,8 +145,7 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
     case Reason::kNotExcited:
       return not_excited_text(channel, file);
     case Reason::kCollinear:
-      return "moved only together with " + printable(channel.confounder) +
-             "; move one without the other";
+      return collinear_text(channel, file);
     case Reason::kConfounded:
       return "what is off in " + printable(channel.cv) + " follows " +
              printable(channel.confounder) +
@@ -146,7 +165,9 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
     case Reason::kControllerOff:
       return "no manipulated variable moves: the controller is off or in manual";
     case Reason::kConstrained:
-      return printable(channel.mv) + " rests at a limit; move it away from there";
+      return printable(channel.mv) + " rests at a limit; " +
+             (nobody_moves(channel.mv, file) ? "wait until it leaves it"
+                                             : "move it away from there");
     case Reason::kIsolating:
       return "something changed in " + printable(channel.cv) +
              "; too few samples since then to tell which channel";

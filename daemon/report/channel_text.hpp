@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "config/unit_config.hpp"
 #include "core/record/alarm_record.hpp"
@@ -13,7 +14,8 @@ namespace mpm::report {
 struct ChannelFile {
   bool modelled = true;  ///< the model has it: a gain error in per cent of it means something
   std::string mv_unit, cv_unit;
-  double sample_time_s = 0.0;  ///< 0 = not known
+  double sample_time_s = 0.0;             ///< 0 = not known
+  std::vector<std::string> disturbances;  ///< inputs that are measured and that nobody can move
 };
 [[nodiscard]] ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
                                        const std::string& cv);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "config/unit_layout.hpp"
 #include "daemon/report/record_json.hpp"
 #include "daemon/report/unit_performance.hpp"
 
@@ -16,6 +17,25 @@ bool DetectReport::mismatch() const {
   return std::any_of(channels.begin(), channels.end(), [](const ChannelRecord& channel) {
     return channel.verdict == Verdict::kMismatch;
   });
+}
+
+void DetectReport::take_counters(const Monitor& monitor, const config::UnitConfig& config) {
+  const MonitorCounters& counters = monitor.counters();
+  samples = counters.frames;
+  used_samples = counters.used;
+  missing = counters.missing;
+  out_of_order = counters.out_of_order;
+  bad_values = counters.bad_values;
+  frozen = counters.implausible.frozen;
+  clipped = counters.implausible.clipped;
+  spikes = counters.implausible.spikes;
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
+    const std::vector<std::string> tags = config::tags_of(config, static_cast<SignalKind>(kind));
+    for (std::size_t i = 0; i < counters.bad_of[kind].size(); ++i)
+      if (counters.bad_of[kind][i] > 0) bad_tags.emplace_back(tags[i], counters.bad_of[kind][i]);
+  }
+  for (std::size_t cv = 0; cv < config.cv.size(); ++cv)
+    samples_needed[config.cv[cv].tag] = monitor.samples_needed(static_cast<int>(cv));
 }
 
 nlohmann::ordered_json to_json(const DetectReport& report) {

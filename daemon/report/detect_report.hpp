@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "config/unit_config.hpp"
+#include "core/monitor/monitor.hpp"
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
 #include "core/record/performance_record.hpp"
@@ -21,14 +25,18 @@ struct DetectReport {
   std::uint64_t missing = 0;               ///< intervals without a row
   std::uint64_t out_of_order = 0;          ///< rows whose time did not grow
   std::uint64_t bad_values = 0;
-  std::uint64_t frozen = 0, clipped = 0, spikes = 0;  ///< of these: only by their look
+  std::vector<std::pair<std::string, std::uint64_t>> bad_tags;  ///< whose they are
+  std::uint64_t frozen = 0, clipped = 0, spikes = 0;            ///< of these: only by their look
   /// From the first row to the last of each stretch, where a part of the file was chosen.
   std::vector<files::Stretch> used;
   std::vector<ChannelRecord> channels;
+  std::map<std::string, double> samples_needed;  ///< at least, by CV; 0 = none
   std::vector<AlarmRecord> alarms;
   PerformanceRecord performance;  ///< over all rows
 
   [[nodiscard]] bool mismatch() const;
+  /// What the monitor says of the unit's tags, beside its records.
+  void take_counters(const Monitor& monitor, const config::UnitConfig& config);
 };
 
 /// The object of interfaces, "mpm detect".

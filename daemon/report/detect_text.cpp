@@ -1,6 +1,7 @@
 #include "daemon/report/detect_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "core/text/number_text.hpp"
@@ -8,12 +9,19 @@
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/matrix_text.hpp"
 #include "daemon/report/moment_text.hpp"
+#include "daemon/report/worst_tags.hpp"
 
 namespace mpm::report {
 namespace {
 
 void add_once(std::vector<std::string>& tags, const std::string& tag) {
   if (std::find(tags.begin(), tags.end(), tag) == tags.end()) tags.push_back(tag);
+}
+
+/// To two digits.
+double rounded_up(double count) {
+  const double step = std::pow(10.0, std::max(0.0, std::floor(std::log10(count)) - 1.0));
+  return std::ceil(count / step) * step;
 }
 
 std::string head(const DetectReport& report, const MomentText& moment) {
@@ -37,7 +45,8 @@ std::string head(const DetectReport& report, const MomentText& moment) {
   look(report.frozen, "frozen");
   look(report.clipped, "clipped");
   look(report.spikes, report.spikes == 1 ? "spike" : "spikes");
-  return looks.empty() ? text : text + " (" + looks + ")";
+  if (!looks.empty()) text += " (" + looks + ")";
+  return text + worst_tags(report.bad_tags);
 }
 
 MatrixCell cell_of(const ChannelRecord& channel) {
@@ -119,8 +128,11 @@ class Teller {
 
   [[nodiscard]] std::string open(const ChannelRecord& channel) const {
     if (channel.verdict != Verdict::kUndetermined) return "";
-    const std::string text =
-        undetermined_text(channel, channel_file(unit_, channel.mv, channel.cv));
+    std::string text = undetermined_text(channel, channel_file(unit_, channel.mv, channel.cv));
+    const auto needed = report_.samples_needed.find(channel.cv);
+    if (channel.reason == Reason::kWarmingUp && needed != report_.samples_needed.end() &&
+        needed->second > 0.0)
+      text += "; needs about " + number_text(rounded_up(needed->second)) + " more";
     return channel.alarm == AlarmState::kActive ? text + "; in alarm" + since(channel) : text;
   }
 

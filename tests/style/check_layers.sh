@@ -12,9 +12,10 @@ forbid() {
   fi
 }
 
-forbid core 'dds/|yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|iostream|fstream|filesystem|chrono|ctime|thread|config/|idl/|sim/|daemon/|tests/'
-forbid config 'dds/|spdlog|CLI/|systemd|idl/|sim/|daemon/|tests/'
-forbid idl 'yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|config/|sim/|daemon/|tests/'
+forbid core 'dds/|yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|iostream|fstream|filesystem|chrono|ctime|thread|config/|cli/|idl/|sim/|daemon/|tests/'
+forbid config 'dds/|spdlog|CLI/|systemd|cli/|idl/|sim/|daemon/|tests/'
+forbid idl 'yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|config/|cli/|sim/|daemon/|tests/'
+forbid cli 'dds/|yaml-cpp|muParser|spdlog|nlohmann|systemd|idl/|sim/|daemon/|tests/'
 forbid sim 'yaml-cpp|muParser|dds/|systemd|daemon/|tests/'
 forbid daemon 'yaml-cpp|muParser|dds/|sim/|tests/'
 for folder in files mcap report history; do forbid daemon/$folder 'idl/|mpm\.h|spdlog|systemd'; done
@@ -25,7 +26,7 @@ if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \
   status=1
 fi
 
-if grep -rnE "^ *# *include *[<\"](oneapi/)?tbb" core config idl sim daemon \
+if grep -rnE "^ *# *include *[<\"](oneapi/)?tbb" core config cli idl sim daemon \
   --include='*.hpp' --include='*.cpp' | grep -v '^core/parallel/arena.cpp:'; then
   echo "oneTBB's names stay in core/parallel/arena.cpp" >&2
   status=1
@@ -107,7 +108,7 @@ bag files/times files files/csv mcap/format mcap/read mcap/write
 bag/record host files/times files mcap/read mcap/write mcap bag
 bag/replay host files/times mcap/read bag
 live host files/times files report/diagnosis report history bus
-app/commands host files/times files files/csv mcap/read mcap report/diagnosis report/closed_loop report/identification report history history/trend bus bus/watch bus/doctor bag bag/record bag/replay live
+app/commands host files/times files files/csv mcap/read mcap report/terminal report/diagnosis report/closed_loop report/identification report history history/trend bus bus/watch bus/doctor bag bag/record bag/replay live
 app host live app/commands
 TABLE
 exit $status

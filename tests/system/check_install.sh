@@ -11,10 +11,14 @@ cmake --install "$build" --prefix "$prefix" >"$prefix/log"
 for program in mpm mpmd mpmsim; do
   "$prefix/bin/$program" --version | grep -q "^$program " || fail "$program does not run"
 done
-grep -q '^\.TH MPM 1 ' "$prefix/share/man/man1/mpm.1" || fail "no manual page"
-bash -n "$prefix/share/bash-completion/completions/mpm" || fail "no completion for bash"
-grep -q '^#compdef mpm' "$prefix/share/zsh/vendor-completions/_mpm" || fail "none for zsh"
-grep -q '^complete -c mpm' "$prefix/share/fish/vendor_completions.d/mpm.fish" || fail "none for fish"
+for program in mpm mpmd mpmsim; do
+  share=$prefix/share
+  grep -qi "^\.TH $program 1 " "$share/man/man1/$program.1" || fail "no manual page of $program"
+  bash -n "$share/bash-completion/completions/$program" || fail "no $program for bash"
+  grep -q "^#compdef $program\$" "$share/zsh/vendor-completions/_$program" || fail "none for zsh"
+  grep -q "^complete -c $program " "$share/fish/vendor_completions.d/$program.fish" ||
+    fail "no $program for fish"
+done
 cmp "$source/idl/mpm.idl" "$prefix/share/mpm/mpm.idl"
 "$prefix/bin/mpmd" --check --config "$prefix/share/mpm/units" || fail "the example is not right"
 # Plants find their scenarios, and `mpm` the simulator beside it.

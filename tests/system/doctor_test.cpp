@@ -194,6 +194,29 @@ TEST_CASE("doctor tells what ails a monitor beside its alarms") {
   CHECK(any_text(said["troubles"], "the journal of every sample cannot be written: No space left"));
 }
 
+TEST_CASE("two monitors of one unit say so in the same words, so that readers see them stand") {
+  TemporaryFolder folder;
+  Bench bench("doctor-in-turn");
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  bench.publish(publisher, plant, 20);
+  std::optional<Process> second;
+  start_another_monitor(bench, folder, second);
+  const auto said = [&] {
+    std::vector<std::string> texts;
+    for (const auto& health : bench.seen<HealthRecord>())
+      if (const auto at = health.detail.find("2 monitors watch"); at != std::string::npos)
+        texts.push_back(health.detail.substr(at, health.detail.find("in turn", at) - at));
+    return texts;
+  };
+  REQUIRE(bench.observe([&] { return said().size() >= 6; }));
+  for (const std::string& text : said()) {
+    CHECK(text == said().front());
+    CHECK(text.find("mpmd (process " + std::to_string(second->pid())) != std::string::npos);
+    CHECK(text.find("mpmd (process " + std::to_string(bench.daemon.pid())) != std::string::npos);
+  }
+}
+
 TEST_CASE("two monitors of one unit, and what the disk does not take, are in health and status") {
   TemporaryFolder folder;
   Bench bench("doctor-monitors",
@@ -218,7 +241,7 @@ TEST_CASE("two monitors of one unit, and what the disk does not take, are in hea
            said(("mpmd (process " + std::to_string(bench.daemon.pid())).c_str());
   }));
   const std::string log = read_file(bench.folder.file("mpmd.err"));
-  CHECK(count_of(log, "another monitor watches this unit as well") == 1);
+  CHECK(count_of(log, "2 monitors watch this unit: ") == 1);
   CHECK(count_of(log, "the journal of every sample cannot be written") == 1);
   CHECK(count_of(log, "CYCLONEDDS_URI is set, but") == 1);
 

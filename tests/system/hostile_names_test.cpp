@@ -55,4 +55,20 @@ TEST_CASE("a name on the bus neither forges a line of the log nor fills the memo
   CHECK(told);
 }
 
+TEST_CASE("long names of units that stay on the bus do not fill the memory") {
+  Bench bench("hostile_stay");
+  const Frame frame(SignalCounts{1, 0, 1, 0});
+  const long before_kb = bench.daemon.resident_kb();
+  std::vector<idl::UnitPublisher> strangers;
+  for (int i = 0; i < 60; ++i) {
+    strangers.push_back(stranger(bench, std::to_string(i) + std::string(9 * kMegabyte / 10, 'n')));
+    static_cast<void>(strangers.back().publish(frame));
+  }
+  const idl::UnitPublisher known = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  bench.publish(known, plant, 50);
+  CHECK(bench.observe([&] { return bench.health().frames >= 40; }));
+  CHECK(bench.daemon.resident_kb() < before_kb + 50'000);
+}
+
 }  // namespace mpm::test

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "daemon/app/commands/command_tree.hpp"
+#include "cli/command_tree.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "idl/version.hpp"
 
@@ -22,10 +22,7 @@ void add_completion(CLI::App& app, int& exit_code) {
       "  mpm completion zsh > /usr/share/zsh/vendor-completions/_mpm\n"
       "  mpm completion fish > ~/.config/fish/completions/mpm.fish");
   command->callback([&app, shell, &exit_code] {
-    const CommandEntry root = command_tree(app);
-    std::cout << (*shell == "bash"  ? bash_completion(root)
-                  : *shell == "zsh" ? zsh_completion(root)
-                                    : fish_completion(root));
+    std::cout << cli::completion(cli::command_tree(app), *shell);
     exit_code = 0;
   });
 }
@@ -37,7 +34,7 @@ void add_man(CLI::App& app, int& exit_code) {
       "  mpm man | man -l -\n"
       "  mpm man > /usr/share/man/man1/mpm.1");
   command->callback([&app, &exit_code] {
-    std::cout << man_page(command_tree(app), idl::version_text("mpm"));
+    std::cout << cli::man_page(cli::command_tree(app), idl::version_text("mpm"));
     exit_code = 0;
   });
 }

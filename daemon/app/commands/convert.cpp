@@ -6,6 +6,7 @@
 
 #include "config/load_unit.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/convert.hpp"
@@ -34,8 +35,7 @@ void tell(const Options& options, const bag::ConvertReport& report) {
       << report.uncertain << " uncertain, " << report.bad << " bad), " << report.missing
       << " missing; " << counted(report.bytes, "byte") << "\n"
       << std::flush;
-  for (const std::string& notice : report.notices)
-    std::cerr << options.input << ": " << notice << '\n';
+  tell_notices(report.notices, options.input);
 }
 
 // 0, or 3 on bad input.

@@ -11,6 +11,7 @@
 
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
+#include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
@@ -99,15 +100,7 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
     journals.push(monitor);
   }
   journals.finish();
-  const MonitorCounters& counters = monitor.counters();
-  report.samples = counters.frames;
-  report.used_samples = counters.used;
-  report.missing = counters.missing;
-  report.out_of_order = counters.out_of_order;
-  report.bad_values = counters.bad_values;
-  report.frozen = counters.implausible.frozen;
-  report.clipped = counters.implausible.clipped;
-  report.spikes = counters.implausible.spikes;
+  report.take_counters(monitor.monitor(), unit);
   report.channels = monitor.channels();
   report.performance = performance.record();
   if (!choice.all()) report.used = used.stretches();
@@ -137,7 +130,7 @@ int detect(const DetectOptions& options) {
     const files::TimeChoice choice(options.time, times);
     Journals journals(options, loaded.config);
     const report::DetectReport report = run(loaded.config, *frames, choice, journals);
-    for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
+    tell_notices(frames->notices());
     if (report.samples == 0)
       throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",
                                 "holds no control interval of unit '" + loaded.config.unit + "'" +

@@ -12,6 +12,7 @@
 #include "core/parallel/parallel.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/given_data.hpp"
+#include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
@@ -165,8 +166,7 @@ int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
   const std::optional<report::LoopPlan> loops = plan(options, unit, fit);
   if (!fit) return 3;
   report::DiagnosisRun run = prepare(options, std::move(unit));
-  if (!options.quiet)
-    for (const std::string& notice : run.notices) std::cerr << notice << '\n';
+  if (!options.quiet) tell_notices(run.notices);
   host::StopSignal stop;
   if (!diagnose_run(options, stop, run)) {
     std::cerr << "mpm: stopped; nothing was written\n";

@@ -10,6 +10,7 @@
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/report/unit_monitor.hpp"
+#include "daemon/report/worst_tags.hpp"
 
 namespace mpm::app {
 namespace {
@@ -63,7 +64,8 @@ Recording read(const std::string& file, const config::UnitConfig& unit,
             " intervals; a new run begins after each");
   count(data.scraps, "row", " left out, of runs too short to tell anything");
   count(data.out_of_order, "row", " left out, for the time does not grow");
-  count(data.bad_values, "value", " of inputs and CVs missing or bad");
+  count(data.bad_values, "value",
+        " of inputs and CVs missing or bad" + report::worst_tags(data.bad_tags));
   return std::move(data.recording);
 }
 

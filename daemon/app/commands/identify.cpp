@@ -12,6 +12,7 @@
 #include "core/parallel/parallel.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/given_data.hpp"
+#include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/files/output_folder.hpp"
@@ -82,8 +83,7 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   std::optional<files::OutputFolder> folder;
   if (!options.report.empty()) folder.emplace(options.report);
   report::IdentificationRun run = prepare(options, std::move(unit));
-  if (!options.quiet)
-    for (const std::string& notice : run.notices) std::cerr << notice << '\n';
+  if (!options.quiet) tell_notices(run.notices);
   IdentificationSettings settings;
   settings.hints = run.unit.identify;
   settings.threads = options.threads;

@@ -14,6 +14,7 @@
 #include "core/model/reduce_step_response.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/commands.hpp"
+#include "daemon/app/commands/notices.hpp"
 #include "daemon/files/csv/state_space_folder.hpp"
 #include "daemon/files/csv/step_table.hpp"
 #include "daemon/files/replacement_file.hpp"
@@ -93,8 +94,7 @@ bool read_model(const ImportOptions& options, config::UnitConfig& unit, Story& s
     return true;
   }
   files::StepTable table = files::read_step_table(options.table, unit);
-  for (const std::string& notice : table.notices)
-    std::cerr << options.table << ": " << notice << '\n';
+  tell_notices(table.notices, options.table);
   for (ChannelSpec& channel : table.channels) take(std::move(channel), unit, story);
   if (!unit.has_model())
     throw config::InputError(

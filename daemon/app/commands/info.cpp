@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/finding.hpp"
+#include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/info_text.hpp"
@@ -19,7 +20,7 @@ int run_info(const std::vector<std::string>& paths, const TimesText& times_text,
   try {
     const files::TimeStyle times = times_of(times_text);
     const bag::FileInfo info = bag::inspect(paths, times, files::TimeChoice(choice, times));
-    for (const std::string& notice : info.notices) std::cerr << info.path << ": " << notice << '\n';
+    tell_notices(info.notices, info.path);
     std::cout << (json ? to_json(info).dump(-1, ' ', false,
                                             nlohmann::ordered_json::error_handler_t::replace) +
                              "\n"

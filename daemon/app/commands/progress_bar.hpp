@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
 
 namespace mpm::app {
@@ -24,5 +25,9 @@ class ProgressBar {
   Clock::time_point due_;
   int percent_ = -1;
 };
+
+/// `reading [####......] 40 %` in less than `width` columns; where they are too few, without the
+/// bar.
+[[nodiscard]] std::string progress_text(const std::string& what, int percent, std::size_t width);
 
 }  // namespace mpm::app

@@ -11,6 +11,7 @@
 #include "config/unit_layout.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
+#include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bus/domain_options.hpp"
@@ -68,10 +69,6 @@ void wait_for_readers(const idl::UnitPublisher& publisher, const PublishOptions&
               << " s; publishing all the same\n";
 }
 
-void tell_notices(files::LineFrames& lines) {
-  for (const std::string& notice : lines.take_notices()) std::cerr << notice << '\n';
-}
-
 int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
                   host::StopSignal& stop) {
   const files::TimeStyle times = times_of(options.times);  // before any thread
@@ -111,13 +108,13 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
       ++skipped;
       continue;
     }
-    tell_notices(lines);
+    tell_notices(lines.take_notices());
     if (!publisher.publish(frame) && !options.real_time)
       throw std::runtime_error("interval " + std::to_string(frame.interval) +
                                ": a reader does not take samples");
     ++published;
   }
-  tell_notices(lines);
+  tell_notices(lines.take_notices());
   if (!publisher.flush(kFlushTime)) std::cerr << "some readers do not have all samples\n";
   std::cerr << "mpm publish: " << counted(published, "line") << " published";
   if (skipped > 0) std::cerr << ", " << skipped << " skipped";

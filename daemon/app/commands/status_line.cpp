@@ -6,6 +6,9 @@
 #include <cstdio>
 #include <iostream>
 
+#include "daemon/host/terminal.hpp"
+#include "daemon/report/terminal/terminal_text.hpp"
+
 namespace mpm::app {
 namespace {
 
@@ -30,7 +33,8 @@ bool StatusLine::due(Clock::time_point now) {
 
 void StatusLine::show(const std::string& text) {
   if (terminal_)
-    std::cerr << '\r' << text << "\x1b[K" << std::flush;
+    std::cerr << '\r' << report::shortened(text, host::terminal_width(STDERR_FILENO) - 1)
+              << "\x1b[K" << std::flush;
   else
     std::cerr << text << std::endl;
   open_ = terminal_;

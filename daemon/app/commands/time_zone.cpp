@@ -14,9 +14,16 @@ std::shared_ptr<const files::TimeZone> zone_of(const std::string& name) {
 }
 
 void add_time_format(CLI::App& command, std::string& format) {
-  command.add_option("--time-format", format,
-                     "how the times of a CSV are written, in letters of strftime such as "
-                     "'%d/%m/%Y %H:%M:%S', where they are not understood");
+  const auto says_something = [](const std::string& text) {
+    return text.find_first_not_of(' ') == std::string::npos
+               ? "is empty: leave it out, or say how the times are written"
+               : "";
+  };
+  command
+      .add_option("--time-format", format,
+                  "how the times of a CSV are written, in letters of strftime such as "
+                  "'%d/%m/%Y %H:%M:%S', where they are not understood")
+      ->check(says_something);
 }
 
 void add_times(CLI::App& command, TimesText& text) {

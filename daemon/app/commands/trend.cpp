@@ -9,6 +9,7 @@
 
 #include "config/load_unit.hpp"
 #include "daemon/app/commands/commands.hpp"
+#include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
@@ -64,7 +65,7 @@ void take_data(const TrendOptions& options, const config::UnitConfig& unit,
       trend.add({alarm.mv, alarm.cv, alarm.to == AlarmChange::kActive, alarm.source_time_ns});
   }
   if (const auto digest = digests.finish()) trend.add(*digest);
-  for (const std::string& notice : frames->notices()) std::cerr << notice << '\n';
+  tell_notices(frames->notices());
 }
 
 void take_journal(const TrendOptions& options, const files::TimeChoice& choice,

@@ -55,7 +55,7 @@ class WriterNames {
   [[nodiscard]] std::string of(std::uint64_t writer) {
     const auto known = names_.find(writer);
     if (known != names_.end()) return known->second;
-    const bus::Surroundings around{"", discovery_.endpoints(), {}};
+    const bus::Surroundings around{"", "", discovery_.endpoints(), {}};
     if (bus::find_writer(around, writer) == nullptr) return "";
     if (names_.size() >= kMost) names_.clear();
     return names_[writer] = bus::writer_name(around, writer);

@@ -235,7 +235,7 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
 
 Findings Examination::findings() const {
   const Clock::time_point now = Clock::now();
-  Surroundings around{place_, survey_.endpoints(), strangers_};
+  Surroundings around{place_, "", survey_.endpoints(), strangers_};
   Findings findings;
   findings.place = place_;
   if (around.endpoints.empty())

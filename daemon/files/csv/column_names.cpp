@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 2> kShortTimes = {"t", "ts"};
 constexpr std::array<std::string_view, 2> kDates = {"date", "datum"};
 constexpr std::array<std::string_view, 5> kClocks = {"time", "zeit", "uhrzeit", "timeofday",
                                                      "clock"};
-constexpr std::array<std::string_view, 17> kTags = {"tag",
+constexpr std::array<std::string_view, 18> kTags = {"tag",
                                                     "tagname",
                                                     "varname",
                                                     "variable",
@@ -31,9 +31,14 @@ constexpr std::array<std::string_view, 17> kTags = {"tag",
                                                     "signal",
                                                     "messstelle",
                                                     "name",
-                                                    "id"};
+                                                    "id",
+                                                    "tagid"};
 constexpr std::array<std::string_view, 8> kValues = {"value",        "val",  "varvalue", "tagvalue",
                                                      "iptrendvalue", "wert", "messwert", "vvalue"};
+
+constexpr std::array<std::string_view, 8> kTypedValues = {
+    "floatvalue", "intvalue",  "stringvalue", "datevalue",
+    "datestring", "realvalue", "doublevalue", "boolvalue"};
 
 template <std::size_t n>
 int rank_in(const std::array<std::string_view, n>& names, std::string_view name) {
@@ -64,6 +69,7 @@ bool is_short_time_name(std::string_view name) { return rank_in(kShortTimes, nam
 bool is_date_name(std::string_view name) { return rank_in(kDates, name) >= 0; }
 bool is_clock_name(std::string_view name) { return rank_in(kClocks, name) >= 0; }
 int tag_name_rank(std::string_view name) { return rank_in(kTags, name); }
+bool is_typed_value_name(std::string_view name) { return rank_in(kTypedValues, name) >= 0; }
 int value_name_rank(std::string_view name) { return rank_in(kValues, name); }
 
 }  // namespace mpm::files

@@ -19,5 +19,7 @@ namespace mpm::files {
 /// Of a table with one row for each tag and time; the smaller the surer, -1 for other names.
 [[nodiscard]] int tag_name_rank(std::string_view name);
 [[nodiscard]] int value_name_rank(std::string_view name);
+/// Of such a table with a column for each type of value (`intvalue`, `floatvalue` ...).
+[[nodiscard]] bool is_typed_value_name(std::string_view name);
 
 }  // namespace mpm::files

@@ -9,6 +9,8 @@
 #include "config/finding.hpp"
 #include "daemon/files/csv/averaged_rows.hpp"
 #include "daemon/files/csv/calculated_rows.hpp"
+#include "daemon/files/csv/held_rows.hpp"
+#include "daemon/files/csv/spread_rows.hpp"
 
 namespace mpm::files {
 namespace {
@@ -16,8 +18,10 @@ namespace {
 constexpr std::size_t kRowsAhead = 200;
 constexpr double kSampleTimeTolerance = 0.1;
 constexpr double kIntervalsAhead = 100.0, kMostRowsAhead = 20'000.0;  // to see MVs move
-constexpr double kSparsest = 0.5;  // of the sample time: two rows make a mean
+constexpr double kSparsest = 0.5;          // of the sample time: two rows make a mean
+constexpr double kHeldPerInterval = 10.0;  // rows
 constexpr double kNsPerSecond = 1e9;
+constexpr std::int64_t kNsPerMinute = 60'000'000'000;
 constexpr double kLargestInterval = 9e15;  // exact in a double
 
 // A clock was set back by more intervals than these if that many rows in a row say so.
@@ -58,19 +62,51 @@ void CsvReader::open(const config::UnitConfig& unit, const TimeStyle& times) {
   std::vector<Cell> header;
   const CsvFormat format = find_format(lines_, times, sample_time_s_, &tags_, header, row_notices_);
   const int header_line = lines_.number();
-  rows_ = format.layout.is_long ? read_long(lines_, format, tags_, counts, row_notices_)
-                                : read_wide(lines_, format, header, tags_, counts, row_notices_);
+  rows_ = read_rows(lines_, format, header, tags_, counts, row_notices_);
+  if (rows_->has_own_times()) hold(counts);
   if (!unit.calc.empty()) rows_ = std::make_unique<CalculatedRows>(std::move(rows_), unit);
-  notices_ = tags_.notices();
+  const std::vector<std::string> told = tags_.notices();
+  notices_.insert(notices_.begin(), told.begin(), told.end());
 
-  for (std::size_t i = 0; i < kRowsAhead; ++i) {
-    Frame frame;
-    if (!rows_->next(frame)) break;
-    if (i == 0) first_ns_ = frame.source_time_ns;
-    ahead_.push_back(std::move(frame));
-  }
+  look_ahead();
   if (ahead_.empty()) lines_.fail(header_line, 1, "no data below the header");
+  spread_minutes(header_line);
+  first_ns_ = ahead_.front().source_time_ns;
   fit_sample_time(header_line);
+}
+
+void CsvReader::look_ahead() {
+  Frame frame;
+  while (ahead_.size() < kRowsAhead && rows_->next(frame)) ahead_.push_back(std::move(frame));
+}
+
+void CsvReader::spread_minutes(int header_line) {
+  const std::optional<std::int64_t> per_minute = rows_per_minute(ahead_);
+  if (!per_minute) return;
+  const bool uneven = *per_minute == 0 || kNsPerMinute % *per_minute != 0;
+  if (uneven && sample_time_s_ * kNsPerSecond >= static_cast<double>(kNsPerMinute)) return;
+  const auto fail = [this, header_line](const std::string& message) {
+    lines_.fail(header_line, 1, message);
+  };
+  if (uneven)
+    fail(
+        "several rows have the same minute for their time, and not each minute equally many: the "
+        "seconds are cut off, export them");
+  rows_ =
+      std::make_unique<SpreadRows>(std::move(rows_), std::exchange(ahead_, {}), *per_minute, fail);
+  look_ahead();
+  notices_.push_back("the seconds of the times are cut off: the " + std::to_string(*per_minute) +
+                     " rows of each minute are spread evenly over it");
+}
+
+// To judge a unit finely enough for the moments at which MVs move; a recording has one row for each
+// interval.
+void CsvReader::hold(const SignalCounts& counts) {
+  const double step_s =
+      purpose_ == Purpose::kJudge ? sample_time_s_ / kHeldPerInterval : sample_time_s_;
+  auto held = std::make_unique<HeldRows>(std::move(rows_), counts, step_s, sample_time_s_);
+  notices_.emplace_back(held->notice());
+  rows_ = std::move(held);
 }
 
 void CsvReader::fit_sample_time(int first_line) {

@@ -17,7 +17,9 @@ namespace mpm::files {
 /// `tag,time,value,quality`, in the layouts of docs/data.md. Memory stays flat, except for a long
 /// file that is not sorted by time.
 ///
-/// To judge a unit, rows at least twice as dense as its sample_time are averaged down to it
+/// Where each tag has times of its own, its values are held from one to the next (`HeldRows`),
+/// which is noted. To judge a unit, rows at least twice as dense as its sample_time are averaged
+/// down to it
 /// (`AveragedRows`), which is noted. Calculated signals are computed in each row
 /// (`CalculatedRows`).
 ///
@@ -44,6 +46,9 @@ class CsvReader : public FrameSource {
 
  private:
   void open(const config::UnitConfig& unit, const TimeStyle& times);
+  void hold(const SignalCounts& counts);
+  void look_ahead();
+  void spread_minutes(int header_line);
   void fit_sample_time(int first_line);
   void average(double step_s);
   [[nodiscard]] bool read(Frame& frame);

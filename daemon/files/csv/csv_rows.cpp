@@ -11,6 +11,8 @@ namespace {
 
 std::vector<std::string> wide_tags(const Layout& layout, const std::vector<Cell>& header) {
   std::vector<std::string> tags;
+  for (const PairedColumns& pair : layout.pairs)
+    if (!pair.name.empty()) tags.push_back(pair.name);
   for (const std::size_t cell : layout.values) tags.emplace_back(header[cell].text);
   return tags;
 }
@@ -31,20 +33,21 @@ std::vector<std::string> long_tags(LineReader& lines, const CsvFormat& format) {
 
 }  // namespace
 
-CsvRows::CsvRows(const std::string& path, const TimeStyle& times,
-                 const std::vector<config::CalculatedSignal>& calc)
+CsvRows::CsvRows(const std::string& path, const TimeStyle& times, const config::UnitConfig* known)
     : lines_(open_file(path), path) {
   std::vector<Cell> header;
   format_ = find_format(lines_, times, 0.0, nullptr, header, notices_);
   const int header_line = lines_.number();
-  const std::vector<std::string> tags =
+  std::vector<std::string> tags =
       format_.layout.is_long ? long_tags(lines_, format_) : wide_tags(format_.layout, header);
+  if (known != nullptr) call_as(*known, header_line, tags);
   config::UnitConfig unit;
   for (const std::string& tag : tags) {
     columns_.push_back({tag, SignalKind::kAux, static_cast<int>(unit.aux.size())});
     unit.aux.push_back({tag, "", ""});
   }
-  for (const config::CalculatedSignal& signal : calc) {
+  for (const config::CalculatedSignal& signal :
+       known != nullptr ? known->calc : std::vector<config::CalculatedSignal>()) {
     const auto has = [&unit](const std::string& tag) {
       return unit.calculation_of(tag) != nullptr ||
              std::any_of(unit.aux.begin(), unit.aux.end(),
@@ -61,9 +64,25 @@ CsvRows::CsvRows(const std::string& path, const TimeStyle& times,
   lines_.split(format_.delimiter, header);
   tags_ = std::make_unique<TagTable>(unit);
   const SignalCounts counts = unit.counts();
-  rows_ = format_.layout.is_long ? read_long(lines_, format_, *tags_, counts, notices_)
-                                 : read_wide(lines_, format_, header, *tags_, counts, notices_);
+  rows_ = read_rows(lines_, format_, header, *tags_, counts, notices_);
   if (!unit.calc.empty()) rows_ = std::make_unique<CalculatedRows>(std::move(rows_), unit);
+}
+
+void CsvRows::call_as(const config::UnitConfig& known, int header_line,
+                      std::vector<std::string>& tags) {
+  TagTable names(known, Purpose::kKeep);
+  for (const std::string& tag : tags) names.see(tag);
+  if (const std::string problem = names.problem(); !problem.empty())
+    lines_.fail(header_line, 1, problem);
+  if (std::string readings = names.readings(); !readings.empty())
+    notices_.push_back(std::move(readings));
+  for (std::string& tag : tags)
+    if (const std::string* called = names.tag_of(tag)) tag = *called;
+}
+
+const char* CsvRows::layout() const {
+  if (format_.layout.is_long) return "long";
+  return format_.layout.pairs.empty() ? "wide" : "pairs";
 }
 
 bool CsvRows::next(Frame& frame) {

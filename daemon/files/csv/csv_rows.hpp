@@ -15,19 +15,24 @@ namespace mpm::files {
 /// its rows. The frames have no interval numbers.
 class CsvRows : public FrameSource {
  public:
-  /// All tags of the file, as aux signals, and those of `calc` whose inputs it has. Throws
-  /// config::InputError where it cannot be read.
+  /// All tags of the file, as aux signals: called as `unit` calls them where it names them, and
+  /// with what it calculates from them. Null = no unit. Throws config::InputError where it cannot
+  /// be read.
   explicit CsvRows(const std::string& path, const TimeStyle& times = {},
-                   const std::vector<config::CalculatedSignal>& calc = {});
+                   const config::UnitConfig* unit = nullptr);
 
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] const std::vector<std::string>& notices() const override { return notices_; }
   /// In the order of the file, then what is calculated.
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
-  [[nodiscard]] bool is_long() const { return format_.layout.is_long; }
+  /// `wide`, `long` or `pairs`.
+  [[nodiscard]] const char* layout() const;
   [[nodiscard]] char delimiter() const { return format_.delimiter; }
 
  private:
+  /// Turns names of the file into the unit's tags.
+  void call_as(const config::UnitConfig& known, int header_line, std::vector<std::string>& tags);
+
   LineReader lines_;
   CsvFormat format_;
   std::vector<Column> columns_;

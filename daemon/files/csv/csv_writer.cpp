@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "config/finding.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::files {
@@ -79,6 +80,12 @@ CsvWriter::CsvWriter(const std::string& path, std::vector<Column> columns, CsvOp
 }
 
 void CsvWriter::set_time(std::int64_t time_ns) {
+  if (!moment_ns(time_ns / kNsPerSecond, 0))
+    throw config::InputError(
+        {"", 0, 0, config::Severity::kError, "",
+         "a row has the time " + utc_text(time_ns) +
+             ", which no data file may have (1825 to 2115): the clock of what sent it is wrong; "
+             "leave it out with --from, --until or --exclude"});
   if (options_.seconds) {
     time_ = seconds_text(time_ns);
     return;

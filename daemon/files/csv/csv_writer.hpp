@@ -31,6 +31,7 @@ class CsvWriter {
   /// std::invalid_argument where a tag cannot stand in a CSV file or stands there twice.
   CsvWriter(const std::string& path, std::vector<Column> columns, CsvOptions options);
 
+  /// Throws config::InputError for a time that `CsvReader` would not read.
   void write(const Frame& frame);
   /// Throws std::runtime_error where not everything could be written.
   void finish();

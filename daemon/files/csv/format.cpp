@@ -16,6 +16,7 @@ namespace {
 constexpr int kLinesAbove = 20;     // that may stand above a header
 constexpr int kRowsBelow = 3;       // that may stand between a header and the first time
 constexpr std::size_t kRows = 200;  // read of any file
+constexpr double kSecondsPerNs = 1e-9;
 
 bool is_date(const TimeStyle& times, std::string_view text) {
   return times.format ? times.format->parse(text).has_value() : parse_calendar(text).has_value();
@@ -49,14 +50,28 @@ bool names_stand_above(const std::vector<bool>& above, const Layout& layout) {
          static_cast<std::ptrdiff_t>(layout.width);
 }
 
+/// Names of the line above for pairs of columns that have none: over the value, else over the time.
+void take_names_above(const std::vector<std::string>& names, Layout& layout) {
+  const auto name = [&names](std::size_t i) { return i < names.size() ? names[i] : std::string(); };
+  for (PairedColumns& pair : layout.pairs) {
+    if (pair.name.empty()) pair.name = name(pair.value);
+    if (pair.name.empty()) pair.name = name(pair.time);
+  }
+}
+
 std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
   std::vector<bool> above;  // which cells of the line before are not empty
+  std::vector<std::string> names_above;
   int line_above = 0;
   for (int i = 0; i <= kLinesAbove && (i == 0 || lines.next()); ++i) {
     const char delimiter = find_delimiter(lines.text());
     const std::vector<Cell> cells = split_header(lines, delimiter);
     if (cells.size() < 2) continue;
-    if (const std::optional<Layout> layout = find_layout(cells, tags)) {
+    if (std::optional<Layout> layout = find_layout(cells, tags)) {
+      if (!layout->pairs.empty()) {
+        take_names_above(names_above, *layout);
+        return Header{lines.number(), delimiter, *layout, true};
+      }
       if (!names_stand_above(above, *layout))
         return Header{lines.number(), delimiter, *layout, true};
       return_to(lines, line_above);
@@ -64,10 +79,24 @@ std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
       return Header{line_above, delimiter, layout_with_time(names, layout->time, tags), true};
     }
     above.clear();
-    for (const Cell& cell : cells) above.push_back(!cell.text.empty());
+    names_above.clear();
+    for (const Cell& cell : cells) {
+      above.push_back(!cell.text.empty());
+      names_above.emplace_back(cell.text);
+    }
     line_above = lines.number();
   }
   return std::nullopt;
+}
+
+/// Whether columns of dates have a column of values each: one of the two has a name, or all the
+/// dates have the same. Else they are dates of something else.
+bool are_pairs(const std::vector<Cell>& header, const std::vector<std::size_t>& dates) {
+  if (dates.size() < 2 || dates[1] < 2 || dates.back() >= header.size()) return false;
+  return std::all_of(dates.begin(), dates.end(), [&](std::size_t date) {
+    const bool nameless = date + 1 >= header.size() || header[date + 1].text.empty();
+    return nameless || header[date].text.empty() || header[date].text == header[dates[0]].text;
+  });
 }
 
 /// A first column of any name, with dates below.
@@ -78,9 +107,15 @@ std::optional<Header> header_by_dates(LineReader& lines, int line, const TimeSty
   for (int i = 0; i <= kRowsBelow && lines.next(); ++i) {
     const std::vector<Cell> cells = split_header(lines, delimiter);
     if (cells.size() < 2 || !is_date(times, cells[0].text)) continue;
+    std::vector<std::size_t> dates;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell)
+      if (is_date(times, cells[cell].text)) dates.push_back(cell);
     return_to(lines, line);
     const std::vector<Cell> header = split_header(lines, delimiter);
-    return Header{line, delimiter, layout_with_time(header, {}, tags), false};
+    const bool pairs = are_pairs(header, dates);
+    return Header{line, delimiter,
+                  pairs ? layout_of_pairs(header, dates) : layout_with_time(header, {}, tags),
+                  false};
   }
   return std::nullopt;
 }
@@ -98,7 +133,7 @@ class Survey {
     for (std::size_t row = 0; (row < kRows || open()) && lines_.next(); ++row) {
       lines_.split(format_.delimiter, cells_);
       if (cells_.size() < format_.layout.width) continue;
-      look_at_time();
+      look_at_times();
       look_at_qualities();
       if (row + 1 == kRows) check_serial_dates();
     }
@@ -130,8 +165,20 @@ class Survey {
     return (two_numbers_ && !dates_.settled()) || codes_ == Codes::kZeroIsGood;
   }
 
-  void look_at_time() {
-    TimeColumns& columns = format_.layout.time;
+  void look_at_times() {
+    Layout& layout = format_.layout;
+    if (layout.pairs.empty()) {
+      look_at_time(layout.time, layout.is_long ? cells_[layout.tag].text : std::string_view());
+      return;
+    }
+    for (const PairedColumns& pair : layout.pairs) {
+      TimeColumns time{pair.time, std::nullopt};
+      look_at_time(time, pair.name);
+    }
+  }
+
+  /// Days follow one another among the rows of one `series`.
+  void look_at_time(TimeColumns& columns, std::string_view series) {
     if (columns.clock && !there_) {
       const std::string_view clock = cells_[*columns.clock].text;
       if (clock.empty()) return;
@@ -145,17 +192,26 @@ class Survey {
     if (text.find_first_of("0123456789") == std::string::npos) return;
     there_ = true;
     if (format_.times.format) return;
+    if (columns.clock) refuse_day_number(cells_[columns.time]);
     if (const std::optional<CalendarTime> written = parse_calendar(text)) {
       two_numbers_ = two_numbers_ || written->two_numbers;
-      const Layout& layout = format_.layout;
-      dates_.add(*written, layout.is_long ? cells_[layout.tag].text : std::string_view());
+      dates_.add(*written, series);
     } else {
       std::string problem;
       const std::optional<std::int64_t> number = parse_seconds(text, problem);
-      if (!number || serial_checked_) return;
+      if (!number || serial_checked_ || columns.time != format_.layout.time.time) return;
       if (days_.empty()) first_number_ = {lines_.number(), cells_[columns.time].column, text};
-      days_.push_back(static_cast<double>(*number) * 1e-9);
+      days_.push_back(static_cast<double>(*number) * kSecondsPerNs);
     }
+  }
+
+  /// Of a date that has a column for the time of day beside it.
+  void refuse_day_number(const Cell& date) const {
+    std::string none;
+    const std::optional<std::int64_t> number = parse_seconds(date.text, none);
+    if (!number || serial_checked_) return;
+    const std::string problem = serial_day_problem(static_cast<double>(*number) * kSecondsPerNs);
+    if (!problem.empty()) lines_.fail(date.column, "'" + std::string(date.text) + "' " + problem);
   }
 
   void look_at_qualities() {
@@ -186,7 +242,7 @@ class Survey {
     for (std::size_t i = 0; i < layout.qualities.size(); ++i) {
       if (checked_[i] != Check::kIsNot)
         kept.push_back(layout.qualities[i]);
-      else if (!layout.is_long)
+      else if (!layout.is_long && layout.pairs.empty())
         layout.values.push_back(layout.qualities[i].cell);
     }
     std::sort(layout.values.begin(), layout.values.end());

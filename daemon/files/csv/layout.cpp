@@ -5,6 +5,7 @@
 
 #include "daemon/files/csv/cell.hpp"
 #include "daemon/files/csv/column_names.hpp"
+#include "daemon/files/csv/tag_names.hpp"
 
 namespace mpm::files {
 namespace {
@@ -48,11 +49,29 @@ std::optional<TimeColumns> find_time(const Names& header, const TagTable* tags) 
   return time ? std::optional(TimeColumns{*time, std::nullopt}) : std::nullopt;
 }
 
+/// Columns that are called as the same time; none where a time of day stands beside a date.
+std::vector<std::size_t> repeated_times(const Names& header, const TagTable* tags) {
+  std::vector<std::size_t> times;
+  if (const auto time = find_time(header, tags); time && time->clock) return times;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const std::string_view name = header[i].text;
+    if (is_time_name(name) && !names_signal(tags, name) &&
+        (times.empty() || plain_name(name) == plain_name(header[times.front()].text)))
+      times.push_back(i);
+  }
+  return times;
+}
+
 /// A tag, a time and a value column.
 std::optional<Layout> find_long(const Names& header, const TagTable* tags) {
   Layout layout;
   const auto tag = find_best(header, tag_name_rank);
-  const auto value = find_best(header, value_name_rank);
+  auto value = find_best(header, value_name_rank);
+  if (!value) {  // a column for each type, of which one is filled
+    for (std::size_t i = 0; i < header.size(); ++i)
+      if (is_typed_value_name(header[i].text)) layout.others.push_back(i);
+    if (!layout.others.empty()) value = layout.others.front();
+  }
   std::optional<TimeColumns> time = find_time(header, tags);
   if (!time) {
     const auto brief = find_if_name(header, is_short_time_name);
@@ -83,7 +102,7 @@ std::optional<Layout> find_long(const Names& header, const TagTable* tags) {
 }
 
 /// The tag that a column `FIC101.Quality`, `FIC101 Status`, `FIC101_Q` or `FIC101 (Quality)`
-/// qualifies, and how; the tag is a column of its own.
+/// qualifies, and how; the tag is a column of its own, plainly or as `FIC101.Value`.
 std::optional<QualityColumn> qualifies(const Names& header, std::size_t at) {
   std::string_view name = header[at].text;
   const bool bracket = !name.empty() && (name.back() == ')' || name.back() == ']');
@@ -95,7 +114,7 @@ std::optional<QualityColumn> qualifies(const Names& header, std::size_t at) {
     std::string_view tag = name.substr(0, cut);
     while (!tag.empty() && tag.back() == ' ') tag.remove_suffix(1);
     for (std::size_t i = 0; i < header.size(); ++i)
-      if (i != at && header[i].text == tag)
+      if (i != at && (header[i].text == tag || without_value_word(header[i].text) == tag))
         return QualityColumn{at, i, *kind, same_word(name.substr(cut), kQualitySuffix)};
   }
   return std::nullopt;
@@ -148,10 +167,41 @@ Layout layout_with_time(const Names& header, TimeColumns time, const TagTable* t
   return layout;
 }
 
+Layout layout_of_pairs(const Names& header, const std::vector<std::size_t>& times) {
+  Layout layout;
+  layout.width = header.size();
+  layout.time = {times.front(), std::nullopt};
+  const auto names_a_tag = [&header](std::size_t i) {
+    return !header[i].text.empty() && value_name_rank(header[i].text) < 0;
+  };
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const std::size_t time = times[k];
+    const std::size_t end = k + 1 < times.size() ? times[k + 1] : header.size();
+    const std::size_t first = layout.pairs.size();
+    for (std::size_t i = time + 1; i < end; ++i) {
+      const std::string_view name = header[i].text;
+      if (name.empty() && i > time + 1) continue;
+      const std::optional<QualityKind> quality = quality_kind(name);
+      if (quality && layout.pairs.size() > first)
+        layout.qualities.push_back({i, layout.pairs.back().value, *quality, false});
+      else
+        layout.pairs.push_back({time, i, names_a_tag(i) ? std::string(name) : std::string()});
+    }
+    if (layout.pairs.size() == first) layout.pairs.push_back({time, time + 1, {}});
+    PairedColumns& pair = layout.pairs[first];
+    if (pair.name.empty() && names_a_tag(time) && !is_time_name(header[time].text))
+      pair.name = header[time].text;
+    layout.width = std::max(layout.width, pair.value + 1);
+  }
+  return layout;
+}
+
 std::optional<Layout> find_layout(const std::vector<Cell>& cells, const TagTable* tags) {
   Names header = cells;
   if (header.size() > 1 && header.back().text.empty()) header.pop_back();  // a delimiter at the end
   if (std::optional<Layout> layout = find_long(header, tags)) return layout;
+  if (const std::vector<std::size_t> times = repeated_times(header, tags); times.size() > 1)
+    return layout_of_pairs(header, times);
   const std::optional<TimeColumns> time = find_time(header, tags);
   return time ? std::optional(layout_with_time(header, *time, tags)) : std::nullopt;
 }

@@ -25,14 +25,22 @@ struct QualityColumn {
   bool sure = false;  ///< `<tag>.quality`: a word that is none is an error, 0 is bad
 };
 
+/// A tag with a time column of its own.
+struct PairedColumns {
+  std::size_t time = 0, value = 0;
+  std::string name;  ///< empty where none stands at the columns themselves
+};
+
 /// What the columns of a file are, by their names. Either one row for each time, with a column for
-/// each tag, or one row for each tag and time.
+/// each tag, or one row for each tag and time, or columns of times and values in turn.
 struct Layout {
   bool is_long = false;
   std::size_t width = 0;  ///< columns; without what a delimiter at the end makes
   TimeColumns time;
   std::size_t tag = 0, value = 0;        ///< of a long table
+  std::vector<std::size_t> others;       ///< of one: where the value is if that cell is empty
   std::vector<std::size_t> values;       ///< of a wide one: columns with the values of a tag
+  std::vector<PairedColumns> pairs;      ///< of columns in turn; `time` is the first one's
   std::vector<QualityColumn> qualities;  ///< several may qualify one column: the worst counts
   std::vector<std::string> orphans;      ///< `.quality` columns of tags that have none
   std::size_t without_name = 0;          ///< columns
@@ -45,5 +53,9 @@ struct Layout {
 /// The same where it is known which column is the time.
 [[nodiscard]] Layout layout_with_time(const std::vector<Cell>& header, TimeColumns time,
                                       const TagTable* tags);
+
+/// The same where several columns are times, each of those behind it up to the next one.
+[[nodiscard]] Layout layout_of_pairs(const std::vector<Cell>& header,
+                                     const std::vector<std::size_t>& times);
 
 }  // namespace mpm::files

@@ -72,6 +72,15 @@ void ReadTally::tell(std::vector<std::string>& notices) const {
     notices.push_back(counted(empty_rows, "row") + " without time and values left out");
 }
 
+std::unique_ptr<RowSource> read_rows(LineReader& lines, const CsvFormat& format,
+                                     const std::vector<Cell>& header, TagTable& tags,
+                                     const SignalCounts& counts,
+                                     std::vector<std::string>& notices) {
+  if (format.layout.is_long) return read_long(lines, format, tags, counts, notices);
+  if (!format.layout.pairs.empty()) return read_pairs(lines, format, tags, counts, notices);
+  return read_wide(lines, format, header, tags, counts, notices);
+}
+
 double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell,
                   ReadTally& tally) {
   const std::optional<double> value = parse_value(cell.text, format.decimal_comma());

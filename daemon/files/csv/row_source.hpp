@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +32,9 @@ struct ReadTally {
   void tell(std::vector<std::string>& notices) const;
 };
 
+/// Of which values a row of the file speaks.
+using Told = std::array<std::vector<bool>, kSignalKindCount>;
+
 /// Frames as they stand in the file: values, qualities and time, not yet numbered.
 class RowSource {
  public:
@@ -39,6 +44,23 @@ class RowSource {
   virtual ~RowSource() = default;
 
   [[nodiscard]] virtual bool next(Frame& frame) = 0;
+  /// Where rows need not speak of every tag: of which the last frame's did. Null = of all.
+  [[nodiscard]] virtual const Told* told() const { return nullptr; }
+  /// True where each tag has times of its own, so that most rows speak of few; known from the
+  /// start.
+  [[nodiscard]] virtual bool has_own_times() const { return false; }
+  /// True where values between two times of a tag lie on the line from one to the other, rather
+  /// than stay as they were.
+  [[nodiscard]] virtual bool has_lines() const { return false; }
+  /// With such lines: of a tag of which the last row speaks, what it says next; nothing where it
+  /// stays until then.
+  struct Next {
+    std::int64_t time_ns = 0;
+    double value = 0.0;
+  };
+  [[nodiscard]] virtual std::optional<Next> next_of(SignalKind, std::size_t) const {
+    return std::nullopt;
+  }
 };
 
 /// Rows `time,<tag>,<tag>,...`; `lines` stands on the header.
@@ -52,7 +74,18 @@ class RowSource {
                                                    TagTable& tags, const SignalCounts& counts,
                                                    std::vector<std::string>& notices);
 
-/// Shared by both: a cell's value, time and quality, or InputError at its place. A state instead of
+/// Columns `time,<tag>,time,<tag>,...`, each tag with times of its own; keeps all of them.
+[[nodiscard]] std::unique_ptr<RowSource> read_pairs(LineReader& lines, const CsvFormat& format,
+                                                    TagTable& tags, const SignalCounts& counts,
+                                                    std::vector<std::string>& notices);
+
+/// The one of these that the layout asks for; `lines` stands on the header.
+[[nodiscard]] std::unique_ptr<RowSource> read_rows(LineReader& lines, const CsvFormat& format,
+                                                   const std::vector<Cell>& header, TagTable& tags,
+                                                   const SignalCounts& counts,
+                                                   std::vector<std::string>& notices);
+
+/// Shared by them: a cell's value, time and quality, or InputError at its place. A state instead of
 /// a value is missing, an unknown word for a quality bad, and both are counted.
 [[nodiscard]] double read_value(const LineReader& lines, const CsvFormat& format, const Cell& cell,
                                 ReadTally& tally);

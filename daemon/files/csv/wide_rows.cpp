@@ -68,6 +68,7 @@ class WideRows : public RowSource {
 
   void find_columns(const std::vector<Cell>& header, TagTable& tags) {
     const Layout& layout = format_.layout;
+    for (const std::size_t cell : layout.values) tags.see(header[cell].text);
     std::map<std::string_view, int> first_columns;
     for (std::size_t i = 0; i < header.size(); ++i) {
       const std::string_view name = header[i].text;
@@ -78,11 +79,8 @@ class WideRows : public RowSource {
                                           "'; the first is at column " +
                                           std::to_string(first->second));
     }
-    for (const std::size_t cell : layout.values) {
-      const std::string_view name = header[cell].text;
-      tags.see(name);
-      if (const Slot* slot = tags.find(name)) values_.push_back({cell, *slot});
-    }
+    for (const std::size_t cell : layout.values)
+      if (const Slot* slot = tags.find(header[cell].text)) values_.push_back({cell, *slot});
     for (const QualityColumn& column : layout.qualities)
       if (const Slot* slot = tags.find(header[column.value].text))
         qualities_.emplace_back(column, *slot);

@@ -28,6 +28,13 @@ double median_step(const std::vector<double>& times) {
   return *middle;
 }
 
+bool is_day(double number) { return number >= kFirstDay && number < kLastDay; }
+
+std::string as_date(double day, const char* format) {
+  const auto second = static_cast<std::int64_t>(std::llround((day - kDaysTo1970) * kSecondsPerDay));
+  return formatted_utc(second, format);
+}
+
 bool is_about(double value, double wanted) {
   return std::abs(value - wanted) <= kTolerance * wanted;
 }
@@ -35,9 +42,7 @@ bool is_about(double value, double wanted) {
 }  // namespace
 
 std::string serial_date_problem(const std::vector<double>& days, double sample_time_s) {
-  const bool in_range = std::all_of(days.begin(), days.end(),
-                                    [](double day) { return day >= kFirstDay && day < kLastDay; });
-  if (days.empty() || !in_range) return {};
+  if (days.empty() || !std::all_of(days.begin(), days.end(), is_day)) return {};
   const double step = median_step(days);
   const bool fractions =
       std::any_of(days.begin(), days.end(), [](double day) { return day != std::floor(day); });
@@ -45,11 +50,16 @@ std::string serial_date_problem(const std::vector<double>& days, double sample_t
   const bool rows_fit = by_unit && is_about(step * kSecondsPerDay, sample_time_s);
   const bool rows_tell = fractions && step < kLongestStep && (by_unit || sample_time_s <= 0.0);
   if (!rows_fit && !rows_tell) return {};
-  const auto second =
-      static_cast<std::int64_t>(std::llround((days.front() - kDaysTo1970) * kSecondsPerDay));
-  return "is a day number of a spreadsheet (" + formatted_utc(second, "%Y-%m-%d %H:%M:%S") +
+  return "is a day number of a spreadsheet (" + as_date(days.front(), "%Y-%m-%d %H:%M:%S") +
          "), not a time: give the column a date format there, such as yyyy-mm-dd hh:mm:ss, and "
          "export it again; if it is seconds, say so with --time-format %s";
+}
+
+std::string serial_day_problem(double day) {
+  if (!is_day(day)) return {};
+  return "is a day number of a spreadsheet (" + as_date(day, "%Y-%m-%d") +
+         "), not a date: give its column a date format there, such as yyyy-mm-dd, that of the time "
+         "of day hh:mm:ss, and export them again";
 }
 
 }  // namespace mpm::files

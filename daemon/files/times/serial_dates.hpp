@@ -10,5 +10,7 @@ namespace mpm::files {
 /// `days`: the first times of the file; `sample_time_s` between its rows, 0 = not known.
 [[nodiscard]] std::string serial_date_problem(const std::vector<double>& days,
                                               double sample_time_s);
+/// The same of one number that stands where a date is, beside a column for the time of day.
+[[nodiscard]] std::string serial_day_problem(double day);
 
 }  // namespace mpm::files

@@ -80,7 +80,7 @@ Json finding_json(const DiagnosisRun& run, const Finding& finding) {
   if (!finding.refused.empty()) json["refused"] = finding.refused;
   if (finding.with) {
     json["with"] = subject_json(*finding.with, names);
-    json["with"]["text"] = names.subject(*finding.with);
+    json["with"]["text"] = needed_text(names, finding);
   }
   json["explains"] = finding.explains;
   return json;
@@ -204,10 +204,8 @@ Json used_json(const Recording& recording) {
 std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
   const SignalNames names = names_of(run);
   std::string text = names.subject(finding.subject);
-  text +=
-      "  (confidence " +
-      (finding.confidence > 0.999 ? std::string("> 0.999") : number_text(finding.confidence, 2)) +
-      ")\n     " + explain(run, finding) + '\n';
+  text += "  (confidence " + confidence_text(finding.confidence) + ")\n     " +
+          explain(run, finding) + '\n';
   for (const Parameter& parameter : finding.parameters) {
     const std::string unit = names.unit_text(parameter.quantity->unit, finding.subject.place);
     text += "     " + parameter.name() + " " + number_text(parameter.value) + "  [" +
@@ -217,7 +215,7 @@ std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
   if (!finding.repaired && !finding.refused.empty())
     text += "     not in the extended model: " + finding.refused + '\n';
   if (finding.with)
-    text += "     in the extended model only together with: " + names.subject(*finding.with) + '\n';
+    text += "     in the extended model only together with: " + needed_text(names, finding) + '\n';
   for (const Rival& rival : finding.rivals)
     if (rival.inseparable) text += "     or: " + rival_text(run, rival) + '\n';
   return text;

@@ -15,4 +15,8 @@ SignalNames names_of(const DiagnosisRun& run) {
   return names;
 }
 
+std::string needed_text(const SignalNames& names, const Finding& finding) {
+  return (*finding.with == finding.subject ? "the other " : "") + names.subject(*finding.with);
+}
+
 }  // namespace mpm::report

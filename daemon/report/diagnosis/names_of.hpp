@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+
+#include "core/identify/causes/finding.hpp"
 #include "core/identify/causes/signal_names.hpp"
 #include "daemon/report/diagnosis/diagnosis_run.hpp"
 
@@ -8,5 +11,8 @@ namespace mpm::report {
 /// Tags and engineering units for the indices of a diagnosis. Inputs beyond the model's own are the
 /// aux signals that the extended model takes.
 [[nodiscard]] SignalNames names_of(const DiagnosisRun& run);
+/// What a finding is in the extended model only together with, which it has: `the other ...` where
+/// that is called as it is itself.
+[[nodiscard]] std::string needed_text(const SignalNames& names, const Finding& finding);
 
 }  // namespace mpm::report

@@ -70,7 +70,10 @@ std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answe
              interval_text(answer.gain.low, answer.gain.high) +
              (answer.entangled_with >= 0
                   ? "; it cannot be told from that of " + run.unit.input_tag(answer.entangled_with)
-                  : "; move " + input + " more");
+                  : (answer.input < static_cast<int>(run.unit.mv.size())
+                         ? "; move " + input
+                         : "; wait until " + input + " moves") +
+                        " more");
     case LeftOut::kWrongSign:
       return "the data contradict the sign that the unit file gives";
     case LeftOut::kNotConfirmed:

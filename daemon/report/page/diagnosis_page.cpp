@@ -78,8 +78,9 @@ std::string in_model_text(const DiagnosisRun& run, const Finding& finding) {
     return "Not repaired: " +
            (finding.refused.empty() ? "its repair did not carry over" : finding.refused) + ".";
   if (finding.with)
-    return "Repaired together with " + cause_text(*finding.with) + ", " +
-           place_text(run, *finding.with) + ".";
+    return std::string("Repaired together with ") +
+           (*finding.with == finding.subject ? "the other " : "") + cause_text(*finding.with) +
+           ", " + place_text(run, *finding.with) + ".";
   return "Repaired.";
 }
 

@@ -25,5 +25,14 @@ TEST_CASE("intervals and shares read as people write them") {
   CHECK(percent_text(0.1234, 3) == "12.3 %");
 }
 
+TEST_CASE("nothing is certain") {
+  CHECK(confidence_text(0.95) == "0.95");
+  CHECK(confidence_text(0.954) == "0.95");
+  CHECK(confidence_text(0.9962) == "0.996");
+  CHECK(confidence_text(0.999) == "0.999");
+  CHECK(confidence_text(0.9995) == "> 0.999");
+  CHECK(confidence_text(1.0) == "> 0.999");
+}
+
 }  // namespace
 }  // namespace mpm

@@ -91,4 +91,19 @@ TEST_CASE("every reason has its words") {
         "something changed in AI-201; too few samples since then to tell which channel");
 }
 
+TEST_CASE("nobody is asked to move what is only measured") {
+  const auto text = [](const std::string& mv, Reason reason, const std::string& confounder = "") {
+    ChannelRecord channel = undetermined(mv, "AI-202", reason, 0.5);
+    channel.confounder = confounder;
+    return undetermined_text(channel, channel_file(column(), mv, "AI-202"));
+  };
+  CHECK(text("FI-900", Reason::kNotExcited) ==
+        "needs a gain error of 50 % to show; wait until FI-900 moves");
+  CHECK(text("FI-900", Reason::kCollinear, "FIC-101") ==
+        "moved only together with FIC-101; move FIC-101 without it");
+  CHECK(text("FIC-101", Reason::kCollinear, "FI-900") ==
+        "moved only together with FI-900; move FIC-101 without it");
+  CHECK(text("FI-900", Reason::kConstrained) == "FI-900 rests at a limit; wait until it leaves it");
+}
+
 }  // namespace mpm::report

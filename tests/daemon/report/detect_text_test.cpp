@@ -53,7 +53,7 @@ Mismatch
 Undetermined
   FIC-101 -> AI-202: needs a gain error of 28 % to show; move FIC-101
   FIC-102 -> AI-202: moved too little to show whether AI-202 answers it; move FIC-102
-  FI-900 -> AI-201: moved too little to tell anything; move FI-900
+  FI-900 -> AI-201: moved too little to tell anything; wait until FI-900 moves
 
 Alarms that are over
   FIC-101 -> AI-201: from 20:00 on 1 March to 21:00 on 1 March
@@ -129,6 +129,29 @@ TEST_CASE("colour is only added where it is wanted") {
   for (std::size_t at = 0; (at = colored.find('\x1b')) != std::string::npos;)
     colored.erase(at, colored.find('m', at) - at + 1);
   CHECK(colored == plain);
+}
+
+TEST_CASE("bad values are told with the tags that have most of them") {
+  DetectReport report = march();
+  report.bad_values = 14;
+  report.frozen = 5;
+  report.bad_tags = {{"AI-201", 9}, {"FIC-102", 3}};
+  CHECK(to_text(report, column(), {200, false})
+            .find("2860 used, 14 bad values (5 frozen), of AI-201 (9), FIC-102 (3)\n") !=
+        std::string::npos);
+  report.bad_tags.insert(report.bad_tags.end(), {{"AI-202", 1}, {"FIC-101", 1}});
+  CHECK(to_text(report, column(), {200, false})
+            .find("of AI-201 (9), FIC-102 (3), AI-202 (1) and 1 other\n") != std::string::npos);
+}
+
+TEST_CASE("what warms up says how many samples it still needs") {
+  DetectReport report = march();
+  report.channels = {undetermined("FIC-101", "AI-201", Reason::kWarmingUp)};
+  CHECK(to_text(report, column(), {200, false}).find("too few samples yet\n") != std::string::npos);
+  report.samples_needed["AI-201"] = 336.2;
+  CHECK(
+      to_text(report, column(), {200, false}).find("too few samples yet; needs about 340 more\n") !=
+      std::string::npos);
 }
 
 }  // namespace mpm::report

@@ -141,6 +141,9 @@ TEST_CASE("Every command that reads data takes --time-zone and --time-format") {
                     bench.folder.file("o.csv"), "--out", bench.folder.file("d"), said[0], said[1],
                     said[2], said[3]}) == 3);
   CHECK(bench.text("err").find("too short: 2 usable samples") != std::string::npos);
+  CHECK(detect(bench, "o.csv", {said[0], said[1], "--time-format", ""}) == 3);
+  CHECK(bench.text("err").find("--time-format") != std::string::npos);
+  CHECK(bench.text("err").find("is empty") != std::string::npos);
   CHECK(detect(bench, "o.csv", {said[0], said[1], "--time-format", "dd.mm.yyyy"}) == 3);
   CHECK(bench.text("err").find("--time-format: error: 'dd.mm.yyyy' does not tell") !=
         std::string::npos);

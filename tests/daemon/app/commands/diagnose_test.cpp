@@ -188,7 +188,7 @@ TEST_CASE("gaps and bad values are told, not fatal") {
   }
   REQUIRE(bench.diagnose(bench.small(), bench.data(text)) == 0);
   CHECK(bench.said().find("19 intervals without a row") != std::string::npos);
-  CHECK(bench.said().find("1 value of inputs and CVs missing or bad") != std::string::npos);
+  CHECK(bench.said().find("1 value of inputs and CVs missing or bad, of ") != std::string::npos);
 }
 
 TEST_CASE("several files are runs, and so is what a choice of time leaves") {

@@ -5,50 +5,13 @@
 #include <cmath>
 #include <sstream>
 
-#include "config/finding.hpp"
-#include "config/load_unit.hpp"
+#include "tests/daemon/files/csv/reading.hpp"
 
 using namespace mpm;
 using namespace mpm::files;
+using namespace mpm::files::test;
 
 namespace {
-
-config::UnitConfig unit(double sample_time_s = 1.0, bool with_model = true) {
-  const std::string model = with_model ? "model: {channels: [{cv: y1, mv: u1, gain: 1}]}\n" : "";
-  const auto result = config::load_unit_text(
-      "unit: t\nsample_time: " + std::to_string(sample_time_s) +
-          "\nsignals: {mv: [u1, u2], cv: [{tag: y1, prediction: p1, setpoint: s1}], aux: amb}\n" +
-          model,
-      "u.yaml");
-  REQUIRE(result.ok());
-  return result.config;
-}
-
-CsvReader reader(const std::string& text, const config::UnitConfig& config = unit()) {
-  return CsvReader(std::make_unique<std::istringstream>(text), "d.csv", config);
-}
-
-std::vector<Frame> frames_of(CsvReader&& csv) {
-  std::vector<Frame> frames;
-  Frame frame;
-  while (csv.next(frame)) frames.push_back(frame);
-  return frames;
-}
-
-std::vector<Frame> frames_of(const std::string& text, const config::UnitConfig& config = unit()) {
-  return frames_of(reader(text, config));
-}
-
-std::string error_of(const std::string& text, const config::UnitConfig& config = unit()) {
-  try {
-    (void)frames_of(text, config);
-  } catch (const config::InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-double mv(const Frame& frame, int index) { return frame[SignalKind::kMv].values(index); }
 
 /// The same two rows in every layout below.
 void check_two_rows(const std::vector<Frame>& frames) {

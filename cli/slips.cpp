@@ -1,4 +1,4 @@
-#include "daemon/app/commands/slips.hpp"
+#include "cli/slips.hpp"
 
 #include <string_view>
 #include <vector>
@@ -6,7 +6,7 @@
 #include "config/suggest.hpp"
 #include "core/text/printable.hpp"
 
-namespace mpm::app {
+namespace mpm::cli {
 namespace {
 
 std::vector<std::string> commands_of(const CLI::App& app) {
@@ -48,4 +48,4 @@ std::string slips_text(const CLI::App& app) {
   return text;
 }
 
-}  // namespace mpm::app
+}  // namespace mpm::cli

@@ -1,6 +1,6 @@
-#include "daemon/app/commands/command_tree.hpp"
+#include "cli/command_tree.hpp"
 
-namespace mpm::app {
+namespace mpm::cli {
 namespace {
 
 // Of CLI11's name of a type, such as `TEXT:{auto,json,csv}`.
@@ -43,4 +43,4 @@ CommandEntry command_tree(const CLI::App& app) {
   return entry;
 }
 
-}  // namespace mpm::app
+}  // namespace mpm::cli

@@ -1,8 +1,8 @@
 #include <string>
 
-#include "daemon/app/commands/command_tree.hpp"
+#include "cli/command_tree.hpp"
 
-namespace mpm::app {
+namespace mpm::cli {
 namespace {
 
 std::string joined(const std::vector<std::string>& words, const char* between) {
@@ -42,8 +42,8 @@ const OptionEntry* positional_of(const CommandEntry& command) {
 }
 
 // Values after their options; then options, or what stands alone. No words: file names.
-std::string bash_command(const CommandEntry& command) {
-  std::string text = "    " + command.name + ")\n      case $before in\n";
+std::string bash_words(const CommandEntry& command) {
+  std::string text = "      case $before in\n";
   for (const OptionEntry& option : command.options)
     if (!option.positional && option.takes_value)
       text += "        " + joined(option.names, "|") +
@@ -52,7 +52,7 @@ std::string bash_command(const CommandEntry& command) {
   text += "        *) words=" +
           in_quotes(alone == nullptr ? flags_of(command) : joined(alone->choices, " ")) +
           " ;;\n      esac\n      [[ $word == -* ]] && words=" + in_quotes(flags_of(command)) +
-          "\n      ;;\n";
+          "\n";
   return text;
 }
 
@@ -71,6 +71,12 @@ std::string zsh_option(const OptionEntry& option) {
     text += " \\\n        " + in_quotes(spec);
   }
   return text;
+}
+
+std::string zsh_options(const CommandEntry& command) {
+  std::string text = "_arguments";
+  for (const OptionEntry& option : command.options) text += zsh_option(option);
+  return text + "\n";
 }
 
 std::string fish_option(const OptionEntry& option) {
@@ -95,20 +101,22 @@ std::string bash_completion(const CommandEntry& root) {
   std::string cases;
   for (const CommandEntry& command : root.commands) {
     names.push_back(command.name);
-    cases += bash_command(command);
+    cases += "    " + command.name + ")\n" + bash_words(command) + "      ;;\n";
   }
+  const std::string by_command =
+      "  if ((COMP_CWORD == 1)); then\n"
+      "    words=" +
+      in_quotes(joined(names, " ") + " " + flags_of(root)) +
+      "\n"
+      "  else\n"
+      "    case ${COMP_WORDS[1]} in\n" +
+      cases +
+      "    esac\n"
+      "  fi\n";
   return "# bash completion of " + root.name + "\n_" + root.name +
          "() {\n"
-         "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=\n"
-         "  if ((COMP_CWORD == 1)); then\n"
-         "    words=" +
-         in_quotes(joined(names, " ") + " " + flags_of(root)) +
-         "\n"
-         "  else\n"
-         "    case ${COMP_WORDS[1]} in\n" +
-         cases +
-         "    esac\n"
-         "  fi\n"
+         "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=\n" +
+         (root.commands.empty() ? bash_words(root) : by_command) +
          "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
          "}\n"
          "complete -o default -F _" +
@@ -116,14 +124,15 @@ std::string bash_completion(const CommandEntry& root) {
 }
 
 std::string zsh_completion(const CommandEntry& root) {
+  const std::string begin = "#compdef " + root.name + "\n_" + root.name + "() {\n";
+  const std::string end = "}\ncompdef _" + root.name + " " + root.name + "\n";
+  if (root.commands.empty()) return begin + "  " + zsh_options(root) + end;
   std::string names, cases;
   for (const CommandEntry& command : root.commands) {
     names += "    " + in_quotes(escaped(command.name, ":") + ":" + command.description) + "\n";
-    cases += "    " + command.name + ")\n      _arguments";
-    for (const OptionEntry& option : command.options) cases += zsh_option(option);
-    cases += "\n      ;;\n";
+    cases += "    " + command.name + ")\n      " + zsh_options(command) + "      ;;\n";
   }
-  return "#compdef " + root.name + "\n_" + root.name + "() {\n  local -a commands=(\n" + names +
+  return begin + "  local -a commands=(\n" + names +
          "  )\n"
          "  if ((CURRENT == 2)); then\n"
          "    _describe command commands\n"
@@ -132,14 +141,15 @@ std::string zsh_completion(const CommandEntry& root) {
          "  shift words\n"
          "  ((CURRENT--))\n"
          "  case $words[1] in\n" +
-         cases + "  esac\n}\ncompdef _" + root.name + " " + root.name + "\n";
+         cases + "  esac\n" + end;
 }
 
 std::string fish_completion(const CommandEntry& root) {
   const std::string begin = "complete -c " + root.name;
   std::string text = "# fish completion of " + root.name + "\n" + begin + " -f\n";
+  const std::string at_first = root.commands.empty() ? "" : " -n __fish_use_subcommand";
   for (const OptionEntry& option : root.options)
-    text += begin + " -n __fish_use_subcommand" + fish_option(option) + "\n";
+    text += begin + at_first + fish_option(option) + "\n";
   for (const CommandEntry& command : root.commands) {
     text += begin + " -n __fish_use_subcommand -a " + command.name + " -d " +
             in_quotes(escaped(command.description, "\\")) + "\n";
@@ -150,4 +160,10 @@ std::string fish_completion(const CommandEntry& root) {
   return text;
 }
 
-}  // namespace mpm::app
+std::string completion(const CommandEntry& root, const std::string& shell) {
+  return shell == "bash"  ? bash_completion(root)
+         : shell == "zsh" ? zsh_completion(root)
+                          : fish_completion(root);
+}
+
+}  // namespace mpm::cli

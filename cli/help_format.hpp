@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-namespace mpm::app {
+namespace mpm::cli {
 
 /// Help whose descriptions fit a terminal of 80 columns. For an app before its subcommands are
 /// added.
@@ -16,4 +16,4 @@ class HelpFormat : public CLI::Formatter {
   [[nodiscard]] std::string wrapped(const std::string& text) const;
 };
 
-}  // namespace mpm::app
+}  // namespace mpm::cli

@@ -1,8 +1,8 @@
-#include "daemon/app/commands/help_format.hpp"
+#include "cli/help_format.hpp"
 
 #include <sstream>
 
-namespace mpm::app {
+namespace mpm::cli {
 namespace {
 
 constexpr std::size_t kColumns = 80;
@@ -34,4 +34,4 @@ std::string HelpFormat::make_subcommand(const CLI::App* command) const {
   return out.str();
 }
 
-}  // namespace mpm::app
+}  // namespace mpm::cli

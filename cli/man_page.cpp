@@ -1,8 +1,8 @@
 #include <string>
 
-#include "daemon/app/commands/command_tree.hpp"
+#include "cli/command_tree.hpp"
 
-namespace mpm::app {
+namespace mpm::cli {
 namespace {
 
 /// Text as it is: no line of it a request, no mark of it an escape.
@@ -47,9 +47,10 @@ std::string man_page(const CommandEntry& root, const std::string& version) {
     upper += static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   std::string text = ".TH " + upper + " 1 \"\" \"" + roff(version) + "\"\n.SH NAME\n" +
                      roff(root.name) + " \\- " + roff(root.description) + "\n.SH SYNOPSIS\n.B " +
-                     roff(root.name) + "\n\\fIcommand\\fR [\\fIoptions\\fR]\n.SH OPTIONS\n";
+                     roff(root.name) + "\n" + (root.commands.empty() ? "" : "\\fIcommand\\fR ") +
+                     "[\\fIoptions\\fR]\n.SH OPTIONS\n";
   for (const OptionEntry& option : root.options) text += option_text(option);
-  text += footer_text(root) + ".SH COMMANDS\n";
+  text += footer_text(root) + (root.commands.empty() ? "" : ".SH COMMANDS\n");
   for (const CommandEntry& command : root.commands) {
     text += ".SS " + roff(command.name) + "\n" + roff(command.description) + "\n";
     for (const OptionEntry& option : command.options) text += option_text(option);
@@ -58,4 +59,4 @@ std::string man_page(const CommandEntry& root, const std::string& version) {
   return text;
 }
 
-}  // namespace mpm::app
+}  // namespace mpm::cli

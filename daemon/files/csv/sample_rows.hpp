@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/files/csv/row_source.hpp"
+
+namespace mpm::files {
+
+inline constexpr std::size_t kNoSample = std::numeric_limits<std::size_t>::max();
+
+/// One value of one tag.
+struct Sample {
+  std::int64_t time_ns = 0;
+  double value = 0.0;
+  Slot slot;
+  Quality quality = Quality::kBad;
+  std::size_t next = kNoSample;  ///< of the same tag, once all are gathered
+};
+
+/// Whether the tags of a file are sampled together, or each has times of its own.
+class TagTimes {
+ public:
+  explicit TagTimes(const SignalCounts& counts);
+
+  /// Times never go back.
+  void add(const Slot& slot, std::int64_t time_ns);
+  /// True if some tag has samples at too few of all times since its first one to be sampled
+  /// together with the others.
+  [[nodiscard]] bool apart() const;
+  /// All times, those of several tags counted once.
+  [[nodiscard]] std::int64_t count() const { return count_; }
+
+ private:
+  struct Tag {
+    std::int64_t first = 0, last = 0, count = 0;  // in numbers of times, from 1
+  };
+  std::array<std::vector<Tag>, kSignalKindCount> tags_;
+  std::int64_t count_ = 0;
+  std::int64_t last_ns_ = 0;
+};
+
+/// Frames of samples that come one by one: those of one time make a row.
+class SampleRows : public RowSource {
+ public:
+  explicit SampleRows(const SignalCounts& counts) : tag_times_(counts), counts_(counts) {}
+
+  [[nodiscard]] bool next(Frame& frame) override;
+  [[nodiscard]] const Told* told() const override { return &told_; }
+
+ protected:
+  /// The next one of the file.
+  [[nodiscard]] virtual std::optional<Sample> read_sample() = 0;
+  /// After the last one: tells what is to be told.
+  virtual void end() = 0;
+  /// Reads all there are, for a file that has them in another order than that of time: 40 bytes
+  /// for each.
+  void gather();
+  /// What comes after the last row's sample of a tag; null where nothing does or is gathered.
+  [[nodiscard]] const Sample* following(SignalKind kind, std::size_t index) const;
+  [[nodiscard]] const SignalCounts& counts() const { return counts_; }
+
+  ReadTally tally_;
+  TagTimes tag_times_;  ///< once gathered; else for who comes to know them
+
+ private:
+  std::optional<Sample> next_sample();
+  void put(const Sample& sample, Frame& frame);
+
+  SignalCounts counts_;
+  std::optional<std::vector<Sample>> gathered_;
+  std::size_t at_ = 0;  ///< in `gathered_`
+  std::optional<Sample> pending_;
+  Told told_;
+  std::array<std::vector<std::size_t>, kSignalKindCount> next_;  ///< of those of the last row
+};
+
+}  // namespace mpm::files
