@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "cli/command_tree.hpp"
-#include "cli/help_format.hpp"
-#include "cli/slips.hpp"
+#include "config/cli/command_tree.hpp"
+#include "config/cli/help_format.hpp"
+#include "config/cli/slips.hpp"
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
 #include "config/time_text.hpp"

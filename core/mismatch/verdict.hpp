@@ -19,7 +19,8 @@ enum class Reason : std::uint8_t {
   kCollinear,       ///< the input moved only together with another one (`confounder`)
   kConfounded,      ///< what is off in this CV follows a signal that is no input (`confounder`)
   kBadData,         ///< too many of the values needed are missing, bad or implausible
-  kCompressed,      ///< a historian has compressed the CV: what it held or drew is no measurement
+  kCompressed,      ///< a historian has compressed the CV, or an input from which it is simulated
+                    ///< (`confounder`): what was held or drawn is no measurement
   kControllerOff,   ///< no manipulated variable moves: the controller is off or in manual
   kConstrained,     ///< the input sits at a limit
   kIsolating,       ///< something in this CV changed; samples since then are still too few

@@ -56,7 +56,7 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
 bool ChannelJudge::has_evidence(const JudgedChannel& channel, ChannelStatus& status) {
   if (channel.bad_data != Reason::kNone) {
     status.reason = channel.bad_data;
-    if (channel.bad_data == Reason::kBadData) status.confounder = channel.missing;
+    status.confounder = channel.spoilt;
     return false;
   }
   const bool isolating = channel.alarms.isolating();

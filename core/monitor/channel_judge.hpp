@@ -15,7 +15,7 @@ namespace mpm {
 struct JudgedChannel {
   int input = 0;
   Reason bad_data = Reason::kNone;  ///< why no verdict can be drawn of these data, if none can
-  int missing = -1;                 ///< another input that is lost, with Reason::kBadData
+  int spoilt = -1;                  ///< another input that is to blame for `bad_data`
   bool overdue = false;             ///< there ought to be rows enough by now
   const RegressionMemory& memory;   ///< the CV's long one
   const ChannelEvidence& evidence;

@@ -36,7 +36,7 @@ struct Monitor::State {
     CvQuality quality;
     bool evaluated = false;    // in this sample
     bool judged = false;       // there is evidence from the present memory
-    bool compressed = false;   // its values
+    bool compressed = false;   // its values, or an input's from which it is simulated
     std::int64_t settled = 0;  // samples
     Rival rival;
     std::int64_t followed_next = 0;  // sample
@@ -60,6 +60,7 @@ struct Monitor::State {
   [[nodiscard]] double gain_variation(int cv, int input) const;
   [[nodiscard]] bool bends(int cv, int input) const;
   [[nodiscard]] Reason bad_data(int cv, int input) const;
+  [[nodiscard]] int spoilt_input(int cv, int input) const;
   [[nodiscard]] int missing_input(int cv, int input) const;
 
   LinearModel model;
@@ -197,10 +198,11 @@ void Monitor::State::count_bad(const Frame& frame) {
         ++counters.bad_of[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
 }
 
-// What was learnt of held values and drawn lines says nothing once the CV is measured again.
+// What was learnt of held values and drawn lines says nothing once all is measured again.
 void Monitor::State::follow_compression() {
   for (int j = 0; j < counts.cv; ++j) {
-    const bool was = std::exchange(of(j).compressed, screen.compressed(j));
+    const bool was =
+        std::exchange(of(j).compressed, screen.compressed(j) || screen.compressed_input(j) >= 0);
     if (!was || of(j).compressed) continue;
     detector.start_afresh(j, 0);
     of(j).settled = 0;
@@ -303,7 +305,7 @@ void Monitor::State::judge_channels() {
                            calibration::bad_data::kWarmUps * memory.needed_rows();
       judge.judge({.input = i,
                    .bad_data = bad_data(j, i),
-                   .missing = missing_input(j, i),
+                   .spoilt = spoilt_input(j, i),
                    .overdue = overdue,
                    .memory = memory,
                    .evidence = detector.evidence(j, i),
@@ -347,6 +349,12 @@ Reason Monitor::State::bad_data(int cv, int input) const {
                  quality.implausible()
              ? Reason::kBadData
              : Reason::kNone;
+}
+
+// The input that is to blame for bad data; -1: the CV itself, or this one.
+int Monitor::State::spoilt_input(int cv, int input) const {
+  if (!cvs[static_cast<std::size_t>(cv)].compressed) return missing_input(cv, input);
+  return screen.compressed(cv) ? -1 : screen.compressed_input(cv);
 }
 
 // Another input that is lost, where the CV has no rows for so long: simulated or not, no row goes

@@ -77,7 +77,8 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
       ring_(kHeld, Frame(counts)),
       marked_(kHeld),
       jumps_(static_cast<std::size_t>(counts.cv)),
-      compression_(static_cast<std::size_t>(counts.cv)) {
+      compression_(static_cast<std::size_t>(counts.cv)),
+      input_compression_(static_cast<std::size_t>(counts.inputs())) {
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
     const auto count = static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind)));
     repeats_.emplace_back(count);
@@ -109,6 +110,7 @@ void Screen::push(const Frame& frame) {
   const SignalBlock& measured = ago(0)[SignalKind::kCv];
   for (int j = 0; j < counts_.cv; ++j)
     if (measured.usable(j)) compression_[static_cast<std::size_t>(j)].take(measured.values(j));
+  if (inputs_matter_) follow_compression_of_inputs();
   if (inputs_matter_) follow_predictions(frame[SignalKind::kPrediction]);
   follow_inputs();
   if (inputs_matter_) {
@@ -131,6 +133,23 @@ const Frame* Screen::next() {
   counters_.clipped += marked.clipped;
   counters_.spikes += marked.spikes;
   return &ago(age);
+}
+
+void Screen::follow_compression_of_inputs() {
+  for (int i = 0; i < counts_.inputs(); ++i) {
+    const SignalBlock& block = ago(0)[i < counts_.mv ? SignalKind::kMv : SignalKind::kDv];
+    const int at = i < counts_.mv ? i : i - counts_.mv;
+    if (block.usable(at)) input_compression_[static_cast<std::size_t>(i)].take(block.values(at));
+  }
+}
+
+int Screen::compressed_input(int cv) const {
+  if (predicted(cv)) return -1;
+  for (int i = 0; i < counts_.inputs(); ++i)
+    if (acts_[static_cast<std::size_t>(i * counts_.cv + cv)] &&
+        input_compression_[static_cast<std::size_t>(i)].kind() == Compression::Kind::kHeld)
+      return i;
+  return -1;
 }
 
 void Screen::follow_predictions(const SignalBlock& predictions) {

@@ -59,6 +59,9 @@ class Screen {
   [[nodiscard]] bool compressed(int cv) const {
     return compression_[static_cast<std::size_t>(cv)].kind() != Compression::Kind::kNone;
   }
+  /// An input from which the CV is simulated and which is held until it has left a deadband: the
+  /// plant moved, and nobody wrote it down. -1: none. (Lines in an input may be ramps.)
+  [[nodiscard]] int compressed_input(int cv) const;
   /// Spikes of one CV so far.
   [[nodiscard]] std::uint64_t spikes(int cv) const {
     return jumps_[static_cast<std::size_t>(cv)].spikes;
@@ -107,6 +110,7 @@ class Screen {
   [[nodiscard]] Frame& ago(int frames) { return ring_[place(frames)]; }
   void follow_predictions(const SignalBlock& predictions);
   void follow_inputs();
+  void follow_compression_of_inputs();
   [[nodiscard]] bool may_rest(SignalKind kind, int index) const;
   void screen_repeats(SignalKind kind);
   void mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter);
@@ -139,6 +143,7 @@ class Screen {
   std::vector<std::vector<Range>> ranges_;     // per kind
   std::vector<Jumps> jumps_;                   // per CV
   std::vector<Compression> compression_;       // per CV
+  std::vector<Compression> input_compression_;
   ScreenCounters counters_;
 };
 

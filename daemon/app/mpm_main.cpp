@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "cli/help_format.hpp"
-#include "cli/slips.hpp"
+#include "config/cli/help_format.hpp"
+#include "config/cli/slips.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/host/standard_output.hpp"
 #include "idl/version.hpp"

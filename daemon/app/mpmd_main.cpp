@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_tree.hpp"
-#include "cli/help_format.hpp"
-#include "cli/slips.hpp"
+#include "config/cli/command_tree.hpp"
+#include "config/cli/help_format.hpp"
+#include "config/cli/slips.hpp"
 #include "config/load_unit.hpp"
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"

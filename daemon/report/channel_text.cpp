@@ -159,9 +159,16 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
                  : printable(channel.confounder) + " is missing or bad, and " +
                        printable(channel.cv) + " cannot be judged without it";
     case Reason::kCompressed:
-      return "a historian has compressed " + printable(channel.cv) +
-             "; turn that off for this tag, or let it send changes from a twentieth of the noise "
-             "on";
+      return channel.confounder.empty()
+                 ? "a historian has compressed " + printable(channel.cv) +
+                       "; turn that off for this tag, or let it send changes from a twentieth of "
+                       "the noise on"
+                 : printable(channel.confounder) +
+                       " is held until it has left a deadband, as a historian's compression leaves "
+                       "it: " +
+                       printable(channel.cv) +
+                       " cannot be simulated from that; turn it off for this tag, or log the "
+                       "model's predictions too";
     case Reason::kControllerOff:
       return "no manipulated variable moves: the controller is off or in manual";
     case Reason::kConstrained:

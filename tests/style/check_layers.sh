@@ -12,10 +12,11 @@ forbid() {
   fi
 }
 
-forbid core 'dds/|yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|iostream|fstream|filesystem|chrono|ctime|thread|config/|cli/|idl/|sim/|daemon/|tests/'
-forbid config 'dds/|spdlog|CLI/|systemd|cli/|idl/|sim/|daemon/|tests/'
-forbid idl 'yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|config/|cli/|sim/|daemon/|tests/'
-forbid cli 'dds/|yaml-cpp|muParser|spdlog|nlohmann|systemd|idl/|sim/|daemon/|tests/'
+forbid core 'dds/|yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|iostream|fstream|filesystem|chrono|ctime|thread|config/|idl/|sim/|daemon/|tests/'
+forbid config 'dds/|spdlog|systemd|idl/|sim/|daemon/|tests/'
+for file in config/*.?pp; do forbid "$file" 'CLI/|config/cli/'; done
+forbid config/cli 'yaml-cpp|muParser|nlohmann'
+forbid idl 'yaml-cpp|muParser|spdlog|CLI/|nlohmann|systemd|config/|sim/|daemon/|tests/'
 forbid sim 'yaml-cpp|muParser|dds/|systemd|daemon/|tests/'
 forbid daemon 'yaml-cpp|muParser|dds/|sim/|tests/'
 for folder in files mcap report history; do forbid daemon/$folder 'idl/|mpm\.h|spdlog|systemd'; done
@@ -26,7 +27,7 @@ if grep -rnwE '(dds|DDS|ddsi|ddsrt)_[A-Za-z0-9_]+' core sim daemon \
   status=1
 fi
 
-if grep -rnE "^ *# *include *[<\"](oneapi/)?tbb" core config cli idl sim daemon \
+if grep -rnE "^ *# *include *[<\"](oneapi/)?tbb" core config idl sim daemon \
   --include='*.hpp' --include='*.cpp' | grep -v '^core/parallel/arena.cpp:'; then
   echo "oneTBB's names stay in core/parallel/arena.cpp" >&2
   status=1

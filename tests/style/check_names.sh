@@ -7,13 +7,13 @@ most=191
 
 status=0
 for test in $(git ls-files 'tests/core/*_test.cpp' 'tests/config/*_test.cpp' 'tests/idl/*_test.cpp' \
-  'tests/cli/*_test.cpp' 'tests/sim/*_test.cpp' 'tests/daemon/*_test.cpp'); do
+  'tests/sim/*_test.cpp' 'tests/daemon/*_test.cpp'); do
   folder=${test#tests/}
   folder=${folder%/*}
   [ -d "$folder" ] || { echo "$test: there is no folder $folder" >&2; status=1; }
 done
 
-without=$(git ls-files 'core/*.cpp' 'config/*.cpp' 'cli/*.cpp' 'idl/*.cpp' 'sim/*.cpp' 'daemon/*.cpp' |
+without=$(git ls-files 'core/*.cpp' 'config/*.cpp' 'idl/*.cpp' 'sim/*.cpp' 'daemon/*.cpp' |
   while read -r source; do
     [ -e "tests/${source%.cpp}_test.cpp" ] || echo "$source"
   done)

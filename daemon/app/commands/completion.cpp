@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "cli/command_tree.hpp"
+#include "config/cli/command_tree.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "idl/version.hpp"
 

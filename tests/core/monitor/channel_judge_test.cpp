@@ -31,7 +31,7 @@ struct Bench {
     ChannelStatus status;
     judge.judge({.input = input,
                  .bad_data = bad_data,
-                 .missing = missing,
+                 .spoilt = spoilt,
                  .overdue = overdue,
                  .memory = memory,
                  .evidence = evidence,
@@ -49,7 +49,7 @@ struct Bench {
   ChannelEvidence evidence;
   CvAlarms alarms;
   Reason bad_data = Reason::kNone;
-  int missing = -1;
+  int spoilt = -1;
   bool overdue = false, mvs_still = false, at_limit = false;
   int confounder = -1;
   CorrelationPeak peak;
@@ -113,7 +113,7 @@ TEST_CASE("without rows or with bad data there is no verdict") {
   Bench bench;
   bench.bad_data = Reason::kBadData;
   CHECK(bench.judge().reason == Reason::kBadData);
-  bench.missing = 3;
+  bench.spoilt = 3;
   CHECK(bench.judge().confounder == 3);
   bench.bad_data = Reason::kNone;
   CHECK(bench.judge().confounder == -1);

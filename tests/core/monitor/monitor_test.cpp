@@ -476,6 +476,28 @@ TEST_CASE("a compressed CV has no verdict, and what was learnt of it is forgotte
   for (int i = 0; i < 2; ++i) CHECK(monitor.channel(0, i).verdict == Verdict::kMatch);
 }
 
+TEST_CASE("a CV that is simulated from a compressed input has no verdict") {
+  // An MV that wanders, held until it has left a deadband of half its s.d.
+  Experiment experiment;
+  experiment.predictions = GENERATE(true, false);
+  Monitor monitor = experiment.monitor();
+  double held = 0.0;
+  experiment.run(4000, [&](Frame frame) {
+    double& value = frame[SignalKind::kMv].values(1);
+    const double moved = value + test::coloured(900, static_cast<int>(frame.interval));
+    if (std::abs(moved - held) > 0.3) held = moved;
+    value = held;
+    monitor.push(frame);
+    CHECK(monitor.transitions().empty());
+  });
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      const ChannelStatus& channel = monitor.channel(j, i);
+      CHECK((channel.reason == Reason::kCompressed) == !experiment.predictions);
+      if (!experiment.predictions) CHECK(channel.confounder == 1);
+    }
+}
+
 TEST_CASE("implausible values are a part of the bad ones at every moment") {
   Experiment experiment;
   experiment.predictions = GENERATE(true, false);

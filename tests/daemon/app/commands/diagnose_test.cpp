@@ -262,6 +262,35 @@ TEST_CASE("a scenario compares both models in closed loop") {
   }
 }
 
+TEST_CASE("what began half-way is named, with the moment") {
+  // Only a fifth to a quarter of the first two thirds knows of it. Expected: what is hidden; the
+  // moment to a fiftieth of the data.
+  struct Hidden {
+    std::string cause, mv, cv, change;
+  };
+  const auto hidden =
+      GENERATE(Hidden{"dead_time", "u2", "y2", "{cv: 2, mv: 2, dead_time_error: 20,"},
+               Hidden{"gain", "u1", "y1", "{cv: 1, mv: 1, gain_ratio: 1.5,"});
+  const Bench bench;
+  write_file(bench.folder.file("half.yaml"),
+             "scenario: half\ndescription: a fault from half-way on\n"
+             "changes:\n  - " +
+                 hidden.change + " from: 1500 samples}\n");
+  REQUIRE(run({"mpmsim", "--config", kUnit, "--scenario", bench.folder.file("half.yaml"),
+               "--samples", "3000", "--seed", "100002", "--csv", bench.folder.file("run.csv")},
+              bench.folder.file("stdout"), bench.folder.file("stderr")) == 0);
+  REQUIRE(bench.diagnose(kUnit, bench.folder.file("run.csv")) == 0);
+  const auto report = nlohmann::json::parse(read_file(bench.out + "/report.json"));
+  const nlohmann::json& findings = report["findings"];
+  INFO(findings.dump());
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0]["cause"] == hidden.cause);
+  CHECK(findings[0]["mv"] == hidden.mv);
+  CHECK(findings[0]["cv"] == hidden.cv);
+  CHECK(std::abs(findings[0]["onset"].get<double>() - 1500.0) <= 60.0);
+  CHECK(report["fit_samples"].get<int>() > 2400);
+}
+
 TEST_CASE("without mpmsim beside it, --scenario says so before it begins") {
   const Bench bench;
   simulate(bench);

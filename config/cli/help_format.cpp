@@ -1,4 +1,4 @@
-#include "cli/help_format.hpp"
+#include "config/cli/help_format.hpp"
 
 #include <sstream>
 

@@ -1,4 +1,4 @@
-#include "cli/command_tree.hpp"
+#include "config/cli/command_tree.hpp"
 
 namespace mpm::cli {
 namespace {

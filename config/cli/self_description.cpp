@@ -1,6 +1,6 @@
 #include <iostream>
 
-#include "cli/command_tree.hpp"
+#include "config/cli/command_tree.hpp"
 
 namespace mpm::cli {
 

@@ -1,4 +1,4 @@
-#include "cli/slips.hpp"
+#include "config/cli/slips.hpp"
 
 #include <string_view>
 #include <vector>
