@@ -14,14 +14,16 @@ inline constexpr int kFewestChanges = 30;
 inline constexpr int kMostValues = 1000;
 /// Held: so many changes follow a rest, fewer than this share of them are small beside the median
 /// one (of normal changes 13 % are, of the wider measure for few changes 26 %; after a deadband,
-/// which is coarse where changes are rare, none), and fewer are the smallest there is. Of a sensor
-/// whose resolution is a third of its noise or more a sixth of the changes or more are that, and a
-/// seventh follow a rest.
+/// which is coarse where changes are rare, none), fewer are the smallest there is, and their sizes
+/// are no fewer than so many. Of a sensor whose resolution is a third of its noise or more a sixth
+/// of the changes or more are the smallest, and a seventh follow a rest. A test signal has a few
+/// sizes.
 inline constexpr double kRested = 0.1;
 inline constexpr double kSmallMove = 0.25;
 inline constexpr double kSmallOfRare = 0.5;
 inline constexpr double kFewSmall = 0.02;
 inline constexpr double kFewResolved = 0.03;
+inline constexpr int kFewestSizes = 4;
 /// A change is the smallest below so many times it; changes are the same size within this share of
 /// it: between one step and two; what printing leaves of a few digits.
 inline constexpr double kOneStep = 1.5;

@@ -66,10 +66,18 @@ double Compression::share_below(double size) const {
   return static_cast<double>(below) / batch_.changes;
 }
 
+bool Compression::few_sizes() const {
+  int sizes = 1;
+  for (std::size_t i = 1; i < static_cast<std::size_t>(batch_.changes); ++i)
+    sizes += sizes_[i] - sizes_[i - 1] > compression::kSame * sizes_[i] ? 1 : 0;
+  return sizes < compression::kFewestSizes;
+}
+
 bool Compression::held() {
   if (batch_.rests < compression::kRested * batch_.changes) return false;
+  std::sort(sizes_.begin(), sizes_.begin() + batch_.changes);
+  if (few_sizes()) return false;
   const auto median = sizes_.begin() + batch_.changes / 2;
-  std::nth_element(sizes_.begin(), median, sizes_.begin() + batch_.changes);
   const double small =
       batch_.changes == compression::kChanges ? compression::kSmallMove : compression::kSmallOfRare;
   return share_below(small * *median) < compression::kFewSmall &&

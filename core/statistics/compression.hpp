@@ -10,9 +10,9 @@ namespace mpm {
 /// until they have left a deadband, or straight lines between the few that were kept (interpolated
 /// retrieval). A sensor of coarse resolution repeats values and changes as well, but its changes
 /// are often the smallest there is, and after a deadband they never are; one that is stuck rests
-/// seldom and long; what is read only now and then (an analyser) changes by any size. Told anew
-/// after each batch of changes. Straight lines from a noise-free simulation with a bend every few
-/// samples would look the same. No allocation.
+/// seldom and long; what is read only now and then (an analyser) changes by any size, and a test
+/// signal by few. Told anew after each batch of changes. Straight lines from a noise-free
+/// simulation with a bend every few samples would look the same. No allocation.
 class Compression {
  public:
   enum class Kind : unsigned char { kNone, kHeld, kInterpolated };
@@ -39,6 +39,8 @@ class Compression {
   void take_change(double change);
   void judge();
   [[nodiscard]] bool held();
+  /// Of the changes, in order.
+  [[nodiscard]] bool few_sizes() const;
   [[nodiscard]] bool interpolated() const;
   [[nodiscard]] double share_below(double size) const;
 

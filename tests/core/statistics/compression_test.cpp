@@ -133,5 +133,20 @@ TEST_CASE("what is read now and then is not compressed") {
       }
 }
 
+TEST_CASE("a test signal is not compressed, though it rests and never moves by little") {
+  for (unsigned seed = 1; seed <= 20; ++seed)
+    for (const int levels : {2, 3, 7}) {
+      CAPTURE(seed, levels);
+      const std::vector<double> dice = test::white(kSamples, seed);
+      std::vector<double> moved(dice.size(), 0.0);  // first from its home to a level
+      for (std::size_t k = 1; k < moved.size(); ++k) {
+        const int level = static_cast<int>(std::abs(dice[k]) * 1e6) % levels;
+        const double to = 2.0 * level / (levels - 1) - 1.0;
+        moved[k] = k % 10 == 0 ? to : moved[k - 1];
+      }
+      CHECK(found_share(moved) == 0.0);
+    }
+}
+
 }  // namespace
 }  // namespace mpm
