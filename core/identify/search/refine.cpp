@@ -57,6 +57,15 @@ void place_onset(Trials& trials, Trial& trial) {
   }
 }
 
+void share_onset(Trials& trials, const Trial& best, Trial& trial) {
+  if (best.candidate.onset == 0 || trial.candidate.onset == 0 ||
+      trial.candidate.onset == best.candidate.onset)
+    return;
+  Effect other = trial.candidate;
+  other.onset = best.candidate.onset;
+  improve(trial, trials.attempt(other, kTrialSteps), kBetterOnset);
+}
+
 void look_closer(Trials& tries, const Screening& screening, std::vector<Trial>& trials) {
   std::vector<Effect> tried;
   tried.reserve(trials.size());

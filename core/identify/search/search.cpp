@@ -173,8 +173,10 @@ class Search {
     std::sort(trials.begin(), trials.end(), more_probable);
     // The best one first: how far behind the others are decides whether they are worth it.
     refine(trials[0], trials[0]);
-    trials_.parallel().for_each(std::min(kRefined, trials.size()) - 1,
-                                [&](std::size_t i) { refine(trials[i + 1], trials[0]); });
+    trials_.parallel().for_each(std::min(kRefined, trials.size()) - 1, [&](std::size_t i) {
+      share_onset(trials_, trials[0], trials[i + 1]);
+      refine(trials[i + 1], trials[0]);
+    });
     std::sort(trials.begin(), trials.end(), more_probable);
     if (trials[0].odds < settings_.decisive) return false;
 
