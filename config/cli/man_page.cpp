@@ -45,7 +45,7 @@ std::string man_page(const CommandEntry& root, const std::string& version) {
   std::string upper;
   for (const char c : root.name)
     upper += static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
-  std::string text = ".TH " + upper + " 1 \"\" \"" + roff(version) + "\"\n.SH NAME\n" +
+  std::string text = ".TH " + upper + R"( 1 "" ")" + roff(version) + "\"\n.SH NAME\n" +
                      roff(root.name) + " \\- " + roff(root.description) + "\n.SH SYNOPSIS\n.B " +
                      roff(root.name) + "\n" + (root.commands.empty() ? "" : "\\fIcommand\\fR ") +
                      "[\\fIoptions\\fR]\n.SH OPTIONS\n";

@@ -112,6 +112,7 @@ void ChannelTests::date_change(const MismatchDetector& detector, Index samples) 
   double gain = 0.0;
   for (int cv = 0; cv < cvs_; ++cv) {
     std::vector<std::pair<int, int>> channels;
+    channels.reserve(static_cast<std::size_t>(shape.inputs));
     for (int input = 0; input < shape.inputs; ++input) channels.emplace_back(cv, input);
     if (!reject(channels)) continue;
     const std::optional<ChangePoint> change = scan.scan(detector, cv);

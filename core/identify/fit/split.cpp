@@ -10,7 +10,7 @@ using Eigen::Index;
 
 Index fitted_rows(const Recording& recording, double share) {
   const double wanted = share * static_cast<double>(recording.samples());
-  Index rows = static_cast<Index>(wanted);
+  auto rows = static_cast<Index>(wanted);
   const Index changed = recording.changed.value_or(rows);
   if (recording.borders.empty() && changed < rows)
     return changed + static_cast<Index>(share * static_cast<double>(recording.samples() - changed));

@@ -7,8 +7,9 @@ namespace mpm::files {
 namespace {
 
 constexpr double kNsPerSecond = 1e9;
-constexpr double kJitter = 0.1;               // of a step, that a row may come too late
-constexpr double kLongestSilence_s = 3600.0;  // historians write more often even if nothing changes
+constexpr double kJitter = 0.1;  // of a step, that a row may come too late
+constexpr double kLongestSilenceSeconds =
+    3600.0;  // historians write more often even if nothing changes
 constexpr double kLongestSilenceSteps = 100.0;  // control intervals, if that is longer
 constexpr double kMostHeldSteps = 1e6;          // never more of them
 
@@ -18,7 +19,7 @@ HeldRows::HeldRows(std::unique_ptr<RowSource> rows, const SignalCounts& counts, 
                    double sample_time_s)
     : rows_(std::move(rows)),
       step_ns_(step_s * kNsPerSecond),
-      silence_ns_(std::clamp(kLongestSilence_s, kLongestSilenceSteps * sample_time_s,
+      silence_ns_(std::clamp(kLongestSilenceSeconds, kLongestSilenceSteps * sample_time_s,
                              kMostHeldSteps * sample_time_s) *
                   kNsPerSecond) {
   clear(held_, counts);

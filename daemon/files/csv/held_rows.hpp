@@ -12,7 +12,7 @@ namespace mpm::files {
 /// Rows of tags with times of their own, as rows `step_s` apart: each tag has the value, good or
 /// bad, of its last row up to then, or moves on the line to its next one (`RowSource::next_of`). No
 /// row of a tag that is held is used before its time. Where no tag had a row for
-/// `kLongestSilence_s` and 100 steps of the unit nothing is known, and no row is given.
+/// an hour and 100 steps of the unit nothing is known, and no row is given.
 class HeldRows : public RowSource {
  public:
   HeldRows(std::unique_ptr<RowSource> rows, const SignalCounts& counts, double step_s,

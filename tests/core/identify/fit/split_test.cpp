@@ -13,6 +13,7 @@ using Eigen::MatrixXd;
 
 Recording of_lengths(const std::vector<Index>& lengths) {
   std::vector<Recording> runs;
+  runs.reserve(lengths.size());
   for (const Index rows : lengths)
     runs.push_back(test::recording_of(MatrixXd::Zero(rows, 1), MatrixXd::Zero(rows, 1)));
   return joined(runs);
