@@ -58,6 +58,17 @@ std::vector<std::string> measured_tags_of(const UnitConfig& unit, SignalKind kin
   return tags;
 }
 
+std::vector<std::pair<std::string, std::uint64_t>> by_tag(const UnitConfig& unit,
+                                                          const SignalTally& counts) {
+  std::vector<std::pair<std::string, std::uint64_t>> tags;
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
+    const std::vector<std::string> names = tags_of(unit, static_cast<SignalKind>(kind));
+    for (std::size_t i = 0; i < counts[kind].size(); ++i)
+      if (counts[kind][i] > 0) tags.emplace_back(names[i], counts[kind][i]);
+  }
+  return tags;
+}
+
 bool is_layout_of(const UnitConfig& unit, SignalKind kind, const std::vector<std::string>& tags) {
   const std::vector<std::string> all = tags_of(unit, kind);
   const std::vector<std::string> measured = measured_tags_of(unit, kind);

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/unit_config.hpp"
@@ -12,6 +15,10 @@ namespace mpm::config {
 [[nodiscard]] std::vector<std::string> tags_of(const UnitConfig& unit, SignalKind kind);
 /// The same, with "" for what is calculated: what has to come from somewhere.
 [[nodiscard]] std::vector<std::string> measured_tags_of(const UnitConfig& unit, SignalKind kind);
+/// Counts per kind and signal (empty where a kind has none), by tag; without those that are 0.
+using SignalTally = std::array<std::vector<std::uint64_t>, kSignalKindCount>;
+[[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> by_tag(const UnitConfig& unit,
+                                                                        const SignalTally& counts);
 /// Whether values that are called so are this unit's of that kind; a calculated one may be called
 /// "" as well.
 [[nodiscard]] bool is_layout_of(const UnitConfig& unit, SignalKind kind,

@@ -37,8 +37,7 @@ struct Rival {
 ///
 /// Several memories run side by side on the same rows: a long one that sees small errors, a short
 /// one that sees sudden ones sooner. A CV can be started afresh from any sample that is still
-/// remembered. No allocation after construction but where curvature is looked for, and once
-/// for each CV, when it is asked whether its noise is slow.
+/// remembered. No allocation after construction but where curvature is looked for.
 class MismatchDetector {
  public:
   /// `memories`: the first one is the longest; its prediction errors weigh the rows.

@@ -5,6 +5,11 @@
 #include <cstdio>
 
 namespace mpm {
+namespace {
+
+constexpr double kNoSurer = 0.999, kAlmost = 0.995;  // two digits of more are 1
+
+}  // namespace
 
 std::string number_text(double value, int digits) {
   if (std::isnan(value)) return "-";
@@ -34,8 +39,12 @@ std::string percent_text(double share, int digits) {
   return number_text(100.0 * share, digits) + " %";
 }
 
+std::string sure_text(double probability) {
+  if (probability > kNoSurer) return "> " + percent_text(kNoSurer, 3);
+  return percent_text(probability, probability < kAlmost ? 2 : 3);
+}
+
 std::string confidence_text(double probability) {
-  constexpr double kNoSurer = 0.999;
   if (probability > kNoSurer) return "> " + number_text(kNoSurer);
   const std::string text = number_text(probability, 2);
   return text == "1" ? number_text(probability) : text;

@@ -15,6 +15,8 @@ namespace mpm {
 [[nodiscard]] std::string percent_text(double share, int digits = 2);
 /// How sure something is, of 0..1: "0.95", "0.996", "> 0.999"; never "1".
 [[nodiscard]] std::string confidence_text(double probability);
+/// The same as "95 %", "99.6 %", "> 99.9 %"; never "100 %".
+[[nodiscard]] std::string sure_text(double probability);
 /// "1 sample", "2 samples" of "sample"
 [[nodiscard]] std::string counted(std::uint64_t count, std::string_view what);
 

@@ -1,6 +1,5 @@
 #include "daemon/files/read_recording.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -24,8 +23,8 @@ class Table {
  public:
   explicit Table(const SignalCounts& counts)
       : counts_(counts), width_(counts.inputs() + 2 * counts.cv + counts.aux) {
-    for (const SignalKind kind : kNeeded)
-      bad_[static_cast<std::size_t>(kind)].resize(static_cast<std::size_t>(counts.of(kind)));
+    for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv})
+      unusable_[static_cast<std::size_t>(kind)].resize(static_cast<std::size_t>(counts.of(kind)));
   }
 
   [[nodiscard]] int width() const { return width_; }
@@ -36,9 +35,7 @@ class Table {
     values_.resize(static_cast<std::size_t>(row) * static_cast<std::size_t>(width_),
                    std::numeric_limits<double>::quiet_NaN());
   }
-  /// Returns how many inputs and CVs are unusable.
-  int add(const Frame& frame) {
-    int bad = 0;
+  void add(const Frame& frame) {
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
                                   SignalKind::kAux, SignalKind::kSetpoint}) {
       const SignalBlock& block = frame[kind];
@@ -46,25 +43,13 @@ class Table {
         const bool usable = block.usable(i);
         values_.push_back(usable ? block.values(i) : std::numeric_limits<double>::quiet_NaN());
         const bool needed = kind != SignalKind::kAux && kind != SignalKind::kSetpoint;
-        if (usable || !needed) continue;
-        ++bad;
-        ++bad_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+        if (!usable && needed)
+          ++unusable_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
       }
     }
-    return bad;
   }
-  /// How many values of each tag are unusable; those that have such.
-  [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> bad_tags(
-      const config::UnitConfig& unit) const {
-    std::vector<std::pair<std::string, std::uint64_t>> tags;
-    for (const SignalKind kind : kNeeded) {
-      const std::vector<std::string> names = config::tags_of(unit, kind);
-      for (std::size_t i = 0; i < names.size(); ++i)
-        if (const std::uint64_t bad = bad_[static_cast<std::size_t>(kind)][i]; bad > 0)
-          tags.emplace_back(names[i], bad);
-    }
-    return tags;
-  }
+  /// Values of inputs and CVs.
+  [[nodiscard]] const config::SignalTally& unusable() const { return unusable_; }
   void copy_to(Recording& recording) const {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Eigen::Map<const RowMajor> all(values_.data(), rows(), width_);
@@ -75,10 +60,8 @@ class Table {
   }
 
  private:
-  static constexpr std::array kNeeded = {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv};
-
   SignalCounts counts_;
-  std::array<std::vector<std::uint64_t>, kSignalKindCount> bad_;
+  config::SignalTally unusable_;
   int width_;
   std::vector<double> values_;
 };
@@ -152,11 +135,12 @@ RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit
       file.missing += gap;
       table.skip_to(table.rows() + gap);
     }
-    file.bad_values += table.add(frame);
+    table.add(frame);
     next = row + 1;
   }
   if (table.rows() == 0 && left_out > 0) refuse(nothing_chosen(first_ns, last_ns));
-  file.bad_tags = table.bad_tags(unit);
+  file.bad_tags = config::by_tag(unit, table.unusable());
+  for (const auto& [tag, bad] : file.bad_tags) file.bad_values += static_cast<std::int64_t>(bad);
   table.copy_to(recording);
   const Eigen::Index rows = recording.samples();
   recording = without_scraps(recording);

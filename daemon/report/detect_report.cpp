@@ -29,11 +29,7 @@ void DetectReport::take_counters(const Monitor& monitor, const config::UnitConfi
   frozen = counters.implausible.frozen;
   clipped = counters.implausible.clipped;
   spikes = counters.implausible.spikes;
-  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
-    const std::vector<std::string> tags = config::tags_of(config, static_cast<SignalKind>(kind));
-    for (std::size_t i = 0; i < counters.bad_of[kind].size(); ++i)
-      if (counters.bad_of[kind][i] > 0) bad_tags.emplace_back(tags[i], counters.bad_of[kind][i]);
-  }
+  bad_tags = config::by_tag(config, counters.bad_of);
   for (std::size_t cv = 0; cv < config.cv.size(); ++cv)
     samples_needed[config.cv[cv].tag] = monitor.samples_needed(static_cast<int>(cv));
 }

@@ -15,6 +15,7 @@
 #include "core/identify/diagnosis/state_space_form.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/diagnosis/verdict.hpp"
+#include "core/identify/evidence/change_row.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/evidence/free_run_residuals.hpp"
 #include "core/identify/evidence/outside_movement.hpp"
@@ -200,7 +201,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   if (!diagnosis.reason.empty()) return diagnosis;
   const ModelSpec tested = with_aux_inputs(base, measured);
   const ChannelTests tests(tested, measured, residuals);
-  recording.changed = tests.change_row();
+  recording.changed = change_row(tested, measured, residuals, tests);
   diagnosis.fit_samples = validation ? samples : fitted_rows(recording, settings.fit_share);
   diagnosis.validation_samples =
       validation ? validation->samples() : samples - diagnosis.fit_samples;

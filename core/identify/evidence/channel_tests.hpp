@@ -10,8 +10,6 @@
 
 namespace mpm {
 
-class MismatchDetector;
-
 /// What the calibrated test of the monitor (`MismatchDetector`) says of every channel on a whole
 /// recording, all rows counting alike: whether the model's error of a CV goes with the past of an
 /// input. It is valid under feedback and whatever disturbs the CV, which no free run is: what it
@@ -41,18 +39,11 @@ class ChannelTests {
   /// most `level` (0..1).
   [[nodiscard]] bool reject(const std::vector<std::pair<int, int>>& channels,
                             double level = kRejected) const;
-  /// Row from which on some CV's channels, of which the test rejects some, do what they did not do
-  /// before (`ChangeScan`), of several CVs the most certain one; nothing where none did, in several
-  /// runs, or where the recording is too long to remember.
-  [[nodiscard]] std::optional<Eigen::Index> change_row() const { return change_row_; }
 
  private:
-  void date_change(const MismatchDetector& detector, Eigen::Index samples);
-
   int cvs_;
   std::vector<std::optional<double>> p_values_;  // per channel, input-major
   std::vector<double> wrong_;                    // likewise
-  std::optional<Eigen::Index> change_row_;
 };
 
 }  // namespace mpm

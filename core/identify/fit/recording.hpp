@@ -30,7 +30,7 @@ struct Recording {
   std::vector<Border> borders = {};  ///< ascending; none where there is one run
   /// Samples x CVs, CV units; a column of NaN for a CV without one, or no columns at all.
   Eigen::MatrixXd setpoints = {};
-  /// Row from which on some channel was seen to do something else (`ChannelTests::change_row`).
+  /// Row from which on some channel was seen to do something else (`change_row`).
   std::optional<Eigen::Index> changed = std::nullopt;
 
   [[nodiscard]] Eigen::Index samples() const { return cvs.rows(); }

@@ -223,7 +223,8 @@ void add_diagnose(CLI::App& app, int& exit_code) {
                       "need be");
   command
       ->add_option("--fit-share", options->fit_share,
-                   "first part of the data that is fitted; the gain is measured on the rest")
+                   "first part of the data that is fitted (of what came after a change in it, "
+                   "as much); the gain is measured on the rest")
       ->capture_default_str()
       ->check(CLI::Range(0.2, 0.9));
   command->add_option("--max-findings", options->max_findings, "causes named at most")

@@ -92,11 +92,8 @@ std::string numbers_text(const NamedCause& named) {
 
 std::string cause_text(const NamedCause& named) {
   if (!named.cause) return "cause: not named";
-  constexpr double kNoSurer = 0.999, kAlmost = 0.995;  // never "100 %"
-  const std::string sure = named.confidence > kNoSurer
-                               ? "> 99.9 %"
-                               : percent_text(named.confidence, named.confidence < kAlmost ? 2 : 3);
-  return fmt::format("cause: {}, {} sure  {}", *named.cause, sure, numbers_text(named));
+  return fmt::format("cause: {}, {} sure  {}", *named.cause, sure_text(named.confidence),
+                     numbers_text(named));
 }
 
 }  // namespace

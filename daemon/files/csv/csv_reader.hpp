@@ -15,13 +15,12 @@ namespace mpm::files {
 
 /// Data files (interfaces: "Data file"): wide rows `time,<tag>,...` or long ones
 /// `tag,time,value,quality`, in the layouts of docs/data.md. Memory stays flat, except for a long
-/// file that is not sorted by time.
+/// file that is not sorted by time and for columns of times and values in turn.
 ///
-/// Where each tag has times of its own, its values are held from one to the next (`HeldRows`),
-/// which is noted. To judge a unit, rows at least twice as dense as its sample_time are averaged
-/// down to it
-/// (`AveragedRows`), which is noted. Calculated signals are computed in each row
-/// (`CalculatedRows`).
+/// Where each tag has times of its own, its values are held from one to the next or lie on the line
+/// to it (`HeldRows`); minutes without seconds are spread (`SpreadRows`); to judge a unit, rows at
+/// least twice as dense as its sample_time are averaged down to it (`AveragedRows`). Each is noted.
+/// Calculated signals are computed in each row (`CalculatedRows`).
 ///
 /// Frame k of a file is numbered round((t - t_first) / sample_time); rows whose time does not grow
 /// keep their number, for the monitor to judge.

@@ -16,13 +16,7 @@ class LongRows : public SampleRows {
  public:
   LongRows(LineReader& lines, const CsvFormat& format, TagTable& tags, const SignalCounts& counts,
            std::vector<std::string>& notices)
-      : SampleRows(counts),
-        lines_(lines),
-        format_(format),
-        times_(format.times, format.order),
-        columns_(format_.layout),
-        tags_(tags),
-        notices_(notices) {
+      : SampleRows(lines, format, counts, notices), columns_(format_.layout), tags_(tags) {
     const int header_line = lines_.number();
     const bool sorted = survey();
     const std::string problem = tags.problem();
@@ -97,35 +91,14 @@ class LongRows : public SampleRows {
         ++tally_.empty_rows;
         continue;
       }
-      Sample sample;
-      sample.slot = *slot;
-      sample.time_ns = read_time(lines_, cells_, columns_.time, times_, tag());
-      sample.value = read_value(lines_, format_, value(), tally_);
-      sample.quality = Quality::kGood;
-      for (const QualityColumn& column : columns_.qualities)
-        sample.quality = std::max(
-            sample.quality, read_quality(lines_, format_, column, cells_[column.cell], tally_));
-      if (!std::isfinite(sample.value)) sample.quality = Quality::kBad;
-      return sample;
+      return sample_of(tag(), *slot, columns_.time, value(), columns_.qualities);
     }
     return std::nullopt;
   }
 
-  void end() override {
-    tally_.tell(notices_);
-    tally_ = {};
-    for (std::string& notice : times_.notices()) notices_.push_back(std::move(notice));
-    times_.restart();
-  }
-
-  LineReader& lines_;
-  CsvFormat format_;
-  LocalTimes times_;
-  Layout columns_;
+  const Layout& columns_;
   TagTable& tags_;
   bool named_ = false;  ///< some tag is no mere number
-  std::vector<std::string>& notices_;
-  std::vector<Cell> cells_;
 };
 
 }  // namespace

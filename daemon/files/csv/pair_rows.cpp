@@ -19,11 +19,7 @@ class PairRows : public SampleRows {
  public:
   PairRows(LineReader& lines, const CsvFormat& format, TagTable& tags, const SignalCounts& counts,
            std::vector<std::string>& notices)
-      : SampleRows(counts),
-        lines_(lines),
-        format_(format),
-        times_(format.times, format.order),
-        notices_(notices) {
+      : SampleRows(lines, format, counts, notices) {
     find_columns(tags);
     gather();
   }
@@ -115,32 +111,11 @@ class PairRows : public SampleRows {
   std::optional<Sample> read_pair(const Pair& pair) {
     const Cell& value = cells_[pair.columns.value];
     if (cells_[pair.columns.time].text.empty() && value.text.empty()) return std::nullopt;
-    Sample sample;
-    sample.slot = pair.slot;
-    sample.time_ns =
-        read_time(lines_, cells_, {pair.columns.time, std::nullopt}, times_, pair.columns.name);
-    sample.value = read_value(lines_, format_, value, tally_);
-    sample.quality = Quality::kGood;
-    for (const QualityColumn& column : pair.qualities)
-      sample.quality = std::max(sample.quality,
-                                read_quality(lines_, format_, column, cells_[column.cell], tally_));
-    if (!std::isfinite(sample.value)) sample.quality = Quality::kBad;
-    return sample;
+    return sample_of(pair.columns.name, pair.slot, {pair.columns.time, std::nullopt}, value,
+                     pair.qualities);
   }
 
-  void end() override {
-    tally_.tell(notices_);
-    tally_ = {};
-    for (std::string& notice : times_.notices()) notices_.push_back(std::move(notice));
-    times_.restart();
-  }
-
-  LineReader& lines_;
-  CsvFormat format_;
-  LocalTimes times_;
-  std::vector<std::string>& notices_;
   std::vector<Pair> pairs_;
-  std::vector<Cell> cells_;
   std::size_t at_ = kNoSample;  ///< the pair to read next in the row at hand
   bool begun_ = false;
   int above_ = 0;  ///< rows of units

@@ -1,6 +1,10 @@
 #include "daemon/files/csv/sample_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "daemon/files/csv/cell.hpp"
 
 namespace mpm::files {
 namespace {
@@ -42,7 +46,7 @@ bool TagTimes::apart() const {
 bool SampleRows::next(Frame& frame) {
   if (!pending_) pending_ = next_sample();
   if (!pending_) {
-    end();
+    tell();
     return false;
   }
   clear(frame, counts_);
@@ -78,6 +82,27 @@ void SampleRows::gather() {
 const Sample* SampleRows::following(SignalKind kind, std::size_t index) const {
   const std::size_t next = next_[static_cast<std::size_t>(kind)][index];
   return next == kNoSample || !gathered_ ? nullptr : &(*gathered_)[next];
+}
+
+Sample SampleRows::sample_of(std::string_view tag, const Slot& slot, const TimeColumns& time,
+                             const Cell& value, const std::vector<QualityColumn>& qualities) {
+  Sample sample;
+  sample.slot = slot;
+  sample.time_ns = read_time(lines_, cells_, time, times_, tag);
+  sample.value = read_value(lines_, format_, value, tally_);
+  sample.quality = Quality::kGood;
+  for (const QualityColumn& column : qualities)
+    sample.quality = std::max(sample.quality,
+                              read_quality(lines_, format_, column, cells_[column.cell], tally_));
+  if (!std::isfinite(sample.value)) sample.quality = Quality::kBad;
+  return sample;
+}
+
+void SampleRows::tell() {
+  tally_.tell(notices_);
+  tally_ = {};
+  for (std::string& notice : times_.notices()) notices_.push_back(std::move(notice));
+  times_.restart();
 }
 
 std::optional<Sample> SampleRows::next_sample() {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/files/csv/row_source.hpp"
@@ -48,7 +49,14 @@ class TagTimes {
 /// Frames of samples that come one by one: those of one time make a row.
 class SampleRows : public RowSource {
  public:
-  explicit SampleRows(const SignalCounts& counts) : tag_times_(counts), counts_(counts) {}
+  SampleRows(LineReader& lines, const CsvFormat& format, const SignalCounts& counts,
+             std::vector<std::string>& notices)
+      : lines_(lines),
+        format_(format),
+        times_(format.times, format.order),
+        notices_(notices),
+        tag_times_(counts),
+        counts_(counts) {}
 
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] const Told* told() const override { return &told_; }
@@ -56,20 +64,26 @@ class SampleRows : public RowSource {
  protected:
   /// The next one of the file.
   [[nodiscard]] virtual std::optional<Sample> read_sample() = 0;
-  /// After the last one: tells what is to be told.
-  virtual void end() = 0;
+  /// The one of `tag` in the line at hand; the worst of `qualities` counts.
+  [[nodiscard]] Sample sample_of(std::string_view tag, const Slot& slot, const TimeColumns& time,
+                                 const Cell& value, const std::vector<QualityColumn>& qualities);
   /// Reads all there are, for a file that has them in another order than that of time: 40 bytes
   /// for each.
   void gather();
   /// What comes after the last row's sample of a tag; null where nothing does or is gathered.
   [[nodiscard]] const Sample* following(SignalKind kind, std::size_t index) const;
-  [[nodiscard]] const SignalCounts& counts() const { return counts_; }
 
+  LineReader& lines_;
+  CsvFormat format_;
+  LocalTimes times_;
+  std::vector<std::string>& notices_;
+  std::vector<Cell> cells_;  ///< of the line at hand
   ReadTally tally_;
   TagTimes tag_times_;  ///< once gathered; else for who comes to know them
 
  private:
   std::optional<Sample> next_sample();
+  void tell();
   void put(const Sample& sample, Frame& frame);
 
   SignalCounts counts_;

@@ -15,8 +15,12 @@ SignalNames names_of(const DiagnosisRun& run) {
   return names;
 }
 
+const char* other_text(const Finding& finding) {
+  return *finding.with == finding.subject ? "the other " : "";
+}
+
 std::string needed_text(const SignalNames& names, const Finding& finding) {
-  return (*finding.with == finding.subject ? "the other " : "") + names.subject(*finding.with);
+  return other_text(finding) + names.subject(*finding.with);
 }
 
 }  // namespace mpm::report

@@ -11,8 +11,10 @@ namespace mpm::report {
 /// Tags and engineering units for the indices of a diagnosis. Inputs beyond the model's own are the
 /// aux signals that the extended model takes.
 [[nodiscard]] SignalNames names_of(const DiagnosisRun& run);
-/// What a finding is in the extended model only together with, which it has: `the other ...` where
-/// that is called as it is itself.
+/// "the other " where what a finding is in the extended model only together with, which it has, is
+/// called as it is itself, else nothing.
+[[nodiscard]] const char* other_text(const Finding& finding);
+/// What that is.
 [[nodiscard]] std::string needed_text(const SignalNames& names, const Finding& finding);
 
 }  // namespace mpm::report

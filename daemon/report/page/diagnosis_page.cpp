@@ -78,9 +78,8 @@ std::string in_model_text(const DiagnosisRun& run, const Finding& finding) {
     return "Not repaired: " +
            (finding.refused.empty() ? "its repair did not carry over" : finding.refused) + ".";
   if (finding.with)
-    return std::string("Repaired together with ") +
-           (*finding.with == finding.subject ? "the other " : "") + cause_text(*finding.with) +
-           ", " + place_text(run, *finding.with) + ".";
+    return std::string("Repaired together with ") + other_text(finding) +
+           cause_text(*finding.with) + ", " + place_text(run, *finding.with) + ".";
   return "Repaired.";
 }
 

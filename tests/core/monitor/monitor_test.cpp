@@ -6,18 +6,12 @@
 
 #include "core/model/linear_model.hpp"
 #include "tests/allocation_counter.hpp"
-#include "tests/core/open_loop_unit.hpp"
+#include "tests/core/monitor/experiment.hpp"
 
 namespace mpm {
 namespace {
 
-struct Experiment : test::OpenLoopUnit {
-  bool predictions = true;
-
-  [[nodiscard]] Monitor monitor() const {
-    return Monitor(model, counts, {predictions, predictions}, {}, {});
-  }
-};
+using test::Experiment;
 
 TEST_CASE("a healthy unit matches everywhere and raises nothing") {
   const Experiment experiment;
@@ -172,20 +166,6 @@ TEST_CASE("sizes: the intervals of gain, time constant and dead time hold the tr
     missed += dead < 1.96 * channel.dead_time_error.deviation ? 0 : 1;
   }
   CHECK(missed <= 15);
-}
-
-TEST_CASE("without movement of any manipulated variable the controller is off") {
-  const Experiment experiment;
-  Monitor monitor = experiment.monitor();
-  experiment.run(2000, [&](const Frame& original) {
-    Frame frame = original;
-    frame[SignalKind::kMv].values = experiment.model.input_origin;
-    frame[SignalKind::kCv].values -= frame[SignalKind::kPrediction].values;
-    frame[SignalKind::kPrediction].values.setZero();
-    monitor.push(frame);
-  });
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).reason == Reason::kControllerOff);
 }
 
 TEST_CASE("the mean line decides where the settings say so, on the correlation they name") {
@@ -363,208 +343,6 @@ TEST_CASE("what moves with a set-point is told of the set-point, and no channel 
     CHECK(channel.reason == (disturbed ? Reason::kConfounded : Reason::kNone));
     CHECK(channel.confounder == (disturbed ? 3 : -1));  // two inputs, then the set-points
   }
-}
-
-TEST_CASE("before there is enough data nothing is said") {
-  const Experiment experiment;
-  Monitor monitor = experiment.monitor();
-  experiment.run(100, [&](const Frame& frame) { monitor.push(frame); });
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
-      CHECK(monitor.channel(j, i).verdict == Verdict::kUndetermined);
-      CHECK(monitor.channel(j, i).reason == Reason::kWarmingUp);
-    }
-}
-
-TEST_CASE("an input that stands still is undetermined") {
-  const Experiment experiment;
-  Monitor monitor = experiment.monitor();
-  experiment.run(2000, [&](const Frame& original) {
-    Frame frame = original;
-    frame[SignalKind::kMv].values(1) = -3.0;
-    monitor.push(frame);
-  });
-  monitor.correlate();
-  for (int j = 0; j < 2; ++j) {
-    CHECK(monitor.channel(j, 1).verdict == Verdict::kUndetermined);
-    CHECK(monitor.channel(j, 1).reason == Reason::kNotExcited);
-    CHECK(monitor.partial_correlations(j, 1).isZero(0.0));
-  }
-}
-
-TEST_CASE("inputs that move as one name each other") {
-  Experiment experiment;
-  Monitor monitor = experiment.monitor();
-  experiment.run(2000, [&](const Frame& original) {
-    Frame frame = original;
-    frame[SignalKind::kMv].values(1) = 3.0 * frame[SignalKind::kMv].values(0);
-    monitor.push(frame);
-  });
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
-      CHECK(monitor.channel(j, i).verdict == Verdict::kUndetermined);
-      CHECK(monitor.channel(j, i).reason == Reason::kCollinear);
-      CHECK(monitor.channel(j, i).confounder == 1 - i);
-      CHECK(std::isfinite(monitor.channel(j, i).p_value));
-      CHECK(std::isfinite(monitor.channel(j, i).effect_size));
-    }
-}
-
-TEST_CASE("an input that stands still leaves the others their verdicts") {
-  for (const bool predictions : {true, false}) {
-    for (const int from : {0, 500}) {
-      CAPTURE(from, predictions);
-      Experiment experiment;
-      experiment.predictions = predictions;
-      experiment.graded = true;
-      experiment.still_from = from;
-      Monitor monitor = experiment.monitor();
-      experiment.run(4000, [&](const Frame& frame) { monitor.push(frame); });
-      for (int j = 0; j < 2; ++j) CHECK(monitor.channel(j, 0).verdict == Verdict::kMatch);
-      if (from == 0)
-        for (int j = 0; j < 2; ++j) CHECK(monitor.channel(j, 1).reason == Reason::kNotExcited);
-    }
-  }
-}
-
-TEST_CASE("inputs that are moved now and then are not frozen in between") {
-  Experiment experiment;
-  experiment.predictions = false;
-  experiment.graded = true;  // every 20 samples
-  Monitor monitor = experiment.monitor();
-  experiment.run(4000, [&](const Frame& frame) { monitor.push(frame); });
-  CHECK(monitor.counters().implausible.frozen < 20);
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
-}
-
-TEST_CASE("an input that is missing is named where a CV cannot be simulated without it") {
-  Experiment experiment;
-  experiment.predictions = false;
-  Monitor monitor = experiment.monitor();
-  experiment.run(1000, [&](Frame frame) {
-    frame[SignalKind::kMv].quality[1] = Quality::kBad;
-    monitor.push(frame);
-  });
-  CHECK(monitor.channel(0, 0).reason == Reason::kBadData);
-  CHECK(monitor.channel(0, 0).confounder == 1);
-  CHECK(monitor.channel(0, 1).reason == Reason::kBadData);
-  CHECK(monitor.channel(0, 1).confounder == -1);
-}
-
-TEST_CASE("a compressed CV has no verdict, and what was learnt of it is forgotten") {
-  Experiment experiment;
-  Monitor monitor = experiment.monitor();
-  double held = 0.0;
-  Reason before = Reason::kNone;
-  double remembered = 1e9;  // when it is no longer compressed
-  experiment.run(7000, [&](Frame frame) {
-    double& value = frame[SignalKind::kCv].values(0);
-    if (std::abs(value - held) > 0.3) held = value;
-    if (frame.interval < 3000) value = held;
-    monitor.push(frame);
-    CHECK(monitor.transitions().empty());
-    if (frame.interval == 2900)
-      for (int i = 0; i < 2; ++i) CHECK(monitor.channel(0, i).reason == Reason::kCompressed);
-    if (frame.interval == 2900) CHECK(monitor.channel(1, 0).verdict == Verdict::kMatch);
-    const Reason reason = monitor.channel(0, 0).reason;
-    if (before == Reason::kCompressed && reason != before)
-      remembered = monitor.channel(0, 0).effective_samples;
-    before = reason;
-  });
-  CHECK(remembered < 10.0);
-  for (int i = 0; i < 2; ++i) CHECK(monitor.channel(0, i).verdict == Verdict::kMatch);
-}
-
-TEST_CASE("a CV that is simulated from a compressed input has no verdict") {
-  // An MV that wanders, held until it has left a deadband of half its s.d.
-  Experiment experiment;
-  experiment.predictions = GENERATE(true, false);
-  Monitor monitor = experiment.monitor();
-  double held = 0.0;
-  experiment.run(4000, [&](Frame frame) {
-    double& value = frame[SignalKind::kMv].values(1);
-    const double moved = value + test::coloured(900, static_cast<int>(frame.interval));
-    if (std::abs(moved - held) > 0.3) held = moved;
-    value = held;
-    monitor.push(frame);
-    CHECK(monitor.transitions().empty());
-  });
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) {
-      const ChannelStatus& channel = monitor.channel(j, i);
-      CHECK((channel.reason == Reason::kCompressed) == !experiment.predictions);
-      if (!experiment.predictions) CHECK(channel.confounder == 1);
-    }
-}
-
-TEST_CASE("implausible values are a part of the bad ones at every moment") {
-  Experiment experiment;
-  experiment.predictions = GENERATE(true, false);
-  Monitor monitor = experiment.monitor();
-  experiment.run(1000, [&](const Frame& original) {
-    Frame frame = original;
-    if (original.interval > 500) {  // measurement and prediction stand still, to the end
-      frame[SignalKind::kCv].values(0) = 50.25;
-      frame[SignalKind::kPrediction].values(0) = 50.125;
-    }
-    monitor.push(frame);
-    const ScreenCounters& implausible = monitor.counters().implausible;
-    REQUIRE(implausible.frozen + implausible.clipped + implausible.spikes <=
-            monitor.counters().bad_values);
-  });
-  CHECK(monitor.counters().implausible.frozen > 400);
-}
-
-TEST_CASE("gaps, bad values and repeats are counted and skew nothing") {
-  const Experiment experiment;
-  Monitor monitor = experiment.monitor();
-  int transitions = 0;
-  experiment.run(4000, [&](const Frame& original) {
-    const std::int64_t k = original.interval;
-    Frame frame = original;
-    if (k % 500 == 100) return;                                  // missing
-    if (k % 500 == 200) frame[SignalKind::kCv].values(0) = 1e9;  // far off, but said to be bad
-    if (k % 500 == 200) frame[SignalKind::kCv].quality[0] = Quality::kBad;
-    if (k % 500 == 300) frame[SignalKind::kMv].values(1) = std::numeric_limits<double>::quiet_NaN();
-    monitor.push(frame);
-    if (k % 500 == 400) monitor.push(frame);  // repeated
-    transitions += static_cast<int>(monitor.transitions().size());
-  });
-  CHECK(monitor.counters().missing == 8);
-  CHECK(monitor.counters().bad_values == 16);
-  CHECK(monitor.counters().out_of_order == 8);
-  CHECK(transitions == 0);
-  for (int j = 0; j < 2; ++j)
-    for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
-}
-
-TEST_CASE("each frame is judged once, in order, also where several wait for one") {
-  const Experiment experiment;
-  Monitor monitor = experiment.monitor();
-  std::int64_t next = 0;
-  std::size_t at_once = 0;
-  experiment.run(600, [&](const Frame& original) {
-    Frame frame = original;
-    if (frame.interval >= 400) frame[SignalKind::kMv].values(0) += 1e3;  // a step that stays
-    monitor.push(frame);
-    at_once = std::max(at_once, monitor.judged().size());
-    for (const JudgedFrame& judged : monitor.judged()) CHECK(judged.interval == next++);
-  });
-  CHECK(at_once > 1);
-  CHECK(next == 600 - Screen::kDelay);
-}
-
-TEST_CASE("a signal that stays bad turns every verdict to undetermined") {
-  const Experiment experiment;
-  Monitor monitor = experiment.monitor();
-  experiment.run(2000, [&](const Frame& original) {
-    Frame frame = original;
-    if (frame.interval > 1900) frame[SignalKind::kMv].quality[0] = Quality::kBad;
-    monitor.push(frame);
-  });
-  CHECK(monitor.channel(0, 0).verdict == Verdict::kUndetermined);
-  CHECK(monitor.channel(0, 0).reason == Reason::kBadData);
 }
 
 TEST_CASE("the monitor allocates nothing per sample and repeats itself exactly") {

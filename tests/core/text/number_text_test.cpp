@@ -32,6 +32,10 @@ TEST_CASE("nothing is certain") {
   CHECK(confidence_text(0.999) == "0.999");
   CHECK(confidence_text(0.9995) == "> 0.999");
   CHECK(confidence_text(1.0) == "> 0.999");
+  CHECK(sure_text(0.954) == "95 %");
+  CHECK(sure_text(0.9962) == "99.6 %");
+  CHECK(sure_text(0.999) == "99.9 %");
+  CHECK(sure_text(1.0) == "> 99.9 %");
 }
 
 }  // namespace

@@ -1,0 +1,80 @@
+#include "core/identify/evidence/regress_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/identify/evidence/calibration.hpp"
+#include "core/model/linear_model.hpp"
+#include "core/monitor/derived_settings.hpp"
+
+namespace mpm {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Without means of the CVs' own past: a loop that swings by itself, as with a sticking valve, is
+/// predicted by these as well as by its input.
+RegressionShape shape_of(const ModelSpec& model, const DerivedSettings& derived) {
+  return {model.input_count, model.cv_count, derived.fir_lags, derived.residual_order,
+          derived.tail_poles};
+}
+
+/// The monitor's regression, with ever fewer lags until the rows suffice for it; nothing where they
+/// never do.
+std::optional<DerivedSettings> settings_for(const ModelSpec& model, const LinearModel& linear,
+                                            double rows) {
+  MonitorSettings monitor;
+  for (;;) {
+    DerivedSettings derived = derive_settings(model, linear, monitor, AlarmSettings{});
+    if (kTestRowsPerColumn * shape_of(model, derived).columns() <= rows) return derived;
+    if (derived.residual_order > kFewestResidualLags)
+      monitor.residual_order = std::max(kFewestResidualLags, derived.residual_order / 2);
+    else if (derived.fir_lags > kFewestLags)
+      monitor.fir_lags = std::max(kFewestLags, derived.fir_lags / 2);
+    else
+      return std::nullopt;
+  }
+}
+
+double fewest_known(const MatrixXd& residuals) {
+  double fewest = std::numeric_limits<double>::infinity();
+  for (Index j = 0; j < residuals.cols(); ++j) {
+    const auto known = static_cast<double>(residuals.col(j).array().isFinite().count());
+    if (known > 0.0) fewest = std::min(fewest, known);
+  }
+  return std::isfinite(fewest) ? fewest : 0.0;
+}
+
+}  // namespace
+
+std::unique_ptr<MismatchDetector> regress_recording(const ModelSpec& model,
+                                                    const Recording& recording,
+                                                    const MatrixXd& residuals, Index remembered) {
+  const LinearModel linear(model);
+  const std::optional<DerivedSettings> settings =
+      settings_for(model, linear, fewest_known(residuals));
+  if (!settings) return nullptr;
+  auto detector = std::make_unique<MismatchDetector>(
+      shape_of(model, *settings), std::vector{MemoryLength{}},
+      remembered > 0 ? static_cast<int>(remembered) : settings->remembered,
+      settings->evaluation_stride, linear);
+  VectorXd inputs(model.input_count);
+  auto border = recording.borders.begin();
+  for (Index k = 0; k < recording.samples(); ++k) {
+    if (border != recording.borders.end() && border->row == k) {
+      detector->skip(settings->fir_lags + settings->residual_order);  // no row has both sides
+      ++border;
+    }
+    inputs.head(recording.inputs.cols()) = recording.inputs.row(k);
+    inputs.tail(recording.aux.cols()) = recording.aux.row(k);
+    detector->update(inputs, residuals.row(k).transpose());
+  }
+  return detector;
+}
+
+}  // namespace mpm
