@@ -171,9 +171,9 @@ void Monitor::State::take_frame(const Frame& frame) {
       if (samples > 0) detector.start_afresh(cv, 0);
     });
   follow_compression();
-  counters.bad_values += static_cast<std::uint64_t>(inputs.read(frame));
+  inputs.read(frame);
   predictions.begin(frame, inputs);
-  counters.bad_values += static_cast<std::uint64_t>(residuals.read(frame, predictions));
+  residuals.read(frame, predictions);
   count_bad(frame);
   predictions.advance(inputs);
   take_sample(frame);
@@ -193,9 +193,12 @@ void Monitor::State::take_frame(const Frame& frame) {
 void Monitor::State::count_bad(const Frame& frame) {
   for (const SignalKind kind :
        {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction})
-    for (int i = 0; i < counts.of(kind); ++i)
-      if (!frame[kind].usable(i) && (kind != SignalKind::kPrediction || predictions.given(i)))
-        ++counters.bad_of[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    for (int i = 0; i < counts.of(kind); ++i) {
+      if (frame[kind].usable(i) || (kind == SignalKind::kPrediction && !predictions.given(i)))
+        continue;
+      ++counters.bad_values;
+      ++counters.bad_of[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    }
 }
 
 // What was learnt of held values and drawn lines says nothing once all is measured again.

@@ -12,8 +12,7 @@ UnitInputs::UnitInputs(const SignalCounts& counts, double memory_samples)
       unknown_runs_(static_cast<std::size_t>(counts.inputs()), 0),
       motions_(static_cast<std::size_t>(counts.inputs()), InputMotion(memory_samples)) {}
 
-int UnitInputs::read(const Frame& frame) {
-  int unknown = 0;
+void UnitInputs::read(const Frame& frame) {
   for (int i = 0; i < static_cast<int>(values_.size()); ++i) {
     const bool is_mv = i < mvs_;
     const SignalBlock& block = frame[is_mv ? SignalKind::kMv : SignalKind::kDv];
@@ -26,10 +25,8 @@ int UnitInputs::read(const Frame& frame) {
     } else {
       values_(i) = std::numeric_limits<double>::quiet_NaN();
       ++unknown_runs_[s];
-      ++unknown;
     }
   }
-  return unknown;
 }
 
 std::int64_t UnitInputs::longest_unknown_run() const {

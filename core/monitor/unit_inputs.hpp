@@ -16,8 +16,8 @@ class UnitInputs {
   /// `memory_samples`: over which their motion is told.
   UnitInputs(const SignalCounts& counts, double memory_samples);
 
-  /// Takes a frame's; how many of them are unknown.
-  int read(const Frame& frame);
+  /// Takes a frame's.
+  void read(const Frame& frame);
 
   /// NaN where unknown.
   [[nodiscard]] const Eigen::VectorXd& values() const { return values_; }

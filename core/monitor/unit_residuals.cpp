@@ -10,17 +10,13 @@ UnitResiduals::UnitResiduals(int cvs)
       held_(Eigen::VectorXd::Zero(cvs)),
       unknown_runs_(static_cast<std::size_t>(cvs), 0) {}
 
-int UnitResiduals::read(const Frame& frame, const Predictions& predictions) {
-  int unknown = 0;
+void UnitResiduals::read(const Frame& frame, const Predictions& predictions) {
   for (int j = 0; j < static_cast<int>(values_.size()); ++j) {
-    if (!frame[SignalKind::kCv].usable(j)) ++unknown;
-    if (predictions.given(j) && !frame[SignalKind::kPrediction].usable(j)) ++unknown;
     values_(j) = predictions.residual(j, frame);
     std::int64_t& run = unknown_runs_[static_cast<std::size_t>(j)];
     run = std::isfinite(values_(j)) ? 0 : run + 1;
     if (run == 0) held_(j) = values_(j);
   }
-  return unknown;
 }
 
 void UnitResiduals::skip(std::int64_t missing) {

@@ -14,8 +14,8 @@ class UnitResiduals {
  public:
   explicit UnitResiduals(int cvs);
 
-  /// Takes a frame's; how many measurements and predictions that come with the frames are unknown.
-  int read(const Frame& frame, const Predictions& predictions);
+  /// Takes a frame's.
+  void read(const Frame& frame, const Predictions& predictions);
   /// `missing` intervals of which nothing is known.
   void skip(std::int64_t missing);
 

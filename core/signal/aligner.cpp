@@ -12,6 +12,9 @@ namespace {
 // Keeps all arithmetic on intervals far from overflow, and the numbers exact in JSON.
 constexpr std::int64_t kLargestInterval = std::int64_t{1} << 53;
 
+// A leap beyond it is other numbers, not samples that are missing: 35 years of milliseconds.
+constexpr std::int64_t kLongestGap = std::int64_t{1} << 40;
+
 unsigned bit_of(SignalKind kind) { return 1u << static_cast<unsigned>(kind); }
 
 Quality quality_of(std::uint8_t code) {
@@ -245,8 +248,8 @@ bool Aligner::past_lateness(std::int64_t interval) const {
 void Aligner::take_over() {
   while (pending()) settle_next(current_);
   const std::int64_t next = candidate_.next + offset_;
-  // Every leap would be added to those before it: beyond what is exact there is none.
-  if (counters_.frames > 0 && (next <= last_emitted_ || next > kLargestInterval)) {
+  if (counters_.frames > 0 && (next <= last_emitted_ || next - last_emitted_ > kLongestGap ||
+                               next > kLargestInterval)) {
     ++counters_.restarts;
     offset_ = last_emitted_ + 2 - candidate_.next;  // 2: never adjacent, so that windows close
   }

@@ -100,8 +100,9 @@ struct CvHead {
 
 struct ChannelHead {
   std::string mv, cv, mv_unit;
-  bool modelled = true;     ///< the model has it: gain errors are in per cent
-  double gain_limit = 0.0;  ///< relative; smaller errors do not matter
+  bool modelled = true;      ///< the model has it: gain errors are in per cent
+  double gain_limit = 0.0;   ///< relative; smaller errors do not matter
+  bool disturbance = false;  ///< `mv` is a DV: nobody moves it
 
   template <class Visit, class Record>
   static void fields(Visit&& visit, Record& record) {
@@ -110,6 +111,7 @@ struct ChannelHead {
     visit({"mv_unit", !record.mv_unit.empty()}, record.mv_unit);
     visit("modelled", record.modelled);
     visit("gain_limit", record.gain_limit);
+    visit({"disturbance", record.disturbance}, record.disturbance);
   }
 };
 

@@ -68,7 +68,8 @@ DigestMaker::DigestMaker(const config::UnitConfig& unit)
       const report::ChannelFile file = report::channel_file(unit, unit.input_tag(i), cv);
       head_.channels.push_back(
           {unit.input_tag(i), cv, file.mv_unit, file.modelled,
-           derived.materiality[static_cast<std::size_t>(i * cv_count_ + j)].gain});
+           derived.materiality[static_cast<std::size_t>(i * cv_count_ + j)].gain,
+           i >= unit.counts().mv});
     }
   }
   const SignalCounts counts = unit.counts();

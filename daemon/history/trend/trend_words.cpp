@@ -78,6 +78,8 @@ std::string words_of(const Trend& trend, const Silence& silence) {
   const bool spoke = silence.last.verdict != "undetermined";
   report::ChannelFile file;
   file.modelled = head.modelled;
+  for (const ChannelHead& each : trend.head.channels)
+    if (each.disturbance) file.disturbances.push_back(each.mv);
   return channel_name(head.mv, head.cv) + ": " +
          (silence.since ? "nothing since " + period_name(trend, *silence.since) + "; " : "") +
          (spoke ? "told for too little of the time" : report::undetermined_text(record, file));

@@ -406,6 +406,16 @@ TEST_CASE("aligner: a controller that was away is followed without a loss") {
   CHECK(bench.aligner.counters().restarts == 0);
 }
 
+TEST_CASE("aligner: a leap that no absence explains is a new beginning, not samples that are missing") {
+  Bench bench;
+  bench.push_all(0, 100);
+  const std::int64_t far = std::int64_t{1} << 53;
+  bench.push_all(far - 20, far);
+  CHECK(bench.frames.size() == 122);
+  CHECK(bench.aligner.counters().missing < 20);
+  CHECK(bench.aligner.counters().restarts == 1);
+}
+
 TEST_CASE("aligner: a stray number changes nothing") {
   Bench bench;
   bench.push_all(0, 20);

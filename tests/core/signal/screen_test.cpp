@@ -94,6 +94,17 @@ TEST_CASE("spikes of one and two samples are caught, steps are not") {
   CHECK(screen.counters().spikes == 3);
 }
 
+// As where one MV's move is made up for by another's: it turns within two samples, but not at once.
+TEST_CASE("a process that turns around quickly gives no spike") {
+  Screen screen(kCounts, {false}, {true}, 0);
+  const std::vector<double> turn = {0.1, 0.25, 0.5, 0.8, 1.1, 0.95, 0.7, 0.5, 0.3, 0.15, 0.05};
+  const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
+    const auto since = static_cast<std::size_t>(k % 100);
+    if (k > 100 && since < turn.size()) frame[SignalKind::kCv].values(0) += turn[since];
+  });
+  CHECK(rejected(passed) == 0);
+}
+
 TEST_CASE("a controller in manual is no frozen sensor") {
   for (const bool predicted : {true, false}) {
     Screen screen(kCounts, {predicted}, {true}, 0);

@@ -47,6 +47,14 @@ TEST_CASE("alarms and silence are said in a sentence, and what no sentence can b
   silence.since = 3;
   CHECK(words_of(trend, silence) ==
         "u -> y: nothing since 8 January; moved only together with v; move one without the other");
+  silence.last.reason = "not_excited";
+  silence.last.smallest_error = 0.28;
+  CHECK(words_of(trend, silence) ==
+        "u -> y: nothing since 8 January; needs a gain error of 28 % to show; move u");
+  Trend disturbed = trend;
+  disturbed.head.channels[0].disturbance = true;
+  CHECK(words_of(disturbed, silence) ==
+        "u -> y: nothing since 8 January; needs a gain error of 28 % to show; wait until u moves");
   CHECK(words_of_rate(trend, find_changes(trend)) ==
         "Changes cannot be told: no series has 6 days that are known.");
   CHECK(words_of_rate(trend, Findings{{}, {}, {}, 4}) ==
