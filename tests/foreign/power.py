@@ -14,6 +14,7 @@ of the test; --model-error 1: they are off by as much as in score.py. Tables, sh
 95 % interval (1927), rewritten in the file given as --markdown:
 * power: per plant and noncentrality the runs with a wrong channel; found = it is called a mismatch;
   undetermined = not found, and undetermined; missed = it is called a match.
+* regimes: the same per regime, in place of the others where there are several.
 * coverage: of the 95 % intervals of gain, time constants and dead time that `mpm detect` gives, how
   many hold the truth, by the size of the channel's error: of gain and time constant the larger of
   ratio and inverse, of the dead time by the dead time and one sample.
@@ -220,9 +221,11 @@ def main():
     good = [c for c in cases if not c["failed"]]
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps(cases, indent=1) + "\n")
-    tables = {"power": list(power_rows(good, "plant")), "coverage": list(coverage_rows(good))}
-    shown = [*tables.values()] + ([list(power_rows(good, "regime"))] if len(args.regime) > 1 else [])
-    print("\n\n".join("\n".join(rows) for rows in shown))
+    if len(args.regime) > 1:
+        tables = {"regimes": list(power_rows(good, "regime"))}
+    else:
+        tables = {"power": list(power_rows(good, "plant")), "coverage": list(coverage_rows(good))}
+    print("\n\n".join("\n".join(rows) for rows in tables.values()))
     print(f"\n{sum(c['seconds'] for c in cases):.0f} s of CPU time")
     if args.markdown:
         text = pathlib.Path(args.markdown).read_text()
