@@ -82,6 +82,8 @@ inline constexpr double kLeastDamping = 0.03;  ///< less does not settle
 inline constexpr double kMostDamping = 0.8;    ///< more hardly overshoots: two lags
 /// Of the longest run: a form with a slower time constant is not told from a drift.
 inline constexpr double kSlowestShare = 0.5;
+/// Of the longest run: so slow, it may as well integrate. Chosen.
+inline constexpr double kMayIntegrateShare = 0.1;
 inline constexpr double kSecondShare = 0.2;  ///< of the time constant: where a second begins
 
 // Whether feedback moves the inputs (feedback_test.hpp).

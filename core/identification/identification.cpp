@@ -17,6 +17,7 @@
 #include "core/identify/fit/split.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/parallel/parallel.hpp"
+#include "core/statistics/historian.hpp"
 
 namespace mpm {
 
@@ -222,6 +223,17 @@ bool answers_within_row(const Material& material) {
   return within;
 }
 
+/// With the CVs that are read only now and then as if unknown: what stands between two readings
+/// would pass for dead time. `read_every`: samples, of each CV; 0 = every one.
+Recording without_seldom_read(Recording recording, std::vector<Index>& read_every) {
+  for (Index cv = 0; cv < recording.cvs.cols(); ++cv) {
+    read_every.push_back(reading_interval(recording.cvs.col(cv)));
+    if (read_every.back() > 0)
+      recording.cvs.col(cv).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return recording;
+}
+
 /// What too few rows say.
 Identification nothing_of(const Recording& recording) {
   Identification result;
@@ -256,7 +268,9 @@ Identification nothing_of(const Recording& recording) {
 
 Identification identify(const Recording& recording, const IdentificationSettings& settings) {
   if (recording.samples() < kFewestRows) return nothing_of(recording);
-  const Material given = material(recording);
+  std::vector<Index> read_every;
+  const Recording measured = without_seldom_read(recording, read_every);
+  const Material given = material(measured);
   std::vector<CvOutcome> outcomes(static_cast<std::size_t>(recording.cvs.cols()));
   const Parallel parallel(settings.threads);
   parallel.for_each(outcomes.size(), [&](std::size_t cv) {
@@ -272,6 +286,10 @@ Identification identify(const Recording& recording, const IdentificationSettings
         std::max(result.longest_lag_s, outcome.longest_lag * recording.sample_time_s);
   for (const CvOutcome& outcome : outcomes)
     result.channels.insert(result.channels.end(), outcome.channels.begin(), outcome.channels.end());
+  for (ChannelAnswer& channel : result.channels)
+    if (channel.left_out == LeftOut::kUnknownCv &&
+        read_every[static_cast<std::size_t>(channel.cv)] > 0)
+      channel.left_out = LeftOut::kReadSeldom;
   correct_for_many(result.channels);
   keep_vague_that_matter(given, outcomes, result.channels);
   result.model = levelled_model(given, outcomes, result.channels);
@@ -280,6 +298,7 @@ Identification identify(const Recording& recording, const IdentificationSettings
     answer.unseen_rmse = unseen_rmse(given, result.model, answer.cv);
     answer.unseen_spread =
         spread_of(given.unseen.cvs.col(answer.cv), given.unseen.known.col(answer.cv));
+    answer.read_every = read_every[static_cast<std::size_t>(answer.cv)];
     result.cvs.push_back(answer);
   }
   return result;

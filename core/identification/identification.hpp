@@ -23,6 +23,7 @@ enum class LeftOut {
   kGivenNone,     ///< the user says that there is no relation
   kStill,         ///< the input does not move
   kUnknownCv,     ///< the CV is hardly known, or does not move
+  kReadSeldom,    ///< the CV is read only once in several samples (an analyser's)
   kTooFewRows,    ///< for so many inputs
   kOnlyFeedback,  ///< nothing but the CVs' own disturbances moves the input
   kHidden,        ///< moves too little, or too much like others, to tell
@@ -63,8 +64,9 @@ struct ChannelAnswer {
 /// How good the model of a CV is.
 struct CvAnswer {
   int cv = 0;
-  double rows = 0.0;    ///< that were fitted
-  double spread = 0.0;  ///< s.d. of the CV
+  double rows = 0.0;            ///< that were fitted
+  Eigen::Index read_every = 0;  ///< samples, where that is why it was not identified
+  double spread = 0.0;          ///< s.d. of the CV
   /// Fitted by the errors of the free run, for which no feedback and better carrying over speak.
   bool output_error = false;
   double noise_sd = 0.0;           ///< of what the model leaves, CV units

@@ -111,6 +111,29 @@ double longest_run(const IdentificationData& data) {
   return static_cast<double>(longest);
 }
 
+/// A level is moved by all its flows: one that integrates beside others that are only very slow is
+/// no better than very slow itself. All of these as integrators, where there are several; else
+/// nothing.
+std::vector<ChannelShape> slow_ones_integrating(const std::vector<ChannelShape>& channels,
+                                                double run) {
+  std::vector<ChannelShape> changed = channels;
+  int count = 0;
+  for (ChannelShape& shape : changed) {
+    const bool one_lag = shape.form == ChannelForm::kFirstOrder;
+    const bool two_lags =
+        shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead;
+    if ((!one_lag && !two_lags) || slowest_time(shape) < kMayIntegrateShare * run) continue;
+    const auto [fast, slow] = std::minmax({shape.time_constant, one_lag ? 0.0 : shape.second});
+    shape.gain /= slow;
+    shape.time_constant = fast;
+    shape.lead = 0.0;
+    shape.form = one_lag ? ChannelForm::kIntegrator : ChannelForm::kIntegratorLag;
+    ++count;
+  }
+  if (count < 2) changed.clear();
+  return changed;
+}
+
 PredictionErrorFit without(const IdentificationData& data, int cv, const PredictionErrorFit& fit,
                            std::size_t which, const NoiseAssumption& noise) {
   std::vector<ChannelShape> rest = fit.channels;
@@ -190,6 +213,13 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
           continue;
         if (!best || bic(fit) < bic(*best)) best = std::move(fit);
       }
+    std::vector<ChannelShape> levels = slow_ones_integrating(now.channels, longest_run(data));
+    if (!levels.empty()) {
+      PredictionErrorFit fit =
+          fit_prediction_error(data, cv, std::move(levels), noise, kTrialSteps);
+      // It has no more numbers than now: nothing richer that has to be worth it.
+      if (bic(fit) < bic(best ? *best : now)) best = std::move(fit);
+    }
     if (!best) break;
     // What was wrong there hid what is wrong elsewhere: next, every form is tried again.
     grown.push_back(fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps));

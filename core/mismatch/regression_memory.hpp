@@ -51,8 +51,11 @@ struct RegressionMemory {
             calibration::rows_needed::kMorePerColumn * heavy_tails) *
            factor.columns();
   }
-  [[nodiscard]] bool ready() const {
-    return rows >= needed_rows() && freedom() >= factor.columns();
+  [[nodiscard]] bool ready() const { return rows >= needed_rows() && ready_but_for_tails(); }
+  /// Enough rows were the noise normal.
+  [[nodiscard]] bool ready_but_for_tails() const {
+    return rows >= calibration::rows_needed::kPerColumn * factor.columns() &&
+           freedom() >= factor.columns();
   }
 };
 

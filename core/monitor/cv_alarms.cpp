@@ -60,6 +60,7 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
   ++since_scan_;
   if (!detector.memory(cv).ready()) {
     hold();
+    if (shaken(cv, detector)) look_for_change(cv, false, detector, scan);
     return;
   }
   if (isolating_) {
@@ -81,7 +82,20 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
                                                        : change_search::kBetween);
   const bool suspicious =
       due && (something_wrong(cv, quiet, detector) || memories_disagree(cv, detector, limits));
-  if (!risen && !suspicious) return;
+  if (risen || suspicious) look_for_change(cv, risen, detector, scan);
+}
+
+// A change makes errors that look like heavy tails, under which a short memory says nothing: it
+// would say nothing of the change either.
+bool CvAlarms::shaken(int cv, const MismatchDetector& detector) const {
+  return !isolating_ && since_scan_ >= change_search::kBetweenUrgent &&
+         detector.memory(cv).ready_but_for_tails() &&
+         detector.regression(cv).noise().surprise() > change_search::kUrgentSurprise;
+}
+
+void CvAlarms::look_for_change(int cv, bool risen, MismatchDetector& detector, ChangeScan& scan) {
+  const bool quiet = std::none_of(before_.begin(), before_.end(),
+                                  [](AlarmState state) { return state == AlarmState::kActive; });
   since_scan_ = 0;
   detector.fold(cv);
   const std::optional<ChangePoint> change = scan.scan(detector, cv);

@@ -63,6 +63,8 @@ class CvAlarms {
  private:
   void step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
             const Condition::Limits& limits);
+  [[nodiscard]] bool shaken(int cv, const MismatchDetector& detector) const;
+  void look_for_change(int cv, bool risen, MismatchDetector& detector, ChangeScan& scan);
   void settle(int cv, const MismatchDetector& detector, const Condition::Limits& limits);
   [[nodiscard]] bool something_wrong(int cv, bool quiet, const MismatchDetector& detector) const;
   [[nodiscard]] bool memories_disagree(int cv, const MismatchDetector& detector,

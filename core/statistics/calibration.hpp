@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 
 /// Numbers that decide what a historian is accused of (compression.hpp, historian.hpp).
@@ -38,6 +39,13 @@ inline constexpr double kStraightShare = 0.15;
 inline constexpr double kBends = 0.015;
 inline constexpr double kMostlyStraight = 0.5;
 }  // namespace compression
+
+/// What is read every so many rows (an analyser). Chosen: a deadband's holds are of all lengths.
+namespace readings {
+inline constexpr std::size_t kFewest = 20;
+inline constexpr double kRegular = 0.9;         ///< share of the spacings
+inline constexpr Eigen::Index kJitterFrom = 8;  ///< rows: the cycle need be no multiple of one
+}  // namespace readings
 
 inline constexpr std::size_t kFewestRows = 100;
 inline constexpr std::size_t kFewestMoves = 30;  ///< that a quantum can be told from

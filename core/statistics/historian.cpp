@@ -34,6 +34,32 @@ std::vector<double> levels_of(std::vector<double> values, double tie) {
 
 }  // namespace
 
+Index reading_interval(const Eigen::Ref<const VectorXd>& values) {
+  std::vector<Index> spacings;
+  Index last_row = -1;
+  double last = 0.0;
+  for (Index k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(values(k)) || (last_row >= 0 && values(k) == last)) continue;
+    if (last_row >= 0) spacings.push_back(k - last_row);
+    last_row = k;
+    last = values(k);
+  }
+  if (spacings.size() < readings::kFewest) return 0;
+  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+  std::nth_element(spacings.begin(), middle, spacings.end());
+  const Index every = *middle;
+  if (every < 2) return 0;
+  // Two readings that are equal, and one that is missing, make a multiple.
+  const Index jitter = every >= readings::kJitterFrom ? 1 : 0;
+  const auto regular = std::count_if(spacings.begin(), spacings.end(), [&](Index spacing) {
+    const Index nearest = std::max<Index>(1, (spacing + every / 2) / every) * every;
+    return std::abs(spacing - nearest) <= jitter;
+  });
+  return static_cast<double>(regular) >= readings::kRegular * static_cast<double>(spacings.size())
+             ? every
+             : 0;
+}
+
 HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {
   HistorianTraits traits;
   std::vector<double> known;
@@ -48,6 +74,7 @@ HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {
   for (const double value : known) square += (value - mean) * (value - mean) / rows;
   traits.sd = std::sqrt(square);
 
+  traits.read_every = reading_interval(values);
   Compression compression;
   for (const double value : known) compression.take(value);
   compression.conclude();

@@ -13,6 +13,9 @@ struct HistorianTraits {
   /// Of a lattice that all values lie on and whose neighbours most moves go between: a converter
   /// coarser than what it measures moves by from row to row; 0 = none seen.
   double quantum = 0.0;
+  /// An analyser's: rows from one reading to the next, between which it stands or nothing is known;
+  /// 0 = it is no reading of every so many rows.
+  Eigen::Index read_every = 0;
   bool interpolated = false;  ///< straight lines between archived points, with corners
   double sd = 0.0;            ///< of the known values
 
@@ -23,6 +26,9 @@ struct HistorianTraits {
 /// few levels (a test signal), one that moves by any size after a rest (an operator, a controller
 /// of a slower cycle), and one that is smooth.
 [[nodiscard]] HistorianTraits historian_traits(const Eigen::Ref<const Eigen::VectorXd>& values);
+
+/// `read_every` of a column.
+[[nodiscard]] Eigen::Index reading_interval(const Eigen::Ref<const Eigen::VectorXd>& values);
 
 /// Whether what was lost is no longer small beside what the signal does, so that no cause can be
 /// told from it: half of the rows were drawn by the historian, or a deadband or a quantum is more

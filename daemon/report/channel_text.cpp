@@ -154,8 +154,8 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
     case Reason::kBadData:
       return channel.confounder.empty()
                  ? printable(channel.cv) + " or " + printable(channel.mv) +
-                       " is too often missing, bad, or the same for several samples; if it is read "
-                       "only now and then, let sample_time be as long"
+                       " is too often missing, bad, or the same for several samples; what is read "
+                       "only now and then needs a unit of its own, with a sample_time as long"
                  : printable(channel.confounder) + " is missing or bad, and " +
                        printable(channel.cv) + " cannot be judged without it";
     case Reason::kCompressed:

@@ -25,6 +25,9 @@ inline constexpr double kSomewhatLess = 0.1;
 inline constexpr double kBlindGainSd = 0.25;
 /// 2 ln odds of a finding that leaves the verdict open even if it does not carry over.
 inline constexpr double kStrongEvidence = 30.0;
+/// p-value of a channel's match below which the model does not hold whatever is named beside it.
+/// Chosen: so small none came of 652 sound channels, and an alarm stands for less.
+inline constexpr double kSurelyRejected = 1e-6;
 
 /// Half of a 95 % interval in s.d. of a normal estimate; and of one whose noise model is fitted
 /// too.

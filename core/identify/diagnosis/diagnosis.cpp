@@ -11,6 +11,7 @@
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/late.hpp"
 #include "core/identify/diagnosis/nameable.hpp"
+#include "core/identify/diagnosis/seldom_read.hpp"
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/state_space_form.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
@@ -35,6 +36,12 @@ using Eigen::VectorXd;
 constexpr const char* kOwnSetpoint =
     "a CV follows its own set-point: a wrong gain, its sensor's span and a disturbance that moves "
     "with the set-point look the same";
+
+constexpr const char* kReadSeldom =
+    "every CV is read only once in several samples: let sample_time be as long";
+constexpr const char* kOneReadSeldom =
+    "a CV is read only once in several samples and was not judged beside the others: give it a "
+    "unit of its own, with a sample_time as long";
 
 /// Thrown where the caller's `progress` says so; ends all loops at once.
 struct GivenUp {};
@@ -150,6 +157,29 @@ bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
   return tried;
 }
 
+/// Whatever is named beside them: with these the model does not hold.
+std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests& tests,
+                                     const Diagnosis& diagnosis) {
+  std::vector<Place> rejected;
+  const auto about = [](const Subject& subject, const ChannelSpec& channel) {
+    const Place& place = subject.place;
+    const bool disturbs =
+        place.input < 0 && place.aux < 0 &&
+        (subject.cause == &causes::noise() || !subject.cause->acts_through_channels());
+    return !disturbs && (place.cv < 0 || place.cv == channel.cv) &&
+           (place.input < 0 || place.input == channel.input);
+  };
+  for (const ChannelSpec& channel : model.channels) {
+    const std::optional<double> p_value = tests.p_value(channel.cv, channel.input);
+    if (!p_value || *p_value > kSurelyRejected) continue;
+    const auto told = [&](const auto& each) { return about(each.subject, channel); };
+    if (std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), told) &&
+        std::none_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(), told))
+      rejected.push_back({channel.cv, channel.input});
+  }
+  return rejected;
+}
+
 /// How the inputs moved, and whether the channels of each are known.
 std::vector<InputMovement> movements(const std::vector<std::optional<double>>& outside,
                                      const std::vector<ChannelEstimate>& channels) {
@@ -262,9 +292,31 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
          begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
                     {settings.mv_count, base.input_count, aux}, outside, search_settings))
       diagnosis.findings.push_back(std::move(late));
+  diagnosis.rejected = rejected_channels(base, tests, diagnosis);
   decide(least_explained(residuals, recording.cvs),
          !sticking_loops(base, settings.mv_count, whole).empty(), diagnosis);
   tell_on_clock(recording, given, diagnosis);
+  return diagnosis;
+}
+
+/// Without the CVs that are read only now and then.
+Diagnosis run_those_measured(const ModelSpec& given, const Recording& recording,
+                             const Recording* validation, const DiagnosisSettings& settings) {
+  const std::vector<int> cvs = read_at_every_sample(recording);
+  if (static_cast<int>(cvs.size()) == given.cv_count)
+    return run(given, recording, validation, settings);
+  Diagnosis diagnosis;
+  diagnosis.samples = recording.samples();
+  diagnosis.extended = given;
+  diagnosis.reason = kReadSeldom;
+  if (cvs.empty()) return diagnosis;
+  const ModelSpec base = in_channels(given);
+  std::optional<Recording> unseen;
+  if (validation != nullptr) unseen = of_cvs(*validation, cvs);
+  diagnosis = run(of_cvs(base, cvs), of_cvs(recording, cvs), unseen ? &*unseen : nullptr, settings);
+  to_whole(base, recording, validation, cvs, diagnosis);
+  diagnosis.extended = in_form_of(given, base, std::move(diagnosis.extended));
+  if (diagnosis.reason.empty()) diagnosis.reason = kOneReadSeldom;
   return diagnosis;
 }
 
@@ -287,7 +339,7 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
   bool given_up = false;
   settings.progress = or_give_up(asked.progress, given_up);
   try {
-    return run(given, recording, validation, settings);
+    return run_those_measured(given, recording, validation, settings);
   } catch (const GivenUp&) {
     Diagnosis diagnosis;
     diagnosis.reason = "stopped";

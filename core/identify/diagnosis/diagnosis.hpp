@@ -48,6 +48,8 @@ struct Diagnosis {
   /// What would explain the data best and may not be named, for the calibrated test of the channels
   /// does not reject them.
   std::optional<Finding> suspect;
+  /// Channels that the calibrated test surely rejects and that nothing named or seen is about.
+  std::vector<Place> rejected;
   std::vector<InputMovement> inputs;  ///< MVs, then DVs
   std::vector<ChannelEstimate> channels;
   ModelSpec extended;             ///< equal to the model where nothing was found

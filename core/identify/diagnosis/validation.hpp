@@ -15,6 +15,7 @@ struct CvScore {
   /// 95 % block-bootstrap interval of 1 - rmse_after / rmse_before.
   double gain_low = 0.0, gain_high = 0.0;
   bool refused = false;  ///< an extension was fitted and did not carry over
+  bool judged = true;    ///< false: read too seldom to be judged beside the others
   std::vector<Horizon> horizons;
 };
 

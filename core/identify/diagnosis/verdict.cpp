@@ -73,6 +73,8 @@ void decide(double explained, bool sticks, Diagnosis& diagnosis) {
   diagnosis.verdict = DiagnosisVerdict::kUndetermined;
   if (!diagnosis.findings.empty() || !diagnosis.unexplained.empty())
     diagnosis.verdict = DiagnosisVerdict::kMismatch;
+  else if (!diagnosis.rejected.empty())
+    diagnosis.reason = "the calibrated test rejects a channel in which no cause could be named";
   else if (sticks)
     diagnosis.reason =
         "a loop swings in the shape of a sticking valve, which its model does not explain";

@@ -9,12 +9,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string advice(const HistorianTraits& traits, const std::string& unit) {
+std::string advice(const HistorianTraits& traits, const std::string& unit, double sample_time_s) {
   const auto with_unit = [&unit](double value) {
     return number_text(value, 3) + (unit.empty() ? "" : " " + unit);
   };
   std::string text;
-  if (traits.interpolated)
+  if (traits.read_every > 0)
+    text =
+        "Read every " + std::to_string(traits.read_every) +
+        " samples. Beside what is measured at every sample it cannot be judged: give it a unit of "
+        "its own with a sample_time of " +
+        number_text(static_cast<double>(traits.read_every) * sample_time_s, 6) + " s.";
+  else if (traits.interpolated)
     text =
         "Straight lines between archived points. Export the values as they were archived, and "
         "turn the tag's compression off.";
@@ -30,17 +36,20 @@ std::string advice(const HistorianTraits& traits, const std::string& unit) {
   return text;
 }
 
-void look(const Eigen::Ref<const Eigen::VectorXd>& values, const SignalName& signal, Json& notes) {
-  const HistorianTraits traits = historian_traits(values);
-  if (!traits.compressed() && !(traits.quantum > 0.0)) return;
+void look(const Eigen::Ref<const Eigen::VectorXd>& values, const SignalName& signal, bool is_cv,
+          double sample_time_s, Json& notes) {
+  HistorianTraits traits = historian_traits(values);
+  if (!is_cv) traits.read_every = 0;  // it acts at every sample
+  if (!traits.compressed() && !(traits.quantum > 0.0) && traits.read_every == 0) return;
   notes.push_back({{"tag", signal.tag},
                    {"compressed", traits.compressed()},
                    {"interpolated", traits.interpolated},
                    {"deadband", traits.deadband},
                    {"quantum", traits.quantum},
                    {"held_share", traits.held_share},
+                   {"read_every", traits.read_every},
                    {"beyond_use", beyond_use(traits)},
-                   {"advice", advice(traits, signal.unit)}});
+                   {"advice", advice(traits, signal.unit, sample_time_s)}});
 }
 
 }  // namespace
@@ -49,9 +58,11 @@ Json data_notes(const DiagnosisRun& run) {
   const SignalNames names = names_of(run);
   Json notes = Json::array();
   for (Eigen::Index cv = 0; cv < run.recording.cvs.cols(); ++cv)
-    look(run.recording.cvs.col(cv), names.cv(static_cast<int>(cv)), notes);
+    look(run.recording.cvs.col(cv), names.cv(static_cast<int>(cv)), true,
+         run.recording.sample_time_s, notes);
   for (Eigen::Index input = 0; input < run.recording.inputs.cols(); ++input)
-    look(run.recording.inputs.col(input), names.input(static_cast<int>(input)), notes);
+    look(run.recording.inputs.col(input), names.input(static_cast<int>(input)), false,
+         run.recording.sample_time_s, notes);
   return notes;
 }
 

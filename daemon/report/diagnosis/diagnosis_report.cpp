@@ -235,6 +235,8 @@ std::string score_table(const DiagnosisRun& run) {
     text += line;
     if (score.refused)
       text += "an extension was tried and did not carry over";
+    else if (!score.judged)
+      text += "not judged: read now and then";
     else if (score.gain_low == score.gain_high)
       text += "unchanged";
     else

@@ -31,6 +31,17 @@ std::string gain_of_extension(const DiagnosisRun& run) {
          names.in_cv(best->rmse_before, best_cv) + " RMS.";
 }
 
+/// What the test rejects and no finding is about.
+std::string rejected_text(const DiagnosisRun& run) {
+  if (run.diagnosis.rejected.empty()) return {};
+  const SignalNames names = names_of(run);
+  std::string channels;
+  for (const Place& place : run.diagnosis.rejected)
+    channels += (channels.empty() ? "" : ", ") + names.input(place.input).tag + " -> " +
+                names.cv(place.cv).tag;
+  return "The calibrated test rejects " + channels + ", of which no cause could be named.";
+}
+
 }  // namespace
 
 const char* name_of(DiagnosisVerdict verdict) {
@@ -54,6 +65,7 @@ std::string difference_headline(const DiagnosisRun& run) {
   };
   const std::vector<Finding>& findings = run.diagnosis.findings;
   const bool disturbed = !findings.empty() && run.diagnosis.unexplained.empty() &&
+                         run.diagnosis.rejected.empty() &&
                          std::all_of(findings.begin(), findings.end(), from_outside);
   return "The model of " + run.unit.unit +
          (disturbed ? " holds, but something that it does not know of disturbs the plant: "
@@ -89,8 +101,10 @@ std::string verdict_details(const DiagnosisRun& run) {
     if (is_word) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     if (text.back() != '.') text += '.';
   }
-  const std::string gain = gain_of_extension(run);
-  return gain + (gain.empty() || text.empty() ? "" : " ") + text;
+  std::string details = gain_of_extension(run);
+  for (const std::string& more : {rejected_text(run), text})
+    if (!more.empty()) details += (details.empty() ? "" : " ") + more;
+  return details;
 }
 
 std::string verdict_sentence(const DiagnosisRun& run) {

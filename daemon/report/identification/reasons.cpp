@@ -16,6 +16,8 @@ std::string reason_word(LeftOut left_out) {
       return "input_still";
     case LeftOut::kUnknownCv:
       return "cv_unknown";
+    case LeftOut::kReadSeldom:
+      return "read_seldom";
     case LeftOut::kTooFewRows:
       return "too_few_samples";
     case LeftOut::kOnlyFeedback:
@@ -48,6 +50,12 @@ std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answe
       return input + " does not move";
     case LeftOut::kUnknownCv:
       return cv + " is not known, or does not move";
+    case LeftOut::kReadSeldom: {
+      const auto every = run.identification.cvs.at(static_cast<std::size_t>(answer.cv)).read_every;
+      return cv + " is read every " + std::to_string(every) +
+             " samples: give it a unit of its own with a sample_time of " +
+             number_text(static_cast<double>(every) * run.unit.sample_time_s, 6) + " s";
+    }
     case LeftOut::kTooFewRows:
       return "too few samples for so many inputs";
     case LeftOut::kOnlyFeedback:

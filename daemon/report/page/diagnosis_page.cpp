@@ -193,6 +193,7 @@ Json errors_json(const DiagnosisRun& run) {
     if (less.front() == '-') less.replace(0, 1, "\u2212");  // as all numbers of the page
     if (score.gain_low == score.gain_high) less = "unchanged";
     if (score.refused) less = "tried, refused";
+    if (!score.judged) less = "not judged";
     const auto fit = [](double value) { return fixed_text(value, 0) + " %"; };
     json.push_back({run.unit.cv[cv].tag, rounded(score.rmse_before, unit),
                     rounded(score.rmse_after, unit), less, fit(score.fit_before),

@@ -155,6 +155,41 @@ TEST_CASE("a level that integrates is told from one that settles, with the input
   CHECK(found.model.input_origin(0) == Approx(0.1).margin(0.02));
 }
 
+TEST_CASE("a controlled level integrates all its flows, however little each one shows it") {
+  const Index rows = 8000;
+  MatrixXd inputs(rows, 3), cvs(rows, 1);
+  const VectorXd feed = 2.0 * autoregressive(0.1 * white(811, rows), 0.995);
+  const VectorXd steam = telegraph(812, rows, 60), setpoint = 8.0 * telegraph(813, rows, 400);
+  const VectorXd noise = 0.1 * white(814, rows),
+                 drift = autoregressive(0.02 * white(815, rows), 0.99);
+  double level = 0.0, integral = 0.0;
+  for (Index k = 0; k < rows; ++k) {
+    cvs(k, 0) = level + drift(k) + noise(k);
+    const double error = cvs(k, 0) - setpoint(k);
+    integral += error * 15.0 / 3000.0;
+    inputs.row(k) << steam(k), 0.8 * (error + integral), feed(k);
+    level += 0.0225 * (-inputs(k, 0) - inputs(k, 1) + inputs(k, 2));
+  }
+  const Identification found = identify(recording_of(inputs, cvs), {});
+  for (int input = 0; input < 3; ++input) {
+    CAPTURE(input);
+    const ChannelAnswer& answer = answer_of(found, 0, input);
+    REQUIRE(answer.left_out == LeftOut::kIdentified);
+    CHECK(answer.dynamics->integrating);
+    CHECK(answer.dynamics->gain == Approx(input == 2 ? 0.0225 : -0.0225).epsilon(0.1));
+  }
+}
+
+TEST_CASE("what an analyser holds between two readings is not taken for dead time") {
+  Recording recording = open_loop(3000, 700);
+  for (Index k = 0; k < 3000; ++k) recording.cvs(k, 0) = recording.cvs(k - k % 10, 0);
+  const Identification found = identify(recording, {});
+  for (int input = 0; input < 3; ++input)
+    CHECK(answer_of(found, 0, input).left_out == LeftOut::kReadSeldom);
+  CHECK(found.cvs[0].read_every == 10);
+  CHECK(answer_of(found, 1, 1).left_out == LeftOut::kIdentified);
+}
+
 TEST_CASE("the same data give the same bits on any number of threads") {
   const Recording recording = open_loop(1200, 860);
   IdentificationSettings many;

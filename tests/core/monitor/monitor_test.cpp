@@ -58,6 +58,31 @@ TEST_CASE("a hidden gain error raises the alarm of its channel alone") {
   }
 }
 
+// It makes errors that look like heavy tails, for which 700 rows are too few to judge anything.
+TEST_CASE("a large change early in a memory is told at once") {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Experiment experiment;
+    experiment.seed = seed;
+    experiment.gain_ratio = 4.0;
+    experiment.from = 700;
+    Monitor monitor = experiment.monitor();
+    std::int64_t raised = -1;
+    experiment.run(1500, [&](const Frame& frame) {
+      monitor.push(frame);
+      for (const AlarmTransition& transition : monitor.transitions()) {
+        CHECK(transition.cv == 0);
+        CHECK(transition.input == 1);
+        if (transition.to == AlarmState::kActive && raised < 0) raised = frame.interval;
+      }
+    });
+    CAPTURE(seed, raised);
+    CHECK(raised > 700);
+    CHECK(raised < 900);
+    CHECK(monitor.channel(0, 1).verdict == Verdict::kMismatch);
+    CHECK(monitor.channel(0, 0).verdict == Verdict::kMatch);
+  }
+}
+
 TEST_CASE(
     "an error that began later is isolated on the samples since then, and clears when it ends") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {

@@ -74,6 +74,31 @@ TEST_CASE("a converter coarser than what it measures moves by is found") {
   }
 }
 
+TEST_CASE("what is read every so many rows is told, whether it stands between or is not known") {
+  for (const Index every : {2, 3, 7, 16}) {
+    CAPTURE(every);
+    const VectorXd value = rounded(signal(1), 0.001);
+    VectorXd stands(kRows), blank(kRows);
+    for (Index k = 0; k < kRows; ++k) {
+      stands(k) = value(k - k % every);
+      blank(k) = k % every == 0 ? value(k) : std::nan("");
+    }
+    CHECK(reading_interval(stands) == every);
+    CHECK(reading_interval(blank) == every);
+  }
+  // A cycle of 10.3 rows.
+  CHECK(reading_interval(VectorXd::NullaryExpr(kRows, [](Index k) {
+          return test::uniform(3, static_cast<Index>(static_cast<double>(k) / 10.3));
+        })) == 10);
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    CHECK(reading_interval(signal(seed)) == 0);
+    for (const double size : {0.01, 0.1, 0.3, 1.0}) {
+      CHECK(reading_interval(rounded(signal(seed), size)) == 0);
+      CHECK(reading_interval(by_exception(signal(seed), size)) == 0);
+    }
+  }
+}
+
 TEST_CASE("what rests or bends by nature is not accused") {
   int accused = 0;
   const auto look = [&](const VectorXd& values) {

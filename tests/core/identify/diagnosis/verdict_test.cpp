@@ -50,6 +50,15 @@ TEST_CASE("the reason is that of the strongest that was refused") {
   CHECK(diagnosis.reason == "what explains most was refused: strong");
 }
 
+TEST_CASE("what the calibrated test surely rejects and nothing names leaves the verdict open") {
+  Diagnosis diagnosis;
+  diagnosis.rejected = {{0, 0}};
+  decide(0.9, false, diagnosis);
+  CHECK(diagnosis.verdict == DiagnosisVerdict::kUndetermined);
+  CHECK(diagnosis.reason ==
+        "the calibrated test rejects a channel in which no cause could be named");
+}
+
 TEST_CASE("only a strong suspect leaves the verdict open") {
   Diagnosis diagnosis;
   diagnosis.suspect = finding_of(20.0, "");
