@@ -347,11 +347,13 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   });
   for (bus::Trouble& trouble : lost_troubles(config_, lost, found))
     found.push_back(std::move(trouble));
-  if (stood_still_ && now_ - *stood_still_ < kTold)
+  if (stood_still_ && now_ - *stood_still_ < kTold) {
     add("standstill", Severity::kOutOfSpecification,
         fmt::format(
             "the monitor itself stood still for {} s: its machine is too busy or was asleep",
             std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
+    found.back().event = std::to_string(stood_still_->time_since_epoch().count());
+  }
   if (other_monitor_speaks())
     add("other monitor", Severity::kMaintenanceRequired, monitors_text(around.self));
   const auto add_journal = [&](const std::string& which, const std::string& problem) {
