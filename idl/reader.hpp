@@ -10,6 +10,7 @@
 #include "idl/qos.hpp"
 #include "idl/sample_info.hpp"
 #include "idl/topics.hpp"
+#include "idl/unit_choice.hpp"
 
 namespace mpm::idl {
 
@@ -18,8 +19,10 @@ class Reader {
  public:
   /// `batch`: samples taken at once. Small, so that no topic runs far ahead of the others in a
   /// loop over several; or large enough for all there is, where order across instances matters.
-  Reader(const Participant& participant, const char* topic, const Qos& qos, int batch = 64)
-      : topic_(filtered_topic(participant, topic)),
+  /// `units`: of which samples are taken, and must outlive the reader; null: of all.
+  Reader(const Participant& participant, const char* topic, const Qos& qos, int batch = 64,
+         UnitChoice* units = nullptr)
+      : topic_(filtered_topic(participant, topic, units)),
         reader_(dds_create_reader(participant.get(), topic_.get(), qos.get(), nullptr),
                 std::string("reader of ") + topic),
         readable_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition"),
@@ -70,13 +73,28 @@ class Reader {
     }
     return true;
   }
-  static Entity filtered_topic(const Participant& participant, const char* name) {
+  static bool is_chosen(const void* sample, void* units) {
+    if constexpr (requires(const T& any) { any.unit; }) {
+      const char* unit = static_cast<const T*>(sample)->unit;
+      return unit == nullptr ||
+             static_cast<UnitChoice*>(units)->takes({unit, strnlen(unit, kLongestName + 1)});
+    }
+    return true;
+  }
+  static Entity filtered_topic(const Participant& participant, const char* name,
+                               UnitChoice* units) {
     Entity topic(
         dds_create_topic(participant.get(), TopicType<T>::descriptor(), name, nullptr, nullptr),
         std::string("topic ") + name);
     dds_topic_filter filter{};
-    filter.mode = DDS_TOPIC_FILTER_SAMPLE;
-    filter.f.sample = &has_possible_name;
+    if (units == nullptr) {
+      filter.mode = DDS_TOPIC_FILTER_SAMPLE;
+      filter.f.sample = &has_possible_name;
+    } else {
+      filter.mode = DDS_TOPIC_FILTER_SAMPLE_ARG;
+      filter.f.sample_arg = &is_chosen;
+      filter.arg = units;
+    }
     check(dds_set_topic_filter_extended(topic.get(), &filter), "filter of a topic");
     return topic;
   }

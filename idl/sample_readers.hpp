@@ -11,10 +11,12 @@ namespace mpm::idl {
 /// Reads the input topics of all units of one participant.
 class SampleReaders {
  public:
-  explicit SampleReaders(const Participant& participant)
-      : readers_{make(participant, kTopicKinds[0]), make(participant, kTopicKinds[1]),
-                 make(participant, kTopicKinds[2]), make(participant, kTopicKinds[3]),
-                 make(participant, kTopicKinds[4]), make(participant, kTopicKinds[5])} {}
+  /// `units`: as for a Reader.
+  explicit SampleReaders(const Participant& participant, UnitChoice* units = nullptr)
+      : readers_{
+            make(participant, kTopicKinds[0], units), make(participant, kTopicKinds[1], units),
+            make(participant, kTopicKinds[2], units), make(participant, kTopicKinds[3], units),
+            make(participant, kTopicKinds[4], units), make(participant, kTopicKinds[5], units)} {}
 
   void attach_to(WaitSet& wait_set) const {
     for (const auto& reader : readers_) wait_set.attach(reader.readable());
@@ -33,9 +35,12 @@ class SampleReaders {
   }
 
  private:
-  static Reader<mpm_Sample> make(const Participant& participant, SignalKind kind) {
-    return {participant, sample_topic(kind), sample_reader_qos()};
+  static Reader<mpm_Sample> make(const Participant& participant, SignalKind kind,
+                                 UnitChoice* units) {
+    return {participant, sample_topic(kind), sample_reader_qos(), kBatch, units};
   }
+
+  static constexpr int kBatch = 64;
 
   std::array<Reader<mpm_Sample>, kTopicKinds.size()> readers_;
 };

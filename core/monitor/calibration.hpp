@@ -31,6 +31,11 @@ inline constexpr std::int64_t kHeldSamples = 5;
 /// samples (the memory of the noise level). Chosen.
 inline constexpr double kMostShare = 0.5;
 inline constexpr double kShareSamples = 300.0;
+/// A signal is lost where more than this share of its values cannot be used, exponentially weighted
+/// over so many samples and the lags of a channel: about as long as stops verdicts, three dozen
+/// samples where lags are few. It is back below kFoundShare. Chosen.
+inline constexpr double kLossSamples = 30.0;
+inline constexpr double kFoundShare = 0.25;
 /// Values that an instrument falsifies are not missing at random (it clips what is large): no more
 /// than this share of implausible ones over so many samples. Chosen; 20 % frozen or clipped values
 /// give no verdict, 5 % do (docs/validation.md, bad data).

@@ -84,6 +84,7 @@ struct Monitor::State {
   std::vector<JudgedFrame> judged_frames;  // room for all that may leave the screen at once
   std::size_t judged_count = 0;            // by the last push
   MonitorCounters counters;
+  LostSignals lost;
   bool first = true;
   std::int64_t last_interval = 0;   // pushed
   std::int64_t taken_interval = 0;  // left the screen
@@ -131,7 +132,8 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
               settings.remembered),
       outside_values(Eigen::VectorXd::Zero(counts.cv + counts.aux)),
       scan(detector.shape()),
-      judge(counts, settings) {
+      judge(counts, settings),
+      lost(counts, settings.fir_lags) {
   const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
   status.resize(channels);
   judged_frames.resize(Screen::kHeld);
@@ -156,6 +158,7 @@ void Monitor::State::begin_anew() {
   fresh.status = std::move(status);
   fresh.transitions = std::move(transitions);
   fresh.counters = std::move(counters);
+  fresh.lost = std::move(lost);
   fresh.first = first;
   fresh.last_interval = last_interval;
   fresh.taken_interval = taken_interval;
@@ -194,6 +197,8 @@ void Monitor::State::count_bad(const Frame& frame) {
   for (const SignalKind kind :
        {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction})
     for (int i = 0; i < counts.of(kind); ++i) {
+      if (kind != SignalKind::kPrediction || expected[static_cast<std::size_t>(i)])
+        lost.take(frame, kind, i);
       if (frame[kind].usable(i) || (kind == SignalKind::kPrediction && !predictions.given(i)))
         continue;
       ++counters.bad_values;
@@ -424,6 +429,7 @@ std::span<const JudgedFrame> Monitor::judged() const {
 }
 const std::vector<AlarmTransition>& Monitor::transitions() const { return state_->transitions; }
 const MonitorCounters& Monitor::counters() const { return state_->counters; }
+std::vector<LostSignal> Monitor::lost() const { return state_->lost.list(); }
 double Monitor::samples_needed(int cv) const {
   const RegressionMemory& memory = state_->detector.memory(cv);
   return std::max(0.0, memory.needed_rows() - static_cast<double>(memory.rows));

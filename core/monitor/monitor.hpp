@@ -10,6 +10,7 @@
 #include "core/mismatch/verdict.hpp"
 #include "core/model/model_spec.hpp"
 #include "core/monitor/cv_reading.hpp"
+#include "core/monitor/lost_signals.hpp"
 #include "core/monitor/settings.hpp"
 #include "core/signal/frame.hpp"
 #include "core/signal/screen.hpp"
@@ -75,6 +76,9 @@ class Monitor {
   /// Changes caused by the last `push`; valid until the next one.
   [[nodiscard]] const std::vector<AlarmTransition>& transitions() const;
   [[nodiscard]] const MonitorCounters& counters() const;
+  /// Signals that verdicts need and that have had no usable value for long, as of the frames that
+  /// have left the screen.
+  [[nodiscard]] std::vector<LostSignal> lost() const;
   /// How many more samples the CV's verdicts need at least, if all of them serve; 0 = none.
   [[nodiscard]] double samples_needed(int cv) const;
 

@@ -30,6 +30,7 @@ struct HealthRecord {
   std::uint32_t matching = 0;
   std::uint32_t mismatching = 0;
   std::uint32_t active_alarms = 0;
+  std::uint64_t beyond = 0;
 
   /// See FieldKey.
   template <class Visit, class Record, class... Sample>
@@ -55,6 +56,7 @@ struct HealthRecord {
     visit("matching", record.matching, sample.matching...);
     visit("mismatching", record.mismatching, sample.mismatching...);
     visit("active_alarms", record.active_alarms, sample.active_alarms...);
+    visit("beyond", record.beyond, sample.beyond...);
   }
 };
 

@@ -9,11 +9,8 @@
 namespace mpm {
 namespace {
 
-// Keeps all arithmetic on intervals far from overflow, and the numbers exact in JSON.
-constexpr std::int64_t kLargestInterval = std::int64_t{1} << 53;
-
-// A leap beyond it is other numbers, not samples that are missing: 35 years of milliseconds.
-constexpr std::int64_t kLongestGap = std::int64_t{1} << 40;
+using calibration::alignment::kLargestInterval;
+using calibration::alignment::kLongestGap;
 
 unsigned bit_of(SignalKind kind) { return 1u << static_cast<unsigned>(kind); }
 
@@ -45,9 +42,12 @@ Aligner::Aligner(const SignalCounts& counts, const std::array<bool, kSignalKindC
 void Aligner::push(const BlockView& block) {
   if ((taken() & bit_of(block.kind)) == 0) return;
   const auto count = static_cast<std::size_t>(counts_.of(block.kind));
-  if (block.values.size() != count || (!block.quality.empty() && block.quality.size() != count) ||
-      block.interval > kLargestInterval || block.interval < -kLargestInterval) {
+  if (block.values.size() != count || (!block.quality.empty() && block.quality.size() != count)) {
     ++counters_.wrong_length;
+    return;
+  }
+  if (block.interval > kLargestInterval || block.interval < -kLargestInterval) {
+    ++counters_.beyond;
     return;
   }
   if (!current_.started) start(current_, block.interval);
@@ -248,8 +248,8 @@ bool Aligner::past_lateness(std::int64_t interval) const {
 void Aligner::take_over() {
   while (pending()) settle_next(current_);
   const std::int64_t next = candidate_.next + offset_;
-  if (counters_.frames > 0 && (next <= last_emitted_ || next - last_emitted_ > kLongestGap ||
-                               next > kLargestInterval)) {
+  if (counters_.frames > 0 &&
+      (next <= last_emitted_ || next - last_emitted_ > kLongestGap || next > kLargestInterval)) {
     ++counters_.restarts;
     offset_ = last_emitted_ + 2 - candidate_.next;  // 2: never adjacent, so that windows close
   }

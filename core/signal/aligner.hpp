@@ -39,7 +39,8 @@ struct AlignerCounters {
   std::uint64_t late = 0;          ///< blocks whose interval was settled, or that fit nowhere
   std::uint64_t repeated = 0;      ///< blocks that were there already; the first one counts
   std::uint64_t out_of_order = 0;  ///< blocks that came after a newer one of their kind, in time
-  std::uint64_t wrong_length = 0;  ///< blocks of another size, or with an absurd interval number
+  std::uint64_t wrong_length = 0;  ///< blocks of another size
+  std::uint64_t beyond = 0;        ///< blocks with an interval number beyond 2^53
   std::uint64_t non_finite = 0;    ///< values; they become bad
   std::uint64_t infinite = 0;      ///< of these: not just without a value
   std::uint64_t restarts = 0;      ///< the interval number went back to a new beginning

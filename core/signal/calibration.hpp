@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 /// The numbers of this room that decide which values count and which samples go together. Where
 /// each comes from: see core/mismatch/calibration.hpp.
@@ -72,6 +73,11 @@ inline constexpr double kLargest = 1e100;
 /// far less, and a gateway that is a thousand ahead on one topic has lost the others.
 namespace alignment {
 inline constexpr int kMaxLateness = 8;
+/// Numbers beyond it, either way, are not taken: up to it they are exact in JSON and in doubles,
+/// and no arithmetic on them comes near an overflow.
+inline constexpr std::int64_t kLargestInterval = std::int64_t{1} << 53;
+/// A leap beyond it is other numbers, not samples that are missing: 35 years of milliseconds.
+inline constexpr std::int64_t kLongestGap = std::int64_t{1} << 40;
 inline constexpr int kCapacity = 1024;
 /// A number that is behind by more than this many times the lateness is a restart, not a late
 /// block.

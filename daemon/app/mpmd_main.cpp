@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -96,6 +97,35 @@ std::string cost_text(const config::UnitConfig& unit) {
          " regression columns per CV)";
 }
 
+int serve(const Options& options, const std::vector<config::UnitConfig>& units,
+          host::StopSignal& stop, host::AwaitedSignal& hang_up) {
+  spdlog::info("{} starts", idl::version_text("mpmd"));
+  const live::ReportStore store(options.state_folder);
+  live::DiagnosisWorker worker(
+      [&store](const live::DiagnosisJob& job, const live::DiagnosisWorker::GoOn& go_on) {
+        return live::make_diagnosis(job, store, go_on);
+      });
+  {
+    live::ServiceOptions service_options = options.service;
+    service_options.report_problem = store.problem();
+    live::MonitorService service(units, service_options, worker);
+    service.run([&] {
+      if (hang_up.take())
+        spdlog::warn("SIGHUP: reloading is not supported; restart to read the unit files anew");
+      return stop.received();
+    });
+  }
+  const bool idle = worker.stop(kPatience);
+  spdlog::info("stopped");
+  if (!idle) {
+    // On a busy machine a thread of low priority may take long to hear of it. Nothing that it does
+    // matters any more, but what it uses must stay.
+    spdlog::default_logger()->flush();
+    std::_Exit(kDone);
+  }
+  return kDone;
+}
+
 int run(const Options& options) {
   config::LoadUnitsResult loaded = config::load_units(options.config);
   for (const config::Finding& finding : loaded.findings)
@@ -122,29 +152,17 @@ int run(const Options& options) {
     return kBadInput;
   }
 
-  host::StopSignal stop;  // before any thread
+  // Before any thread. A service is hung up by who wants it to read its files anew.
+  host::StopSignal stop({SIGTERM, SIGINT});
+  host::AwaitedSignal hang_up({SIGHUP});
   host::set_up_logging(options.log_level);
-  spdlog::info("{} starts", idl::version_text("mpmd"));
-  const live::ReportStore store(options.state_folder);
-  live::DiagnosisWorker worker(
-      [&store](const live::DiagnosisJob& job, const live::DiagnosisWorker::GoOn& go_on) {
-        return live::make_diagnosis(job, store, go_on);
-      });
-  {
-    live::ServiceOptions service_options = options.service;
-    service_options.report_problem = store.problem();
-    live::MonitorService service(loaded.units, service_options, worker);
-    service.run([&] { return stop.received(); });
+  try {
+    return serve(options, loaded.units, stop, hang_up);
+  } catch (const std::exception& error) {
+    if (!spdlog::should_log(spdlog::level::err)) throw;  // no log is silence
+    spdlog::error("mpmd: error: {}", error.what());
+    return kFailed;
   }
-  const bool idle = worker.stop(kPatience);
-  spdlog::info("stopped");
-  if (!idle) {
-    // On a busy machine a thread of low priority may take long to hear of it. Nothing that it does
-    // matters any more, but what it uses must stay.
-    spdlog::default_logger()->flush();
-    std::_Exit(kDone);
-  }
-  return kDone;
 }
 
 int parse_and_run(int argc, char** argv) {

@@ -150,6 +150,7 @@ void McapFrames::tell_counters() {
   tell(counters.late, "sample", " left out that came too late for their control interval");
   tell(counters.repeated, "sample", " left out for repeating a control interval");
   tell(counters.wrong_length, "sample", " left out for a wrong number of values");
+  tell(counters.beyond, "sample", " left out for an interval number beyond 2^53");
   tell(counters.infinite, "value", " taken as missing: not finite");
   tell(counters.restarts, "restart", " of the controller's count of intervals");
   if (purpose_ != files::Purpose::kKeep) return;

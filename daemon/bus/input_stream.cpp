@@ -32,6 +32,16 @@ bool goes_back(double steps, bool newer) {
          (newer && steps <= -static_cast<double>(calibration::alignment::kSmallestReturn));
 }
 
+double elapsed_s(std::int64_t from_ns, const Arrival& to) {
+  return 1e-9 * (static_cast<double>(to.source_time_ns) - static_cast<double>(from_ns));
+}
+
+// Whether the source time went on as far as the numbers.
+bool is_timely(double steps, double elapsed_s, double sample_time_s) {
+  const double usual_s = steps * sample_time_s;
+  return steps > 0.0 && elapsed_s < kOddPace * usual_s && elapsed_s * kOddPace > usual_s;
+}
+
 }  // namespace
 
 int InputStream::Recent::left_out() const { return intervals - std::popcount(came); }
@@ -92,11 +102,33 @@ InputStream::Writer& InputStream::writer_of(std::uint64_t handle, Clock::time_po
   return place;
 }
 
+// Who takes over from one that has left goes on where that ended, or leaps as that one might. A
+// beginning at lower numbers is a restart, and no leap.
+void InputStream::begin(const Arrival& arrival, double sample_time_s, Clock::time_point now) {
+  const Writer* before = nullptr;
+  for (const Writer& other : writers_)
+    if (other.samples > 0 && (before == nullptr || other.last > before->last)) before = &other;
+  if (before == nullptr) return;
+  const double steps =
+      static_cast<double>(arrival.interval) - static_cast<double>(before->interval);
+  if (steps <= static_cast<double>(kJump)) return;
+  jump_ = Jump{now, before->interval, arrival.interval,
+               is_timely(steps, elapsed_s(before->source_time_ns, arrival), sample_time_s),
+               before->handle};
+}
+
 void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time_point now) {
-  newest_ = arrival;
+  beyond_ = arrival.interval > calibration::alignment::kLargestInterval ||
+            arrival.interval < -calibration::alignment::kLargestInterval;
   last_ = now;
-  remember(arrival, sample_time_s);
+  if (beyond_) {  // the numbers that were taken stand
+    newest_ = arrival;
+    return;
+  }
   Writer& writer = writer_of(arrival.writer, now);
+  if (writer.samples == 0) begin(arrival, sample_time_s, now);
+  newest_ = arrival;
+  remember(arrival, sample_time_s);
   if (writer.samples > 0) {
     // Numbers may be anything: no difference of extremes.
     const double steps =
@@ -106,21 +138,18 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
     if (steps > 1.0 && steps < static_cast<double>(kFar))
       writer.skipped += static_cast<std::uint64_t>(steps) - 1;
     const bool back = goes_back(steps, arrival.source_time_ns > writer.source_time_ns);
-    const double elapsed_s = 1e-9 * (static_cast<double>(arrival.source_time_ns) -
-                                     static_cast<double>(writer.source_time_ns));
-    if (steps > static_cast<double>(kJump) || back) {
-      const double usual_s = steps * sample_time_s;
-      jump_ = Jump{now, writer.interval, arrival.interval,
-                   steps > 0.0 && elapsed_s < kOddPace * usual_s && elapsed_s * kOddPace > usual_s};
-    }
-    const double step_s = elapsed_s - steps * sample_time_s;
+    const double elapsed = elapsed_s(writer.source_time_ns, arrival);
+    if (steps > static_cast<double>(kJump) || back)
+      jump_ =
+          Jump{now, writer.interval, arrival.interval, is_timely(steps, elapsed, sample_time_s)};
+    const double step_s = elapsed - steps * sample_time_s;
     const bool dated = arrival.source_time_ns != writer.source_time_ns;  // else it has no clock
     const double limit_s = std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s);
     // Where as much time went by here, the control system stood still and its clock is right.
     const double here_s = std::chrono::duration<double>(now - writer.last).count();
     // A counter that jumps says nothing of the clock.
     if (dated && steps > 0.0 && steps <= static_cast<double>(kJump) && std::abs(step_s) > limit_s &&
-        std::abs(elapsed_s - here_s) > limit_s)
+        std::abs(elapsed - here_s) > limit_s)
       clock_step_ = ClockStep{now, arrival.interval, step_s};
     if (steps < 0.0 && !back) {  // late: the newer one stays
       ++writer.samples;
@@ -134,17 +163,13 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
   writer.source_time_ns = arrival.source_time_ns;
 }
 
-std::pair<const InputStream::Writer*, const InputStream::Writer*> InputStream::rivals(
-    Clock::time_point now, Clock::duration recently) const {
-  for (const Writer& a : writers_) {
-    if (a.samples == 0 || now - a.last > recently) continue;
-    for (const Writer& b : writers_) {
-      if (&a == &b || b.samples == 0 || now - b.last > recently) continue;
-      // Where one took over from the other the first had ended before the second began.
-      if (a.first <= b.first && a.last > b.first) return {&a, &b};
-    }
-  }
-  return {nullptr, nullptr};
+std::optional<InputStream::Jump> InputStream::jump() const {
+  const bool both_write =
+      jump_ && jump_->before != 0 &&
+      std::any_of(writers_.begin(), writers_.end(), [this](const Writer& writer) {
+        return writer.samples > 0 && writer.handle == jump_->before && writer.last > jump_->when;
+      });
+  return both_write ? std::nullopt : jump_;
 }
 
 }  // namespace mpm::bus

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace mpm::bus {
 
@@ -36,7 +37,8 @@ class InputStream {
   struct Jump {
     Clock::time_point when;
     std::int64_t from = 0, to = 0;
-    bool timely = false;  ///< the source time went on as far: nothing was sent, or it was lost
+    bool timely = false;       ///< the source time went on as far: nothing was sent, or it was lost
+    std::uint64_t before = 0;  ///< the writer that sent `from`, where it was another one
   };
   /// The source time did not go on with the interval number.
   struct ClockStep {
@@ -80,21 +82,38 @@ class InputStream {
   /// The last sample; valid if there was one.
   [[nodiscard]] const Arrival& newest() const { return newest_; }
   [[nodiscard]] const Recent& recent() const { return recent_; }
-  [[nodiscard]] const std::optional<Jump>& jump() const { return jump_; }
+  /// The last one. Where another writer began with it, and the one before it goes on, none.
+  [[nodiscard]] std::optional<Jump> jump() const;
+  /// The last sample had an interval number that is not taken.
+  [[nodiscard]] bool beyond() const { return beyond_; }
   [[nodiscard]] const std::optional<ClockStep>& clock_step() const { return clock_step_; }
   /// Two writers that both sent something while the other did, and within the last `recently`; the
-  /// one that came first is the first. Nulls if there is none.
+  /// one that came first is the first. Nulls if there is none. `is_there(handle)`: it has not left.
+  template <class IsThere>
   [[nodiscard]] std::pair<const Writer*, const Writer*> rivals(Clock::time_point now,
-                                                               Clock::duration recently) const;
+                                                               Clock::duration recently,
+                                                               IsThere&& is_there) const {
+    for (const Writer& a : writers_) {
+      if (a.samples == 0 || now - a.last > recently || !is_there(a.handle)) continue;
+      for (const Writer& b : writers_) {
+        if (&a == &b || b.samples == 0 || now - b.last > recently || !is_there(b.handle)) continue;
+        // Where one took over from the other the first had ended before the second began.
+        if (a.first <= b.first && a.last > b.first) return {&a, &b};
+      }
+    }
+    return {nullptr, nullptr};
+  }
 
  private:
   Writer& writer_of(std::uint64_t handle, Clock::time_point now);
   void remember(const Arrival& arrival, double sample_time_s);
+  void begin(const Arrival& arrival, double sample_time_s, Clock::time_point now);
 
   std::array<Writer, kMostWriters> writers_;
   Arrival newest_;
   Recent recent_;
   std::optional<Clock::time_point> last_;
+  bool beyond_ = false;
   std::optional<Jump> jump_;
   std::optional<ClockStep> clock_step_;
 };

@@ -23,7 +23,8 @@ int code_of(const MonitorWord& unit, const AgeLimits& limits) {
 }
 
 std::string text_of(const MonitorWord& unit) {
-  if (unit.state.empty()) return unit.unit + ": no monitor";
+  if (unit.state.empty())
+    return unit.unit + ": no monitor" + (unit.place.empty() ? "" : " on " + unit.place);
   std::string text = unit.unit + ": " + unit.state;
   if (!unit.detail.empty()) text += " (" + unit.detail + ")";
   if (unit.gone) text += ", and its monitor has left";

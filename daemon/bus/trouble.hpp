@@ -16,7 +16,8 @@ enum class Severity { kMaintenanceRequired, kFunctionCheck, kOutOfSpecification,
 struct Trouble {
   std::string key;  ///< what it is, while the numbers in `text` change
   Severity severity = Severity::kFailure;
-  std::string text;  ///< for a person
+  std::string text;        ///< for a person
+  std::string event = {};  ///< which of its kind, where it happened at one moment; empty: it lasts
 };
 
 /// What `mpm/health` says of a unit that has only begun.

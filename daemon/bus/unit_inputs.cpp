@@ -11,6 +11,7 @@
 #include "config/suggest.hpp"
 #include "config/unit_layout.hpp"
 #include "core/text/number_text.hpp"
+#include "core/text/printable.hpp"
 #include "idl/layout_sample.hpp"
 #include "idl/topics.hpp"
 
@@ -28,6 +29,8 @@ constexpr std::chrono::seconds kMissed{2};
 constexpr double kApart = 200.0;
 // Intervals between two writers from which on they are not taken for the same numbers.
 constexpr double kSameNumbers = 32.0;
+// Intervals between what several topics did, from which on it is not the same.
+constexpr double kSameEvent = 2.0;
 // Only of topics that both came within so many sample times, and a second.
 constexpr double kComing = 2.0;
 // Samples of one interval in a row until its counter stands.
@@ -88,6 +91,7 @@ void UnitInputs::push(SignalKind kind, const Arrival& arrival, Clock::time_point
 namespace {
 
 constexpr const char* kUnknownKind = "unknown kind";
+constexpr std::size_t kLongestKind = 40;
 
 /// Nothing for a word that is none of a layout's kinds.
 std::optional<SignalKind> kind_of(const char* word) {
@@ -109,7 +113,8 @@ void UnitInputs::hear(const mpm_Layout& layout) {
   else if (kind)
     wrong_layouts_.erase(layout.kind);
   else
-    wrong_layouts_[kUnknownKind] = "";
+    wrong_layouts_[kUnknownKind] =
+        "'" + printable(layout.kind == nullptr ? "" : layout.kind, kLongestKind) + "'";
 }
 
 void UnitInputs::forget_layout(const char* kind) {
@@ -137,7 +142,8 @@ bool UnitInputs::silent(SignalKind kind, Clock::time_point now) const {
 bool UnitInputs::wants_endpoints(Clock::time_point now) const {
   return std::any_of(idl::kTopicKinds.begin(), idl::kTopicKinds.end(), [&](SignalKind kind) {
     return (needed(kind) && silent(kind, now)) ||
-           stream(kind).rivals(now, expected_.silence).first != nullptr;
+           stream(kind).rivals(now, expected_.silence, [](std::uint64_t) { return true; }).first !=
+               nullptr;
   });
 }
 
@@ -154,7 +160,8 @@ std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::tim
 }
 
 // What is known of the ones who should write.
-std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around) const {
+std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around,
+                                   Clock::time_point now) const {
   std::vector<std::string> writers, refused;
   std::string stopped;
   for (const idl::Endpoint& endpoint : around.endpoints) {
@@ -174,8 +181,14 @@ std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around) 
     const std::vector<std::string> names(around.strangers.begin(), around.strangers.end());
     return "samples come of unit '" + config::join(names) + "' only";
   }
-  return config::join(writers) + (writers.size() == 1 ? " writes" : " write") +
-         " it, but nothing of '" + expected_.unit + "'";
+  // Other units' samples come: perhaps under a wrong name.
+  const bool one = writers.size() == 1;
+  if (!around.strangers.empty())
+    return config::join(writers) + (one ? " writes" : " write") + " it, but nothing of '" +
+           expected_.unit + "'";
+  return config::join(writers) + (one ? " has" : " have") + " not written it for " +
+         std::to_string(whole_seconds(now - stream(kind).last().value_or(start_))) +
+         " s: stopped, or killed";
 }
 
 void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
@@ -196,7 +209,7 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
     // One sentence where all have the same reason.
     std::vector<std::string> reasons;
     reasons.reserve(quiet.size());
-    for (const SignalKind kind : quiet) reasons.push_back(why_silent(kind, around));
+    for (const SignalKind kind : quiet) reasons.push_back(why_silent(kind, around, now));
     std::string text = any_started
                            ? "no data for " + std::to_string(whole_seconds(now - last)) + " s"
                            : "no data has come";
@@ -220,19 +233,24 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
     // Frames come all the same, without it; where no prediction ever came it is simulated.
     const bool simulated = kind == SignalKind::kPrediction && !stream(kind).started();
     troubles.push_back({"silent " + topic_of(kind), Severity::kOutOfSpecification,
-                        "nothing on " + topic_of(kind) + since + " (" + why_silent(kind, around) +
-                            ")" + (simulated ? ": the unit file's model predicts" : "")});
+                        "nothing on " + topic_of(kind) + since + " (" +
+                            why_silent(kind, around, now) + ")" +
+                            (simulated ? ": the unit file's model predicts" : "")});
   }
 }
 
 void UnitInputs::add_rivals(const Surroundings& around, Clock::time_point now,
                             std::vector<Trouble>& troubles) const {
+  // Who has left says nothing more. Only a list that knows somebody knows who is not there.
+  const auto is_there = [&around](std::uint64_t handle) {
+    return around.endpoints.empty() || find_writer(around, handle) != nullptr;
+  };
   std::vector<std::string> topics;
   const InputStream::Writer* first = nullptr;
   const InputStream::Writer* second = nullptr;
   bool same = true;
   for (const SignalKind kind : idl::kTopicKinds) {
-    const auto [a, b] = stream(kind).rivals(now, expected_.silence);
+    const auto [a, b] = stream(kind).rivals(now, expected_.silence, is_there);
     if (a == nullptr) continue;
     topics.push_back(topic_of(kind));
     first = first == nullptr ? a : first;
@@ -264,9 +282,16 @@ void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troub
       std::chrono::duration_cast<Clock::duration>(
           std::chrono::duration<double>(kComing * expected_.sample_time_s)));
   std::optional<SignalKind> ahead, behind;
+  std::vector<std::string> beyond;
+  std::int64_t beyond_at = 0;
   for (const SignalKind kind : idl::kTopicKinds) {
     const InputStream& input = stream(kind);
     if (!needed(kind) || !input.started() || silent(kind, now)) continue;
+    if (input.beyond()) {
+      beyond.push_back(topic_of(kind));
+      beyond_at = input.newest().interval;
+      continue;
+    }
     const auto count = static_cast<std::size_t>(expected_.counts.of(kind));
     const Arrival& newest = input.newest();
     if (newest.values != count || (newest.qualities != 0 && newest.qualities != count))
@@ -283,6 +308,11 @@ void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troub
     if (!ahead || newest.interval > stream(*ahead).newest().interval) ahead = kind;
     if (!behind || newest.interval < stream(*behind).newest().interval) behind = kind;
   }
+  if (!beyond.empty())
+    troubles.push_back({"beyond", Severity::kFailure,
+                        "interval numbers beyond 2^53 are not taken: " + config::join(beyond) +
+                            (beyond.size() == 1 ? " is at " : " are at ") +
+                            std::to_string(beyond_at)});
   const bool rivals = std::any_of(troubles.begin(), troubles.end(), [](const Trouble& trouble) {
     return trouble.key == "two gateways";
   });
@@ -303,7 +333,7 @@ void UnitInputs::add_gaps(Clock::time_point now, std::vector<Trouble>& troubles)
   double time_per_interval_s = 0.0;
   for (const SignalKind kind : idl::kTopicKinds) {
     const InputStream& input = stream(kind);
-    if (!needed(kind) || !input.started() || silent(kind, now)) continue;
+    if (!needed(kind) || !input.started() || input.beyond() || silent(kind, now)) continue;
     const InputStream::Recent& recent = input.recent();
     if (recent.with_gaps())
       gaps.push_back(std::to_string(recent.left_out()) + " of the last " +
@@ -323,40 +353,59 @@ void UnitInputs::add_gaps(Clock::time_point now, std::vector<Trouble>& troubles)
                       "the source times on " + config::join(off_pace) + " go on by " + text});
 }
 
+// Topics that did the same at the same moment, though a sample or two apart, are told as one.
 void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& troubles) const {
   if (counters_differ(troubles)) return;
-  std::vector<std::string> jumped, stepped;
-  InputStream::Jump jump;
-  InputStream::ClockStep step;
+  struct Jumped {
+    InputStream::Jump jump;
+    std::vector<std::string> topics;
+  };
+  struct Stepped {
+    InputStream::ClockStep step;
+    std::vector<std::string> topics;
+  };
+  std::vector<Jumped> jumps;
+  std::vector<Stepped> steps;
   for (const SignalKind kind : idl::kTopicKinds) {
     const InputStream& input = stream(kind);
-    const bool missed = resumed_ && input.jump() && input.jump()->when >= *resumed_ &&
-                        input.jump()->when - *resumed_ < kMissed;
-    if (input.jump() && !missed && now - input.jump()->when < kTold) {
-      jumped.push_back(topic_of(kind));
-      jump = *input.jump();
+    const std::optional<InputStream::Jump> jump = input.jump();
+    const bool missed =
+        resumed_ && jump && jump->when >= *resumed_ && jump->when - *resumed_ < kMissed;
+    if (jump && !missed && now - jump->when < kTold) {
+      const auto same = std::find_if(jumps.begin(), jumps.end(), [&](const Jumped& other) {
+        return apart(other.jump.from, jump->from) <= kSameEvent &&
+               apart(other.jump.to, jump->to) <= kSameEvent && other.jump.timely == jump->timely;
+      });
+      Jumped& place = same == jumps.end() ? jumps.emplace_back(Jumped{*jump, {}}) : *same;
+      place.topics.push_back(topic_of(kind));
     }
     if (input.clock_step() && now - input.clock_step()->when < kTold) {
-      stepped.push_back(topic_of(kind));
-      step = *input.clock_step();
+      const InputStream::ClockStep& step = *input.clock_step();
+      const auto same = std::find_if(steps.begin(), steps.end(), [&](const Stepped& other) {
+        return apart(other.step.interval, step.interval) <= kSameEvent &&
+               (other.step.size_s > 0.0) == (step.size_s > 0.0);
+      });
+      Stepped& place = same == steps.end() ? steps.emplace_back(Stepped{step, {}}) : *same;
+      place.topics.push_back(topic_of(kind));
     }
   }
-  if (!jumped.empty())
-    troubles.push_back(
-        {"jump", Severity::kOutOfSpecification,
-         (jump.timely ? "no intervals came between " + std::to_string(jump.from) + " and " +
-                            std::to_string(jump.to)
-                      : "the interval number went from " + std::to_string(jump.from) + " to " +
-                            std::to_string(jump.to)) +
-             " on " + config::join(jumped)});
-  if (!stepped.empty()) {
+  for (const auto& [jump, topics] : jumps) {
+    const std::string from = std::to_string(jump.from), to = std::to_string(jump.to);
+    troubles.push_back({"jump", Severity::kOutOfSpecification,
+                        (jump.timely ? "no intervals came between " + from + " and " + to
+                                     : "the interval number went from " + from + " to " + to) +
+                            " on " + config::join(topics),
+                        from + " " + to});
+  }
+  for (const auto& [step, topics] : steps) {
+    const std::string interval = std::to_string(step.interval);
     char size[32];
     std::snprintf(size, sizeof size, "%.0f s", std::abs(step.size_s));
     troubles.push_back({"clock", Severity::kOutOfSpecification,
                         std::string("the clock of the control system stepped ") +
                             (step.size_s > 0.0 ? "forward" : "back") + " by " + size +
-                            " at interval " + std::to_string(step.interval) + " on " +
-                            config::join(stepped)});
+                            " at interval " + interval + " on " + config::join(topics),
+                        interval});
   }
 }
 

@@ -77,7 +77,8 @@ class UnitInputs {
  private:
   [[nodiscard]] bool needed(SignalKind kind) const;
   [[nodiscard]] bool silent(SignalKind kind, Clock::time_point now) const;
-  [[nodiscard]] std::string why_silent(SignalKind kind, const Surroundings& around) const;
+  [[nodiscard]] std::string why_silent(SignalKind kind, const Surroundings& around,
+                                       Clock::time_point now) const;
   void add_silence(const Surroundings& around, Clock::time_point now,
                    std::vector<Trouble>& troubles) const;
   void add_rivals(const Surroundings& around, Clock::time_point now,

@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kFilesKept = 16;
+constexpr std::chrono::seconds kBetweenTries{10};  // to begin the first file
 constexpr std::string_view kExtension = ".jsonl";
 constexpr std::size_t kFewestDigits = 6, kMostDigits = 9;
 
@@ -59,13 +60,27 @@ JournalFiles::JournalFiles(const std::string& folder, const std::string& unit,
       unit_(unit),
       keep_bytes_(keep_bytes),
       file_bytes_(std::max<std::uint64_t>(1, keep_bytes / kFilesKept)) {
+  begin();
+}
+
+// Of a folder that cannot be read, or not yet, nothing is known.
+void JournalFiles::begin() {
   std::error_code error;
   fs::create_directory(folder_, error);
-  if (!error && !fs::is_directory(folder_))
+  std::error_code ignored;
+  if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored))
     error = std::make_error_code(std::errc::not_a_directory);
-  if (error) throw std::system_error(error, folder_);
-  find_earlier();
-  if (!open_next()) throw std::system_error(errno, std::generic_category(), path_of(number_));
+  if (!error) error = find_earlier();
+  if (error) {
+    problem_ = folder_ + ": " + error.message();
+    return;
+  }
+  if (!open_next()) {
+    problem_ = path_of(number_ + 1) + ": " + std::generic_category().message(errno);
+    return;
+  }
+  begun_ = true;
+  problem_.clear();
   make_room();
 }
 
@@ -75,6 +90,7 @@ JournalFiles::JournalFiles(JournalFiles&& other) noexcept
       keep_bytes_(other.keep_bytes_),
       file_bytes_(other.file_bytes_),
       earlier_(std::move(other.earlier_)),
+      begun_(other.begun_),
       number_(other.number_),
       descriptor_(std::exchange(other.descriptor_, -1)),
       bytes_(other.bytes_),
@@ -91,21 +107,25 @@ std::string JournalFiles::path_of(int number) const {
 }
 
 // Files of nothing, which a start without any samples leaves behind, go.
-void JournalFiles::find_earlier() {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+std::error_code JournalFiles::find_earlier() {
+  std::error_code error;
+  earlier_.clear();
+  for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
+    const fs::directory_entry& entry = *at;
     std::string unit;
     File file;
-    if (!entry.is_regular_file() ||
+    std::error_code gone;  // somebody else may have been quicker
+    if (!entry.is_regular_file(gone) ||
         !parse_journal_name(entry.path().filename().string(), unit, file.number) || unit != unit_)
       continue;
-    file.bytes = entry.file_size();
-    std::error_code ignored;
-    if (file.bytes == 0 && fs::remove(entry.path(), ignored)) continue;
+    file.bytes = entry.file_size(gone);
+    if (gone || (file.bytes == 0 && fs::remove(entry.path(), gone))) continue;
     earlier_.push_back(file);
   }
   std::sort(earlier_.begin(), earlier_.end(),
             [](const File& a, const File& b) { return a.number < b.number; });
   if (!earlier_.empty()) number_ = earlier_.back().number;
+  return error;
 }
 
 // Of none that is there: another daemon may have made some since.
@@ -133,6 +153,11 @@ void JournalFiles::make_room() {
 }
 
 void JournalFiles::turn_over() {
+  if (!begun_) {
+    if (Clock::now() < next_try_) return;
+    next_try_ = Clock::now() + kBetweenTries;
+    return begin();
+  }
   const bool there = has_name(descriptor_);
   if (there && bytes_ < file_bytes_) return;
   if (!there) {
@@ -153,6 +178,7 @@ void JournalFiles::turn_over() {
 }
 
 bool JournalFiles::append(std::string_view text) {
+  if (!begun_) return false;
   if (!has_name(descriptor_)) {
     if (problem_.empty()) problem_ = std::generic_category().message(ENOENT);
     return false;

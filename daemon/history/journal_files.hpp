@@ -1,9 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace mpm::history {
 
@@ -11,8 +13,11 @@ namespace mpm::history {
 /// beyond a sixteenth of what is kept, and the oldest go first.
 class JournalFiles {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// Makes the folder, but not those above it, and begins a file behind those that are there.
-  /// `unit`: as it is in file names. Throws std::system_error where that cannot be.
+  /// `unit`: as it is in file names. Where that cannot be, `problem` says why, and it is tried
+  /// again.
   JournalFiles(const std::string& folder, const std::string& unit, std::uint64_t keep_bytes);
   JournalFiles(JournalFiles&& other) noexcept;
   JournalFiles(const JournalFiles&) = delete;
@@ -26,8 +31,8 @@ class JournalFiles {
   [[nodiscard]] bool empty() const { return bytes_ == 0; }
   /// All of `text`, or nothing of it: false, and `problem` says why. With the next call it goes on.
   [[nodiscard]] bool append(std::string_view text);
-  /// Why the last `append` failed, or why no file could be begun for one that was removed; empty if
-  /// all is well.
+  /// Why the last `append` failed, or why no file could be begun, first or for one that was
+  /// removed; empty if all is well.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
@@ -37,13 +42,16 @@ class JournalFiles {
   };
 
   [[nodiscard]] std::string path_of(int number) const;
-  void find_earlier();
+  void begin();
+  [[nodiscard]] std::error_code find_earlier();
   [[nodiscard]] bool open_next();
   void make_room();
 
   std::string folder_, unit_;
   std::uint64_t keep_bytes_, file_bytes_;
   std::deque<File> earlier_;  // oldest first, without the one at hand
+  bool begun_ = false;        // the first file
+  Clock::time_point next_try_{};
   int number_ = 0;
   int descriptor_ = -1;
   std::uint64_t bytes_ = 0;  // of the file at hand

@@ -31,8 +31,6 @@ bool AwaitedSignal::take() {
   return read(fd_, &info, sizeof info) == sizeof info;
 }
 
-StopSignal::StopSignal() : signal_({SIGTERM, SIGINT, SIGHUP}) {}
-
 bool StopSignal::received() {
   received_ = received_ || signal_.take();
   return received_;

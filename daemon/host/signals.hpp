@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <initializer_list>
 
 namespace mpm::host {
@@ -21,10 +22,11 @@ class AwaitedSignal {
   int fd_;
 };
 
-/// SIGTERM, SIGINT and SIGHUP.
+/// SIGTERM, SIGINT and SIGHUP, or others.
 class StopSignal {
  public:
-  StopSignal();
+  explicit StopSignal(std::initializer_list<int> signals = {SIGTERM, SIGINT, SIGHUP})
+      : signal_(signals) {}
 
   /// True once one of them came.
   [[nodiscard]] bool received();

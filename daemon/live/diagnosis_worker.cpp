@@ -18,7 +18,8 @@ struct DiagnosisWorker::State {
   Mutex mutex;
   ConditionVariable changed;
   std::deque<DiagnosisJob> waiting MPM_GUARDED_BY(mutex);
-  std::vector<DiagnosisOutcome> outcomes MPM_GUARDED_BY(mutex);  // at most one per asker
+  std::vector<DiagnosisOutcome> outcomes
+      MPM_GUARDED_BY(mutex);  // at most one of each kind per asker
   bool ended MPM_GUARDED_BY(mutex) = false;
 };
 
@@ -45,7 +46,7 @@ bool DiagnosisWorker::submit(DiagnosisJob& job) {
     });
     if (same == waiting.end())
       waiting.push_back(std::move(job));
-    else
+    else if (!job.only_writes)  // one that waits will write, too
       *same = std::move(job);
   }
   state_->changed.notify_all();
@@ -103,16 +104,20 @@ void DiagnosisWorker::run(State& state) {
     }
     if (outcome) {
       outcome->asker = job.asker;
+      outcome->only_wrote = job.only_writes;
+      outcome->alarm_time_ns = job.alarm_time_ns;
       outcome->interval = job.samples.last_interval;
       outcome->time_ns = job.samples.last_time_ns;
     }
     lock.lock();
     if (!outcome) continue;
     auto& outcomes = state.outcomes;
-    outcomes.erase(
-        std::remove_if(outcomes.begin(), outcomes.end(),
-                       [&](const DiagnosisOutcome& older) { return older.asker == job.asker; }),
-        outcomes.end());
+    outcomes.erase(std::remove_if(outcomes.begin(), outcomes.end(),
+                                  [&](const DiagnosisOutcome& older) {
+                                    return older.asker == job.asker &&
+                                           older.only_wrote == job.only_writes;
+                                  }),
+                   outcomes.end());
     outcomes.push_back(std::move(*outcome));
   }
   state.ended = true;

@@ -4,23 +4,25 @@
 
 #include <algorithm>
 
-#include "core/text/printable.hpp"
-
 namespace mpm::live {
 namespace {
 
-constexpr std::chrono::seconds kLookPeriod{5};
+constexpr int kBatch = 64;  // samples
+constexpr std::chrono::seconds kLookPeriod{1};
 constexpr std::chrono::seconds kMemoryOfStrangers{10};
 constexpr std::size_t kMostStrangers = 8;
 
 }  // namespace
 
-Domain::Domain(const idl::DomainOptions& options)
+Domain::Domain(const idl::DomainOptions& options, const std::vector<std::string>& units)
     : participant_(options),
       discovery_(participant_),
-      samples_(participant_),
-      layouts_(participant_, idl::kLayoutTopic, idl::layout_qos()),
-      other_monitors_(participant_, idl::kHealthTopic, idl::neighbour_health_qos()),
+      sampled_(units),
+      spoken_of_(units),
+      samples_(participant_, &sampled_),
+      layouts_(participant_, idl::kLayoutTopic, idl::layout_qos(), kBatch, &spoken_of_),
+      other_monitors_(participant_, idl::kHealthTopic, idl::neighbour_health_qos(), kBatch,
+                      &spoken_of_),
       outputs_(participant_) {
   around_.place = bus::place_text(options);
   around_.self = idl::name_of(discovery_.own());
@@ -48,21 +50,21 @@ void Domain::poll(Clock::time_point now) {
       it->second->forget_layout(layout.kind);
   });
   samples_.take([&](const idl::SampleView& sample) {
-    if (const auto it = units_.find(sample.unit); it != units_.end())
-      it->second->push(sample, now);
-    else
-      report_unknown(sample.unit, now);
+    if (const auto it = units_.find(sample.unit); it != units_.end()) it->second->push(sample, now);
   });
 }
 
-void Domain::report_unknown(std::string_view unit, Clock::time_point now) {
-  ++unknown_unit_;
-  if (around_.strangers.size() < kMostStrangers) around_.strangers.emplace(printable(unit));
-  if (!unknown_limit_.admit(now)) return;
-  spdlog::warn("sample of unit '{}', which no unit file describes; ignored{}", printable(unit),
-               unknown_limit_.held_back() == 0
-                   ? ""
-                   : fmt::format(" ({} more like this before)", unknown_limit_.held_back()));
+void Domain::report_unknown(Clock::time_point now) {
+  const idl::UnitChoice::Refused refused = sampled_.refused();
+  unknown_unit_ += refused.samples;
+  for (const std::string& unit : refused.units) {
+    if (around_.strangers.size() < kMostStrangers) around_.strangers.insert(unit);
+    if (!unknown_limit_.admit(now)) continue;
+    spdlog::warn("samples of unit '{}', which no unit file describes; ignored{}", unit,
+                 unknown_limit_.held_back() == 0
+                     ? ""
+                     : fmt::format(" ({} more like this before)", unknown_limit_.held_back()));
+  }
 }
 
 void Domain::hear_other_monitors(Clock::time_point now) {
@@ -90,6 +92,7 @@ void Domain::look_around(Clock::time_point now) {
 }
 
 void Domain::tick(Clock::time_point now) {
+  report_unknown(now);
   hear_other_monitors(now);
   if (std::any_of(units_.begin(), units_.end(),
                   [&](const auto& unit) { return unit.second->wants_endpoints(now); }))

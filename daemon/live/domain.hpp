@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "config/unit_config.hpp"
 #include "daemon/host/rate_limiter.hpp"
@@ -11,6 +12,7 @@
 #include "idl/discovery.hpp"
 #include "idl/output_writers.hpp"
 #include "idl/sample_readers.hpp"
+#include "idl/unit_choice.hpp"
 
 namespace mpm::live {
 
@@ -19,7 +21,8 @@ class Domain {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit Domain(const idl::DomainOptions& options);
+  /// `units`: of which samples are taken; each is to be added.
+  Domain(const idl::DomainOptions& options, const std::vector<std::string>& units);
 
   UnitPipeline& add_unit(const config::UnitConfig& unit, SampleJournal* samples,
                          Clock::time_point now);
@@ -34,13 +37,15 @@ class Domain {
   }
 
  private:
-  void report_unknown(std::string_view unit, Clock::time_point now);
+  void report_unknown(Clock::time_point now);
   void hear_other_monitors(Clock::time_point now);
   void forget_strangers(Clock::time_point now);
   void look_around(Clock::time_point now);
 
   idl::Participant participant_;
   idl::Discovery discovery_;
+  // What of the words of others is not ours is nobody's trouble; samples are.
+  idl::UnitChoice sampled_, spoken_of_;
   idl::SampleReaders samples_;
   idl::Reader<mpm_Layout> layouts_;
   idl::Reader<mpm_Health> other_monitors_;

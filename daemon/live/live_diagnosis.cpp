@@ -8,6 +8,8 @@
 namespace mpm::live {
 namespace {
 
+constexpr std::chrono::minutes kBetweenTries{1};  // of writing
+
 ScheduleSettings schedule_of(const config::UnitConfig& unit) {
   ScheduleSettings settings;
   settings.needed_rows = static_cast<int>(needed_samples(unit.model));
@@ -58,9 +60,29 @@ void LiveDiagnosis::push(const Frame& frame, const std::vector<AlarmRecord>& cha
   pending_->alarm_time_ns = youngest_alarm_ns_;
 }
 
-std::optional<DiagnosisOutcome> LiveDiagnosis::poll() {
+void LiveDiagnosis::write_again(Clock::time_point now) {
+  if (file_problem_.empty() || pending_ || now < next_try_) return;
+  DiagnosisJob job;
+  job.asker = asker_;
+  job.only_writes = true;
+  job.unwritten = unwritten_;
+  job.alarm_time_ns = unwritten_alarm_ns_;
+  if (worker_.submit(job)) next_try_ = now + kBetweenTries;
+}
+
+std::optional<DiagnosisOutcome> LiveDiagnosis::poll(Clock::time_point now) {
   if (pending_ && worker_.submit(*pending_)) pending_.reset();
-  return worker_.take(asker_);
+  write_again(now);
+  std::optional<DiagnosisOutcome> outcome = worker_.take(asker_);
+  if (!outcome || !outcome->problem.empty()) return outcome;
+  if (file_problem_.empty()) next_try_ = now + kBetweenTries;
+  file_problem_ = outcome->file_problem;
+  if (file_problem_.empty()) unwritten_.reset();
+  if (outcome->unwritten != nullptr) {
+    unwritten_ = std::move(outcome->unwritten);
+    unwritten_alarm_ns_ = outcome->alarm_time_ns;
+  }
+  return outcome;
 }
 
 std::vector<AlarmRecord> LiveDiagnosis::diagnosed(const DiagnosisOutcome& outcome) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,13 +19,19 @@ namespace mpm::live {
 /// adds to the alarms what comes of it.
 class LiveDiagnosis {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// `asker`: of all units that share `worker`, this one.
   LiveDiagnosis(std::shared_ptr<const config::UnitConfig> unit, DiagnosisWorker& worker, int asker);
 
   /// After a frame was judged, and its outputs written: with the alarms that it changed.
   void push(const Frame& frame, const std::vector<AlarmRecord>& changes);
-  /// Now and then: starts what could not be started, and hands over what has been found.
-  [[nodiscard]] std::optional<DiagnosisOutcome> poll();
+  /// Now and then: starts what could not be started, has written each minute what could not be
+  /// written, and hands over what has been found.
+  [[nodiscard]] std::optional<DiagnosisOutcome> poll(Clock::time_point now);
+  /// Why reports cannot be kept; empty: they can, as far as is known.
+  void set_file_problem(std::string problem) { file_problem_ = std::move(problem); }
+  [[nodiscard]] const std::string& file_problem() const { return file_problem_; }
   /// The alarms that stand, with what `outcome` says of them; none that it could not know of.
   [[nodiscard]] std::vector<AlarmRecord> diagnosed(const DiagnosisOutcome& outcome) const;
 
@@ -34,6 +42,7 @@ class LiveDiagnosis {
   };
 
   void note(const AlarmRecord& change);
+  void write_again(Clock::time_point now);
 
   std::shared_ptr<const config::UnitConfig> unit_;
   DiagnosisWorker& worker_;
@@ -43,6 +52,10 @@ class LiveDiagnosis {
   std::map<std::pair<std::string, std::string>, Standing> alarms_;  // by (input, CV)
   std::int64_t youngest_alarm_ns_ = 0;
   std::optional<DiagnosisJob> pending_;  // the worker had no time to take it
+  std::string file_problem_;
+  std::shared_ptr<const report::DiagnosisRun> unwritten_;  // the last report, where it is
+  std::int64_t unwritten_alarm_ns_ = 0;
+  Clock::time_point next_try_{};
 };
 
 }  // namespace mpm::live

@@ -1,6 +1,8 @@
 #include "daemon/live/make_diagnosis.hpp"
 
 #include <exception>
+#include <memory>
+#include <utility>
 
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "daemon/files/folder_name.hpp"
@@ -32,10 +34,25 @@ std::string headline_of(const report::DiagnosisRun& run) {
   return text;
 }
 
+// A disk that was full may have room again.
+DiagnosisOutcome write_again(const DiagnosisJob& job, const ReportStore& store) {
+  DiagnosisOutcome outcome;
+  outcome.only_wrote = true;
+  outcome.file_problem = store.problem();
+  if (job.unwritten == nullptr || !outcome.file_problem.empty()) return outcome;
+  try {
+    outcome.folder = store.write(*job.unwritten, job.alarm_time_ns);
+  } catch (const std::exception& error) {
+    outcome.file_problem = error.what();
+  }
+  return outcome;
+}
+
 }  // namespace
 
 std::optional<DiagnosisOutcome> make_diagnosis(const DiagnosisJob& job, const ReportStore& store,
                                                const DiagnosisWorker::GoOn& go_on) {
+  if (job.only_writes) return write_again(job, store);
   DiagnosisOutcome outcome;
   report::DiagnosisRun run = prepare(job);
   outcome.problem = files::recording_problem(run.recording, needed_samples(run.unit.model));
@@ -53,6 +70,7 @@ std::optional<DiagnosisOutcome> make_diagnosis(const DiagnosisJob& job, const Re
     outcome.folder = store.write(run, job.alarm_time_ns);
   } catch (const std::exception& error) {
     outcome.file_problem = error.what();
+    outcome.unwritten = std::make_shared<const report::DiagnosisRun>(std::move(run));
   }
   return outcome;
 }

@@ -18,6 +18,13 @@ constexpr std::chrono::seconds kStatusPeriod{1};
 constexpr int kLargestSampleKb = 1024;
 constexpr std::size_t kMostInStatus = 3;  // units whose troubles are told
 
+idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOptions& options) {
+  idl::DomainOptions settings = bus::domain_options(unit.dds);
+  settings.use_environment = options.use_environment;
+  settings.max_sample_kb = kLargestSampleKb;
+  return settings;
+}
+
 }  // namespace
 
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
@@ -30,15 +37,18 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
         "CYCLONEDDS_URI is set, but the unit files' DDS settings are used; --dds-from-environment "
         "takes it instead");
   const Clock::time_point now = Clock::now();
-  std::map<std::string, Domain*> domain_of;  // by its settings
+  // A reader takes samples from its start on, hence knows all units of its domain then.
+  std::map<std::string, std::vector<std::string>> units_of;  // by their settings
+  for (const config::UnitConfig& unit : units)
+    units_of[idl::domain_xml(settings_of(unit, options))].push_back(unit.unit);
+  std::map<std::string, Domain*> domain_of;
   int asker = 0;
   for (const config::UnitConfig& unit : units) {
-    idl::DomainOptions settings = bus::domain_options(unit.dds);
-    settings.use_environment = options.use_environment;
-    settings.max_sample_kb = kLargestSampleKb;
-    Domain*& domain = domain_of[idl::domain_xml(settings)];
+    const idl::DomainOptions settings = settings_of(unit, options);
+    const std::string xml = idl::domain_xml(settings);
+    Domain*& domain = domain_of[xml];
     if (domain == nullptr) {
-      domain = domains_.emplace_back(std::make_unique<Domain>(settings)).get();
+      domain = domains_.emplace_back(std::make_unique<Domain>(settings, units_of[xml])).get();
       domain->attach_to(wait_set_);
     }
     UnitPipeline& pipeline = domain->add_unit(unit, samples_ ? &*samples_ : nullptr, now);

@@ -11,6 +11,7 @@
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
+#include "daemon/live/lost_troubles.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/unit_performance.hpp"
 #include "idl/topics.hpp"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::chrono::seconds kHealthPeriod{1};
 constexpr int kSilentSamples = 10;
+constexpr int kPause = 3;  // samples
 // The loop turns five times a second at least.
 constexpr std::chrono::seconds kStandstill{5};
 constexpr std::chrono::seconds kTold{60};
@@ -167,6 +169,12 @@ void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
       {sample.kind, sample.interval, sample.source_time_ns, sample.values, sample.quality});
   const AlignerCounters& after = aligner_.counters();
   if (after.wrong_length != before.wrong_length) report_refused(sample);
+  if (after.beyond != before.beyond && beyond_limit_.admit(now))
+    spdlog::warn("{}: {} sample of interval {}: numbers beyond 2^53 are not taken; ignored{}",
+                 config_.unit, idl::sample_topic(sample.kind), sample.interval,
+                 beyond_limit_.held_back() == 0
+                     ? ""
+                     : fmt::format(" ({} more like this before)", beyond_limit_.held_back()));
   if (after.restarts != before.restarts && restart_limit_.admit(now))
     spdlog::info("{}: the controller restarted: interval {} after {}{}", config_.unit,
                  sample.interval, health_.interval,
@@ -237,16 +245,21 @@ void UnitPipeline::publish_performance() {
 
 // Not into the journal: when a diagnosis is through depends on the machine, not on the data.
 void UnitPipeline::publish_diagnosis() {
-  const std::optional<DiagnosisOutcome> outcome = diagnosis_->poll();
+  const std::optional<DiagnosisOutcome> outcome = diagnosis_->poll(now_);
   if (!outcome) return;
   if (!outcome->problem.empty()) {
     spdlog::warn("{}: the alarms could not be diagnosed: {}", config_.unit, outcome->problem);
     return;
   }
+  if (outcome->only_wrote) {
+    if (!outcome->folder.empty())
+      spdlog::info("{}: the report of the last diagnosis could be written now, in {}", config_.unit,
+                   outcome->folder);
+    return;
+  }
   spdlog::warn("{}: diagnosed up to interval {}: {}{}", config_.unit, outcome->interval,
                outcome->headline,
                outcome->folder.empty() ? "" : " Report in " + outcome->folder + ".");
-  report_problem_ = outcome->file_problem;
   bool written = true;
   for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
     written = publish_alarm_state(alarm) && written;  // the alarm is as old as it was
@@ -289,6 +302,7 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   health_.out_of_order = aligner.out_of_order;
   health_.bad_values = monitor_.counters().bad_values;
   health_.wrong_length = aligner.wrong_length;
+  health_.beyond = aligner.beyond;
   health_.unknown_unit = unknown_unit;
   health_.restarts = aligner.restarts;
   health_.undetermined = health_.matching = health_.mismatching = health_.active_alarms = 0;
@@ -303,7 +317,9 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   }
   const std::vector<bus::Trouble> found = troubles(around);
   trouble_text_ = bus::joined_text(found, kMostInDetail);
-  for (const TroubleLog::Line& line : trouble_log_.update(found, now_))
+  const auto wall = std::chrono::system_clock::now().time_since_epoch();
+  for (const TroubleLog::Line& line : trouble_log_.update(
+           found, now_, std::chrono::duration_cast<std::chrono::seconds>(wall).count()))
     spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", config_.unit,
                 line.text);
   judge_health(found);
@@ -323,11 +339,21 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
       now_ - *incomplete_at_ < samples_or(config_.sample_time_s, 2, kHealthPeriod) &&
       (found.empty() || found.front().severity == Severity::kMaintenanceRequired))
     add("incomplete", Severity::kOutOfSpecification, "data incomplete");
-  if (stood_still_ && now_ - *stood_still_ < kTold)
+  std::vector<LostSignal> lost = monitor_.monitor().lost();
+  std::erase_if(lost, [this](const LostSignal& signal) {  // its topic pauses, which will be told
+    const std::optional<Clock::time_point> last = inputs_.stream(signal.kind).last();
+    return signal.cause == LossCause::kNoValue && last &&
+           now_ - *last > samples_or(config_.sample_time_s, kPause, kHealthPeriod);
+  });
+  for (bus::Trouble& trouble : lost_troubles(config_, lost, found))
+    found.push_back(std::move(trouble));
+  if (stood_still_ && now_ - *stood_still_ < kTold) {
     add("standstill", Severity::kOutOfSpecification,
         fmt::format(
             "the monitor itself stood still for {} s: its machine is too busy or was asleep",
             std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
+    found.back().event = std::to_string(stood_still_->time_since_epoch().count());
+  }
   if (other_monitor_speaks())
     add("other monitor", Severity::kMaintenanceRequired, monitors_text(around.self));
   const auto add_journal = [&](const std::string& which, const std::string& problem) {
@@ -337,9 +363,9 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   };
   if (journal_) add_journal("journal", journal_->problem());
   if (samples_ != nullptr) add_journal("journal of every sample", samples_->problem());
-  if (!report_problem_.empty())
+  if (diagnosis_ && !diagnosis_->file_problem().empty())
     add("reports", Severity::kMaintenanceRequired,
-        "reports of diagnoses cannot be kept: " + report_problem_);
+        "reports of diagnoses cannot be kept: " + diagnosis_->file_problem());
   sort_by_severity(found);
   return found;
 }

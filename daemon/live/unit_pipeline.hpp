@@ -51,7 +51,9 @@ class UnitPipeline {
   /// All others have left.
   void hear_no_other_monitor() { other_monitors_.clear(); }
   /// Reports cannot be kept, and why; empty: they can.
-  void set_report_problem(std::string problem) { report_problem_ = std::move(problem); }
+  void set_report_problem(std::string problem) {
+    if (diagnosis_) diagnosis_->set_file_problem(std::move(problem));
+  }
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
   void tick(Clock::time_point now, std::uint64_t unknown_unit, const bus::Surroundings& around);
   /// True while the list of endpoints in the surroundings is of use.
@@ -105,10 +107,9 @@ class UnitPipeline {
   std::map<std::uint64_t, OtherMonitor> other_monitors_;  // by writer
   bool other_monitor_spoke_ = false;                      // at the last health
   std::vector<AlarmStateRecord> alarms_;                  // of each channel, as last written
-  std::string report_problem_;
   HealthRecord health_;
   std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
-  host::RateLimiter refused_limit_, output_limit_, restart_limit_;
+  host::RateLimiter refused_limit_, beyond_limit_, output_limit_, restart_limit_;
 };
 
 }  // namespace mpm::live

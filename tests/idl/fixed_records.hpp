@@ -109,6 +109,7 @@ namespace mpm::test {
   record.matching = 113;
   record.mismatching = 114;
   record.active_alarms = 115;
+  record.beyond = 116;
   return record;
 }
 

@@ -28,7 +28,6 @@ ALLOWED = {  # file: numbers, why
     "regression/rotation.cpp": ({1e-280, 1e280}, "squares that can neither overflow nor underflow"),
     "regression/rotation.hpp": ({64}, "bytes"),
     "regression/rotation_kernel.cpp": ({16, 32, 64}, "bytes and rows of the machine's registers"),
-    "signal/aligner.cpp": ({53}, "bits of a whole number that JSON keeps"),
     "statistics/cross_correlation.cpp": (None, "of a report's plot: nothing is decided by it"),
     "statistics/normal.hpp": ({1.96, 1.645}, "quantiles, compared with Boost.Math by a test"),
     "statistics/spectrum.cpp": (None, "of a report's plot: nothing is decided by it"),

@@ -43,13 +43,24 @@ TEST_CASE("a journal whose daemon was killed is read, and goes on") {
   CHECK(trend["periods"].back()["from"] >= 86400.0);
 }
 
-TEST_CASE("a journal where none can be is refused at the start") {
+TEST_CASE("a journal where none can be is told at the start, and the monitor watches on") {
   TemporaryFolder folder;
-  CHECK(run({"mpmd", "--config", kUnit, "--journal", "/no/such/folder/x"}, folder.file("out"),
-            folder.file("err")) == 2);
-  CHECK(read_file(folder.file("err")).find("/no/such/folder/x") != std::string::npos);
+  const std::string place = "/no/such/folder/x";
+  Process daemon({"mpmd", "--config", kUnit, "--partition",
+                  idl::test_domain("no_journal").partition, "--journal", place},
+                 folder.file("out"), folder.file("err"));
+  CHECK(idl::eventually([&] {
+    return read_file(folder.file("err"))
+               .find("the journal cannot be written: " + place + ": No such file or directory") !=
+           std::string::npos;
+  }));
+  daemon.send(SIGTERM);
+  CHECK(daemon.wait(std::chrono::seconds(10)) == 0);
   CHECK(run({"mpmd", "--config", kUnit, "--journal", folder.file("j"), "--journal-keep", "10kB"},
             folder.file("out"), folder.file("err")) == 3);
+  CHECK(run({"mpmd", "--config", kUnit, "--journal-every-sample", place}, folder.file("out"),
+            folder.file("err")) == 2);
+  CHECK(read_file(folder.file("err")).find("\n<3>mpmd: error: " + place) != std::string::npos);
 }
 
 }  // namespace

@@ -54,6 +54,11 @@ TEST_CASE("systemd is told when the daemon is ready, alive, well and stopping") 
   CHECK(socket.hears("STATUS=1 unit; channels: 0 match, 0 mismatch, 2 undetermined; 0 alarms"));
   CHECK(socket.hears("0 alarms; toy: reports of diagnoses cannot be kept: /proc/none"));
   CHECK(socket.hears("WATCHDOG=1"));
+  bench.daemon.send(SIGHUP);
+  CHECK(idl::eventually([&] {
+    return read_file(bench.folder.file("mpmd.err")).find("<4>SIGHUP: reloading is not supported") !=
+           std::string::npos;
+  }));
   CHECK(socket.heard().find("STOPPING=1") == std::string::npos);
   bench.daemon.send(SIGINT);
   CHECK(bench.daemon.wait(std::chrono::seconds(1)) == 0);
@@ -148,6 +153,7 @@ TEST_CASE("command lines end with the agreed exit codes") {
   CHECK(run({"mpm", "watch", "--no-such-option"}, out, err) == 3);
   CHECK(run({"mpm", "watch", "--partition", "nobody", "--until-alarm", "--for", "0.3"}, out, err) ==
         2);
+  CHECK(read_file(err) == "mpm: no monitor was on domain 0, partition 'nobody'\n");
 }
 
 }  // namespace mpm::test

@@ -56,6 +56,7 @@ struct Journals {
       journal.emplace(unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                   kWholeJournal));
     if (!options.sample_journal.empty()) samples.emplace(options.sample_journal);
+    check();
   }
 
   void push(report::UnitMonitor& monitor) {

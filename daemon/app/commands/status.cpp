@@ -115,8 +115,10 @@ bus::PluginStatus ask(const std::vector<Place>& places, const StatusOptions& opt
   host::set_up_logging("off");  // one line is all there may be
   std::vector<bus::MonitorWord> words;
   for (const Place& place : places)
-    for (bus::MonitorWord& word : ask(place, options.wait_s, stop))
+    for (bus::MonitorWord& word : ask(place, options.wait_s, stop)) {
+      word.place = bus::place_text(place.domain);
       words.push_back(std::move(word));
+    }
   return bus::plugin_status(words, options.limits, bus::place_text(places.front().domain));
 }
 

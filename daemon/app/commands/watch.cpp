@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <string>
@@ -24,6 +25,7 @@ namespace mpm::app {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{100};
+constexpr std::chrono::seconds kBeforeNote{3};  // a monitor speaks each second
 
 struct WatchOptions {
   std::string unit;
@@ -87,6 +89,10 @@ int watch(const WatchOptions& options) {
 
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(options.for_s));
+  // A table says itself that nobody is there; who reads lines or JSON sees nothing.
+  const std::string place = bus::place_text(options.domain);
+  const Clock::time_point note_at = Clock::now() + kBeforeNote;
+  bool heard = mode == bus::ViewMode::kTable, noted = false;
   bool last_look = false;
   while (viewer.has_reader() && !host::reader_has_left() && !stop.received()) {
     const bool any = wait_set.wait(kLongestWait);
@@ -95,12 +101,18 @@ int watch(const WatchOptions& options) {
       const std::vector<idl::Output>& outputs = readers.take();
       for (std::size_t i = 0; i < outputs.size(); ++i)
         viewer.show(outputs[i], names.of(readers.writers()[i]), now);
+      heard = heard || !outputs.empty();
+    }
+    if (!heard && !noted && now >= note_at) {
+      std::cerr << "mpm: waiting for a monitor on " << place << std::endl;
+      noted = true;
     }
     last_look = options.for_s > 0.0 && now >= end;
     viewer.tick(now);
     if (options.until_alarm && viewer.any_alarm()) return 0;
     if (last_look) break;
   }
+  if (!heard && last_look) std::cerr << "mpm: no monitor was on " << place << std::endl;
   return options.until_alarm ? 2 : 0;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 
 namespace mpm::bus {
@@ -15,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// By the beginning of a trouble's key.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kAdvice = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 19> kAdvice = {{
     {"no data", "See that the gateway runs, with this domain, partition and unit name."},
     {"silent", "Let the gateway publish it, or take its signals out of the unit file."},
     {"mismatch", "Give it the QoS of docs/hmi.md."},
@@ -25,6 +26,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 18> kAdvice 
     {"length", "Publish one value per signal, in the order of the unit file."},
     {"standing", "Let the gateway count control intervals."},
     {"apart", "Give all topics of the unit the same number in the same interval."},
+    {"beyond", "Let the gateway count from a smaller number."},
     {"jump", "The controller or its gateway was restarted, or lost so many samples."},
     {"layout", "Give it the tags of the unit file, in its order, and its sample time."},
     {"gaps", "See which samples the gateway does not publish, or with another number."},
@@ -92,6 +94,21 @@ std::string unit_text(const UnitFindings& unit) {
       text += row(topic.topic, writer_text(writer));
   }
   return text;
+}
+
+// Samples get where they should; what the monitors make of them is theirs to say.
+std::string summary(const Findings& findings) {
+  std::uint64_t alarms = 0;
+  std::string waiting;
+  for (const UnitFindings& unit : findings.units)
+    for (const MonitorFindings& monitor : unit.monitors) {
+      alarms += monitor.active_alarms;
+      if (monitor.state == to_string(Severity::kFunctionCheck) && waiting.empty())
+        waiting = "; " + printable(unit.unit) + ": " + monitor.detail;
+    }
+  if (alarms == 0 && waiting.empty()) return "all is well on " + findings.place;
+  return "the data path is well on " + findings.place + waiting +
+         (alarms == 0 ? "" : "; " + counted(alarms, "alarm") + ": see mpm watch");
 }
 
 Json json_of(const idl::Process& process) {
@@ -165,9 +182,15 @@ Findings joined(std::vector<Findings> of_places) {
 }
 
 std::string advice(const Trouble& trouble) {
+  const auto says = [&](const char* words) {
+    return trouble.text.find(words) != std::string::npos;
+  };
+  if (says("bad since") || says("bad, the first since"))
+    return "See to the instruments and their link to the control system.";
+  if (says("has stopped writing") || says("stopped, or killed"))
+    return "See why the gateway writes it no more.";
   // What does not match is the cause of what is silent.
-  const std::string key =
-      trouble.text.find("does not match") != std::string::npos ? "mismatch" : trouble.key;
+  const std::string key = says("does not match") ? "mismatch" : trouble.key;
   for (const auto& [beginning, sentence] : kAdvice)
     if (key.compare(0, beginning.size(), beginning) == 0) return std::string(sentence);
   return "";
@@ -182,7 +205,7 @@ std::string to_text(const Findings& findings) {
     text += fmt::format("{}. {}{}.{}\n", ++number, line.unit.empty() ? "" : line.unit + ": ",
                         line.trouble->text, sentence.empty() ? "" : " " + sentence);
   }
-  if (number == 0) text += "all is well on " + findings.place + "\n";
+  if (number == 0) text += summary(findings) + "\n";
   for (const std::string& note : findings.notes) text += "note: " + note + "\n";
   return text;
 }

@@ -6,6 +6,7 @@
 
 #include "core/record/reason_text.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/bus/trouble.hpp"
 #include "daemon/files/times/time_text.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/matrix_text.hpp"
@@ -39,6 +40,11 @@ std::string shout(const ChannelRecord& channel) {
   return channel.alarm == AlarmState::kActive ? word + " !" : word;
 }
 
+// The monitor says nothing of channels while no data come.
+bool outdated(const UnitBoard& board) {
+  return board.gone || board.health.state == to_string(Severity::kFailure);
+}
+
 // Under the verdicts of a CV a row with the reasons of those that are undetermined.
 std::string matrix(const UnitBoard& board, const report::Layout& layout) {
   std::vector<report::MatrixRow> rows;
@@ -48,8 +54,10 @@ std::string matrix(const UnitBoard& board, const report::Layout& layout) {
     for (const std::string& input : board.inputs) {
       const ChannelRecord* channel = find(board, input, cv);
       const bool known = channel != nullptr;
-      verdicts.cells.push_back(
-          {known ? shout(*channel) : "", known ? tint_of(channel->verdict) : Tint::kPlain});
+      verdicts.cells.push_back({known ? shout(*channel) : "", !known ? Tint::kPlain
+                                                              : outdated(board)
+                                                                  ? Tint::kGrey
+                                                                  : tint_of(channel->verdict)});
       reasons.cells.push_back({known ? reason_of(*channel) : "", Tint::kGrey});
       any_reason = any_reason || !reasons.cells.back().text.empty();
     }
@@ -71,6 +79,11 @@ std::string head(const std::string& name, const UnitBoard& board, const report::
   else if (!health.state.empty())
     text += "  health: " + health.state +
             (health.detail.empty() ? "" : " (" + health.detail + ")") + '\n';
+  if (!board.gone && outdated(board) && !board.channels.empty())
+    text += "  " +
+            layout.paint(Tint::kRed,
+                         "no verdicts now; those below are of " + utc(health.source_time_ns)) +
+            '\n';
   if (!board.note.empty()) text += "  " + layout.paint(Tint::kRed, board.note) + '\n';
   return text;
 }

@@ -46,6 +46,11 @@ TEST_CASE("a monitor that is not there is critical") {
   const PluginStatus absent =
       plugin_status({word("a", ""), word("b", "normal")}, AgeLimits(), "domain 3");
   CHECK(absent.code == 2);
+  MonitorWord ignored = word("a", "");
+  ignored.place = "domain 3 (CYCLONEDDS_URI is set, but not used)";
+  CHECK(plugin_status({ignored}, {}, "")
+            .line.find("a: no monitor on domain 3 (CYCLONEDDS_URI is set, but not used) |") !=
+        std::string::npos);
   CHECK(absent.line.find("MPM CRITICAL: a: no monitor | 'a alarms'=U 'a age'=U 'a state'=2;0;1") ==
         0);
 }

@@ -72,7 +72,11 @@ TEST_CASE("a topic that never comes is named, with who should write it") {
 
   scene.add_writer("mpm/dv", kGateway, "gateway");
   CHECK(scene.text() ==
-        "nothing on mpm/dv (gateway (process 12 on host plant1) writes it, but nothing of 'toy')");
+        "nothing on mpm/dv (gateway (process 12 on host plant1) has not written it for 6 s: "
+        "stopped, or killed)");
+  scene.around.strangers = {"tyo"};
+  CHECK(scene.text() == "nothing on mpm/dv (samples come of unit 'tyo' only)");
+  scene.around.strangers.clear();
   scene.around.endpoints.back().mismatch = {
       "RELIABILITY (best effort offered, reliable requested)"};
   CHECK(scene.text() ==
@@ -100,7 +104,7 @@ TEST_CASE("a topic that stops is told with the time since, and no sooner than it
   CHECK(scene.text().find("mpm/dv for 5 s") != std::string::npos);  // sent at 19, it is 24 now
   CHECK(scene.text().find("nobody writes it") != std::string::npos);
   scene.add_writer("mpm/dv", kOtherGateway, "other");
-  CHECK(scene.text().find("other (process 12 on host plant1) writes it, but nothing of 'toy'") !=
+  CHECK(scene.text().find("other (process 12 on host plant1) has not written it for ") !=
         std::string::npos);
   scene.add_writer("mpm/dv", kGateway, "gateway");
   CHECK(scene.text() ==
@@ -281,6 +285,69 @@ TEST_CASE("what came while this process stood still is nobody else's fault") {
   for (int k = 42; k < 50; ++k) scene.second({kMv, kDv, kCv}, k);
   scene.second({kMv, kDv, kCv}, 80);
   CHECK(scene.text() == "no intervals came between 49 and 80 on mpm/mv, mpm/dv, mpm/cv");
+}
+
+TEST_CASE("of several leaps each names the topics that truly leapt") {
+  Scene scene;
+  for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
+  for (int k = 10; k < 25; ++k) scene.second({kMv, kCv}, k);  // DVs pause
+  for (int k = 25; k < 30; ++k) scene.second({kMv, kDv, kCv}, k);
+  CHECK(scene.text().find("no intervals came between 9 and 25 on mpm/dv") != std::string::npos);
+  scene.now += seconds(20);
+  for (int k = 50; k < 52; ++k) scene.second({kMv, kCv}, k);
+  CHECK(scene.text().find("no intervals came between 9 and 25 on mpm/dv") != std::string::npos);
+  CHECK(scene.text().find("no intervals came between 29 and 50 on mpm/mv, mpm/cv") !=
+        std::string::npos);
+  int jumps = 0;
+  for (const Trouble& trouble : scene.troubles()) jumps += trouble.event.empty() ? 0 : 1;
+  CHECK(jumps == 2);
+}
+
+TEST_CASE("a gateway that comes back with later numbers leaps as one that never left") {
+  Scene scene;
+  for (int k = 0; k < 10; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.now += seconds(2);
+  scene.start_ns -= 90'000 * kSecond;
+  for (int k = 90'012; k < 90'014; ++k) {
+    for (const SignalKind kind : {kMv, kDv, kCv}) scene.send(kind, k, kOtherGateway);
+    scene.now += seconds(1);
+  }
+  CHECK(scene.text() == "the interval number went from 9 to 90012 on mpm/mv, mpm/dv, mpm/cv");
+}
+
+TEST_CASE("of two gateways the one that has left is not counted") {
+  Scene scene;
+  scene.add_writer("mpm/mv", kOtherGateway, "spare");
+  for (int k = 0; k < 20; ++k) {
+    scene.send(kMv, 5000 + k, kOtherGateway);
+    scene.second({kMv, kDv, kCv}, k);
+  }
+  CHECK(scene.text().find("two gateways write mpm/mv") == 0);
+  scene.around.endpoints.pop_back();
+  scene.second({kMv, kDv, kCv}, 20);
+  CHECK(scene.text().empty());
+}
+
+TEST_CASE("interval numbers beyond 2^53 are a failure with that reason, and no other") {
+  Scene scene;
+  const std::int64_t last = std::int64_t{1} << 53;
+  scene.start_ns = 0;
+  const auto second = [&](std::int64_t k) {
+    for (const SignalKind kind : {kMv, kDv, kCv})
+      scene.inputs->push(kind, {kGateway, k, (k - last + 100) * kSecond, kind == kCv ? 2u : 1u, 0},
+                         scene.now);
+    scene.now += seconds(1);
+  };
+  for (int i = -70; i <= 0; ++i) second(last + i);
+  CHECK(scene.text().empty());
+  for (int i = 1; i < 80; ++i) {
+    second(i < 40 ? last + i : std::numeric_limits<std::int64_t>::max());
+    REQUIRE(scene.troubles().size() == 1);
+    CHECK(scene.troubles()[0].severity == Severity::kFailure);
+  }
+  CHECK(scene.text() ==
+        "interval numbers beyond 2^53 are not taken: mpm/mv, mpm/dv, mpm/cv are at "
+        "9223372036854775807");
 }
 
 TEST_CASE("a clock that steps by an hour is told, whatever time it shows") {

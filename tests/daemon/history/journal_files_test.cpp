@@ -86,11 +86,22 @@ TEST_CASE("a journal whose folder is removed begins a new one, or says why it ca
   CHECK(test::read_file(place + "/shell-000003.jsonl") == "three\n");
 }
 
-TEST_CASE("a journal where none can be is refused at once") {
+TEST_CASE("a journal where none can be says so, and begins once it can") {
   const test::TemporaryFolder folder;
-  CHECK_THROWS_AS(JournalFiles("/no/such/folder", "shell", 1000), std::system_error);
+  const std::string place = folder.file("a/journal");
+  JournalFiles files(place, "shell", 1000);
+  CHECK(files.problem() == place + ": No such file or directory");
+  CHECK_FALSE(files.append("lost\n"));
+  CHECK(files.empty());
+  std::filesystem::create_directory(folder.file("a"));
+  files.turn_over();
+  CHECK(files.problem().empty());
+  CHECK(files.append("one\n"));
+  CHECK(test::read_file(place + "/shell-000001.jsonl") == "one\n");
+
   test::write_file(folder.file("file"), "");
-  CHECK_THROWS_AS(JournalFiles(folder.file("file"), "shell", 1000), std::system_error);
+  CHECK(JournalFiles(folder.file("file"), "shell", 1000).problem() ==
+        folder.file("file") + ": Not a directory");
 }
 
 TEST_CASE("names of journal files tell whose they are") {

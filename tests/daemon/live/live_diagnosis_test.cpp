@@ -42,6 +42,8 @@ AlarmRecord change(const std::string& mv, AlarmChange to, std::int64_t k) {
   return record;
 }
 
+constexpr LiveDiagnosis::Clock::time_point kNow{std::chrono::seconds(1000)};
+
 DiagnosisOutcome named() {
   DiagnosisOutcome outcome;
   outcome.headline = "found";
@@ -88,7 +90,7 @@ void feed(LiveDiagnosis& live, std::int64_t first, std::int64_t last,
 
 std::optional<DiagnosisOutcome> await(LiveDiagnosis& live) {
   std::optional<DiagnosisOutcome> outcome;
-  (void)idl::eventually([&] { return (outcome = live.poll()).has_value(); });
+  (void)idl::eventually([&] { return (outcome = live.poll(kNow)).has_value(); });
   return outcome;
 }
 
@@ -99,13 +101,13 @@ TEST_CASE("the samples of an alarm that stands are diagnosed, and its channel ge
   DiagnosisWorker worker(gate.work());
   LiveDiagnosis live(toy(), worker, 3);
   feed(live, 1, 400);
-  CHECK_FALSE(live.poll());
+  CHECK_FALSE(live.poll(kNow));
   feed(live, 401, 700,
        {change("u1", AlarmChange::kActive, 401), change("u2", AlarmChange::kActive, 401)});
-  CHECK_FALSE(live.poll());
+  CHECK_FALSE(live.poll(kNow));
   CHECK(gate.begun == 0);
   feed(live, 701, 701);
-  CHECK_FALSE(live.poll());
+  CHECK_FALSE(live.poll(kNow));
   gate.open = 1;
   const auto outcome = await(live);
   REQUIRE(outcome);
@@ -127,7 +129,7 @@ TEST_CASE("the samples of an alarm that stands are diagnosed, and its channel ge
   CHECK(records[0].named.parameters[0].value == 0.7);
   CHECK_FALSE(records[1].named.cause);
   CHECK(records[1].named.text == "Not this channel.");
-  CHECK_FALSE(live.poll());  // once
+  CHECK_FALSE(live.poll(kNow));  // once
 }
 
 TEST_CASE("a diagnosis says nothing of alarms that cleared, nor of those raised after it") {
@@ -141,6 +143,45 @@ TEST_CASE("a diagnosis says nothing of alarms that cleared, nor of those raised 
   feed(live, 401, 401,
        {change("u2", AlarmChange::kActive, 401), change("u1", AlarmChange::kCleared, 401)});
   CHECK(live.diagnosed(*outcome).empty());
+}
+
+TEST_CASE("a report that could not be written is written once it can be") {
+  std::atomic<bool> full = true;
+  std::atomic<int> wrote = 0;
+  const auto run = std::make_shared<const report::DiagnosisRun>();
+  DiagnosisWorker worker([&](const DiagnosisJob& job, const DiagnosisWorker::GoOn&) {
+    DiagnosisOutcome outcome = job.only_writes ? DiagnosisOutcome{} : named();
+    if (job.only_writes) {
+      CHECK(job.unwritten == run);
+      CHECK(job.alarm_time_ns == 1'000'000'000);
+    } else {
+      outcome.unwritten = run;
+    }
+    outcome.file_problem = full ? "No space left on device" : "";
+    ++wrote;
+    return std::optional(outcome);
+  });
+  LiveDiagnosis live(toy(), worker, 0);
+  feed(live, 1, 400, {change("u1", AlarmChange::kActive, 1)});
+  const auto told = await(live);
+  REQUIRE(told);
+  CHECK_FALSE(told->only_wrote);
+  CHECK(live.file_problem() == "No space left on device");
+  CHECK_FALSE(live.poll(kNow + 59s));
+  CHECK(wrote == 1);
+
+  const auto again = [&](std::chrono::seconds after) {
+    std::optional<DiagnosisOutcome> outcome;
+    REQUIRE(idl::eventually([&] { return (outcome = live.poll(kNow + after)).has_value(); }));
+    CHECK(outcome->only_wrote);
+  };
+  again(61s);
+  CHECK(live.file_problem() == "No space left on device");
+  full = false;
+  again(122s);
+  CHECK(live.file_problem().empty());
+  CHECK_FALSE(live.poll(kNow + 1000s));
+  CHECK(wrote == 3);
 }
 
 TEST_CASE("of each unit one job waits, the youngest, and no unit waits for another's second") {

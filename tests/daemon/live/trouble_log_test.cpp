@@ -11,42 +11,85 @@ using std::chrono::seconds;
 
 const std::vector<Trouble> kSilent = {{"silent mpm/dv", Severity::kFailure, "nothing on mpm/dv"}};
 
+/// A log that is asked each second; second 1 is 00:00:01.
+struct Scene {
+  TroubleLog log{seconds(30)};
+  std::int64_t second = 0;
+  std::vector<TroubleLog::Line> told;
+
+  void tick(const std::vector<Trouble>& troubles) {
+    ++second;
+    for (const TroubleLog::Line& line :
+         log.update(troubles, TroubleLog::Clock::time_point{seconds(1000 + second)}, second))
+      told.push_back(line);
+  }
+  void ticks(int count, const std::vector<Trouble>& troubles) {
+    for (int i = 0; i < count; ++i) tick(troubles);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a trouble is told once when it begins and once when it is over") {
-  TroubleLog log(seconds(30));
-  TroubleLog::Clock::time_point now{seconds(1000)};
-  std::vector<TroubleLog::Line> told;
-  const auto tick = [&](const std::vector<Trouble>& troubles) {
-    now += seconds(1);
-    for (const TroubleLog::Line& line : log.update(troubles, now)) told.push_back(line);
-  };
-  for (int i = 0; i < 61; ++i) tick(kSilent);
-  REQUIRE(told.size() == 1);
-  CHECK(told[0].begins);
-  CHECK(told[0].text == "nothing on mpm/dv");
-  for (int i = 0; i < 29; ++i) tick({});
-  CHECK(told.size() == 1);
-  tick({});
-  REQUIRE(told.size() == 2);
-  CHECK_FALSE(told[1].begins);
-  CHECK(told[1].text == "over after 60 s: nothing on mpm/dv");
-  tick({});
-  CHECK(told.size() == 2);
+  Scene scene;
+  scene.ticks(61, kSilent);
+  REQUIRE(scene.told.size() == 1);
+  CHECK(scene.told[0].begins);
+  CHECK(scene.told[0].text == "nothing on mpm/dv");
+  scene.ticks(29, {});
+  CHECK(scene.told.size() == 1);
+  scene.tick({});
+  REQUIRE(scene.told.size() == 2);
+  CHECK_FALSE(scene.told[1].begins);
+  CHECK(scene.told[1].text == "over since 00:01:02Z after 60 s: nothing on mpm/dv");
+  scene.tick({});
+  CHECK(scene.told.size() == 2);
 }
 
 TEST_CASE("what comes and goes each second does not flood the log") {
-  TroubleLog log(seconds(30));
-  TroubleLog::Clock::time_point now{seconds(1000)};
-  std::size_t lines = 0;
+  Scene scene;
   for (int i = 0; i < 1000; ++i) {
-    now += seconds(1);
     std::vector<Trouble> troubles;
     if (i % 2 == 0) troubles = kSilent;
     if (!troubles.empty()) troubles[0].text += " for " + std::to_string(i) + " s";
-    lines += log.update(troubles, now).size();
+    scene.tick(troubles);
   }
-  CHECK(lines == 1);
+  CHECK(scene.told.size() == 1);
+  scene.ticks(30, {});
+  REQUIRE(scene.told.size() == 2);
+  CHECK(scene.told[1].text ==
+        "over since 00:16:40Z after 0 s in 500 times: nothing on mpm/dv for 998 s");
+}
+
+TEST_CASE("a trouble that turns into another one of its kind is told anew") {
+  Scene scene;
+  scene.ticks(10, {{"no data", Severity::kFailure, "no data for 5 s (it has stopped)"}});
+  scene.ticks(5, {});
+  scene.ticks(10, {{"no data", Severity::kFailure, "no data for 7 s (nobody writes it)"}});
+  REQUIRE(scene.told.size() == 2);
+  CHECK(scene.told[1].begins);
+  CHECK(scene.told[1].text == "no data for 7 s (nobody writes it)");
+  scene.ticks(31, {});
+  REQUIRE(scene.told.size() == 3);
+  CHECK(scene.told[2].text ==
+        "over since 00:00:26Z after 18 s in 2 times: no data for 7 s (nobody writes it)");
+}
+
+TEST_CASE("each event is told as it happens, none is over, and many are counted") {
+  Scene scene;
+  const auto clock = [](const std::string& event, const std::string& text) {
+    return Trouble{"clock", Severity::kOutOfSpecification, text, event};
+  };
+  scene.ticks(60, {clock("199", "stepped forward by 3600 s")});
+  scene.ticks(60, {clock("999", "stepped back by 3600 s")});
+  scene.ticks(40, {});
+  REQUIRE(scene.told.size() == 2);
+  CHECK(scene.told[1].text == "stepped back by 3600 s");
+  for (int i = 0; i < 60; ++i) scene.tick({clock("1" + std::to_string(i), "stepped")});
+  CHECK(scene.told.size() <= 8);
+  scene.ticks(60, {});
+  scene.tick({clock("5", "stepped")});
+  CHECK(scene.told.back().text.find(" more like this before)") != std::string::npos);
 }
 
 }  // namespace mpm::live

@@ -117,6 +117,16 @@ TEST_CASE("the picture says every verdict in words, why it is undetermined, and 
   CHECK(render(board, {{80, true}, false}).find("\x1b[90mundetermined") != std::string::npos);
   CHECK(render(board, {{80, false}, true}).find("undetermined") == std::string::npos);
 
+  HealthRecord blind;
+  blind.unit = "shell";
+  blind.state = "failure";
+  blind.detail = "no data for 5 s";
+  blind.source_time_ns = 1'700'000'000'000'000'000;
+  board.update(blind);
+  CHECK(render(board, {{80, false}, false})
+            .find("no verdicts now; those below are of 2023-11-14T22:13:20Z") != std::string::npos);
+  CHECK(render(board, {{80, true}, false}).find("\x1b[90mmismatch !") != std::string::npos);
+
   board.update(alarm("u1", "y2", AlarmChange::kCleared));
   CHECK_FALSE(board.any_alarm());
   board.update(idl::MonitorGone{"shell"});
