@@ -152,6 +152,9 @@ inline constexpr double kSettlingTimeConstants = 5.0;
 /// constant are all that is left. Chosen (tests/core/monitor/wrong_start_test.cpp).
 inline constexpr double kStartingTimeConstants = 0.7;
 inline constexpr std::array kStartPoles = {1.0, 0.6, 0.3};
+/// Of the samples remembered, at most: a channel slower than all that is remembered blinded the
+/// unit for good. Chosen.
+inline constexpr double kLongestStartingShare = 0.25;
 /// Samples behind its dead time in which a channel that acts at all has moved. Chosen.
 inline constexpr double kBeginsToAnswer = 20000.0;
 }  // namespace simulation

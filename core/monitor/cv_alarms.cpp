@@ -58,6 +58,7 @@ void CvAlarms::hold() {
 void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
                     const Condition::Limits& limits) {
   ++since_scan_;
+  if (spoken_ > 0 || detector.memory(cv).ready()) ++spoken_;
   if (!detector.memory(cv).ready()) {
     hold();
     if (shaken(cv, detector)) look_for_change(cv, false, detector, scan);
@@ -85,10 +86,10 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
   if (risen || suspicious) look_for_change(cv, risen, detector, scan);
 }
 
-// A change makes errors that look like heavy tails, under which a short memory says nothing: it
-// would say nothing of the change either.
+// A change makes errors that look like heavy tails, under which a short memory that had spoken says
+// nothing: it would say nothing of the change either.
 bool CvAlarms::shaken(int cv, const MismatchDetector& detector) const {
-  return !isolating_ && since_scan_ >= change_search::kBetweenUrgent &&
+  return spoken_ > 0 && since_scan_ >= change_search::kBetweenUrgent &&
          detector.memory(cv).ready_but_for_tails() &&
          detector.regression(cv).noise().surprise() > change_search::kUrgentSurprise;
 }
@@ -103,12 +104,15 @@ void CvAlarms::look_for_change(int cv, bool risen, MismatchDetector& detector, C
     // What rose just now rested on a model that knows one operating point.
     for (std::size_t i = 0; i < conditions_.size(); ++i) conditions_[i].set(before_[i]);
     change_ = {};
-    isolating_ = true;
+    isolate();
     return;
   }
   if (!change || !certain(*change, risen)) return;
+  // What was there when the memory first spoke is no change since then.
+  const bool shaken_since = change->kind == ChangeKind::kBegan && change->samples < spoken_;
+  if (!detector.memory(cv).ready() && !shaken_since) return;
   detector.start_afresh(cv, change->samples);
-  isolating_ = true;
+  isolate();
   change_ = *change;
   if (!quiet || change->kind == ChangeKind::kEnded) return;
   // Of a change from quiet only the likeliest channel is blamed until the CV is isolated.

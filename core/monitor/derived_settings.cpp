@@ -133,10 +133,14 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
   derive_memories(spec, monitor, derived);
 
   derive_materiality(spec, model, monitor, derived);
-  derived.settling_samples =
-      whole(std::ceil(calibration::simulation::kSettlingTimeConstants * slowest + dead_time));
+  // What takes longer to decay than is remembered is as good as constant there.
+  const double remembered = derived.remembered;
+  derived.settling_samples = whole(std::ceil(
+      std::min(calibration::simulation::kSettlingTimeConstants * slowest, remembered) + dead_time));
   derived.starting_samples =
-      whole(std::ceil(calibration::simulation::kStartingTimeConstants * slowest + dead_time));
+      whole(std::ceil(std::min(calibration::simulation::kStartingTimeConstants * slowest,
+                               calibration::simulation::kLongestStartingShare * remembered) +
+                      dead_time));
   for (const double share : calibration::simulation::kStartPoles)
     derived.start_poles.push_back(std::exp(-1.0 / (share * slowest)));
   derived.alarm.raise_below = alarms.raise_p_value;

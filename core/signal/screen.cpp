@@ -232,8 +232,10 @@ void Screen::screen_spikes(int cv) {
   if (jumps.samples > kFirstSamples && jumps.since_home <= kDelay && known[1]) {
     const double away = levels[1] - jumps.home;
     const auto back_at = [&](std::size_t next) {
-      if (!known[next] || !known[next - 1]) return false;
-      const double home = levels[next] - levels[next - 1];  // at one step: a process turns slower
+      // A measurement is back at one step: a process, too, may turn within two.
+      const std::size_t from = predicted(cv) ? 1 : next - 1;
+      if (!known[next] || !known[from]) return false;
+      const double home = levels[next] - levels[from];
       return std::abs(home) > kJump * jumps.scale && away * home < 0.0 &&
              std::abs(levels[next] - jumps.home) < calibration::spikes::kBackShare * std::abs(away);
     };

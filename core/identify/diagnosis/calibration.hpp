@@ -28,6 +28,8 @@ inline constexpr double kStrongEvidence = 30.0;
 /// p-value of a channel's match below which the model does not hold whatever is named beside it.
 /// Chosen: so small none came of 652 sound channels, and an alarm stands for less.
 inline constexpr double kSurelyRejected = 1e-6;
+/// And of its error being too small to matter, as for an alarm.
+inline constexpr double kSurelyMatters = 1e-3;
 
 /// Half of a 95 % interval in s.d. of a normal estimate; and of one whose noise model is fitted
 /// too.

@@ -157,6 +157,11 @@ bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
   return tried;
 }
 
+bool surely_rejected(const ChannelTests& tests, int cv, int input) {
+  return tests.p_value(cv, input).value_or(1.0) <= kSurelyRejected &&
+         tests.harmless_p_value(cv, input) <= kSurelyMatters;
+}
+
 /// Whatever is named beside them: with these the model does not hold.
 std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests& tests,
                                      const Diagnosis& diagnosis) {
@@ -170,8 +175,7 @@ std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests&
            (place.input < 0 || place.input == channel.input);
   };
   for (const ChannelSpec& channel : model.channels) {
-    const std::optional<double> p_value = tests.p_value(channel.cv, channel.input);
-    if (!p_value || *p_value > kSurelyRejected) continue;
+    if (!surely_rejected(tests, channel.cv, channel.input)) continue;
     const auto told = [&](const auto& each) { return about(each.subject, channel); };
     if (std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), told) &&
         std::none_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(), told))
@@ -293,6 +297,13 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
                     {settings.mv_count, base.input_count, aux}, outside, search_settings))
       diagnosis.findings.push_back(std::move(late));
   diagnosis.rejected = rejected_channels(base, tests, diagnosis);
+  if (!diagnosis.rejected.empty() && std::find(in.begin(), in.end(), true) != in.end()) {
+    // A repair may have been what made them look wrong.
+    const ChannelTests left(tested, measured, free_run_residuals(extended, recording));
+    std::erase_if(diagnosis.rejected, [&](const Place& channel) {
+      return !surely_rejected(left, channel.cv, channel.input);
+    });
+  }
   decide(least_explained(residuals, recording.cvs),
          !sticking_loops(base, settings.mv_count, whole).empty(), diagnosis);
   tell_on_clock(recording, given, diagnosis);

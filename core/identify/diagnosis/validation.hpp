@@ -15,8 +15,8 @@ struct CvScore {
   /// 95 % block-bootstrap interval of 1 - rmse_after / rmse_before.
   double gain_low = 0.0, gain_high = 0.0;
   bool refused = false;  ///< an extension was fitted and did not carry over
-  bool judged = true;    ///< false: read too seldom to be judged beside the others
   std::vector<Horizon> horizons;
+  bool judged = true;  ///< false: read too seldom to be judged beside the others
 };
 
 /// Of the values that are; 1 where there are none or all are 0.

@@ -73,8 +73,6 @@ void decide(double explained, bool sticks, Diagnosis& diagnosis) {
   diagnosis.verdict = DiagnosisVerdict::kUndetermined;
   if (!diagnosis.findings.empty() || !diagnosis.unexplained.empty())
     diagnosis.verdict = DiagnosisVerdict::kMismatch;
-  else if (!diagnosis.rejected.empty())
-    diagnosis.reason = "the calibrated test rejects a channel in which no cause could be named";
   else if (sticks)
     diagnosis.reason =
         "a loop swings in the shape of a sticking valve, which its model does not explain";
@@ -84,6 +82,8 @@ void decide(double explained, bool sticks, Diagnosis& diagnosis) {
     diagnosis.reason =
         "a free run suggests a cause that the calibrated test of the channels does not confirm: "
         "feedback, or a disturbance that wanders, can look the same";
+  else if (!diagnosis.rejected.empty())
+    diagnosis.reason = "a model that matches would not be rejected so; what is wrong is not told";
   else if (blind > 0)
     diagnosis.reason = "the inputs move too little beside the noise: the gains of " +
                        std::to_string(blind) + " of " + std::to_string(diagnosis.channels.size()) +

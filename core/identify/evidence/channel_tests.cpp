@@ -32,6 +32,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
                            const MatrixXd& residuals)
     : cvs_(model.cv_count),
       p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)),
+      harmless_(p_values_.size(), 1.0),
       wrong_(p_values_.size(), 0.0) {
   const std::unique_ptr<MismatchDetector> regressed =
       regress_recording(model, recording, residuals);
@@ -47,6 +48,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       if (!(evidence.numerator_freedom > 0.0)) continue;
       const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
       p_values_[channel] = evidence.p_value;
+      harmless_[channel] = evidence.p_value_material;
       wrong_[channel] = evidence.statistic * steps;
     }
   }

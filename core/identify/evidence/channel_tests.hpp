@@ -28,6 +28,12 @@ class ChannelTests {
     const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
     return channel < p_values_.size() ? p_values_[channel] : std::nullopt;
   }
+  /// 0..1 of the channel's error being within the usual limits of materiality; 1 where there is no
+  /// test.
+  [[nodiscard]] double harmless_p_value(int cv, int input) const {
+    const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
+    return channel < harmless_.size() ? harmless_[channel] : 1.0;
+  }
   /// How much wrong that test sees, CV units squared: its F, which is relative to the noise that
   /// the model leaves, times the mean square of the residual's steps from row to row; 0 where there
   /// is no test.
@@ -43,6 +49,7 @@ class ChannelTests {
  private:
   int cvs_;
   std::vector<std::optional<double>> p_values_;  // per channel, input-major
+  std::vector<double> harmless_;                 // likewise
   std::vector<double> wrong_;                    // likewise
 };
 

@@ -14,13 +14,7 @@ std::string advice(const HistorianTraits& traits, const std::string& unit, doubl
     return number_text(value, 3) + (unit.empty() ? "" : " " + unit);
   };
   std::string text;
-  if (traits.read_every > 0)
-    text =
-        "Read every " + std::to_string(traits.read_every) +
-        " samples. Beside what is measured at every sample it cannot be judged: give it a unit of "
-        "its own with a sample_time of " +
-        number_text(static_cast<double>(traits.read_every) * sample_time_s, 6) + " s.";
-  else if (traits.interpolated)
+  if (traits.interpolated)
     text =
         "Straight lines between archived points. Export the values as they were archived, and "
         "turn the tag's compression off.";
@@ -28,6 +22,12 @@ std::string advice(const HistorianTraits& traits, const std::string& unit, doubl
     text = "Held until it had moved by " + with_unit(traits.deadband) +
            ". Turn the tag's exception and compression deadbands off, or set them well below its "
            "noise.";
+  else if (traits.read_every > 0)
+    text =
+        "Read every " + std::to_string(traits.read_every) +
+        " samples. Beside what is measured at every sample it cannot be judged: give it a unit of "
+        "its own with a sample_time of " +
+        number_text(static_cast<double>(traits.read_every) * sample_time_s, 6) + " s.";
   else
     text = "Moves in steps of " + with_unit(traits.quantum) +
            ", which is coarse beside what it moves by from row to row. Record more digits, or use "

@@ -82,8 +82,8 @@ TEST_CASE("every reason has its words") {
         "moved only together with FIC-102; move one without the other");
   CHECK(
       text(Reason::kBadData) ==
-      "AI-201 or FIC-101 is too often missing, bad, or the same for several samples; if it is read "
-      "only now and then, let sample_time be as long");
+      "AI-201 or FIC-101 is too often missing, bad, or the same for several samples; what is read "
+      "only now and then needs a unit of its own, with a sample_time as long");
   CHECK(text(Reason::kControllerOff) ==
         "no manipulated variable moves: the controller is off or in manual");
   CHECK(text(Reason::kConstrained) == "FIC-101 rests at a limit; move it away from there");

@@ -56,7 +56,7 @@ TEST_CASE("what the calibrated test surely rejects and nothing names leaves the 
   decide(0.9, false, diagnosis);
   CHECK(diagnosis.verdict == DiagnosisVerdict::kUndetermined);
   CHECK(diagnosis.reason ==
-        "the calibrated test rejects a channel in which no cause could be named");
+        "a model that matches would not be rejected so; what is wrong is not told");
 }
 
 TEST_CASE("only a strong suspect leaves the verdict open") {
