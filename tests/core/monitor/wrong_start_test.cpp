@@ -51,5 +51,15 @@ TEST_CASE("a simulation that begins amid a move is judged before it has forgotte
   }
 }
 
+TEST_CASE("a channel slower than all that is remembered blinds no other") {
+  test::OpenLoopUnit unit;
+  unit.gain_ratio = 0.6;
+  std::get<TransferFunction>(unit.model.channels[3].dynamics).time_constants_s = {1e7};
+  Monitor monitor(unit.model, unit.counts, {false, false}, {}, {});
+  unit.run(4000, [&](const Frame& frame) { monitor.push(frame); });
+  CHECK(monitor.channel(0, 0).verdict == Verdict::kMatch);
+  CHECK(monitor.channel(0, 1).verdict == Verdict::kMismatch);
+}
+
 }  // namespace
 }  // namespace mpm
