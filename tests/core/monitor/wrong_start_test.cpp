@@ -19,7 +19,7 @@ Start start(std::uint64_t seed, double gain_ratio, int samples) {
   unit.seed = seed;
   unit.gain_ratio = gain_ratio;
   std::get<TransferFunction>(unit.model.channels[0].dynamics).time_constants_s = {kTimeConstant};
-  unit.channel().time_constants_s = {kTimeConstant / 2};
+  unit.channel().time_constants_s = {kTimeConstant / 2.0};
   Monitor monitor(unit.model, unit.counts, {false, false}, {}, {});
   Start result;
   unit.run(kBefore + samples, [&](const Frame& frame) {
