@@ -327,6 +327,8 @@ Diagnosis run_those_measured(const ModelSpec& given, const Recording& recording,
   diagnosis = run(of_cvs(base, cvs), of_cvs(recording, cvs), unseen ? &*unseen : nullptr, settings);
   to_whole(base, recording, validation, cvs, diagnosis);
   diagnosis.extended = in_form_of(given, base, std::move(diagnosis.extended));
+  if (diagnosis.verdict == DiagnosisVerdict::kMatch)  // of the others
+    diagnosis.verdict = DiagnosisVerdict::kUndetermined;
   if (diagnosis.reason.empty()) diagnosis.reason = kOneReadSeldom;
   return diagnosis;
 }
