@@ -58,8 +58,12 @@ void CvAlarms::hold() {
 void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
                     const Condition::Limits& limits) {
   ++since_scan_;
-  if (spoken_ > 0 || detector.memory(cv).ready()) ++spoken_;
-  if (!detector.memory(cv).ready()) {
+  const RegressionMemory& memory = detector.memory(cv);
+  if (!memory.ready_but_for_tails())
+    spoken_ = 0;
+  else if (spoken_ > 0 || memory.ready())
+    ++spoken_;
+  if (!memory.ready()) {
     hold();
     if (shaken(cv, detector)) look_for_change(cv, false, detector, scan);
     return;
@@ -89,8 +93,7 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
 // A change makes errors that look like heavy tails, under which a short memory that had spoken says
 // nothing: it would say nothing of the change either.
 bool CvAlarms::shaken(int cv, const MismatchDetector& detector) const {
-  return spoken_ > 0 && since_scan_ >= change_search::kBetweenUrgent &&
-         detector.memory(cv).ready_but_for_tails() &&
+  return !isolating_ && spoken_ > 0 && since_scan_ >= change_search::kBetweenUrgent &&
          detector.regression(cv).noise().surprise() > change_search::kUrgentSurprise;
 }
 
@@ -104,7 +107,7 @@ void CvAlarms::look_for_change(int cv, bool risen, MismatchDetector& detector, C
     // What rose just now rested on a model that knows one operating point.
     for (std::size_t i = 0; i < conditions_.size(); ++i) conditions_[i].set(before_[i]);
     change_ = {};
-    isolate();
+    isolating_ = true;
     return;
   }
   if (!change || !certain(*change, risen)) return;
@@ -112,7 +115,7 @@ void CvAlarms::look_for_change(int cv, bool risen, MismatchDetector& detector, C
   const bool shaken_since = change->kind == ChangeKind::kBegan && change->samples < spoken_;
   if (!detector.memory(cv).ready() && !shaken_since) return;
   detector.start_afresh(cv, change->samples);
-  isolate();
+  isolating_ = true;
   change_ = *change;
   if (!quiet || change->kind == ChangeKind::kEnded) return;
   // Of a change from quiet only the likeliest channel is blamed until the CV is isolated.

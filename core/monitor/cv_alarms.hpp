@@ -71,14 +71,9 @@ class CvAlarms {
                                        const Condition::Limits& limits) const;
   [[nodiscard]] bool certain(const ChangePoint& change, bool risen) const;
 
-  void isolate() {
-    isolating_ = true;
-    spoken_ = 0;
-  }
-
   std::vector<Condition> conditions_;
   std::vector<AlarmState> before_;
-  std::int64_t spoken_ = 0;  // samples since the memory, as it last began, was ready for once
+  std::int64_t spoken_ = 0;  // samples since the memory was ready for once, as it last began
   bool isolating_ = false;
   ChangePoint change_;
   std::int64_t since_scan_ = 0;

@@ -20,4 +20,10 @@ const Cause* find(std::string_view name, std::string_view kind) {
 
 bool is_unnamed(const Cause& cause) { return &cause.name() == &unnamed_product().name(); }
 
+bool is_from_outside(const Subject& subject) {
+  const Place& place = subject.place;
+  return place.input < 0 && place.aux < 0 &&
+         (subject.cause == &noise() || !subject.cause->acts_through_channels());
+}
+
 }  // namespace mpm::causes

@@ -51,4 +51,8 @@ MPM_CAUSES(MPM_DECLARE)
 /// Whether it is a name of the table for what has no name: never that of a finding.
 [[nodiscard]] bool is_unnamed(const Cause& cause);
 
+/// Whether it comes from outside the model, so that its channels may hold all the same: what
+/// disturbs a CV, an offset of its sensor, its noise.
+[[nodiscard]] bool is_from_outside(const Subject& subject);
+
 }  // namespace mpm::causes

@@ -11,6 +11,7 @@
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/late.hpp"
 #include "core/identify/diagnosis/nameable.hpp"
+#include "core/identify/diagnosis/rejected.hpp"
 #include "core/identify/diagnosis/seldom_read.hpp"
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/state_space_form.hpp"
@@ -157,33 +158,6 @@ bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
   return tried;
 }
 
-bool surely_rejected(const ChannelTests& tests, int cv, int input) {
-  return tests.p_value(cv, input).value_or(1.0) <= kSurelyRejected &&
-         tests.harmless_p_value(cv, input) <= kSurelyMatters;
-}
-
-/// Whatever is named beside them: with these the model does not hold.
-std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests& tests,
-                                     const Diagnosis& diagnosis) {
-  std::vector<Place> rejected;
-  const auto about = [](const Subject& subject, const ChannelSpec& channel) {
-    const Place& place = subject.place;
-    const bool disturbs =
-        place.input < 0 && place.aux < 0 &&
-        (subject.cause == &causes::noise() || !subject.cause->acts_through_channels());
-    return !disturbs && (place.cv < 0 || place.cv == channel.cv) &&
-           (place.input < 0 || place.input == channel.input);
-  };
-  for (const ChannelSpec& channel : model.channels) {
-    if (!surely_rejected(tests, channel.cv, channel.input)) continue;
-    const auto told = [&](const auto& each) { return about(each.subject, channel); };
-    if (std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), told) &&
-        std::none_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(), told))
-      rejected.push_back({channel.cv, channel.input});
-  }
-  return rejected;
-}
-
 /// How the inputs moved, and whether the channels of each are known.
 std::vector<InputMovement> movements(const std::vector<std::optional<double>>& outside,
                                      const std::vector<ChannelEstimate>& channels) {
@@ -297,13 +271,9 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
                     {settings.mv_count, base.input_count, aux}, outside, search_settings))
       diagnosis.findings.push_back(std::move(late));
   diagnosis.rejected = rejected_channels(base, tests, diagnosis);
-  if (!diagnosis.rejected.empty() && std::find(in.begin(), in.end(), true) != in.end()) {
-    // A repair may have been what made them look wrong.
-    const ChannelTests left(tested, measured, free_run_residuals(extended, recording));
-    std::erase_if(diagnosis.rejected, [&](const Place& channel) {
-      return !surely_rejected(left, channel.cv, channel.input);
-    });
-  }
+  if (!diagnosis.rejected.empty() && std::find(in.begin(), in.end(), true) != in.end())
+    keep_rejected(ChannelTests(tested, measured, free_run_residuals(extended, recording)),
+                  diagnosis.rejected);
   decide(least_explained(residuals, recording.cvs),
          !sticking_loops(base, settings.mv_count, whole).empty(), diagnosis);
   tell_on_clock(recording, given, diagnosis);

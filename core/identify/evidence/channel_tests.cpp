@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/identify/evidence/regress_recording.hpp"
+#include "core/mismatch/materiality.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
 
 namespace mpm {
@@ -24,6 +25,15 @@ double mean_square_step(const Eigen::Ref<const VectorXd>& values) {
     count += 1.0;
   }
   return count > 0.0 ? sum / count : 0.0;
+}
+
+double harmless_p_value_of(const ChannelEvidence& evidence, double freedom) {
+  const MaterialityLimits limits;
+  const double largest = std::min(
+      {Materiality::beyond(evidence.gain_error, limits.gain, freedom),
+       Materiality::beyond(evidence.log_time_error, std::log1p(limits.time_constant), freedom),
+       Materiality::beyond(evidence.dead_time_error, limits.dead_time_samples, freedom)});
+  return std::min(evidence.p_value_material, largest);
 }
 
 }  // namespace
@@ -48,7 +58,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       if (!(evidence.numerator_freedom > 0.0)) continue;
       const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
       p_values_[channel] = evidence.p_value;
-      harmless_[channel] = evidence.p_value_material;
+      harmless_[channel] = harmless_p_value_of(evidence, detector.memory(cv).freedom());
       wrong_[channel] = evidence.statistic * steps;
     }
   }

@@ -28,8 +28,8 @@ class ChannelTests {
     const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
     return channel < p_values_.size() ? p_values_[channel] : std::nullopt;
   }
-  /// 0..1 of the channel's error being within the usual limits of materiality; 1 where there is no
-  /// test.
+  /// 0..1 of the channel's error being within the usual limits of materiality, by the monitor's
+  /// test of small errors or by the sizes found of any; 1 where there is no test.
   [[nodiscard]] double harmless_p_value(int cv, int input) const {
     const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
     return channel < harmless_.size() ? harmless_[channel] : 1.0;

@@ -58,10 +58,7 @@ const char* name_of(DiagnosisVerdict verdict) {
 
 std::string difference_headline(const DiagnosisRun& run) {
   const auto from_outside = [](const Finding& finding) {
-    const Place& place = finding.subject.place;
-    const Cause* cause = finding.subject.cause;
-    return place.input < 0 && place.aux < 0 &&
-           (cause == &causes::noise() || !cause->acts_through_channels());
+    return causes::is_from_outside(finding.subject);
   };
   const std::vector<Finding>& findings = run.diagnosis.findings;
   const bool disturbed = !findings.empty() && run.diagnosis.unexplained.empty() &&

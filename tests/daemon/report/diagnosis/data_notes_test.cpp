@@ -100,6 +100,16 @@ TEST_CASE("every signal that a historian shows in is noted, CVs first") {
   CHECK_FALSE(refuses(notes[1]));
 }
 
+TEST_CASE("a CV that is read only now and then is noted, an input that moves only then is not") {
+  VectorXd read = sound();
+  for (Index k = 0; k < kRows; ++k) read(k) = read(k - k % 10);
+  const ordered_json notes = report::data_notes(run_of(read, read, sound()));
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0]["tag"] == "y");
+  CHECK(notes[0]["read_every"] == 10);
+  CHECK(begins(notes[0]["advice"], "Read every 10 samples. "));
+}
+
 TEST_CASE("what is beyond use is said to be") {
   const ordered_json notes = report::data_notes(run_of(held_coarsely(), in_steps(5), in_lines()));
   REQUIRE(notes.size() == 3);

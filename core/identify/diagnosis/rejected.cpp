@@ -1,0 +1,43 @@
+#include "core/identify/diagnosis/rejected.hpp"
+
+#include <algorithm>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/diagnosis/calibration.hpp"
+
+namespace mpm {
+namespace {
+
+bool surely_rejects(const ChannelTests& tests, int cv, int input) {
+  return tests.p_value(cv, input).value_or(1.0) <= kSurelyRejected &&
+         tests.harmless_p_value(cv, input) <= kSurelyMatters;
+}
+
+bool is_about(const Subject& subject, const ChannelSpec& channel) {
+  const Place& place = subject.place;
+  return !causes::is_from_outside(subject) && (place.cv < 0 || place.cv == channel.cv) &&
+         (place.input < 0 || place.input == channel.input);
+}
+
+}  // namespace
+
+std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests& tests,
+                                     const Diagnosis& diagnosis) {
+  std::vector<Place> rejected;
+  for (const ChannelSpec& channel : model.channels) {
+    const auto told = [&](const auto& each) { return is_about(each.subject, channel); };
+    if (surely_rejects(tests, channel.cv, channel.input) &&
+        std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), told) &&
+        std::none_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(), told))
+      rejected.push_back({channel.cv, channel.input});
+  }
+  return rejected;
+}
+
+void keep_rejected(const ChannelTests& repaired, std::vector<Place>& channels) {
+  std::erase_if(channels, [&](const Place& channel) {
+    return !surely_rejects(repaired, channel.cv, channel.input);
+  });
+}
+
+}  // namespace mpm
