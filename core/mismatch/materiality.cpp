@@ -53,8 +53,10 @@ double Materiality::fit(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& 
   double nearest = kInfinity;
   for (const int shift : {error_column::kLater, error_column::kEarlier}) {
     const ReducedErrors whole = reduction_.reduce(estimate, directions, shift);
-    // Without dead time, a lag that answers earlier is the same lag with more gain.
-    if (shift == error_column::kEarlier && whole.r(2, 2) == 0.0) continue;
+    // Without dead time a lag cannot answer earlier: that would be the same lag with more gain, but
+    // for rounding.
+    if (shift == error_column::kEarlier && (evidence.dead_time == 0.0 || whole.r(2, 2) == 0.0))
+      continue;
     const Eigen::Vector3d fit = whole.fit();
     const double square = whole.rest_square + (whole.c - whole.r * fit).squaredNorm();
     if (square >= nearest) continue;

@@ -116,6 +116,32 @@ TEST_CASE("an error of another kind matters where no allowed combination comes n
   CHECK(small.p_value_material == 1.0);
 }
 
+TEST_CASE("without dead time no answer is earlier, whatever rounding leaves of that direction") {
+  // A first-order lag that answers a sample earlier is the same lag with more gain: what rounding
+  // leaves of the difference would make gain and dead time cancel at any size.
+  Eigen::MatrixXd d = directions();
+  for (int r = 0; r < kBlock; ++r)
+    d(r, error_column::kEarlier) = 0.1 * d(r, 0) + 1e-5 * test::uniform(53, r);
+  const UsualErrorSpace space = space_of(d.leftCols(3));
+  Materiality materiality(kBlock);
+  const EstimateNoise noise{1.0, 1.0, 80.0};
+  const MaterialityLimits limits{0.05, 0.10, 0.5};
+  ChannelEvidence evidence;
+  evidence.dead_time = 0.0;
+  // One s.d. of noise, where only that direction leads.
+  const Eigen::MatrixXd basis = d.leftCols(2);
+  const Eigen::VectorXd earlier = d.col(error_column::kEarlier);
+  const Eigen::VectorXd beside = earlier - basis * basis.colPivHouseholderQr().solve(earlier);
+  const Eigen::VectorXd estimate = 0.4 * d.col(0) + beside.normalized();
+  materiality.judge(materiality.fit(estimate, d, noise, evidence), estimate, d, space, limits,
+                    noise, evidence);
+  CHECK(evidence.usual);
+  CHECK(evidence.gain_error.value == Approx(0.4).margin(0.05));
+  CHECK(evidence.gain_error.deviation < 0.2);
+  CHECK(evidence.dead_time_error.value >= 0.0);
+  CHECK(evidence.p_value_material < 0.01);
+}
+
 TEST_CASE("few rows and forgetting make the estimates noisier") {
   // Two columns, weights alike: W1 = W2 = rows. Variance = RSS / freedom, times 1 + 1.35 c
   // + 6 c^2 (0.26, 1), c = columns / freedom, the factors of docs/validation.md.
