@@ -44,7 +44,7 @@ std::vector<ChannelSignatures> channel_signatures(const RegressionShape& shape,
       const Eigen::VectorXd pulse = model.impulse_response(j, i, basis.length());
       if (pulse.cwiseAbs().maxCoeff() > 0.0) {
         channel.gain = gains(j, i) * (integrating(j, i) ? basis.slowest() : 1.0);
-        for (const Eigen::VectorXd& error : usual_errors(pulse))
+        for (const Eigen::VectorXd& error : usual_errors(pulse, integrating(j, i)))
           channel.errors.emplace_back(basis, error, shape.residual_order, shape.residual_poles);
         for (const int shift : {1, -1})
           channel.shifts.emplace_back(basis, shifted(pulse, shift) - pulse, shape.residual_order,

@@ -21,6 +21,7 @@ ErrorSizes::ErrorSizes(const RegressionShape& shape, const LinearModel& model)
       left_(Eigen::VectorXd::Zero(shape.block())),
       beside_(left_),
       slopes_(Eigen::MatrixXd::Zero(shape.block(), error_column::kCount)) {
+  const Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> integrating = model.integrating();
   for (int i = 0; i < shape.inputs; ++i) {
     for (int j = 0; j < shape.cvs; ++j) {
       Response& response = responses_.emplace_back();
@@ -32,6 +33,7 @@ ErrorSizes::ErrorSizes(const RegressionShape& shape, const LinearModel& model)
       Eigen::Index dead = 0;
       while (dead + 2 < response.pulse.size() && response.pulse(dead + 1) == 0.0) ++dead;
       response.dead_time = static_cast<double>(dead);
+      response.integrating = integrating(j, i);
     }
   }
 }
@@ -106,6 +108,8 @@ double ErrorSizes::leave(const Channel& channel, const Eigen::Vector3d& value,
                          Eigen::Ref<Eigen::VectorXd> out) {
   const Response& model = response(channel.cv, channel.input);
   const double dead = model.dead_time, slower = std::exp(-value(1));
+  // An integrator with longer lags rises as steeply in the end.
+  const double gain = (1.0 + value(0)) * (model.integrating ? std::exp(value(1)) : 1.0);
   const auto last = model.step.size() - 1;
   const auto step_at = [&](double lag) {
     const double at = dead + (lag - dead - value(2)) * slower;
@@ -119,7 +123,7 @@ double ErrorSizes::leave(const Channel& channel, const Eigen::Vector3d& value,
   double before = step_at(0.0);
   for (Eigen::Index l = 1; l <= last; ++l) {
     const double now = step_at(static_cast<double>(l));
-    changed_(l) = (1.0 + value(0)) * (now - before) - model.pulse(l);
+    changed_(l) = gain * (now - before) - model.pulse(l);
     before = now;
   }
   signature_.replace(basis_, changed_, work_);

@@ -40,6 +40,7 @@ class ErrorSizes {
   struct Response {
     Eigen::VectorXd pulse, step;  // basis.length() values; empty = no channel
     double dead_time = 0.0;       // samples
+    bool integrating = false;
   };
   struct Errors {  // gain, relative; ln of the time constants' ratio; dead time, samples
     Eigen::Vector3d value = Eigen::Vector3d::Zero();

@@ -101,7 +101,7 @@ Eigen::VectorXd shifted(const Eigen::VectorXd& pulse, int by) {
   return result;
 }
 
-std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse) {
+std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse, bool integrating) {
   const int length = static_cast<int>(pulse.size());
   // Step response stretched about the end of the dead time, by linear interpolation.
   int start = 0;
@@ -112,11 +112,14 @@ std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse) {
   const auto stretched = [&](int l) {
     const double at = l <= start ? l : start + (l - start) / (1.0 + kTimeConstantStep);
     const int below = std::min(static_cast<int>(at), length - 2);
-    return step(below) + (at - below) * (step(below + 1) - step(below));
+    const double value = step(below) + (at - below) * (step(below + 1) - step(below));
+    return integrating ? (1.0 + kTimeConstantStep) * value : value;
   };
   Eigen::VectorXd slower = Eigen::VectorXd::Zero(length);
   for (int l = 1; l < length; ++l)
     slower(l) = (stretched(l) - stretched(l - 1) - pulse(l)) / std::log(1.0 + kTimeConstantStep);
+  // Of an integrator without lag nothing is slower; what rounding leaves is no direction.
+  if (slower.norm() <= calibration::rounding::kIndependentShare * pulse.norm()) slower.setZero();
   std::vector<Eigen::VectorXd> errors = {pulse, slower};
   for (const int shift : kDelayShifts) errors.push_back(shifted(pulse, shift));
   return errors;

@@ -70,9 +70,11 @@ class Signature {
 
 /// Pulse responses of the errors a channel usually has, for its own pulse response: its gain (the
 /// response itself), its time constants (derivative by their logarithm), its dead time (2 samples
-/// earlier, 2 and 6 later). As many values as `pulse`.
+/// earlier, 2 and 6 later). As many values as `pulse`. An `integrating` channel with longer time
+/// constants rises as steeply in the end, only later: how steeply is its gain.
 inline constexpr int kUsualErrors =
     2 + static_cast<int>(calibration::usual_errors::kDelayShifts.size());
-[[nodiscard]] std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse);
+[[nodiscard]] std::vector<Eigen::VectorXd> usual_errors(const Eigen::VectorXd& pulse,
+                                                        bool integrating);
 
 }  // namespace mpm

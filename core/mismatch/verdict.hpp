@@ -26,6 +26,7 @@ enum class Reason : std::uint8_t {
   kIsolating,       ///< something in this CV changed; samples since then are still too few
   kWeakExcitation,  ///< a mismatch: it shows, though an error of interest need not have shown
   kOperatingPoint,  ///< a mismatch: the gain varies over where the plant is operated
+  kCoarse,          ///< something is off in the CV, which its coarse readings may make up
 };
 
 [[nodiscard]] constexpr auto words_of(Verdict) {
@@ -36,7 +37,8 @@ enum class Reason : std::uint8_t {
   return std::array{"",           "warming_up",      "not_excited",
                     "collinear",  "confounded",      "bad_data",
                     "compressed", "controller_off",  "constrained",
-                    "isolating",  "weak_excitation", "operating_point"};
+                    "isolating",  "weak_excitation", "operating_point",
+                    "coarse"};
 }
 
 /// The numbers behind a verdict that an alarm repeats.

@@ -23,6 +23,17 @@ inline constexpr double kBlindGainError = 100.0;
 inline constexpr double kConvincing = 0.1;
 }  // namespace visibility
 
+/// A CV whose readings mostly repeat moves by its resolution or not at all: its errors are then no
+/// noise but follow where it is and how it moves. Chosen on loops made elsewhere (tests/foreign,
+/// regime quantised, seeds 100001 to 100030).
+namespace coarse_readings {
+/// Share of repetitions from which on a CV is that coarse.
+inline constexpr double kRepeatedShare = 0.45;
+/// Of such a CV only evidence counts whose p-value is below this, where an error of interest would
+/// show.
+inline constexpr double kConvincingPValue = 1e-6;
+}  // namespace coarse_readings
+
 /// When data are too bad for a verdict.
 namespace bad_data {
 /// Unknown values of a signal in a row that may be taken as unchanged, samples. Chosen.

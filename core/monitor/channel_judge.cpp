@@ -42,6 +42,10 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
     status.reason = Reason::kOperatingPoint;
     return;
   }
+  if (exceeding && !alarmed(channel) && !channel.belief.has(channel.evidence)) {
+    status.reason = Reason::kCoarse;
+    return;
+  }
   const bool convincing = status.smallest_error < visibility::kBlindGainError &&
                           status.p_value < visibility::kConvincing * channel_rate_;
   if (status.excited || ((convincing || alarmed(channel)) && exceeding)) {

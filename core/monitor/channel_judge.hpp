@@ -3,6 +3,7 @@
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/regression_memory.hpp"
 #include "core/mismatch/verdict.hpp"
+#include "core/monitor/belief.hpp"
 #include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/derived_settings.hpp"
 #include "core/monitor/f_thresholds.hpp"
@@ -27,6 +28,7 @@ struct JudgedChannel {
   double mean_line = 0.0;       ///< likewise
   double gain_variation = 0.0;  ///< as in ChannelStatus
   bool bends = false;           ///< and for certain by more than matters
+  Belief belief;                ///< in evidence of the CV
 };
 
 /// Turns evidence into verdicts: first whether there can be one at all, then whether an error of

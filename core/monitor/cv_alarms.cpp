@@ -16,13 +16,14 @@ struct Evidence {
   bool harmless = true;   // the long memory is sure that the error is within the limits
 };
 
-Evidence combined(int cv, int input, const MismatchDetector& detector) {
+Evidence combined(int cv, int input, const MismatchDetector& detector, const Belief& belief) {
   Evidence evidence;
   int ready = 0;
   for (int m = 0; m < detector.memory_count(); ++m) {
     if (!detector.memory(cv, m).ready()) continue;
     ++ready;
     const ChannelEvidence& channel = detector.evidence(cv, input, m);
+    if (!belief.has(channel)) continue;
     evidence.material = std::min(evidence.material, channel.p_value_material);
     evidence.any = std::min(evidence.any, channel.p_value);
   }
@@ -49,6 +50,11 @@ bool CvAlarms::any() const {
   return std::any_of(conditions_.begin(), conditions_.end(), [](const Condition& condition) {
     return condition.state() == AlarmState::kActive;
   });
+}
+
+// What is not believed raises nothing; a standing alarm clears on evidence of any kind.
+Belief CvAlarms::belief(std::size_t input) const {
+  return conditions_[input].state() == AlarmState::kActive ? Belief{} : belief_;
 }
 
 void CvAlarms::hold() {
@@ -78,7 +84,7 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
   bool risen = false;
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     const AlarmState before = conditions_[i].state();
-    const Evidence evidence = combined(cv, static_cast<int>(i), detector);
+    const Evidence evidence = combined(cv, static_cast<int>(i), detector, belief(i));
     const bool changed = conditions_[i].update(condition_p(evidence, before), limits);
     risen = risen || (changed && before == AlarmState::kCleared);
   }
@@ -131,7 +137,7 @@ bool CvAlarms::certain(const ChangePoint& change, bool risen) const {
 
 void CvAlarms::settle(int cv, const MismatchDetector& detector, const Condition::Limits& limits) {
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
-    const Evidence evidence = combined(cv, static_cast<int>(i), detector);
+    const Evidence evidence = combined(cv, static_cast<int>(i), detector, belief(i));
     const AlarmState before = conditions_[i].state();
     if (before == AlarmState::kActive && condition_p(evidence, before) > limits.clear_above)
       conditions_[i].set(AlarmState::kCleared);
@@ -144,7 +150,8 @@ bool CvAlarms::something_wrong(int cv, bool quiet, const MismatchDetector& detec
   if (detector.regression(cv).noise().surprise() > change_search::kSuspiciousSurprise) return true;
   if (!quiet) return false;
   for (std::size_t i = 0; i < conditions_.size(); ++i)
-    if (combined(cv, static_cast<int>(i), detector).any < change_search::kSuspiciousPValue)
+    if (combined(cv, static_cast<int>(i), detector, belief(i)).any <
+        change_search::kSuspiciousPValue)
       return true;
   return false;
 }

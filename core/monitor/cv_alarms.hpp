@@ -6,6 +6,7 @@
 #include "core/alarm/condition.hpp"
 #include "core/mismatch/change_scan.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
+#include "core/monitor/belief.hpp"
 
 namespace mpm {
 
@@ -28,11 +29,12 @@ class CvAlarms {
     before_.reserve(conditions_.size());
   }
 
-  /// After each sample; `evaluated`: the CV's evidence is new. Calls `changed(input)` for each
-  /// alarm that rose or cleared.
+  /// After each sample; `evaluated`: the CV's evidence is new. Evidence beyond `belief` raises
+  /// nothing. Calls `changed(input)` for each alarm that rose or cleared.
   template <class Changed>
   void update(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
-              const Condition::Limits& limits, Changed changed) {
+              const Condition::Limits& limits, const Belief& belief, Changed changed) {
+    belief_ = belief;
     before_.clear();
     for (const Condition& condition : conditions_) before_.push_back(condition.state());
     step(cv, evaluated, detector, scan, limits);
@@ -63,6 +65,7 @@ class CvAlarms {
  private:
   void step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
             const Condition::Limits& limits);
+  [[nodiscard]] Belief belief(std::size_t input) const;
   [[nodiscard]] bool shaken(int cv, const MismatchDetector& detector) const;
   void look_for_change(int cv, bool risen, MismatchDetector& detector, ChangeScan& scan);
   void settle(int cv, const MismatchDetector& detector, const Condition::Limits& limits);
@@ -75,6 +78,7 @@ class CvAlarms {
   std::vector<AlarmState> before_;
   std::int64_t spoken_ = 0;  // samples since the memory was ready for once, as it last began
   bool isolating_ = false;
+  Belief belief_;
   ChangePoint change_;
   std::int64_t since_scan_ = 0;
 };

@@ -57,6 +57,7 @@ struct Monitor::State {
   void follow(int cv);
   void move_alarms();
   void judge_channels();
+  [[nodiscard]] Belief belief(int cv) const;
   [[nodiscard]] double gain_variation(int cv, int input) const;
   [[nodiscard]] bool bends(int cv, int input) const;
   [[nodiscard]] Reason bad_data(int cv, int input) const;
@@ -297,7 +298,7 @@ void Monitor::State::move_alarms() {
     else if (cv.quality.implausible() || !cv.rival.loses)
       cv.alarms.hold();
     else
-      cv.alarms.update(j, cv.evaluated, detector, scan, settings.alarm, changed);
+      cv.alarms.update(j, cv.evaluated, detector, scan, settings.alarm, belief(j), changed);
   }
 }
 
@@ -324,10 +325,15 @@ void Monitor::State::judge_channels() {
                    .peak = against_line ? correlation.peak(j, i) : CorrelationPeak{},
                    .mean_line = line,
                    .gain_variation = gain_variation(j, i),
-                   .bends = bends(j, i)},
+                   .bends = bends(j, i),
+                   .belief = belief(j)},
                   status[index(j, i)]);
     }
   }
+}
+
+Belief Monitor::State::belief(int cv) const {
+  return belief_in(screen.repeated_share(cv), settings.gain_error_of_interest);
 }
 
 double Monitor::State::gain_variation(int cv, int input) const {

@@ -143,6 +143,12 @@ void Screen::follow_compression_of_inputs() {
   }
 }
 
+double Screen::repeated_share(int cv) const {
+  const Repeats& repeats =
+      repeats_[static_cast<std::size_t>(SignalKind::kCv)][static_cast<std::size_t>(cv)];
+  return repeats.coarse() ? repeats.repeated / repeats.counted : 0.0;
+}
+
 int Screen::compressed_input(int cv) const {
   if (predicted(cv)) return -1;
   for (int i = 0; i < counts_.inputs(); ++i)

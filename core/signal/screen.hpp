@@ -62,6 +62,8 @@ class Screen {
   /// An input from which the CV is simulated and which is held until it has left a deadband: the
   /// plant moved, and nobody wrote it down. -1: none. (Lines in an input may be ramps.)
   [[nodiscard]] int compressed_input(int cv) const;
+  /// Share of a coarse CV's values that repeat the one before, 0..1; 0 of a fine one.
+  [[nodiscard]] double repeated_share(int cv) const;
   /// Spikes of one CV so far.
   [[nodiscard]] std::uint64_t spikes(int cv) const {
     return jumps_[static_cast<std::size_t>(cv)].spikes;

@@ -169,6 +169,9 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
                        printable(channel.cv) +
                        " cannot be simulated from that; turn it off for this tag, or log the "
                        "model's predictions too";
+    case Reason::kCoarse:
+      return printable(channel.cv) +
+             " is read so coarsely that what is off may be its steps; log it with more digits";
     case Reason::kControllerOff:
       return "no manipulated variable moves: the controller is off or in manual";
     case Reason::kConstrained:

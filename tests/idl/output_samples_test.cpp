@@ -136,7 +136,8 @@ TEST_CASE("the words of a verdict and its reason go to DDS and back") {
                                      {Reason::kConstrained, "constrained"},
                                      {Reason::kIsolating, "isolating"},
                                      {Reason::kWeakExcitation, "weak_excitation"},
-                                     {Reason::kOperatingPoint, "operating_point"}}) {
+                                     {Reason::kOperatingPoint, "operating_point"},
+                                     {Reason::kCoarse, "coarse"}}) {
     record.reason = reason;
     sample.reason = text(word);
     check_both_ways(record, sample);

@@ -30,5 +30,25 @@ TEST_CASE("a mean of the own past filters an error like the lags that it stands 
   CHECK((found - expected).norm() < 1e-9);
 }
 
+TEST_CASE("an integrator with a longer lag rises as steeply, only later") {
+  // Step response t - T (1 - exp(-t / T)); its derivative by ln T, with z = t / T, is
+  // -T (1 - exp(-z) (1 + z)): bounded, while that of a gain error grows for ever.
+  constexpr double kLag = 20.0;
+  constexpr int kLength = 400;
+  Eigen::VectorXd pulse = Eigen::VectorXd::Zero(kLength), ramp = pulse;
+  const auto step = [](double t) { return t - kLag * (1.0 - std::exp(-t / kLag)); };
+  for (int l = 1; l < kLength; ++l) pulse(l) = step(l) - step(l - 1);
+  const std::vector<Eigen::VectorXd> errors = usual_errors(pulse, true);
+  double sum = 0.0;
+  for (int l = 1; l < kLength; ++l) {
+    sum += errors[1](l);
+    const double z = l / kLag;
+    CHECK(sum == Approx(-kLag * (1.0 - std::exp(-z) * (1.0 + z))).margin(0.06 * kLag));
+  }
+  for (int l = 1; l < kLength; ++l) ramp(l) = 0.3;
+  CHECK(usual_errors(ramp, true)[1].norm() == 0.0);  // without lag nothing is slower
+  CHECK(usual_errors(pulse, false)[1].sum() < -5.0 * kLag);
+}
+
 }  // namespace
 }  // namespace mpm

@@ -40,7 +40,8 @@ struct Bench {
                  .at_limit = at_limit,
                  .confounder = confounder,
                  .peak = peak,
-                 .mean_line = line},
+                 .mean_line = line,
+                 .belief = belief},
                 status);
     return status;
   }
@@ -54,6 +55,7 @@ struct Bench {
   int confounder = -1;
   CorrelationPeak peak;
   double line = 0.0;
+  Belief belief;
 };
 
 TEST_CASE("the p-value decides where an error of interest would show") {
@@ -97,6 +99,24 @@ TEST_CASE("an error that would not show is not ruled out, and the reason is told
   bench.evidence.p_value = 4e-4;
   CHECK(bench.judge().verdict == Verdict::kMismatch);
   CHECK(bench.judge().reason == Reason::kWeakExcitation);
+}
+
+TEST_CASE("of a CV with coarse readings only what is beyond doubt and would show is a mismatch") {
+  // A readings' share of repetitions below 0.45 is no reason for doubt; above it p < 1e-6 of an
+  // excited channel is asked for.
+  Bench bench;
+  bench.evidence.p_value = 1e-5;
+  bench.belief = belief_in(0.44, 0.25);
+  CHECK(bench.judge().verdict == Verdict::kMismatch);
+  bench.belief = belief_in(0.46, 0.25);
+  CHECK(bench.judge().verdict == Verdict::kUndetermined);
+  CHECK(bench.judge().reason == Reason::kCoarse);
+  bench.evidence.p_value = 1e-7;
+  CHECK(bench.judge().verdict == Verdict::kMismatch);
+  bench.evidence.excitation_index = 0.05;  // 29 % would show, of interest are 25 %
+  CHECK(bench.judge().reason == Reason::kCoarse);
+  bench.evidence.p_value = 0.2;  // nothing is off
+  CHECK(bench.judge().reason == Reason::kNotExcited);
 }
 
 TEST_CASE("what follows a signal that is no input is no channel's mismatch") {

@@ -57,6 +57,32 @@ TEST_CASE("what a process gives passes the screen") {
   }
 }
 
+TEST_CASE(
+    "how often a coarse sensor repeats itself is known, and no frozen one passes for coarse") {
+  // Counted here: of 999 values those that equal the one before.
+  for (const double resolution : {0.02, 0.1}) {
+    CAPTURE(resolution);
+    Screen screen(kCounts, {true}, {true}, 0);
+    double last = 0.0;
+    int same = 0;
+    usable(
+        screen,
+        [&](int k, Frame& frame) {
+          const double value = frame[SignalKind::kCv].values(0);
+          same += k > 0 && value == last ? 1 : 0;
+          last = value;
+        },
+        resolution);
+    CHECK(same > 80);
+    CHECK(screen.repeated_share(0) == Approx(same / 999.0).margin(0.06));
+  }
+  Screen fine(kCounts, {true}, {true}, 0);
+  usable(fine, [](int k, Frame& frame) {
+    if (k > 300) frame[SignalKind::kCv].values(0) = 0.25;
+  });
+  CHECK(fine.repeated_share(0) == 0.0);
+}
+
 TEST_CASE("a frozen sensor is caught from its first repetition on, and let go at once") {
   Screen screen(kCounts, {true}, {true}, 0);
   double stuck = 0.0;
