@@ -26,10 +26,14 @@ ChannelHint read_hint(const Map& map, const ChannelPlace& place) {
   if (const Value* sign = map.find("sign")) hint.sign = read_sign(*sign);
   if (const Value* dead_time = map.find("dead_time"))
     hint.dead_time_s = dead_time->number(kNotNegative);
-  if (hint.no_relation && (hint.sign != 0 || hint.dead_time_s))
-    map.place().error("a channel without relation has neither sign nor dead time");
-  if (!hint.no_relation && hint.sign == 0 && !hint.dead_time_s)
-    map.place().error("says nothing of its channel: give `sign`, `dead_time` or `relation: none`");
+  if (const Value* integrating = map.find("integrating")) hint.integrating = integrating->boolean();
+  const bool tells = hint.sign != 0 || hint.dead_time_s || hint.integrating;
+  if (hint.no_relation && tells)
+    map.place().error(
+        "a channel without relation has neither sign nor dead time, and does not integrate");
+  if (!hint.no_relation && !tells)
+    map.place().error(
+        "says nothing of its channel: give `sign`, `dead_time`, `integrating` or `relation: none`");
   return hint;
 }
 
@@ -47,7 +51,7 @@ void load_identify(const Value* section, UnitConfig& config) {
       item.error("a channel is a map such as {cv: y1, mv: u1, sign: \"+\"}");
       continue;
     }
-    const Map entry = item.map({"cv", "mv", "dv", "sign", "relation", "dead_time"});
+    const Map entry = item.map({"cv", "mv", "dv", "sign", "relation", "dead_time", "integrating"});
     const ChannelPlace place = read_place(entry, signals);
     const ChannelHint hint = read_hint(entry, place);
     if (!place.known()) continue;

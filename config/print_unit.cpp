@@ -160,6 +160,7 @@ void print_identify(const UnitConfig& config, std::ostream& out) {
     if (hint.no_relation) out << ", relation: none";
     if (hint.sign != 0) out << ", sign: \"" << (hint.sign > 0 ? '+' : '-') << '"';
     if (hint.dead_time_s) out << ", dead_time: " << yaml_text(*hint.dead_time_s);
+    if (hint.integrating) out << ", integrating: " << (*hint.integrating ? "true" : "false");
     out << "}\n";
   }
 }

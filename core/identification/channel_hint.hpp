@@ -11,6 +11,7 @@ struct ChannelHint {
   bool no_relation = false;
   int sign = 0;                            ///< of the gain: 1 or -1; 0 = not known
   std::optional<double> dead_time_s = {};  ///< >= 0
+  std::optional<bool> integrating = {};
 
   [[nodiscard]] bool operator==(const ChannelHint&) const = default;
 };

@@ -33,6 +33,7 @@ struct ChannelShape {
   double damping = 0.5;
   bool dead_time_known = false;  ///< the user gave it: it stays
   int sign = 0;                  ///< of the gain, where the user gave it; else 0
+  bool may_integrate = true;     ///< the user has not said that it does not
 };
 
 [[nodiscard]] bool integrates(ChannelForm form);

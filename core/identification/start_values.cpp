@@ -55,8 +55,10 @@ std::vector<ChannelShape> grid(const HighOrderModel& model, const ChannelHint& h
     for (const LagBlock& block : model.blocks)
       if (block.first - 1.0 <= kLatestStart * longest) dead_times.push_back(block.first - 1.0);
   }
+  const bool integrates = hint.integrating.value_or(false);
+  const double slowest = integrates ? kFastestStart : kSlowestStart * longest;  // no lag to choose
   std::vector<ChannelShape> shapes;
-  for (double time = kFastestStart; time <= kSlowestStart * longest; time *= kStartGrowth)
+  for (double time = kFastestStart; time <= slowest; time *= kStartGrowth)
     for (const double dead : dead_times) {
       ChannelShape shape;
       shape.input = hint.input;
@@ -65,6 +67,8 @@ std::vector<ChannelShape> grid(const HighOrderModel& model, const ChannelHint& h
       shape.dead_time = dead;
       shape.dead_time_known = hint.dead_time_s.has_value();
       shape.sign = hint.sign;
+      shape.may_integrate = hint.integrating.value_or(true);
+      if (integrates) shape.form = ChannelForm::kIntegrator;
       shapes.push_back(shape);
     }
   return shapes;

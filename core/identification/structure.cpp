@@ -33,6 +33,7 @@ double bic(const PredictionErrorFit& fit) {
 std::vector<ChannelShape> richer(const ChannelShape& shape) {
   std::vector<ChannelShape> result;
   const auto add = [&](ChannelForm form, auto change) {
+    if (integrates(form) && !shape.may_integrate) return;
     ChannelShape next = shape;
     next.form = form;
     change(next);
@@ -122,7 +123,9 @@ std::vector<ChannelShape> slow_ones_integrating(const std::vector<ChannelShape>&
     const bool one_lag = shape.form == ChannelForm::kFirstOrder;
     const bool two_lags =
         shape.form == ChannelForm::kSecondOrder || shape.form == ChannelForm::kSecondOrderLead;
-    if ((!one_lag && !two_lags) || slowest_time(shape) < kMayIntegrateShare * run) continue;
+    if ((!one_lag && !two_lags) || !shape.may_integrate ||
+        slowest_time(shape) < kMayIntegrateShare * run)
+      continue;
     const auto [fast, slow] = std::minmax({shape.time_constant, one_lag ? 0.0 : shape.second});
     shape.gain /= slow;
     shape.time_constant = fast;

@@ -35,10 +35,15 @@ TEST_CASE("what the user knows of channels is read and printed") {
       "identify:\n  channels:\n"
       "    - {cv: y1, mv: u1, sign: \"+\"}\n"
       "    - {cv: y1, mv: u2, relation: none}\n"
-      "    - {cv: y2, dv: d1, sign: -, dead_time: 12}\n");
+      "    - {cv: y2, dv: d1, sign: -, dead_time: 12}\n"
+      "    - {cv: y2, mv: u1, integrating: true}\n"
+      "    - {cv: y2, mv: u2, integrating: false}\n");
   CHECK(findings(result).empty());
-  const std::vector<ChannelHint> expected = {
-      {0, 0, false, 1, {}}, {0, 1, true, 0, {}}, {1, 2, false, -1, 12.0}};
+  const std::vector<ChannelHint> expected = {{0, 0, false, 1, {}},
+                                             {0, 1, true, 0, {}},
+                                             {1, 2, false, -1, 12.0},
+                                             {1, 0, false, 0, {}, true},
+                                             {1, 1, false, 0, {}, false}};
   CHECK(result.config.identify == expected);
   std::ostringstream out;
   config::print_unit(result.config, out);
@@ -58,6 +63,8 @@ TEST_CASE("mistakes of the section are told at their place") {
   check("{cv: y1, mv: u1}", "says nothing of its channel");
   check("{cv: y1, mv: u1, relation: some}", "must be none");
   check("{cv: y1, mv: u1, relation: none, sign: \"+\"}", "neither sign nor dead time");
+  check("{cv: y1, mv: u1, relation: none, integrating: true}", "does not integrate");
+  check("{cv: y1, mv: u1, integrating: maybe}", "u.yaml:9:37: error: ");
   check("{cv: y1, mv: u1, dead_time: -3}", "u.yaml:9:35: error: ");
   check("{cv: y9, mv: u1, sign: \"+\"}", "y9");
   check("{cv: y1, mv: u1, sign: \"+\"}\n    - {cv: y1, mv: u1, sign: \"-\"}",

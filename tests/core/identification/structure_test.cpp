@@ -65,4 +65,26 @@ TEST_CASE("a third lag is found, and a quick answer that creeps on") {
         Approx(50.0).epsilon(0.2));
 }
 
+TEST_CASE("a channel integrates, or does not, where the user said so") {
+  // A lag of 400 samples seen for 1500, under noise: the data alone would leave either.
+  const Index rows = 1500;
+  MatrixXd inputs(rows, 1), cvs(rows, 1);
+  inputs << telegraph(841, rows, 60);
+  cvs.col(0) = first_order(inputs.col(0), 4.0, 400.0) + 0.2 * white(842, rows);
+  const auto found_with = [&](std::optional<bool> integrating) {
+    IdentificationSettings settings;
+    if (integrating) settings.hints = {{0, 0, false, 0, {}, integrating}};
+    return identify(recording_of(inputs, cvs), settings);
+  };
+  const Identification given = found_with(true);
+  const ChannelAnswer& level = answer_of(given, 0, 0);
+  REQUIRE(level.dynamics);
+  CHECK(integrates(level.form));
+  CHECK(level.dynamics->gain == Approx(0.01).epsilon(0.3));  // 4 / 400 a sample, at first
+  const Identification refused = found_with(false);
+  const ChannelAnswer& lag = answer_of(refused, 0, 0);
+  REQUIRE(lag.dynamics);
+  CHECK_FALSE(integrates(lag.form));
+}
+
 }  // namespace mpm::test
