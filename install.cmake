@@ -7,7 +7,7 @@ set(said ${PROJECT_BINARY_DIR}/said)
 file(MAKE_DIRECTORY ${said})
 function(says program output)
   add_custom_command(OUTPUT ${said}/${output} COMMAND ${program} ${ARGN} > ${said}/${output}
-    DEPENDS ${program} VERBATIM)
+    COMMAND gzip -9nfk ${said}/${output} DEPENDS ${program} VERBATIM)
   set_property(GLOBAL APPEND PROPERTY said_files ${said}/${output})
 endfunction()
 says(mpm mpm.1 man)
@@ -25,12 +25,13 @@ add_custom_target(mpm_said ALL DEPENDS ${said_files})
 
 install(TARGETS mpm mpmd mpmsim RUNTIME)
 foreach(program mpm mpmd mpmsim)
-  install(FILES ${said}/${program}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${said}/${program}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${said}/${program} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${said}/_${program} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
   install(FILES ${said}/${program}.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endforeach()
 install(FILES idl/mpm.idl DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
+install(FILES tests/hmi/loopback.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm RENAME cyclonedds.xml)
 install(DIRECTORY config/units config/plants config/scenarios
   DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN *.yaml)
 # The documentation, and all that it links to at the place where it links to it.

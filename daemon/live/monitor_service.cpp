@@ -65,6 +65,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
 }
 
 void MonitorService::run(const std::function<bool()>& stop) {
+  notifier_.status(status());
   notifier_.ready();
   Clock::time_point next_status{};
   while (!stop()) {

@@ -12,6 +12,8 @@ namespace {
 // What an interval that is said to be `ok` may reach: of the gain, of the time constants either
 // way, samples of dead time.
 constexpr double kOkPercent = 25.0, kOkTimeRatio = 1.5, kOkDeadTimeSamples = 2.0;
+// What doubles leave of a whole percentage.
+constexpr double kRounding = 1e-9;
 
 std::string signed_text(double value, int digits = 2) {
   return (value > 0.0 ? "+" : "") + number_text(value, digits);
@@ -84,7 +86,9 @@ std::string not_excited_text(const ChannelRecord& channel, const ChannelFile& fi
     return "moved too little to show whether " + printable(channel.cv) + " answers it; " + advice;
   if (channel.smallest_error <= 0.0 || channel.smallest_error > 1.0)
     return "moved too little to tell anything; " + advice;
-  return "needs a gain error of " + percent_text(channel.smallest_error) + " to show; " + advice;
+  // Rounded up: what is asked for lies below it.
+  const double smallest = 0.01 * std::ceil(100.0 * channel.smallest_error - kRounding);
+  return "needs a gain error of " + percent_text(smallest) + " to show; " + advice;
 }
 
 std::string collinear_text(const ChannelRecord& channel, const ChannelFile& file) {

@@ -13,7 +13,7 @@ for program in mpm mpmd mpmsim; do
 done
 for program in mpm mpmd mpmsim; do
   share=$prefix/share
-  grep -qi "^\.TH $program 1 " "$share/man/man1/$program.1" || fail "no manual page of $program"
+  gzip -dc "$share/man/man1/$program.1.gz" | grep -qi "^\.TH $program 1 " || fail "no manual page of $program"
   bash -n "$share/bash-completion/completions/$program" || fail "no $program for bash"
   grep -q "^#compdef $program\$" "$share/zsh/vendor-completions/_$program" || fail "none for zsh"
   grep -q "^complete -c $program " "$share/fish/vendor_completions.d/$program.fish" ||

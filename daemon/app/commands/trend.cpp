@@ -109,12 +109,14 @@ int trend(const TrendOptions& options) {
            config::Severity::kError, "",
            std::string("holds nothing of the unit") + (choice.all() ? "" : " in the time chosen")});
     const history::Findings findings = find_changes(trend);
-    write_file(options.csv, to_csv(trend));
+    const bool table_to_output = options.csv == "-";
+    if (!table_to_output) write_file(options.csv, to_csv(trend));
     write_file(options.svg, to_svg(trend, findings, times.zone.get()));
     const report::Layout layout{host::terminal_width(STDOUT_FILENO),
                                 host::wants_color(STDOUT_FILENO)};
-    std::cout << (options.json ? to_json(trend, findings, times.zone.get()).dump() + "\n"
-                               : to_text(trend, findings, layout, times.zone.get()))
+    std::cout << (table_to_output ? to_csv(trend)
+                  : options.json  ? to_json(trend, findings, times.zone.get()).dump() + "\n"
+                                  : to_text(trend, findings, layout, times.zone.get()))
               << std::flush;
     return options.fail_on_mismatch && (trend.mismatch() || !findings.changes.empty()) ? 1 : 0;
   } catch (const config::InputError& error) {
@@ -144,7 +146,7 @@ void add_trend(CLI::App& app, int& exit_code) {
   add_times(*command, options->times);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--csv", options->csv,
-                      "write a row for each period and channel to this file");
+                      "write a row for each period and channel to this file (-: print that alone)");
   command->add_option("--svg", options->svg, "draw the trend into this file");
   command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
                     "exit with 1 if a channel mismatches at the end, or anything changed");

@@ -78,6 +78,9 @@ TEST_CASE("every reason has its words") {
   };
   CHECK(text(Reason::kWarmingUp) == "too few samples yet");
   CHECK(text(Reason::kNotExcited) == "needs a gain error of 50 % to show; move FIC-101");
+  CHECK(undetermined_text(undetermined("FIC-101", "AI-201", Reason::kNotExcited, 0.2503), file) ==
+        "needs a gain error of 26 % to show; move FIC-101");  // 25 % would have been enough
+  CHECK(text(Reason::kCoarse).find("AI-201 is read so coarsely") == 0);
   CHECK(text(Reason::kCollinear, "FIC-102") ==
         "moved only together with FIC-102; move one without the other");
   CHECK(

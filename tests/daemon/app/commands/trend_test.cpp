@@ -153,6 +153,8 @@ TEST_CASE("the trend of data and that of the journal of the same data agree", "[
     CHECK(said.find("steam -> xb") != std::string::npos);
   }
   CHECK(read_file(history.file("journal.csv")) == read_file(history.file("data.csv")));
+  REQUIRE(history.trend({"--journal", history.file("journal"), "--csv", "-"}) == 0);
+  CHECK(history.out() == read_file(history.file("data.csv")));
   CHECK(read_file(history.file("journal.svg")) == read_file(history.file("data.svg")));
   CHECK(history.trend({"--journal", history.file("journal"), "--fail-on-mismatch"}) == 1);
 }
