@@ -25,6 +25,12 @@ struct Choice {
   return std::array{Choice<ThresholdKind>{"f_test", ThresholdKind::kFTest},
                     Choice<ThresholdKind>{"mean_line", ThresholdKind::kMeanLine}};
 }
+[[nodiscard]] constexpr auto choices(NonlinearTest /*which*/) {
+  return std::array{Choice<NonlinearTest>{"off", NonlinearTest::kOff},
+                    Choice<NonlinearTest>{"polynomial", NonlinearTest::kPolynomial},
+                    Choice<NonlinearTest>{"kernel", NonlinearTest::kKernel},
+                    Choice<NonlinearTest>{"random_features", NonlinearTest::kRandomFeatures}};
+}
 [[nodiscard]] constexpr auto choices(DisturbanceShape /*which*/) {
   return std::array{Choice<DisturbanceShape>{"step", DisturbanceShape::kStep},
                     Choice<DisturbanceShape>{"drift", DisturbanceShape::kDrift},

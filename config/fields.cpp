@@ -20,6 +20,7 @@ const std::vector<Field<MonitorSettings>>& monitor_fields() {
       {"correlation", &S::correlation, kAny,
        "what is reported: lagged_partial | partial | conventional | alternative"},
       {"threshold", &S::threshold, kAny, "f_test | mean_line (the thesis's; not calibrated)"},
+      {"nonlinear", &S::nonlinear, kAny, "polynomial | kernel | random_features | off"},
       {"controlling_lags", &S::controlling_lags, {.low = 1, .high = 10000}, "samples"},
       {"first_lag", &S::first_lag, {.low = -10000, .high = 10000}, "samples"},
       {"last_lag", &S::last_lag, {.low = 0, .high = 10000}, "samples"},

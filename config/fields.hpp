@@ -14,7 +14,7 @@ template <class Settings>
 struct Field {
   const char* key;
   std::variant<double Settings::*, int Settings::*, bool Settings::*, std::string Settings::*,
-               CorrelationKind Settings::*, ThresholdKind Settings::*>
+               CorrelationKind Settings::*, ThresholdKind Settings::*, NonlinearTest Settings::*>
       member;
   Range range;        ///< of numbers
   const char* notes;  ///< printed beside the value

@@ -191,6 +191,7 @@ void ResidualRegression::refill(RegressionMemory& memory, int samples,
 void ResidualRegression::start_afresh(int samples, const RegressionHistory& history,
                                       RowWorkspace& work) {
   fold(history, work);
+  ++restarts_;
   span_ = std::min(samples, span_);
   for (RegressionMemory& memory : memories_) memory.clear();
   std::fill(slides_.begin(), slides_.end(), 0);

@@ -69,6 +69,9 @@ class ResidualRegression {
   /// surprising under what is now forgotten may be usual after it.
   void start_afresh(int samples, const RegressionHistory& history, RowWorkspace& work);
 
+  /// How often it has begun afresh.
+  [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
+
   [[nodiscard]] const RegressionMemory& memory(int index) const {
     return memories_[static_cast<std::size_t>(index)];
   }
@@ -103,6 +106,7 @@ class ResidualRegression {
   int remembered_;
   int span_ = 0;
   int waiting_ = 0;  // samples since the last fold
+  std::uint64_t restarts_ = 0;
   NoiseLevel noise_;
   LagWindow weights_;  // per sample: 1 / scale, times the clip; 0 = no row, < 0: it waits
   LagWindow scales_;   // per sample: the noise level before it

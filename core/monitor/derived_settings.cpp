@@ -105,6 +105,7 @@ DerivedSettings derive_settings(const ModelSpec& spec, const LinearModel& model,
   derived.gain_error_of_interest = monitor.gain_error_of_interest;
   derived.correlation = monitor.correlation;
   derived.threshold = monitor.threshold;
+  derived.nonlinear = monitor.nonlinear;
   derived.controlling_lags = monitor.controlling_lags;
   derived.first_lag = monitor.first_lag;
   derived.last_lag = monitor.last_lag;

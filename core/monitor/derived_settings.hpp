@@ -20,6 +20,7 @@ struct DerivedSettings {
   double gain_error_of_interest = 0.0;
   CorrelationKind correlation = CorrelationKind::kLaggedPartial;
   ThresholdKind threshold = ThresholdKind::kFTest;
+  NonlinearTest nonlinear = NonlinearTest::kOff;
   int controlling_lags = 0;
   int first_lag = 0;
   int last_lag = 0;

@@ -18,6 +18,7 @@
 #include "core/monitor/reported_correlation.hpp"
 #include "core/monitor/unit_inputs.hpp"
 #include "core/monitor/unit_residuals.hpp"
+#include "core/nonlinear/nonlinear_detector.hpp"
 
 namespace mpm {
 
@@ -58,6 +59,7 @@ struct Monitor::State {
   void move_alarms();
   void judge_channels();
   [[nodiscard]] Belief belief(int cv) const;
+  void judge_nonlinear(int cv);
   [[nodiscard]] double gain_variation(int cv, int input) const;
   [[nodiscard]] bool bends(int cv, int input) const;
   [[nodiscard]] Reason bad_data(int cv, int input) const;
@@ -75,6 +77,7 @@ struct Monitor::State {
   UnitResiduals residuals;
   ReportedCorrelation correlation;
   MismatchDetector detector;
+  NonlinearDetector nonlinear;
   OutsideSignals outside;
   Eigen::VectorXd outside_values;  // set-points, then auxiliary signals; NaN where unknown
   ChangeScan scan;
@@ -129,6 +132,10 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
                 settings.residual_poles},
                settings.memories, settings.remembered, settings.evaluation_stride, model,
                settings.materiality),
+      nonlinear(detector.shape(), model,
+                {settings.nonlinear, settings.memories.front(), settings.evaluation_stride,
+                 settings.false_alarm_rate / (counts.inputs() * counts.cv),
+                 settings.gain_error_of_interest}),
       outside(detector.shape(), counts.cv + counts.aux, settings.outside_poles,
               settings.remembered),
       outside_values(Eigen::VectorXd::Zero(counts.cv + counts.aux)),
@@ -221,7 +228,12 @@ void Monitor::State::follow_compression() {
 void Monitor::State::pass_gap(std::int64_t missing) {
   counters.missing += static_cast<std::uint64_t>(missing);
   correlation.close_window();
+  for (int j = 0; nonlinear.on() && j < counts.cv; ++j) {
+    detector.fold(j);
+    nonlinear.take(j, detector);
+  }
   detector.skip(missing);
+  nonlinear.skip(missing, detector);
   outside.skip(missing);
   residuals.skip(missing);
   predictions.skip(missing, inputs);
@@ -230,6 +242,7 @@ void Monitor::State::pass_gap(std::int64_t missing) {
 void Monitor::State::take_sample(const Frame& frame) {
   ++samples;
   detector.update(inputs.values(), residuals.values());
+  nonlinear.add_sample(detector);
   bool used = false;
   for (int j = 0; j < counts.cv; ++j) {
     const auto at = static_cast<std::size_t>(j);
@@ -263,7 +276,10 @@ void Monitor::State::evaluate() {
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
     const bool due = (samples + j * stride / counts.cv) % stride == 0;
-    if (due) detector.fold(j);
+    if (due) {
+      detector.fold(j);
+      judge_nonlinear(j);
+    }
     if (cv.alarms.isolating() || !detector.memory(j).ready()) cv.judged = false;
     cv.evaluated = (due || !cv.judged) && detector.memory(j).ready();
     if (!cv.evaluated) continue;
@@ -271,6 +287,18 @@ void Monitor::State::evaluate() {
     for (int m = 0; m < detector.memory_count(); ++m)
       if (detector.memory(j, m).ready()) detector.evaluate(j, m);
     follow(j);
+  }
+}
+
+// What no verdict can be drawn of says nothing of nonlinearity either.
+void Monitor::State::judge_nonlinear(int j) {
+  bool serves = !of(j).rival.wins;
+  for (int i = 0; i < counts.inputs(); ++i) serves = serves && bad_data(j, i) == Reason::kNone;
+  if (serves)
+    nonlinear.evaluate(j, detector);
+  else {
+    nonlinear.take(j, detector);
+    nonlinear.silence(j);
   }
 }
 
@@ -423,6 +451,9 @@ void Monitor::correlate() {
 
 const ChannelStatus& Monitor::channel(int cv, int input) const {
   return state_->status[state_->index(cv, input)];
+}
+const ChannelNonlinearity& Monitor::nonlinearity(int cv, int input) const {
+  return state_->nonlinear.result(cv, input);
 }
 AlarmState Monitor::alarm(int cv, int input) const { return state_->of(cv).alarms.state(input); }
 Eigen::Ref<const Eigen::VectorXd> Monitor::partial_correlations(int cv, int input) const {

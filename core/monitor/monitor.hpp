@@ -12,6 +12,7 @@
 #include "core/monitor/cv_reading.hpp"
 #include "core/monitor/lost_signals.hpp"
 #include "core/monitor/settings.hpp"
+#include "core/nonlinear/channel_nonlinearity.hpp"
 #include "core/signal/frame.hpp"
 #include "core/signal/screen.hpp"
 
@@ -39,8 +40,9 @@ struct MonitorCounters {
 
 /// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
 /// Deterministic: same frames, same bytes. No allocation in `push` after construction, but where a
-/// signal turns out to live elsewhere than it did (`Screen::anew`) and all is begun anew, and where
-/// something is off and is asked, each 20 samples at most, whether the plant bends (`Curvature`).
+/// signal turns out to live elsewhere than it did (`Screen::anew`) and all is begun anew, where the
+/// nonlinear test of a CV begins (`NonlinearRegression`), and where something is off and is asked,
+/// each 20 samples at most, whether the plant bends (`Curvature`).
 class Monitor {
  public:
   /// `may_predict[j]`: CV j's model prediction may come with the frames. As long as none came, it
@@ -64,6 +66,9 @@ class Monitor {
   /// After the last frame; `partial_correlation` and `lag` as of the last `correlate`.
   [[nodiscard]] const ChannelStatus& channel(int cv, int input) const;
   [[nodiscard]] AlarmState alarm(int cv, int input) const;
+  /// What the nonlinear test says of a channel, as of its CV's last evaluation; undetermined where
+  /// no verdict could be drawn of the data, or the test is off.
+  [[nodiscard]] const ChannelNonlinearity& nonlinearity(int cv, int input) const;
   /// Correlations of a channel, of the kind that the settings name ((3.15) if none), for lags
   /// first_lag()..last_lag(), as of the last `correlate`. Undefined ones (silent or collinear
   /// input) are 0.

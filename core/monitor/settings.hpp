@@ -4,6 +4,7 @@
 
 #include "core/mismatch/calibration.hpp"
 #include "core/mismatch/correlation_kind.hpp"
+#include "core/nonlinear/channel_nonlinearity.hpp"
 
 namespace mpm {
 
@@ -36,8 +37,9 @@ struct MonitorSettings {
   double gain_error_of_interest = 0.25;  ///< relative; larger errors must be visible to say match
   CorrelationKind correlation = CorrelationKind::kLaggedPartial;  ///< the one that is reported
   ThresholdKind threshold = ThresholdKind::kFTest;
-  int controlling_lags = 40;  ///< g of (3.15)
-  int first_lag = -10;        ///< reported range of lags d of (3.15)
+  NonlinearTest nonlinear = NonlinearTest::kPolynomial;  ///< beside the linear test
+  int controlling_lags = 40;                             ///< g of (3.15)
+  int first_lag = -10;                                   ///< reported range of lags d of (3.15)
   int last_lag = 20;
   int fir_lags = 0;              ///< block length of the mismatch detector
   int residual_order = 0;        ///< lags of all residuals

@@ -11,6 +11,7 @@
 
 #include "core/alarm/condition.hpp"
 #include "core/mismatch/verdict.hpp"
+#include "core/nonlinear/channel_nonlinearity.hpp"
 #include "core/record/field_key.hpp"
 
 namespace mpm {
@@ -25,6 +26,7 @@ struct ChannelRecord : ChannelVerdict {
   double time_constant_ratio = 1.0, time_constant_low = 1.0, time_constant_high = 1.0;
   double dead_time_error_s = 0.0, dead_time_low_s = 0.0, dead_time_high_s = 0.0;
   AlarmState alarm = AlarmState::kCleared;
+  ChannelNonlinearity nonlinear;
   int first_lag = 0;
   std::vector<double> partial_correlations;  ///< lags first_lag, first_lag + 1, ...
 
@@ -90,6 +92,7 @@ struct ChannelRecord : ChannelVerdict {
     visit("alarm", record.alarm, sample.alarm_active...);
     visit({"gain_variation", std::isfinite(record.gain_variation)}, record.gain_variation,
           sample.gain_variation...);
+    visit({"nonlinear", record.nonlinear.tested}, record.nonlinear, sample.nonlinear...);
     visit("partial_correlations", std::tie(record.first_lag, record.partial_correlations),
           std::tie(sample.first_lag, sample.partial_correlations)...);
   }

@@ -107,6 +107,7 @@ void UnitMonitor::fill() {
       record.confounder = status.confounder < 0 ? "" : config_.mover_tag(status.confounder);
       fill_errors(status, config_.model.sample_time_s, record);
       record.alarm = monitor_.alarm(j, i);
+      record.nonlinear = monitor_.nonlinearity(j, i);
       const Eigen::Ref<const Eigen::VectorXd> values = monitor_.partial_correlations(j, i);
       for (Eigen::Index l = 0; l < values.size(); ++l)
         record.partial_correlations[static_cast<std::size_t>(l)] = values(l);

@@ -51,6 +51,7 @@ monitor:
   gain_error_of_interest: 0.3
   correlation: conventional
   threshold: mean_line
+  nonlinear: kernel
   controlling_lags: 30
   first_lag: -5
   last_lag: 15
@@ -156,6 +157,7 @@ void check_full(const UnitConfig& config) {
   CHECK(config.monitor.gain_error_of_interest == 0.3);
   CHECK(config.monitor.correlation == CorrelationKind::kConventional);
   CHECK(config.monitor.threshold == ThresholdKind::kMeanLine);
+  CHECK(config.monitor.nonlinear == NonlinearTest::kKernel);
   CHECK(config.monitor.controlling_lags == 30);
   CHECK(config.monitor.first_lag == -5);
   CHECK(config.monitor.last_lag == 15);

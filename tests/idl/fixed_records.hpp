@@ -39,6 +39,14 @@ namespace mpm::test {
   record.smallest_error = 0.08;
   record.effective_samples = 3999.5;
   record.gain_variation = 0.375;
+  record.nonlinear = {.tested = true,
+                      .verdict = NonlinearVerdict::kNonlinear,
+                      .kind = NonlinearKind::kInputCurve,
+                      .p_value = 2.5e-9,
+                      .statistic = 4.5,
+                      .share = 0.0625,
+                      .material = true,
+                      .smallest_variation = 0.125};
   record.alarm = AlarmState::kActive;
   record.first_lag = -2;
   record.partial_correlations = {0.01, -0.02, 0.3, 0.0};

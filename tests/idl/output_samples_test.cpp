@@ -67,6 +67,14 @@ mpm_ChannelStatus mismatching_sample(std::vector<double>& correlations) {
   sample.dead_time_low = -90.5;
   sample.dead_time_high = -29.5;
   sample.gain_variation = 0.375;
+  sample.nonlinear.tested = true;
+  sample.nonlinear.verdict = text("nonlinear");
+  sample.nonlinear.kind = text("input_curve");
+  sample.nonlinear.p_value = 2.5e-9;
+  sample.nonlinear.statistic = 4.5;
+  sample.nonlinear.share = 0.0625;
+  sample.nonlinear.material = true;
+  sample.nonlinear.smallest_variation = 0.125;
   return sample;
 }
 

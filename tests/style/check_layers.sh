@@ -73,8 +73,9 @@ regression
 model
 alarm text
 mismatch text signal regression statistics model
-record text alarm mismatch
-monitor text signal statistics model alarm mismatch
+nonlinear text regression statistics model signal mismatch
+record text alarm mismatch nonlinear
+monitor text signal statistics model alarm mismatch nonlinear
 identify/fit parallel model
 identify/evidence model mismatch monitor identify/fit
 performance signal model monitor identify/fit

@@ -26,6 +26,8 @@ TEST_CASE("records are the JSON lines that readers know, byte for byte") {
         R"("dead_time_error":-60.0,"dead_time_error_interval":[-90.5,-29.5],)"
         R"("smallest_error":0.08,"effective_samples":3999.5,"alarm":"active",)"
         R"("gain_variation":0.375,)"
+        R"("nonlinear":{"verdict":"nonlinear","kind":"input_curve","p_value":2.5e-09,)"
+        R"("statistic":4.5,"share":0.0625,"material":true,"smallest_variation":0.125},)"
         R"("partial_correlations":{"lags":[-2,1],"values":[0.01,-0.02,0.3,0.0]}})");
   CHECK(json_of(collinear_channel()).dump() ==
         R"({"record":"channel","unit":"shell","interval":12,"time_ns":12000000000,"mv":"u1",)"

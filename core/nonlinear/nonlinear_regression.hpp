@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/mismatch/regression_history.hpp"
+#include "core/mismatch/regression_memory.hpp"
+#include "core/mismatch/residual_regression.hpp"
+#include "core/nonlinear/left_out.hpp"
+#include "core/nonlinear/linear_companions.hpp"
+#include "core/nonlinear/nonlinear_terms.hpp"
+#include "core/regression/row_feed.hpp"
+
+namespace mpm {
+
+/// One CV's residual regressed on the rows of the linear test with the CV's nonlinear terms behind
+/// them, weighed as they are there (`ResidualRegression`), and the F test of each input that no
+/// term in which it has a part says anything (Seber and Lee 2003, section 4.3). The linear columns
+/// come first and stay: what they explain, rightly or by chance, is never called nonlinear. The
+/// residual's own past among them takes coloured noise off, so the test holds in closed loop as the
+/// linear one does.
+///
+/// It begins, with all that is remembered, once the linear regression has rows enough, and anew
+/// where that one does or has twice as many rows, until the memory is full: the inputs are then
+/// known better. No allocation but where it begins.
+class NonlinearRegression {
+ public:
+  /// `patience`: samples (>= 1) after which `take` is called at the latest.
+  NonlinearRegression(const RegressionShape& shape, int cv, const LinearModel& model,
+                      NonlinearTest test, const MemoryLength& memory, int patience);
+
+  /// After the history took a sample.
+  void add_sample(const RegressionHistory& history);
+  /// After it skipped `missing` (>= 1) samples, before which all rows were taken.
+  void add_gap(int missing, const RegressionHistory& history);
+  /// Takes the rows that wait. After the CV's linear regression took them.
+  void take(const RegressionHistory& history, const ResidualRegression& regression);
+
+  /// Whether there are rows enough for p-values to mean anything.
+  [[nodiscard]] bool ready() const;
+  /// Reads the factor; it is ready. `results`: one per input, but for the verdict.
+  /// `variation`: two s.d. of the local gain that would be of interest, relative to the model's.
+  void evaluate(double variation, ChannelNonlinearity* results);
+  [[nodiscard]] const RegressionMemory& memory() const { return memory_; }
+  [[nodiscard]] const NonlinearTerms& terms() const { return terms_; }
+
+ private:
+  void begin(const RegressionHistory& history, const ResidualRegression& regression);
+  void feed(const RegressionHistory& history, const ResidualRegression& regression, int age,
+            int term_age);
+  void flush();
+  void advance(const RegressionHistory& history, int age);
+  /// Columns of the residuals' past.
+  [[nodiscard]] int past() const { return shape_.cvs * shape_.residual_order + shape_.means(); }
+  [[nodiscard]] int linear_columns() const {
+    return shape_.columns() - past() + companions_.columns();
+  }
+  /// What the residuals' past is taken to say: what it does where the terms are left out, or beside
+  /// them.
+  enum class Past { kWithoutTerms, kBesideTerms };
+  void read(Past past);
+  void without_terms();
+  void judge(double variation, ChannelNonlinearity* results);
+  [[nodiscard]] double any() const;
+  [[nodiscard]] int past_at() const { return linear_columns() + terms_.columns(); }
+  [[nodiscard]] double chance(const LeftOut::Loss& loss) const;
+  [[nodiscard]] NonlinearKind kind_of(int input);
+
+  RegressionShape shape_;
+  int cv_;
+  LinearCompanions companions_;
+  NonlinearTerms terms_;
+  RegressionMemory memory_;
+  RowBatch batch_;
+  int batched_ = 0;
+  int patience_;
+  int waiting_ = 0;
+  bool begun_ = false;
+  int rows_at_begin_ = 0;
+  std::uint64_t restarts_ = 0;  // of the linear regression when this one began
+  LeftOut left_out_;
+  std::vector<int> set_;
+  std::vector<double> lead_in_;
+  GivensQr past_factor_;
+  Eigen::VectorXd coefficients_;
+  Eigen::VectorXd taken_off_, own_past_;
+  Eigen::VectorXd rotated_;  // of the terms
+  double own_gain_ = 1.0;
+  double error_variance_ = 0.0;  // of a coefficient with a covariance factor of norm 1
+  double freedom_ = 0.0;
+  double linear_square_ = 0.0;  // what the inputs' linear columns explain
+};
+
+}  // namespace mpm

@@ -1,0 +1,129 @@
+#include "core/nonlinear/nonlinear_terms.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/allocation_counter.hpp"
+#include "tests/core/channel_model.hpp"
+#include "tests/core/counter_noise.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int kDepth = 400;
+const RegressionShape kShape{3, 1, 5, 2, {0.9}};
+
+// Two channels, and an input that the CV does not know.
+LinearModel model() {
+  return LinearModel(test::channel_model(3, 1,
+                                         {{0, 0, TransferFunction{1.0, {4.0}, 0, 1, false}},
+                                          {0, 1, TransferFunction{-3.0, {9.0}, 0, 0, false}}}));
+}
+
+Eigen::VectorXd moves(int k) {
+  Eigen::VectorXd u(3);
+  for (int i = 0; i < 3; ++i) u(i) = 2.0 + test::uniform(static_cast<std::uint64_t>(i), k / 7);
+  return u;
+}
+
+struct Run {
+  RegressionHistory history{kShape, kDepth};
+  NonlinearTerms terms;
+  explicit Run(NonlinearTest test) : terms(model(), 0, 0.9, test, 10) {
+    for (int k = 0; k < kDepth; ++k) history.push(moves(k), Eigen::VectorXd::Zero(1));
+    terms.begin(history, kDepth);
+    for (int age = kDepth - 1; age >= 0; --age) terms.advance(history, age);
+  }
+  void step(int k) {
+    history.push(moves(k), Eigen::VectorXd::Zero(1));
+    terms.advance(history, 0);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a column of the square is the channel's answer to the square") {
+  Run run(NonlinearTest::kPolynomial);
+  // Per input square, cube, play and the channel's square; three products; the sum's cube; twice.
+  REQUIRE(run.terms.columns() == 2 * (3 * 4 + 3 + 1));
+  // By hand: standardised by the mean and s.d. of the history, through the same channel, at rest at
+  // the oldest sample.
+  double sum = 0.0, square = 0.0;
+  for (int k = 0; k < kDepth; ++k) sum += moves(k)(1);
+  const double mean = sum / kDepth;
+  for (int k = 0; k < kDepth; ++k) square += std::pow(moves(k)(1) - mean, 2);
+  const double deviation = std::sqrt(square / kDepth);
+  LinearModel channel = model().channel(0, 1);
+  const auto value = [&](int k) {
+    return Eigen::VectorXd::Constant(1, std::pow((moves(k)(1) - mean) / deviation, 2));
+  };
+  channel.reset_steady(value(0));
+  std::vector<double> answers;
+  for (int k = 0; k < kDepth; ++k) {
+    answers.push_back(channel.output()(0));
+    channel.advance(value(k));
+  }
+  Eigen::VectorXd row(run.terms.columns());
+  const int half = run.terms.columns() / 2;
+  for (const int age : {0, 5}) {
+    run.terms.fill(age, row.data());
+    const auto at = static_cast<std::size_t>(kDepth - 1 - age);
+    CHECK(row(run.terms.square_of(1)) == Approx(answers[at]).epsilon(1e-9));
+    CHECK(row(half + run.terms.square_of(1)) == Approx(answers[at - 1]).epsilon(1e-9));
+  }
+  CHECK(run.terms.coefficient_of(1, 0.4) == Approx(0.1 * deviation));
+  CHECK(run.terms.coefficient_of(2, 0.4) == 0.0);
+}
+
+TEST_CASE("each column says which inputs are in it") {
+  Run run(NonlinearTest::kPolynomial);
+  int of_both = 0, of_unknown = 0, of_all = 0;
+  for (int c = 0; c < run.terms.columns(); ++c) {
+    const bool first = run.terms.has(c, 0), second = run.terms.has(c, 1);
+    of_both += first && second ? 1 : 0;
+    of_unknown += run.terms.has(c, 2) ? 1 : 0;
+    of_all += run.terms.kind(c) == NonlinearKind::kOutputCurve ? 1 : 0;
+  }
+  CHECK(of_both == 2 * 2);           // the product and the sum
+  CHECK(of_unknown == 2 * (4 + 2));  // its own and its products; the model gives nothing of it
+  CHECK(of_all == 2);
+}
+
+TEST_CASE("new samples allocate nothing, whatever the functions") {
+  const NonlinearTest test =
+      GENERATE(NonlinearTest::kPolynomial, NonlinearTest::kKernel, NonlinearTest::kRandomFeatures);
+  Run run(test);
+  Eigen::VectorXd row(run.terms.columns());
+  const std::vector<Eigen::VectorXd> later = {moves(500), moves(530)};
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
+  const std::uint64_t before = test::allocation_count();
+  for (const Eigen::VectorXd& u : later) {
+    run.history.push(u, none);
+    run.terms.advance(run.history, 0);
+    run.terms.fill(0, row.data());
+  }
+  CHECK(test::allocation_count() == before);
+  CHECK(row.allFinite());
+  CHECK(row.norm() > 0.0);
+}
+
+TEST_CASE("an input that stands still gives no columns") {
+  RegressionHistory history(kShape, kDepth);
+  NonlinearTerms terms(model(), 0, 0.9, NonlinearTest::kPolynomial, 10);
+  for (int k = 0; k < kDepth; ++k) {
+    Eigen::VectorXd u = moves(k);
+    u(0) = 5.0;
+    history.push(u, Eigen::VectorXd::Zero(1));
+  }
+  terms.begin(history, kDepth);
+  for (int age = kDepth - 1; age >= 0; --age) terms.advance(history, age);
+  Eigen::VectorXd row(terms.columns());
+  terms.fill(0, row.data());
+  CHECK(row.allFinite());
+  CHECK(row(terms.square_of(0)) == 0.0);
+  CHECK_THROWS_AS(NonlinearTerms(model(), 0, 0.9, NonlinearTest::kOff, 10), std::invalid_argument);
+}
+
+}  // namespace mpm
