@@ -12,6 +12,8 @@ struct Belief {
   double largest_index = std::numeric_limits<double>::infinity();  ///< of the excitation
   double p_value = 1.0;                                            ///< at most
 
+  /// Whatever there is counts.
+  [[nodiscard]] bool in_all() const { return p_value >= 1.0; }
   [[nodiscard]] bool has(const ChannelEvidence& evidence) const {
     return evidence.excitation_index <= largest_index && evidence.p_value <= p_value;
   }

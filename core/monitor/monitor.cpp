@@ -290,9 +290,10 @@ void Monitor::State::evaluate() {
   }
 }
 
-// What no verdict can be drawn of says nothing of nonlinearity either.
+// What no verdict can be drawn of says nothing of nonlinearity either, nor do coarse readings,
+// whose steps are no line.
 void Monitor::State::judge_nonlinear(int j) {
-  bool serves = !of(j).rival.wins;
+  bool serves = !of(j).rival.wins && belief(j).in_all();
   for (int i = 0; i < counts.inputs(); ++i) serves = serves && bad_data(j, i) == Reason::kNone;
   if (serves)
     nonlinear.evaluate(j, detector);

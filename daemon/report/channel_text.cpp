@@ -142,6 +142,26 @@ std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file)
   return text;
 }
 
+std::string nonlinear_text(const ChannelRecord& channel) {
+  if (channel.nonlinear.verdict != NonlinearVerdict::kNonlinear) return "";
+  const std::string mv = printable(channel.mv), cv = printable(channel.cv);
+  switch (channel.nonlinear.kind) {
+    case NonlinearKind::kInputCurve:
+      return "bends over the range of " + mv + ", as behind a valve that is bent or saturates";
+    case NonlinearKind::kHysteresis:
+      return "depends on where " + mv + " came from, as behind a valve that sticks or has play";
+    case NonlinearKind::kChannelCurve:
+      return "its gain depends on how far " + mv + " has moved " + cv;
+    case NonlinearKind::kInteraction:
+      return "its gain depends on another input";
+    case NonlinearKind::kOutputCurve:
+      return cv + " bends over its range, whatever moves it";
+    case NonlinearKind::kNone:
+      break;
+  }
+  return "answers as no linear channel does";
+}
+
 std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& file) {
   switch (channel.reason) {
     case Reason::kWarmingUp:

@@ -25,6 +25,9 @@ struct ChannelFile {
 /// nothing much else.
 [[nodiscard]] std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file);
 
+/// How a channel answers as no linear one does; empty unless it does.
+[[nodiscard]] std::string nonlinear_text(const ChannelRecord& channel);
+
 /// Of what is undetermined: why, and what would help.
 [[nodiscard]] std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& file);
 

@@ -185,6 +185,7 @@ std::string to_text(const DetectReport& report, const config::UnitConfig& unit,
   const MomentText moment(report.last_ns, unit.sample_time_s, zone);
   Teller teller(report, unit, layout, moment);
   teller.section("Mismatch", [&](const auto& channel) { return teller.problem(channel); });
+  teller.section("Not linear", [](const auto& channel) { return nonlinear_text(channel); });
   teller.section("Undetermined", [&](const auto& channel) { return teller.open(channel); });
   teller.section("Alarms that are over", [&](const auto& channel) { return teller.past(channel); });
   return wrapped(head(report, moment), 0, layout.width) + '\n' + matrix(report.channels, layout) +

@@ -18,6 +18,8 @@ of the test; --model-error 1: they are off by as much as in score.py. Tables, sh
 * coverage: of the 95 % intervals of gain, time constants and dead time that `mpm detect` gives, how
   many hold the truth, by the size of the channel's error: of gain and time constant the larger of
   ratio and inverse, of the dead time by the dead time and one sample.
+--nonlinear: in place of all others, what the nonlinear test says of linear channels, and of valves
+that stick (those of the MV that does count as nonlinear, to all CVs, and are not among the linear).
 --bounds: exit 1 where a share lies so far beyond what is claimed that a true share there would come
 in one of 1000 runs of this program.
 """
@@ -95,8 +97,11 @@ def one(mpm, regime, plant, effect, seed, samples, model_error, keep):
             accused.add(at)
         if at in true:
             covered += [[*at, *c] for c in intervals(channel, true[at], truth["sample_time"])]
+    bent = [[c["mv"] == truth["mv"] if effect == "stiction" else False,
+             c["nonlinear"]["p_value"], c["nonlinear"]["verdict"]] for c in answer["channels"]
+            if c.get("nonlinear", {}).get("tested", True) and "nonlinear" in c]
     alarms = {(a["mv"], a["cv"]) for a in answer["alarms"] if a["to"] == "active"}
-    case.update(wrong=wrong, healthy=healthy, covered=covered,
+    case.update(wrong=wrong, healthy=healthy, covered=covered, bent=bent,
                 false_alarms=sorted(alarms & accused), right_alarms=sorted(alarms - accused))
     return case
 
@@ -165,6 +170,22 @@ def coverage_rows(cases):
             yield f"| {quantity} | {name} | {cells} |"
 
 
+def nonlinear_rows(cases):
+    yield ("| regime | effect | channels that are linear | p below 0.01 | called nonlinear | "
+           "runs with a sticking valve | found |")
+    yield "|---|---|---|---|---|---|---|"
+    for regime, of_regime in groups(cases, "regime"):
+        for effect in dict.fromkeys(c["effect"] for c in of_regime):
+            chosen = [c for c in of_regime if c["effect"] == effect]
+            linear = [b for c in chosen for b in c["bent"] if not b[0]]
+            called = sum(b[2] == "nonlinear" for b in linear)
+            found = [any(b[0] and b[2] == "nonlinear" for b in c["bent"]) for c in chosen]
+            of_bent = (f"{len(chosen)} | {share(sum(found), len(found))}" if effect == "stiction"
+                       else " | ")
+            yield (f"| {regime} | {effect} | {len(linear)} | "
+                   f"{sum(b[1] < 0.01 for b in linear)} | {share(called, len(linear))} | {of_bent} |")
+
+
 def beyond(cases):
     """Lines that say of each bound whether it holds."""
     healthy = [h[2] == "mismatch" for c in cases for h in c["healthy"]]
@@ -205,6 +226,7 @@ def main():
     parser.add_argument("--keep")
     parser.add_argument("--json")
     parser.add_argument("--markdown")
+    parser.add_argument("--nonlinear", action="store_true")
     parser.add_argument("--bounds", action="store_true")
     args = parser.parse_args()
     wanted = [(args.mpm, regime, plant, effect, seed, args.samples, args.model_error, args.keep)
@@ -221,7 +243,9 @@ def main():
     good = [c for c in cases if not c["failed"]]
     if args.json:
         pathlib.Path(args.json).write_text(json.dumps(cases, indent=1) + "\n")
-    if len(args.regime) > 1:
+    if args.nonlinear:
+        tables = {"foreign": list(nonlinear_rows(good))}
+    elif len(args.regime) > 1:
         tables = {"regimes": list(power_rows(good, "regime"))}
     else:
         tables = {"power": list(power_rows(good, "plant")), "coverage": list(coverage_rows(good))}

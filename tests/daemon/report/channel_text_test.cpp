@@ -69,6 +69,16 @@ TEST_CASE("an alarm tells of the gain only where that may be what is wrong") {
   CHECK(error_text(raised, &channel) == "gain +2 %");
 }
 
+TEST_CASE("a channel that is not linear is told by its kind") {
+  ChannelRecord channel = undetermined("FIC-101", "AI-201", Reason::kNotExcited, 0.5);
+  CHECK(nonlinear_text(channel).empty());
+  channel.nonlinear.kind = NonlinearKind::kHysteresis;
+  CHECK(nonlinear_text(channel).empty());  // that is for certain only with the verdict
+  channel.nonlinear.verdict = NonlinearVerdict::kNonlinear;
+  CHECK(nonlinear_text(channel) ==
+        "depends on where FIC-101 came from, as behind a valve that sticks or has play");
+}
+
 TEST_CASE("every reason has its words") {
   const ChannelFile file = channel_file(column(), "FIC-101", "AI-201");
   const auto text = [&](Reason reason, const std::string& confounder = "") {
