@@ -7,6 +7,8 @@
 #include "core/model/linear_model.hpp"
 #include "core/monitor/calibration.hpp"
 #include "core/monitor/derived_settings.hpp"
+#include "core/nonlinear/linear_companions.hpp"
+#include "core/nonlinear/nonlinear_terms.hpp"
 
 namespace mpm {
 namespace {
@@ -42,10 +44,24 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   const double shapes = kTwice * inputs * cvs *
                         std::min(calibration::usual_errors::kTailFitTimeConstants * slowest,
                                  static_cast<double>(calibration::usual_errors::kTailFitMost));
-  cost.bytes = kNumber * (history + factors + 2.0 * evaluation + tree + shapes);
-  cost.seconds = kPerRotated * (factors + tree) + kPerInverted * cvs * memories *
-                                                      std::pow(inputs * block, 3) /
-                                                      derived.evaluation_stride;
+  const double terms = NonlinearTerms::columns_of(derived.nonlinear, spec.input_count);
+  const RegressionShape shape{spec.input_count,
+                              spec.cv_count,
+                              derived.fir_lags,
+                              derived.residual_order,
+                              derived.tail_poles,
+                              {},
+                              0,
+                              derived.residual_poles};
+  const double beside =
+      terms > 0.0 ? cost.columns + LinearCompanions(shape, 1).columns() + terms : 0.0;
+  const double nonlinear = cvs * beside * beside;
+  cost.bytes = kNumber * (history + factors + nonlinear + 2.0 * cvs * terms * terms +
+                          2.0 * evaluation + tree + shapes);
+  cost.seconds = kPerRotated * (factors + nonlinear + tree) +
+                 kPerInverted * cvs *
+                     (memories * std::pow(inputs * block, 3) + std::pow(terms, 3)) /
+                     derived.evaluation_stride;
   return cost;
 }
 

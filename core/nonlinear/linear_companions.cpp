@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/nonlinear/calibration.hpp"
 
 namespace mpm {
@@ -12,7 +13,9 @@ LinearCompanions::LinearCompanions(const RegressionShape& shape, int remembered)
     : inputs_(shape.inputs) {
   const double slowest = *std::max_element(shape.tail_poles.begin(), shape.tail_poles.end());
   const double fastest = calibration::linear_companions::kFasterThanLags * shape.fir_lags;
-  double time = -2.0 / std::log(slowest);
+  // What is slower than any tail that is fitted is no more than a constant.
+  double time = std::min(-2.0 / std::log(slowest),
+                         static_cast<double>(calibration::usual_errors::kTailFitMost));
   do {
     const double pole = std::exp(-1.0 / time);
     const auto known = [pole](double tail) {

@@ -114,6 +114,28 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
   windows_.assign(terms_.size(), LagWindow(remembered + limits::kLags));
 }
 
+int NonlinearTerms::columns_of(NonlinearTest test, int inputs) {
+  int input = 0, channel = 0, pair = 0, sum = 0;  // terms of one sample
+  switch (test) {
+    case NonlinearTest::kOff:
+      return 0;
+    case NonlinearTest::kPolynomial:
+      input = 2, channel = pair = sum = 1;
+      break;
+    case NonlinearTest::kKernel:
+      input = channel = 1 + limits::kComponents, pair = limits::kPairComponents;
+      sum = limits::kComponents;
+      break;
+    case NonlinearTest::kRandomFeatures:
+      input = channel = 1 + 2 * limits::kFrequencies, pair = 2 * limits::kPairFrequencies;
+      sum = 2 * limits::kFrequencies;
+      break;
+  }
+  const int crossed = std::min(limits::kMostCrossed, inputs);
+  return limits::kLags *
+         (inputs * (input + 1 + channel) + crossed * (crossed - 1) / 2 * pair + sum);
+}
+
 int NonlinearTerms::columns() const { return limits::kLags * terms(); }
 
 bool NonlinearTerms::has(int column, int input) const {

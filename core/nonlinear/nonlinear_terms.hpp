@@ -36,6 +36,8 @@ class NonlinearTerms {
   NonlinearTerms(const LinearModel& model, int cv, double pole, NonlinearTest test, int remembered);
 
   [[nodiscard]] int columns() const;
+  /// How many columns a CV of a unit with so many inputs has; 0 where the test is off.
+  [[nodiscard]] static int columns_of(NonlinearTest test, int inputs);
   [[nodiscard]] int inputs() const { return static_cast<int>(channels_.size()); }
   /// Whether a column depends on the input.
   [[nodiscard]] bool has(int column, int input) const;

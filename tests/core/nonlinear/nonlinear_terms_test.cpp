@@ -77,6 +77,17 @@ TEST_CASE("a column of the square is the channel's answer to the square") {
   CHECK(run.terms.coefficient_of(2, 0.4) == 0.0);
 }
 
+TEST_CASE("how many columns there are is known beforehand") {
+  // Counted from the list in the header, two lags each: of three inputs 3 x 4 and 3 pairs and the
+  // sum's cube; a kernel has 5 + 1 + 5 of an input, 6 of a pair and 4 of the sum.
+  CHECK(NonlinearTerms::columns_of(NonlinearTest::kOff, 3) == 0);
+  CHECK(NonlinearTerms::columns_of(NonlinearTest::kPolynomial, 3) == 2 * (3 * 4 + 3 + 1));
+  CHECK(NonlinearTerms::columns_of(NonlinearTest::kKernel, 3) == 2 * (3 * 11 + 3 * 6 + 4));
+  for (const NonlinearTest test :
+       {NonlinearTest::kPolynomial, NonlinearTest::kKernel, NonlinearTest::kRandomFeatures})
+    CHECK(Run(test).terms.columns() == NonlinearTerms::columns_of(test, 3));
+}
+
 TEST_CASE("each column says which inputs are in it") {
   Run run(NonlinearTest::kPolynomial);
   int of_both = 0, of_unknown = 0, of_all = 0;
