@@ -103,9 +103,10 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
   const int crossed = std::min(limits::kMostCrossed, inputs());
   for (int a = 0; a < crossed; ++a)
     for (int b = a + 1; b < crossed; ++b) {
-      pairs_.push_back({a, b, product(test)});
-      for (int f = 0; f < pairs_.back().map->outputs(); ++f)
+      Pair pair{a, b, product(test)};
+      for (int f = 0; f < pair.map->outputs(); ++f)
         terms_.push_back({a, b, NonlinearKind::kInteraction});
+      pairs_.push_back(std::move(pair));
     }
   sum_map_ = test == NonlinearTest::kPolynomial ? curve(test, {{3, 0}}) : kernel_map(test, 1);
   for (int f = 0; f < sum_map_->outputs(); ++f)
@@ -264,7 +265,7 @@ void NonlinearTerms::choose_pairs() {
   order.resize(static_cast<std::size_t>(std::min(limits::kMostCrossed, inputs())));
   std::sort(order.begin(), order.end());
   std::size_t at = 0;
-  std::size_t term = static_cast<std::size_t>(square_of(inputs()));
+  auto term = static_cast<std::size_t>(square_of(inputs()));
   for (std::size_t a = 0; a < order.size(); ++a)
     for (std::size_t b = a + 1; b < order.size(); ++b, ++at) {
       pairs_[at].a = order[a];
