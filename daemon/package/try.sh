@@ -13,22 +13,23 @@ mirror=$(apt-get indextargets --format '$(SITE)' "Codename: $release" | head -n 
 debootstrap --variant=minbase --include=systemd-sysv,dbus,procps "$release" "$root" "$mirror" >"$root.log" 2>&1 ||
   { tail -n 20 "$root.log" >&2; exit 2; }
 rm -f "$root.log"
-cp "$package" "$root/root/mpm.deb"
-cp "$here/try_inside.sh" "$root/root/"
+mkdir "$root/try"
+cp "$package" "$root/try/mpm.deb"
+cp "$here/try_inside.sh" "$root/try/"
 in_it() { systemd-nspawn -q -D "$root" --register=no --keep-unit "$@"; }
-in_it --pipe sh -c 'DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends /root/mpm.deb' \
-  >"$root/root/apt.log" 2>&1 || { tail -n 20 "$root/root/apt.log" >&2; exit 2; }
+in_it --pipe sh -c 'DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends /try/mpm.deb' \
+  >"$root/try/apt.log" 2>&1 || { tail -n 20 "$root/try/apt.log" >&2; exit 2; }
 
 cat >"$root/etc/systemd/system/try.service" <<'TEXT'
 [Service]
 Type=idle
-ExecStart=/bin/sh /root/try_inside.sh
+ExecStart=/bin/sh /try/try_inside.sh
 ExecStopPost=/bin/systemctl poweroff --no-block
 [Install]
 WantedBy=multi-user.target
 TEXT
 ln -s /etc/systemd/system/try.service "$root/etc/systemd/system/multi-user.target.wants/"
 timeout 300 systemd-nspawn -q -D "$root" --register=no --keep-unit --private-network -b \
-  </dev/null >"$root/root/boot.log" 2>&1 || :
-cat "$root/root/said"
-tail -n 1 "$root/root/said" | grep -qx 'package: all right'
+  </dev/null >"$root/try/boot.log" 2>&1 || :
+cat "$root/try/said"
+tail -n 1 "$root/try/said" | grep -qx 'package: all right'

@@ -1,5 +1,5 @@
-# Runs as a service of the container that try.sh boots; says what it sees in /root/said.
-exec >/root/said 2>&1
+# Runs as a service of the container that try.sh boots; says what it sees in /try/said.
+exec >/try/said 2>&1
 set -eu
 fail() { echo "package: $*"; journalctl -u mpmd --no-pager | tail -n 20; exit 1; }
 wait_for() {  # SECONDS WHAT COMMAND...
@@ -23,7 +23,7 @@ systemctl is-active -q mpmd || fail "is not active"
 echo "started: $(status)"
 [ "$(ps -o user= -p "$(pid)")" = mpm ] || fail "runs as another user"
 mpmsim --config /usr/share/mpm/plants/shell3x3.yaml --scenario hidden_gain --samples 3000 --speed 300 \
-  >/root/mpmsim.log 2>&1 || fail "mpmsim: $(tail -n 1 /root/mpmsim.log)"
+  >/try/mpmsim.log 2>&1 || fail "mpmsim: $(tail -n 1 /try/mpmsim.log)"
 wait_for 20 "alarm in the journal" alarmed
 echo "alarmed: $(status)"
 [ -z "$(find /var/lib/mpm -perm /o=rwx)" ] || fail "others may read $(find /var/lib/mpm -perm /o=rwx)"
@@ -35,7 +35,7 @@ wait_for 10 "restart after kill -9" comes_back
 echo "killed: back with another process"
 
 before=$(pid)
-dpkg -i /root/mpm.deb >/root/dpkg.log 2>&1 || fail "upgrade: $(tail -n 1 /root/dpkg.log)"
+dpkg -i /try/mpm.deb >/try/dpkg.log 2>&1 || fail "upgrade: $(tail -n 1 /try/dpkg.log)"
 wait_for 10 "restart by the upgrade" comes_back
 alarmed || fail "the upgrade lost the journal"
 echo "upgraded: the journal was kept"
@@ -49,8 +49,8 @@ sleep 5
 echo "refused: a bad unit file, once"
 
 rm /etc/mpm/units/shell3x3.yaml
-dpkg --purge mpm >/root/dpkg.log 2>&1 || fail "purge: $(tail -n 1 /root/dpkg.log)"
-left=$(find / -xdev \( -path /proc -o -path /sys -o -path /root -o -path /run \) -prune -o \
+dpkg --purge mpm >/try/dpkg.log 2>&1 || fail "purge: $(tail -n 1 /try/dpkg.log)"
+left=$(find / -xdev \( -path /proc -o -path /sys -o -path /try -o -path /run \) -prune -o \
   \( -name 'mpm*' -o -name '*mpmd*' \) -print)
 [ -z "$left" ] || fail "left behind: $left"
 ! getent passwd mpm || fail "the user is still there"
