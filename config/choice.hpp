@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "core/alarm/alarm_settings.hpp"
 #include "core/model/model_spec.hpp"
 #include "core/monitor/settings.hpp"
 
@@ -35,6 +36,16 @@ struct Choice {
   return std::array{Choice<DisturbanceShape>{"step", DisturbanceShape::kStep},
                     Choice<DisturbanceShape>{"drift", DisturbanceShape::kDrift},
                     Choice<DisturbanceShape>{"periodic", DisturbanceShape::kPeriodic}};
+}
+[[nodiscard]] constexpr auto choices(NotificationClass /*which*/) {
+  return std::array{Choice<NotificationClass>{"event", NotificationClass::kEvent},
+                    Choice<NotificationClass>{"alert", NotificationClass::kAlert},
+                    Choice<NotificationClass>{"alarm", NotificationClass::kAlarm}};
+}
+[[nodiscard]] constexpr auto choices(AlarmPriority /*which*/) {
+  return std::array{Choice<AlarmPriority>{"low", AlarmPriority::kLow},
+                    Choice<AlarmPriority>{"medium", AlarmPriority::kMedium},
+                    Choice<AlarmPriority>{"high", AlarmPriority::kHigh}};
 }
 
 template <class Kind>

@@ -59,6 +59,33 @@ const std::vector<Field<AlarmSettings>>& alarm_fields() {
   return fields;
 }
 
+const std::vector<Field<ManagedAlarm::Settings>>& managed_alarm_fields() {
+  using S = ManagedAlarm::Settings;
+  static const std::vector<Field<S>> fields = {
+      {"latching", &S::latching, kAny, "what has gone waits until it is acknowledged"},
+      {"realarm", &S::realarm_s, kNotNegative, "s, from acknowledged on; 0 = never"},
+      {"max_shelve", &S::max_shelve_s, {.low = 1.0, .high = 31.0 * 86400.0}, "s"},
+  };
+  return fields;
+}
+
+const std::vector<Field<ControllerAlarmSettings>>& controller_alarm_fields() {
+  using S = ControllerAlarmSettings;
+  static const std::vector<Field<S>> fields = {
+      {"class", &S::notification_class, kAny, "event | alert | alarm"},
+      {"priority", &S::priority, kAny, "low | medium | high"},
+      {"on_delay", &S::on_delay_s, kNotNegative, "s"},
+      {"off_delay", &S::off_delay_s, kNotNegative, "s"},
+      {"consequence", &S::consequence, kAny, ""},
+      {"action", &S::action, kAny, ""},
+      {"time_to_respond", &S::time_to_respond_s, kNotNegative, "s"},
+      {"guidance", &S::guidance, kAny, ""},
+      {"display_url", &S::display_url, kAny, ""},
+      {"runbook", &S::runbook, kAny, ""},
+  };
+  return fields;
+}
+
 const std::vector<Field<DdsSettings>>& dds_fields() {
   using S = DdsSettings;
   static const std::vector<Field<S>> fields = {

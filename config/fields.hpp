@@ -14,7 +14,8 @@ template <class Settings>
 struct Field {
   const char* key;
   std::variant<double Settings::*, int Settings::*, bool Settings::*, std::string Settings::*,
-               CorrelationKind Settings::*, ThresholdKind Settings::*, NonlinearTest Settings::*>
+               CorrelationKind Settings::*, ThresholdKind Settings::*, NonlinearTest Settings::*,
+               NotificationClass Settings::*, AlarmPriority Settings::*>
       member;
   Range range;        ///< of numbers
   const char* notes;  ///< printed beside the value
@@ -23,6 +24,8 @@ struct Field {
 [[nodiscard]] const std::vector<Field<MonitorSettings>>& monitor_fields();
 [[nodiscard]] const std::vector<Field<MaterialitySettings>>& materiality_fields();
 [[nodiscard]] const std::vector<Field<AlarmSettings>>& alarm_fields();
+[[nodiscard]] const std::vector<Field<ManagedAlarm::Settings>>& managed_alarm_fields();
+[[nodiscard]] const std::vector<Field<ControllerAlarmSettings>>& controller_alarm_fields();
 [[nodiscard]] const std::vector<Field<DdsSettings>>& dds_fields();
 [[nodiscard]] const std::vector<Field<SimulationSettings>>& simulation_fields();
 [[nodiscard]] const std::vector<Field<NoiseSettings>>& noise_fields();

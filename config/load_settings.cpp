@@ -29,6 +29,21 @@ void load_materiality(const Value& section, const UnitConfig& unit, MonitorSetti
   }
 }
 
+// Whoever calls an operator must say what for (ISA-18.2, rationalization).
+void load_controller_alarm(const Value& section, ControllerAlarmSettings& alarm) {
+  if (section.is_null()) return;
+  const Map map = section.map(keys(controller_alarm_fields()));
+  read_fields(map, controller_alarm_fields(), alarm);
+  if (alarm.notification_class != NotificationClass::kAlarm) return;
+  std::vector<std::string> missing;
+  if (alarm.consequence.empty()) missing.emplace_back("consequence");
+  if (alarm.action.empty()) missing.emplace_back("action");
+  if (!(alarm.time_to_respond_s > 0.0)) missing.emplace_back("time_to_respond");
+  if (!missing.empty())
+    map.find("class")->error("an alarm needs an operator's answer in time: give " + join(missing) +
+                             ", or leave it an alert");
+}
+
 }  // namespace
 
 void load_monitor(const Value* section, const UnitConfig& unit, MonitorSettings& monitor) {
@@ -48,8 +63,14 @@ void load_monitor(const Value* section, const UnitConfig& unit, MonitorSettings&
 
 void load_alarms(const Value* section, UnitConfig& config) {
   if (section == nullptr) return;
-  const Map map = section->map(keys(alarm_fields()));
+  std::vector<std::string> known = keys(alarm_fields());
+  for (const std::string& key : keys(managed_alarm_fields())) known.push_back(key);
+  known.emplace_back("controller");
+  const Map map = section->map(known);
   read_fields(map, alarm_fields(), config.alarms);
+  read_fields(map, managed_alarm_fields(), config.alarm_handling.managed);
+  if (const Value* controller = map.find("controller"))
+    load_controller_alarm(*controller, config.alarm_handling.controller);
   if (config.alarms.clear_p_value < config.alarms.raise_p_value)
     place_of(map, "clear_p_value", "raise_p_value")
         .error("clear_p_value must not be below raise_p_value");

@@ -185,6 +185,9 @@ void print_unit(const UnitConfig& config, std::ostream& out) {
   print_materiality(config, out);
   out << "alarms:\n";
   print_fields(alarm_fields(), config.alarms, out);
+  print_fields(managed_alarm_fields(), config.alarm_handling.managed, out);
+  out << "  controller: "
+      << inline_fields(controller_alarm_fields(), config.alarm_handling.controller) << '\n';
   out << "dds:\n";
   print_fields(dds_fields(), config.dds, out);
   out << "  peers: " << yaml_text(config.dds.peers) << '\n';

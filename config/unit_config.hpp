@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/alarm/alarm_settings.hpp"
 #include "core/identification/channel_hint.hpp"
 #include "core/model/model_spec.hpp"
 #include "core/monitor/settings.hpp"
@@ -96,6 +97,7 @@ struct UnitConfig {
   ModelSpec model;
   MonitorSettings monitor;
   AlarmSettings alarms;
+  AlarmHandling alarm_handling;
   DdsSettings dds;
   SimulationSettings simulation;
   std::vector<ChannelHint> identify;  ///< what `mpm identify` is told beforehand

@@ -14,6 +14,8 @@ constexpr int kStatusDepth = 1024;
 constexpr int kStatusReaderLimit = 262144;
 // Alarm changes per channel that a late joiner gets to see.
 constexpr int kEventDepth = 64;
+// Commands to a unit that wait; nobody types faster.
+constexpr int kCommandDepth = 64;
 constexpr int kForeignDepth = 4096;
 constexpr int kNeighbourUnits = 1024;
 
@@ -74,6 +76,12 @@ Qos channel_status_writer_qos() { return transient_local(kStatusDepth, 1); }
 Qos channel_status_reader_qos() { return transient_local_reader(kStatusReaderLimit); }
 Qos alarm_event_writer_qos() { return transient_local(kEventDepth, kEventDepth); }
 Qos alarm_event_reader_qos() { return transient_local_reader(kStatusReaderLimit); }
+
+Qos command_qos() {
+  Qos qos = reliable(kOutputBlocking);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kCommandDepth);
+  return qos;
+}
 
 // Best effort: no writer waits for a reader that is full.
 Qos neighbour_health_qos() {

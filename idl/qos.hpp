@@ -31,6 +31,9 @@ enum class WriterPace {
 [[nodiscard]] Qos alarm_event_writer_qos();
 [[nodiscard]] Qos alarm_event_reader_qos();
 
+/// Commands and replies, both sides: who was not there when it was said does not hear it.
+[[nodiscard]] Qos command_qos();
+
 /// A reader of what other monitors say of their health: nothing of its own participant's, the last
 /// word only, of so many units at most.
 [[nodiscard]] Qos neighbour_health_qos();

@@ -25,6 +25,7 @@ constexpr KnownTopic input(const char* name) {
 }
 
 Qos layout_writer(WriterPace) { return layout_qos(); }
+Qos command_writer(WriterPace) { return command_qos(); }
 
 template <class Record>
 Qos output_writer(WriterPace) {
@@ -42,6 +43,8 @@ constexpr auto topics(const std::tuple<Record...>*) {
       input("mpm/setpoint"),
       input("mpm/raw"),
       known<mpm_Layout>(kLayoutTopic, late_joiner_reader_qos, layout_writer),
+      known<mpm_Command>(kCommandTopic, command_qos, command_writer),
+      known<mpm_CommandReply>(kCommandReplyTopic, command_qos, command_writer),
       known<SampleOf<Record>>(OutputTopic<Record>::kName, OutputTopic<Record>::kEveryChangeQos,
                               output_writer<Record>)...};
 }

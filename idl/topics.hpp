@@ -5,6 +5,8 @@
 
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
+#include "core/record/command_record.hpp"
+#include "core/record/controller_alarm_record.hpp"
 #include "core/record/health_record.hpp"
 #include "core/record/performance_record.hpp"
 #include "core/signal/frame.hpp"
@@ -17,6 +19,9 @@ inline constexpr const char* kLayoutTopic = "mpm/layout";
 inline constexpr const char* kChannelStatusTopic = "mpm/channel_status";
 inline constexpr const char* kAlarmTopic = "mpm/alarm";
 inline constexpr const char* kAlarmEventTopic = "mpm/alarm_event";
+inline constexpr const char* kControllerAlarmTopic = "mpm/controller_alarm";
+inline constexpr const char* kCommandTopic = "mpm/command";
+inline constexpr const char* kCommandReplyTopic = "mpm/command_reply";
 inline constexpr const char* kHealthTopic = "mpm/health";
 inline constexpr const char* kPerformanceTopic = "mpm/performance";
 
@@ -51,6 +56,18 @@ struct TopicType<mpm_Alarm> {
 template <>
 struct TopicType<mpm_AlarmEvent> {
   static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_AlarmEvent_desc; }
+};
+template <>
+struct TopicType<mpm_ControllerAlarm> {
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_ControllerAlarm_desc; }
+};
+template <>
+struct TopicType<mpm_Command> {
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Command_desc; }
+};
+template <>
+struct TopicType<mpm_CommandReply> {
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_CommandReply_desc; }
 };
 template <>
 struct TopicType<mpm_Health> {
@@ -102,7 +119,15 @@ struct OutputTopic<HealthRecord> {
   static constexpr auto kEveryChangeQos = late_joiner_reader_qos;
   static constexpr int kBatch = 64;
 };
-
+template <>
+struct OutputTopic<ControllerAlarmRecord> {
+  using Sample = mpm_ControllerAlarm;
+  static constexpr const char* kName = kControllerAlarmTopic;
+  static constexpr auto kWriterQos = alarm_qos;
+  static constexpr auto kReaderQos = alarm_qos;
+  static constexpr auto kEveryChangeQos = late_joiner_reader_qos;
+  static constexpr int kBatch = 64;
+};
 template <>
 struct OutputTopic<PerformanceRecord> {
   using Sample = mpm_Performance;
@@ -113,9 +138,28 @@ struct OutputTopic<PerformanceRecord> {
   static constexpr int kBatch = 64;
 };
 
-/// All that the monitor says. Of one frame the alarms follow the channels.
-using OutputRecords =
-    std::tuple<ChannelRecord, AlarmStateRecord, AlarmRecord, HealthRecord, PerformanceRecord>;
+template <>
+struct OutputTopic<CommandRecord> {
+  using Sample = mpm_Command;
+  static constexpr const char* kName = kCommandTopic;
+  static constexpr auto kWriterQos = command_qos;
+  static constexpr auto kReaderQos = command_qos;
+  static constexpr auto kEveryChangeQos = command_qos;
+  static constexpr int kBatch = 64;
+};
+template <>
+struct OutputTopic<CommandReplyRecord> {
+  using Sample = mpm_CommandReply;
+  static constexpr const char* kName = kCommandReplyTopic;
+  static constexpr auto kWriterQos = command_qos;
+  static constexpr auto kReaderQos = command_qos;
+  static constexpr auto kEveryChangeQos = command_qos;
+  static constexpr int kBatch = 64;
+};
+
+/// All that the monitor says unasked. Of one frame the alarms follow the channels.
+using OutputRecords = std::tuple<ChannelRecord, AlarmStateRecord, AlarmRecord,
+                                 ControllerAlarmRecord, HealthRecord, PerformanceRecord>;
 
 template <class Record>
 using SampleOf = typename OutputTopic<Record>::Sample;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/mismatch/verdict.hpp"
+#include "core/record/control_room_view.hpp"
 #include "core/record/field_key.hpp"
 #include "core/text/words.hpp"
 
@@ -94,6 +95,15 @@ struct AlarmStateRecord : AlarmRecord {
   /// What holds after `change`.
   explicit AlarmStateRecord(AlarmRecord change) : AlarmRecord(std::move(change)) {
     if (to == AlarmChange::kDiagnosed) to = AlarmChange::kActive;
+  }
+
+  ControlRoomView view;
+
+  /// See FieldKey.
+  template <class Visit, class Record, class... Sample>
+  static void fields(Visit&& visit, Record& record, Sample&... sample) {
+    AlarmRecord::fields(visit, record, sample...);
+    ControlRoomView::fields(visit, record.view, sample...);
   }
 };
 

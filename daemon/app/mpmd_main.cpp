@@ -50,6 +50,8 @@ struct Options {
   std::optional<std::string> partition;
   live::ServiceOptions service;
   std::string state_folder = default_state_folder();
+  std::string alarm_journal;
+  std::string token_file;
   std::string log_level = "info";
 };
 
@@ -74,7 +76,15 @@ void declare(CLI::App& app, Options& options) {
                  "append every sample's records to this file as JSON lines; a gigabyte a day of "
                  "nine channels at 1 s");
   app.add_option("--state-dir", options.state_folder,
-                 "keep the reports of diagnosed alarms in this folder (default: $STATE_DIRECTORY)");
+                 "keep the reports of diagnosed alarms and the journal of alarms in this folder "
+                 "(default: $STATE_DIRECTORY)");
+  app.add_option("--alarm-journal", options.alarm_journal,
+                 "keep what happens to alarms in this SQLite file, and what people did about them "
+                 "over a restart; `mpm journal` reads it (default: alarms.sqlite in the state "
+                 "folder)");
+  app.add_option("--token-file", options.token_file,
+                 "take commands (mpm ack, shelve ...) from those who know the first line of this "
+                 "file; without it nobody can give any");
   app.add_flag("--dds-from-environment", options.service.use_environment,
                "take the DDS settings from CYCLONEDDS_URI instead of the unit files");
   app.add_option("--log-level", options.log_level, "what to log")
@@ -107,6 +117,11 @@ int serve(const Options& options, const std::vector<config::UnitConfig>& units,
       });
   {
     live::ServiceOptions service_options = options.service;
+    service_options.alarm_journal = options.alarm_journal;
+    if (service_options.alarm_journal.empty() && !options.state_folder.empty())
+      service_options.alarm_journal = options.state_folder + "/alarms.sqlite";
+    if (!options.token_file.empty())
+      service_options.token = host::CommandToken::read(options.token_file);
     service_options.report_problem = store.problem();
     live::MonitorService service(units, service_options, worker);
     service.run([&] {

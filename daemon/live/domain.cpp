@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/text/printable.hpp"
+
 namespace mpm::live {
 namespace {
 
@@ -11,19 +13,28 @@ constexpr int kBatch = 64;  // samples
 constexpr std::chrono::seconds kLookPeriod{1};
 constexpr std::chrono::seconds kMemoryOfStrangers{10};
 constexpr std::size_t kMostStrangers = 8;
+// No control room gives more; whoever floods the bus fills no journal.
+constexpr int kMostCommands = 50;
+constexpr std::chrono::seconds kCommandPeriod{10};
 
 }  // namespace
 
-Domain::Domain(const idl::DomainOptions& options, const std::vector<std::string>& units)
+Domain::Domain(const idl::DomainOptions& options, const std::vector<std::string>& units,
+               CommandGate& gate)
     : participant_(options),
       discovery_(participant_),
       sampled_(units),
       spoken_of_(units),
+      commanded_(units),
       samples_(participant_, &sampled_),
       layouts_(participant_, idl::kLayoutTopic, idl::layout_qos(), kBatch, &spoken_of_),
       other_monitors_(participant_, idl::kHealthTopic, idl::neighbour_health_qos(), kBatch,
                       &spoken_of_),
-      outputs_(participant_) {
+      commands_(participant_, idl::kCommandTopic, idl::command_qos(), kBatch, &commanded_),
+      replies_(participant_),
+      outputs_(participant_),
+      gate_(gate),
+      command_limit_(kMostCommands, kCommandPeriod) {
   around_.place = bus::place_text(options);
   around_.self = idl::name_of(discovery_.own());
 }
@@ -37,6 +48,7 @@ UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, SampleJournal* sa
 void Domain::attach_to(idl::WaitSet& wait_set) const {
   samples_.attach_to(wait_set);
   wait_set.attach(layouts_.readable());
+  wait_set.attach(commands_.readable());
 }
 
 void Domain::poll(Clock::time_point now) {
@@ -51,6 +63,32 @@ void Domain::poll(Clock::time_point now) {
   });
   samples_.take([&](const idl::SampleView& sample) {
     if (const auto it = units_.find(sample.unit); it != units_.end()) it->second->push(sample, now);
+  });
+  take_commands(now);
+}
+
+void Domain::take_commands(Clock::time_point now) {
+  commands_.take([&](const mpm_Command& sample) {
+    if (sample.unit == nullptr) return;
+    const auto it = units_.find(std::string_view(sample.unit));
+    if (it == units_.end()) return;
+    if (!command_limit_.admit(now)) {
+      if (command_log_limit_.admit(now))
+        spdlog::warn("more than {} commands in {} s: the rest is ignored", kMostCommands,
+                     kCommandPeriod.count());
+      return;
+    }
+    const auto record = idl::record_of<CommandRecord>(sample);
+    const std::int64_t wall_ns = UnitPipeline::wall_ns();
+    const CommandReply reply = it->second->obey(record, gate_.admit(record, wall_ns));
+    CommandReplyRecord answer;
+    answer.unit = record.unit;
+    answer.id = printable(record.id);
+    answer.accepted = reply.accepted;
+    answer.text = reply.text;
+    answer.time_ns = wall_ns;
+    if (!replies_.write(answer) && command_log_limit_.admit(now))
+      spdlog::warn("{}: a command could not be answered", record.unit);
   });
 }
 

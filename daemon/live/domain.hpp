@@ -8,6 +8,7 @@
 
 #include "config/unit_config.hpp"
 #include "daemon/host/rate_limiter.hpp"
+#include "daemon/live/command_gate.hpp"
 #include "daemon/live/unit_pipeline.hpp"
 #include "idl/discovery.hpp"
 #include "idl/output_writers.hpp"
@@ -21,8 +22,10 @@ class Domain {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `units`: of which samples are taken; each is to be added.
-  Domain(const idl::DomainOptions& options, const std::vector<std::string>& units);
+  /// `units`: of which samples and commands are taken; each is to be added. `gate`: lets commands
+  /// in, and must outlive the domain.
+  Domain(const idl::DomainOptions& options, const std::vector<std::string>& units,
+         CommandGate& gate);
 
   UnitPipeline& add_unit(const config::UnitConfig& unit, SampleJournal* samples,
                          Clock::time_point now);
@@ -37,6 +40,7 @@ class Domain {
   }
 
  private:
+  void take_commands(Clock::time_point now);
   void report_unknown(Clock::time_point now);
   void hear_other_monitors(Clock::time_point now);
   void forget_strangers(Clock::time_point now);
@@ -45,16 +49,20 @@ class Domain {
   idl::Participant participant_;
   idl::Discovery discovery_;
   // What of the words of others is not ours is nobody's trouble; samples are.
-  idl::UnitChoice sampled_, spoken_of_;
+  idl::UnitChoice sampled_, spoken_of_, commanded_;
   idl::SampleReaders samples_;
   idl::Reader<mpm_Layout> layouts_;
   idl::Reader<mpm_Health> other_monitors_;
+  idl::Reader<mpm_Command> commands_;
+  idl::OutputWriter<CommandReplyRecord> replies_;
   idl::OutputWriters outputs_;
+  CommandGate& gate_;
   std::map<std::string, std::unique_ptr<UnitPipeline>, std::less<>> units_;
   bus::Surroundings around_;
   Clock::time_point next_look_{}, next_forgetting_{};
   std::uint64_t unknown_unit_ = 0;
-  host::RateLimiter unknown_limit_;
+  host::RateLimiter unknown_limit_, command_log_limit_;
+  host::RateLimiter command_limit_;
 };
 
 }  // namespace mpm::live

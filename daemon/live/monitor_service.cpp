@@ -28,7 +28,9 @@ idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOpti
 }  // namespace
 
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
-                               const ServiceOptions& options, DiagnosisWorker& worker) {
+                               const ServiceOptions& options, DiagnosisWorker& worker)
+    : gate_(options.token) {
+  if (!options.alarm_journal.empty()) alarm_journal_.emplace(options.alarm_journal);
   if (!options.sample_journal.empty()) samples_.emplace(options.sample_journal);
   idl::DomainOptions any;
   any.use_environment = options.use_environment;
@@ -48,13 +50,15 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
     const std::string xml = idl::domain_xml(settings);
     Domain*& domain = domain_of[xml];
     if (domain == nullptr) {
-      domain = domains_.emplace_back(std::make_unique<Domain>(settings, units_of[xml])).get();
+      domain =
+          domains_.emplace_back(std::make_unique<Domain>(settings, units_of[xml], gate_)).get();
       domain->attach_to(wait_set_);
     }
     UnitPipeline& pipeline = domain->add_unit(unit, samples_ ? &*samples_ : nullptr, now);
     if (!options.journal.empty())
       pipeline.keep({unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                  options.journal_keep / units.size())});
+    if (alarm_journal_) pipeline.keep(*alarm_journal_);
     pipeline.diagnose_with(worker, asker++);
     if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);
     spdlog::info(

@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
+#include "daemon/host/command_token.hpp"
 #include "daemon/host/notifier.hpp"
+#include "daemon/live/alarm_journal.hpp"
+#include "daemon/live/command_gate.hpp"
 #include "daemon/live/domain.hpp"
 
 namespace mpm::live {
@@ -17,6 +20,8 @@ struct ServiceOptions {
   std::string journal;                         ///< folder; empty: none
   std::uint64_t journal_keep = 1'000'000'000;  ///< bytes, of all units together
   std::string sample_journal;                  ///< file of every sample's records; empty: none
+  std::string alarm_journal;                   ///< file of all that happens to alarms; empty: none
+  std::optional<host::CommandToken> token;     ///< of those who may give commands; none: nobody may
   bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
   std::string report_problem;    ///< why reports of diagnoses cannot be kept; empty: they can
 };
@@ -38,6 +43,8 @@ class MonitorService {
 
   [[nodiscard]] std::string status() const;
 
+  CommandGate gate_;
+  std::optional<AlarmJournal> alarm_journal_;
   std::optional<SampleJournal> samples_;
   std::vector<std::unique_ptr<Domain>> domains_;  // one per distinct DDS setting
   idl::WaitSet wait_set_;

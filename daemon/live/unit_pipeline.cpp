@@ -10,6 +10,7 @@
 #include "config/suggest.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/files/aligning.hpp"
 #include "daemon/live/lost_troubles.hpp"
 #include "daemon/report/channel_text.hpp"
@@ -61,6 +62,7 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       outputs_(outputs),
       samples_(samples),
       monitor_(config),
+      alarms_(config, outputs, monitor_.channels()),
       performance_(report::performance_setup(config),
                    config.monitor.performance_window_s / config.sample_time_s),
       calculator_(config),
@@ -87,7 +89,6 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
             "{}: '{}' has no value here: it is calculated from '{}', and aux signals are in files "
             "only; in signals.raw it would come on {}",
             config.unit, signal.tag, aux.tag, idl::sample_topic(SignalKind::kRaw));
-  publish_initial_alarms();
 }
 
 UnitPipeline::~UnitPipeline() {
@@ -105,27 +106,6 @@ void UnitPipeline::diagnose_with(DiagnosisWorker& worker, int asker) {
     diagnosis_.emplace(std::make_shared<const config::UnitConfig>(config_), worker, asker);
 }
 
-// Tells "no alarm" from "no monitor", and clears what a daemon before this one left behind.
-void UnitPipeline::publish_initial_alarms() {
-  for (const ChannelRecord& channel : monitor_.channels()) {
-    AlarmStateRecord record;
-    record.unit = channel.unit;
-    record.mv = channel.mv;
-    record.cv = channel.cv;
-    if (!outputs_.write(record))
-      spdlog::warn("{}: cannot publish the alarm of {} -> {}", record.unit, record.mv, record.cv);
-    alarms_.push_back(std::move(record));
-  }
-}
-
-bool UnitPipeline::publish_alarm_state(const AlarmRecord& change) {
-  AlarmStateRecord record(change);
-  const bool written = outputs_.write(record);
-  for (AlarmStateRecord& alarm : alarms_)
-    if (alarm.mv == record.mv && alarm.cv == record.cv) alarm = record;
-  return written;
-}
-
 // Of two monitors a reader keeps the last word, and one that starts clears all alarms. While
 // another one speaks an alarm of either stands; when it has left, what this one says holds.
 void UnitPipeline::publish_alarms_again() {
@@ -133,10 +113,7 @@ void UnitPipeline::publish_alarms_again() {
   const bool left = other_monitor_spoke_ && !speaks;
   other_monitor_spoke_ = speaks;
   if (!speaks && !left) return;
-  bool written = true;
-  for (const AlarmStateRecord& alarm : alarms_)
-    if (left || alarm.to == AlarmChange::kActive) written = outputs_.write(alarm) && written;
-  if (!written && output_limit_.admit(now_))
+  if (!alarms_.publish_again(left) && output_limit_.admit(now_))
     spdlog::warn("{}: the alarms could not be published anew", config_.unit);
 }
 
@@ -213,15 +190,16 @@ void UnitPipeline::on_frame(const Frame& frame) {
   bool written = true;
   for (const ChannelRecord& channel : monitor_.channels())
     written = outputs_.write(channel) && written;
+  std::vector<std::string> texts;  // allocates where an alarm changes
   for (const AlarmRecord& alarm : monitor_.alarms()) {
     written = outputs_.write(alarm) && written;
-    written = publish_alarm_state(alarm) && written;
+    texts.push_back(
+        report::error_text(alarm, modelled_channel(config_, monitor_.channels(), alarm)));
     spdlog::log(alarm.to == AlarmChange::kActive ? spdlog::level::warn : spdlog::level::info,
                 "{}: {} -> {}: alarm {} at interval {} ({}, p {:.1e})", alarm.unit, alarm.mv,
-                alarm.cv, to_string(alarm.to), alarm.interval,
-                report::error_text(alarm, modelled_channel(config_, monitor_.channels(), alarm)),
-                alarm.p_value);
+                alarm.cv, to_string(alarm.to), alarm.interval, texts.back(), alarm.p_value);
   }
+  written = alarms_.push(monitor_.channels(), monitor_.alarms(), texts, wall_ns()) && written;
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
   if (performance_.push(frame, monitor_.monitor().judged())) publish_performance();
@@ -262,13 +240,45 @@ void UnitPipeline::publish_diagnosis() {
                outcome->folder.empty() ? "" : " Report in " + outcome->folder + ".");
   bool written = true;
   for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
-    written = publish_alarm_state(alarm) && written;  // the alarm is as old as it was
+    written = alarms_.diagnosed(alarm, wall_ns()) && written;  // as old as it was
     alarm.interval = outcome->interval;
     alarm.source_time_ns = outcome->time_ns;
     written = outputs_.write(alarm) && written;
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
+}
+
+CommandReply UnitPipeline::obey(const CommandRecord& record,
+                                const std::variant<AlarmCommand, std::string>& admitted) {
+  if (const auto* command = std::get_if<AlarmCommand>(&admitted)) return obey(*command);
+  AlarmCommand refused;
+  refused.mv = printable(record.mv);
+  refused.cv = printable(record.cv);
+  refused.action = from_string<AlarmAction>(record.action).value_or(AlarmAction{});
+  refused.user = printable(record.user);
+  refused.host = printable(record.host);
+  refused.comment = printable(record.comment);
+  const std::string& why = std::get<std::string>(admitted);
+  alarms_.note_refused(refused, why, wall_ns());
+  spdlog::warn("{}: a command of {} on {} was refused: {}", config_.unit,
+               refused.user.empty() ? "nobody" : refused.user,
+               refused.host.empty() ? "no host" : refused.host, why);
+  return {false, why};
+}
+
+CommandReply UnitPipeline::obey(const AlarmCommand& command) {
+  CommandReply reply = alarms_.apply(command, wall_ns());
+  spdlog::info("{}: {} {}: {} ({} on {})", config_.unit,
+               command.cv.empty() ? "the controller's alarm" : command.mv + " -> " + command.cv,
+               to_string(command.action), reply.text, command.user, command.host);
+  return reply;
+}
+
+std::int64_t UnitPipeline::wall_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 void UnitPipeline::hear_other_monitor(std::uint64_t writer, std::string name,
@@ -286,6 +296,8 @@ void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
   if (diagnosis_) publish_diagnosis();
   if (now < next_health_) return;
   next_health_ = now + kHealthPeriod;
+  if (!alarms_.tick(wall_ns()) && output_limit_.admit(now_))
+    spdlog::warn("{}: the alarms could not be published", config_.unit);
   publish_health(unknown_unit, around);
   publish_alarms_again();
 }
@@ -317,9 +329,8 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   }
   const std::vector<bus::Trouble> found = troubles(around);
   trouble_text_ = bus::joined_text(found, kMostInDetail);
-  const auto wall = std::chrono::system_clock::now().time_since_epoch();
-  for (const TroubleLog::Line& line : trouble_log_.update(
-           found, now_, std::chrono::duration_cast<std::chrono::seconds>(wall).count()))
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  for (const TroubleLog::Line& line : trouble_log_.update(found, now_, wall_ns() / kSecond))
     spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", config_.unit,
                 line.text);
   judge_health(found);
@@ -362,6 +373,7 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
           "the " + which + " cannot be written: " + problem);
   };
   if (journal_) add_journal("journal", journal_->problem());
+  add_journal("journal of alarms", alarms_.journal_problem());
   if (samples_ != nullptr) add_journal("journal of every sample", samples_->problem());
   if (diagnosis_ && !diagnosis_->file_problem().empty())
     add("reports", Severity::kMaintenanceRequired,

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "config/unit_config.hpp"
@@ -17,6 +18,7 @@
 #include "daemon/live/live_diagnosis.hpp"
 #include "daemon/live/sample_journal.hpp"
 #include "daemon/live/trouble_log.hpp"
+#include "daemon/live/unit_alarms.hpp"
 #include "daemon/report/unit_monitor.hpp"
 #include "idl/output_writers.hpp"
 #include "idl/sample_view.hpp"
@@ -36,6 +38,15 @@ class UnitPipeline {
   ~UnitPipeline();
   /// From now on what is to be known later is kept there.
   void keep(history::Journal journal) { journal_.emplace(std::move(journal)); }
+  /// From now on what happens to alarms is kept there, and what people did about them before holds.
+  void keep(AlarmJournal& journal) { alarms_.keep(journal, wall_ns()); }
+  /// A person's command to this unit: `admitted`, or why not.
+  CommandReply obey(const CommandRecord& record,
+                    const std::variant<AlarmCommand, std::string>& admitted);
+  CommandReply obey(const AlarmCommand& command);
+  [[nodiscard]] const UnitAlarms& alarms() const { return alarms_; }
+  /// UTC.
+  [[nodiscard]] static std::int64_t wall_ns();
   /// From now on alarms are diagnosed, if the unit file wants that. `asker`: no other unit's.
   void diagnose_with(DiagnosisWorker& worker, int asker);
   UnitPipeline(const UnitPipeline&) = delete;  // the aligner's sink points here
@@ -68,8 +79,6 @@ class UnitPipeline {
  private:
   void on_frame(const Frame& frame);
   void go_on(Clock::time_point now);
-  void publish_initial_alarms();
-  [[nodiscard]] bool publish_alarm_state(const AlarmRecord& change);
   void publish_alarms_again();
   [[nodiscard]] bool other_monitor_speaks() const;
   [[nodiscard]] std::string monitors_text(const std::string& self) const;
@@ -85,6 +94,7 @@ class UnitPipeline {
   SampleJournal* samples_;
   std::optional<history::Journal> journal_;
   report::UnitMonitor monitor_;
+  UnitAlarms alarms_;
   PerformanceWindow performance_;
   files::Calculator calculator_;
   Frame calculated_;  // a copy of the aligner's, with what is calculated
@@ -106,7 +116,6 @@ class UnitPipeline {
   };
   std::map<std::uint64_t, OtherMonitor> other_monitors_;  // by writer
   bool other_monitor_spoke_ = false;                      // at the last health
-  std::vector<AlarmStateRecord> alarms_;                  // of each channel, as last written
   HealthRecord health_;
   std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
   host::RateLimiter refused_limit_, beyond_limit_, output_limit_, restart_limit_;

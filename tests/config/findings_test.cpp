@@ -168,6 +168,14 @@ TEST_CASE("Every mistake in a section is told at its place") {
        "u.yaml:8:22: error: monitor.first_lag: first_lag must not be above last_lag"},
       {kModel + "alarms: {clear_p_value: 1e-9}\n",
        "u.yaml:8:25: error: alarms.clear_p_value: clear_p_value must not be below raise_p_value"},
+      {kModel + "alarms: {controller: {class: alarm, action: shed it}}\n",
+       "u.yaml:8:30: error: alarms.controller.class: an alarm needs an operator's answer in time: "
+       "give consequence, time_to_respond, or leave it an alert"},
+      {kModel + "alarms: {controller: {class: loud}}\n",
+       "u.yaml:8:30: error: alarms.controller.class: must be one of event, alert, alarm, not "
+       "'loud'"},
+      {kModel + "alarms: {max_shelve: 0}\n",
+       "u.yaml:8:22: error: alarms.max_shelve: must be at least 1 and at most 2678400, not 0"},
       {kModel + "alarms: {on_dely: 1}\n",
        "u.yaml:8:10: error: alarms.on_dely: unknown key (did you mean 'on_delay'?)"},
       {kModel + "dds: {domain: 101}\n",

@@ -55,7 +55,10 @@ monitor:
   controlling_lags: 30
   first_lag: -5
   last_lag: 15
-alarms: {raise_p_value: 1e-7, clear_p_value: 1e-2, on_delay: 25, off_delay: 125}
+alarms:
+  {raise_p_value: 1e-7, clear_p_value: 1e-2, on_delay: 25, off_delay: 125, latching: false,
+   max_shelve: 3600, controller: {class: alarm, priority: high, consequence: the column floods,
+   action: shed u1, time_to_respond: 600}}
 dds:
   domain: 7
   interface: eth0
@@ -163,6 +166,12 @@ void check_full(const UnitConfig& config) {
   CHECK(config.monitor.last_lag == 15);
   CHECK(config.alarms.raise_p_value == 1e-7);
   CHECK(config.alarms.clear_p_value == 1e-2);
+  CHECK_FALSE(config.alarm_handling.managed.latching);
+  CHECK(config.alarm_handling.managed.max_shelve_s == 3600.0);
+  CHECK(config.alarm_handling.controller.notification_class == NotificationClass::kAlarm);
+  CHECK(config.alarm_handling.controller.priority == AlarmPriority::kHigh);
+  CHECK(config.alarm_handling.controller.action == "shed u1");
+  CHECK(config.alarm_handling.controller.off_delay_s == 28800.0);
   CHECK(config.alarms.on_delay_s == 25);
   CHECK(config.alarms.off_delay_s == 125);
   CHECK(config.dds.domain == 7);

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/parallel/mutex.hpp"
+#include "daemon/history/alarm_store.hpp"
+#include "idl/condition_variable.hpp"
+
+namespace mpm::live {
+
+/// Writes what happens to alarms into their journal, in a thread of its own: a disk that is slow or
+/// full delays no sample. What cannot be written now waits, up to a limit.
+class AlarmJournal {
+ public:
+  /// Makes or opens the file; where that cannot be done now it is tried again and again.
+  explicit AlarmJournal(const std::string& path);
+  /// Writes what waits.
+  ~AlarmJournal();
+  AlarmJournal(const AlarmJournal&) = delete;
+  AlarmJournal& operator=(const AlarmJournal&) = delete;
+
+  void push(history::AlarmEntry entry);
+  /// How the alarms of a unit stood when they were last written of; nothing where nobody can tell.
+  [[nodiscard]] std::vector<history::AlarmEntry> before(const std::string& unit) const;
+  /// Why nothing can be written; empty: all is well.
+  [[nodiscard]] std::string problem() const;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  void run();
+
+  std::string path_;
+  std::optional<history::AlarmStore> store_;  // of the thread alone, once it runs
+  mutable Mutex mutex_;
+  ConditionVariable changed_;
+  std::vector<history::AlarmEntry> waiting_ MPM_GUARDED_BY(mutex_);
+  std::uint64_t lost_ MPM_GUARDED_BY(mutex_) = 0;
+  std::string problem_ MPM_GUARDED_BY(mutex_);
+  bool stopped_ MPM_GUARDED_BY(mutex_) = false;
+  std::thread thread_;
+};
+
+}  // namespace mpm::live

@@ -1,0 +1,244 @@
+#include "daemon/live/unit_alarms.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/text/number_text.hpp"
+
+namespace mpm::live {
+namespace {
+
+std::vector<AlarmDesk::Channel> names_of(const std::vector<ChannelRecord>& channels) {
+  std::vector<AlarmDesk::Channel> names;
+  for (const ChannelRecord& channel : channels) names.push_back({channel.mv, channel.cv});
+  return names;
+}
+
+// Whether the question of the alarm, does the model match the plant, has a meaning now.
+bool meaningful(Reason reason) {
+  return reason != Reason::kControllerOff && reason != Reason::kBadData;
+}
+
+// While nothing stands nobody looks at what is suppressed by design each time the controller rests.
+bool worth_keeping(const AlarmDesk::Occurrence& occurrence, const AlarmStanding& standing) {
+  const bool silence = occurrence.what == AlarmOccurrence::kSuppressed ||
+                       occurrence.what == AlarmOccurrence::kUnsuppressed;
+  return occurrence.by_command || !silence || standing.annunciation != Annunciation::kNormal;
+}
+
+}  // namespace
+
+UnitAlarms::UnitAlarms(const config::UnitConfig& unit, const idl::OutputWriters& outputs,
+                       const std::vector<ChannelRecord>& channels)
+    : unit_(unit.unit),
+      settings_(unit.alarm_handling.controller),
+      outputs_(outputs),
+      desk_(unit.alarm_handling, unit.sample_time_s, names_of(channels)),
+      observed_(channels.size()),
+      fresh_(channels.size() + 1, false) {
+  for (const ChannelRecord& channel : channels) {
+    AlarmStateRecord record;
+    record.unit = channel.unit;
+    record.mv = channel.mv;
+    record.cv = channel.cv;
+    alarms_.push_back(std::move(record));
+  }
+  controller_.unit = unit_;
+  controller_.consequence = settings_.consequence;
+  controller_.action = settings_.action;
+  controller_.time_to_respond_s = settings_.time_to_respond_s;
+  controller_.guidance = settings_.guidance;
+  controller_.display_url = settings_.display_url;
+  controller_.runbook = settings_.runbook;
+  for (int i = AlarmDesk::kController; i < desk_.channels(); ++i) refresh(i);
+  if (!publish_again(true)) spdlog::warn("{}: the alarms could not be published", unit_);
+}
+
+void UnitAlarms::keep(AlarmJournal& journal, std::int64_t wall_ns) {
+  journal_ = &journal;
+  for (const history::AlarmEntry& before : journal.before(unit_))
+    if (desk_.restore(before.mv, before.cv, before.standing))
+      refresh(desk_.find(before.mv, before.cv));
+  desk_.tick({source_time_ns_, wall_ns});  // what was shelved until a time that has passed
+  settle(wall_ns, nullptr);
+  if (!publish_again(true)) spdlog::warn("{}: the alarms could not be published", unit_);
+}
+
+AlarmStateRecord* UnitAlarms::find(const std::string& mv, const std::string& cv) {
+  const auto it = std::find_if(alarms_.begin(), alarms_.end(),
+                               [&](const auto& alarm) { return alarm.mv == mv && alarm.cv == cv; });
+  return it == alarms_.end() ? nullptr : &*it;
+}
+
+bool UnitAlarms::push(const std::vector<ChannelRecord>& channels,
+                      const std::vector<AlarmRecord>& changes,
+                      const std::vector<std::string>& texts, std::int64_t wall_ns) {
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    observed_[i] = {channels[i].alarm == AlarmState::kActive, meaningful(channels[i].reason)};
+  if (!channels.empty()) {
+    interval_ = channels.front().interval;
+    source_time_ns_ = channels.front().source_time_ns;
+  }
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (AlarmStateRecord* alarm = find(changes[i].mv, changes[i].cv)) {
+      std::string text = changes[i].to == AlarmChange::kActive ? texts[i] : alarm->view.message;
+      *alarm = AlarmStateRecord(changes[i]);
+      alarm->view.message = std::move(text);
+      fresh_[static_cast<std::size_t>(alarm - alarms_.data())] = true;
+    }
+  desk_.observe(observed_, {source_time_ns_, wall_ns});
+  return settle(wall_ns, nullptr);
+}
+
+bool UnitAlarms::diagnosed(const AlarmRecord& diagnosis, std::int64_t wall_ns) {
+  AlarmStateRecord* alarm = find(diagnosis.mv, diagnosis.cv);
+  if (alarm == nullptr) return true;
+  *alarm = AlarmStateRecord(diagnosis);
+  alarm->view.message = diagnosis.named.text;
+  const int index = static_cast<int>(alarm - alarms_.data());
+  refresh(index);
+  if (journal_ != nullptr) journal_->push(entry(index, "diagnosed", wall_ns));
+  return write(index);
+}
+
+bool UnitAlarms::tick(std::int64_t wall_ns) {
+  desk_.tick({source_time_ns_, wall_ns});
+  return settle(wall_ns, nullptr);
+}
+
+CommandReply UnitAlarms::apply(const AlarmCommand& command, std::int64_t wall_ns) {
+  CommandReply reply = desk_.apply(command, {source_time_ns_, wall_ns});
+  if (reply.accepted)
+    settle(wall_ns, &command);
+  else
+    note_refused(command, reply.text, wall_ns);
+  return reply;
+}
+
+void UnitAlarms::note_refused(const AlarmCommand& command, const std::string& why,
+                              std::int64_t wall_ns) {
+  if (journal_ == nullptr) return;
+  const int alarm = desk_.find(command.mv, command.cv);
+  history::AlarmEntry refused =
+      entry(alarm < AlarmDesk::kController ? AlarmDesk::kController : alarm, "refused", wall_ns);
+  refused.mv = command.mv;
+  refused.cv = command.cv;
+  refused.user = command.user;
+  refused.host = command.host;
+  refused.comment = command.comment;
+  refused.message = std::string(to_string(command.action)) + ": " + why;
+  journal_->push(std::move(refused));
+}
+
+// What the desk says has occurred: told, written down, published.
+bool UnitAlarms::settle(std::int64_t wall_ns, const AlarmCommand* command) {
+  for (const AlarmDesk::Occurrence& occurrence : desk_.occurred()) {
+    refresh(occurrence.alarm);
+    fresh_[occurrence.alarm == AlarmDesk::kController
+               ? alarms_.size()
+               : static_cast<std::size_t>(occurrence.alarm)] = true;
+  }
+  if (desk_.occurred().empty() &&
+      std::none_of(fresh_.begin(), fresh_.end(), [](bool fresh) { return fresh; }))
+    return true;
+  for (const AlarmDesk::Occurrence& occurrence : desk_.occurred()) {
+    if (journal_ == nullptr || !worth_keeping(occurrence, desk_.standing(occurrence.alarm)))
+      continue;
+    history::AlarmEntry kept =
+        entry(occurrence.alarm, std::string(to_string(occurrence.what)), wall_ns);
+    if (command != nullptr && occurrence.by_command) {
+      kept.user = command->user;
+      kept.host = command->host;
+      kept.comment = command->comment;
+    }
+    journal_->push(std::move(kept));
+  }
+  bool written = true;
+  for (int i = 0; i < desk_.channels(); ++i)
+    if (fresh_[static_cast<std::size_t>(i)]) {
+      refresh(i);
+      written = write(i) && written;
+    }
+  // Its count of channels may have changed with theirs.
+  refresh(AlarmDesk::kController);
+  written = write(AlarmDesk::kController) && written;
+  fresh_.assign(fresh_.size(), false);
+  return written;
+}
+
+void UnitAlarms::refresh(int alarm) {
+  const AlarmStanding& standing = desk_.standing(alarm);
+  if (alarm == AlarmDesk::kController) {
+    const bool active = desk_.active(alarm);
+    const bool changed = active != (controller_.state == AlarmState::kActive);
+    controller_.state = active ? AlarmState::kActive : AlarmState::kCleared;
+    if (changed) {
+      controller_.interval = interval_;
+      controller_.source_time_ns = source_time_ns_;
+    }
+    std::string message = active ? controller_text() : controller_.view.message;
+    controller_.view = ControlRoomView(standing, settings_.notification_class, settings_.priority);
+    controller_.view.message = std::move(message);
+    controller_.channels = desk_.standing_channels();
+    return;
+  }
+  AlarmStateRecord& record = alarms_[static_cast<std::size_t>(alarm)];
+  std::string message = std::move(record.view.message);
+  record.view = ControlRoomView(standing, NotificationClass::kAlert, AlarmPriority::kLow);
+  record.view.message = std::move(message);
+}
+
+// Which, of the first; how many more. Once all have cleared, and its delay has not passed, the
+// last.
+std::string UnitAlarms::controller_text() const {
+  int count = 0;
+  std::string first;
+  for (int i = 0; i < desk_.channels(); ++i) {
+    if (!desk_.active(i) || desk_.standing(i).silenced()) continue;
+    if (++count == 1) first = desk_.channel(i).mv + " -> " + desk_.channel(i).cv;
+  }
+  if (count == 0) return controller_.view.message;
+  return "the model of " + first +
+         (count == 1 ? ""
+                     : " and " + counted(static_cast<std::uint64_t>(count - 1), "more channel")) +
+         (count == 1 ? " does" : " do") + " not match the plant";
+}
+
+history::AlarmEntry UnitAlarms::entry(int alarm, std::string what, std::int64_t wall_ns) const {
+  history::AlarmEntry entry;
+  entry.written_ns = wall_ns;
+  entry.source_time_ns = source_time_ns_;
+  entry.unit = unit_;
+  entry.what = std::move(what);
+  entry.standing = desk_.standing(alarm);
+  if (alarm == AlarmDesk::kController) {
+    entry.notification_class = settings_.notification_class;
+    entry.priority = settings_.priority;
+    entry.message = controller_.view.message;
+  } else {
+    const AlarmStateRecord& record = alarms_[static_cast<std::size_t>(alarm)];
+    entry.mv = record.mv;
+    entry.cv = record.cv;
+    entry.message = record.view.message;
+  }
+  return entry;
+}
+
+bool UnitAlarms::write(int alarm) {
+  return alarm == AlarmDesk::kController ? outputs_.write(controller_)
+                                         : outputs_.write(alarms_[static_cast<std::size_t>(alarm)]);
+}
+
+bool UnitAlarms::publish_again(bool all) {
+  bool written = true;
+  for (int i = 0; i < desk_.channels(); ++i)
+    if (all || alarms_[static_cast<std::size_t>(i)].to == AlarmChange::kActive)
+      written = write(i) && written;
+  if (all || controller_.state == AlarmState::kActive)
+    written = write(AlarmDesk::kController) && written;
+  return written;
+}
+
+}  // namespace mpm::live

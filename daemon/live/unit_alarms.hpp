@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "core/alarm/alarm_desk.hpp"
+#include "core/record/alarm_record.hpp"
+#include "core/record/channel_record.hpp"
+#include "core/record/controller_alarm_record.hpp"
+#include "daemon/live/alarm_journal.hpp"
+#include "idl/output_writers.hpp"
+
+namespace mpm::live {
+
+/// The alarms of one unit towards people: what stands, on mpm/alarm and mpm/controller_alarm; what
+/// becomes of it, in the journal; what people do about it.
+class UnitAlarms {
+ public:
+  /// `channels`: of the unit, of which nothing was said yet. Publishes that no alarm stands, which
+  /// clears what a daemon before this one left behind.
+  UnitAlarms(const config::UnitConfig& unit, const idl::OutputWriters& outputs,
+             const std::vector<ChannelRecord>& channels);
+
+  /// From now on what happens is kept there, and what people did before holds again.
+  void keep(AlarmJournal& journal, std::int64_t wall_ns);
+
+  /// After a frame: `channels` in the order of before, the alarms that it changed, and what is
+  /// wrong with the channel of each in words. False where something could not be published.
+  bool push(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& changes,
+            const std::vector<std::string>& texts, std::int64_t wall_ns);
+  /// A cause was named; the alarm is as old as it was.
+  bool diagnosed(const AlarmRecord& diagnosis, std::int64_t wall_ns);
+  /// What time alone brings. `wall_ns`: UTC.
+  bool tick(std::int64_t wall_ns);
+  CommandReply apply(const AlarmCommand& command, std::int64_t wall_ns);
+  /// For the journal: a command that was refused before it came here.
+  void note_refused(const AlarmCommand& command, const std::string& why, std::int64_t wall_ns);
+
+  /// Anew, for readers that were told otherwise: all, or those that stand.
+  bool publish_again(bool all);
+
+  [[nodiscard]] const std::vector<AlarmStateRecord>& channels() const { return alarms_; }
+  [[nodiscard]] const ControllerAlarmRecord& controller() const { return controller_; }
+  /// Why the journal cannot be written; empty: it can, or there is none.
+  [[nodiscard]] std::string journal_problem() const {
+    return journal_ == nullptr ? "" : journal_->problem();
+  }
+
+ private:
+  [[nodiscard]] AlarmStateRecord* find(const std::string& mv, const std::string& cv);
+  bool settle(std::int64_t wall_ns, const AlarmCommand* command);
+  void refresh(int alarm);
+  [[nodiscard]] std::string controller_text() const;
+  [[nodiscard]] history::AlarmEntry entry(int alarm, std::string what, std::int64_t wall_ns) const;
+  bool write(int alarm);
+
+  const std::string unit_;
+  const ControllerAlarmSettings settings_;
+  const idl::OutputWriters& outputs_;
+  AlarmDesk desk_;
+  std::vector<AlarmStateRecord> alarms_;  // as last written
+  ControllerAlarmRecord controller_;      // likewise
+  std::vector<AlarmDesk::Observation> observed_;
+  std::vector<bool> fresh_;  // to be written; the controller's last
+  std::int64_t interval_ = 0, source_time_ns_ = 0;
+  AlarmJournal* journal_ = nullptr;
+};
+
+}  // namespace mpm::live
