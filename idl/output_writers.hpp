@@ -18,6 +18,7 @@ class OutputWriter {
     SampleMaker maker;
     return writer_.write(maker.sample_of(record));
   }
+  [[nodiscard]] int matched_readers() const { return writer_.matched_readers(); }
 
  private:
   Writer<SampleOf<Record>> writer_;

@@ -8,10 +8,6 @@
 namespace mpm {
 namespace {
 
-// So many samples in a row must say that a question has no meaning, or has one again: a gap in the
-// data is no event.
-constexpr int kSettled = 10;
-
 int samples_of(double seconds, double sample_time_s) {
   const double samples = std::ceil(seconds / sample_time_s);
   return static_cast<int>(
@@ -46,7 +42,7 @@ void AlarmDesk::observe(const std::vector<Observation>& channels, const AlarmMom
     const bool was_meaningful = !alarms_[i].standing().suppressed_by_design;
     int& held = senseless_[i];
     held = channels[i].meaningful == was_meaningful ? 0 : held + 1;
-    const bool turns = held >= kSettled;
+    const bool turns = held >= calibration::kSettled;
     if (turns) held = 0;
     alarms_[i].observe(channels[i].active, was_meaningful != turns, now, handling_.managed, fresh_);
     note(static_cast<int>(i), false);

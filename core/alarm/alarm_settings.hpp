@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "core/alarm/calibration.hpp"
 #include "core/alarm/managed_alarm.hpp"
 #include "core/text/words.hpp"
 
@@ -18,10 +19,9 @@ enum class NotificationClass : unsigned char { kEvent, kAlert, kAlarm };
 enum class AlarmPriority : unsigned char { kLow, kMedium, kHigh };
 [[nodiscard]] constexpr auto words_of(AlarmPriority) { return std::array{"low", "medium", "high"}; }
 
-/// Of OPC UA, 1..1000: the middle of the third that a priority has there.
+/// Of OPC UA, 1..1000.
 [[nodiscard]] constexpr int severity(AlarmPriority priority) {
-  constexpr std::array kSeverities = {167, 500, 833};
-  return kSeverities[static_cast<std::size_t>(priority)];
+  return calibration::kSeverities[static_cast<std::size_t>(priority)];
 }
 
 /// The one alarm of a controller: its model is not to be trusted. Those of its channels are alerts.
@@ -30,7 +30,7 @@ struct ControllerAlarmSettings {
   AlarmPriority priority = AlarmPriority::kLow;
   double on_delay_s = 0.0;
   /// A shift: what comes and goes within it is one alarm.
-  double off_delay_s = 8 * 3600.0;
+  double off_delay_s = calibration::kControllerOffDelay;
   /// What an alarm must say: what happens if nobody acts, what to do, and how soon.
   std::string consequence, action;
   double time_to_respond_s = 0.0;

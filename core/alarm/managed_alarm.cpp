@@ -7,7 +7,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kNanoseconds = 1e9;
+using calibration::kNanoseconds;
 
 CommandReply refused(std::string why) { return {false, std::move(why)}; }
 
@@ -125,14 +125,14 @@ CommandReply ManagedAlarm::shelve(const AlarmCommand& command, const AlarmMoment
   if (command.once && duration_s == 0.0) duration_s = settings.max_shelve_s;
   if (!(duration_s > 0.0)) return refused("a time to shelve for is needed, or once");
   if (duration_s > settings.max_shelve_s)
-    return refused("it can be shelved for " + number_text(settings.max_shelve_s) +
-                   " s at most (max_shelve of the unit file)");
+    return refused("it can be shelved for " + duration_text(settings.max_shelve_s) +
+                   " at most (max_shelve of the unit file)");
   standing_.shelving = command.once ? Shelving::kOneShot : Shelving::kTimed;
   standing_.unshelve_time_ns = now.wall_ns + static_cast<std::int64_t>(kNanoseconds * duration_s);
   occurred.push_back(AlarmOccurrence::kShelved);
   return {true, command.once
-                    ? "shelved until it clears, for " + number_text(duration_s) + " s at most"
-                    : "shelved for " + number_text(duration_s) + " s"};
+                    ? "shelved until it clears, for " + duration_text(duration_s) + " at most"
+                    : "shelved for " + duration_text(duration_s)};
 }
 
 void ManagedAlarm::unshelve(Occurrences& occurred) {

@@ -7,6 +7,7 @@
 
 #include "core/alarm/alarm_command.hpp"
 #include "core/alarm/annunciation.hpp"
+#include "core/alarm/calibration.hpp"
 #include "core/text/words.hpp"
 
 namespace mpm {
@@ -86,9 +87,9 @@ struct AlarmMoment {
 class ManagedAlarm {
  public:
   struct Settings {
-    bool latching = true;           ///< one that has gone waits until somebody has seen it
-    double realarm_s = 0.0;         ///< unacknowledged anew after; 0 = never
-    double max_shelve_s = 86400.0;  ///< longest
+    bool latching = true;    ///< one that has gone waits until somebody has seen it
+    double realarm_s = 0.0;  ///< unacknowledged anew after; 0 = never
+    double max_shelve_s = calibration::kLongestShelf;
   };
   using Occurrences = std::vector<AlarmOccurrence>;  ///< appended to
 

@@ -1,8 +1,10 @@
 #include "core/text/number_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace mpm {
 namespace {
@@ -48,6 +50,15 @@ std::string confidence_text(double probability) {
   if (probability > kNoSurer) return "> " + number_text(kNoSurer);
   const std::string text = number_text(probability, 2);
   return text == "1" ? number_text(probability) : text;
+}
+
+std::string duration_text(double seconds) {
+  constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
+      {{86400.0, " d"}, {3600.0, " h"}, {60.0, " min"}}};
+  for (const auto& [unit, name] : kUnits)
+    if (seconds >= unit && std::fmod(seconds, unit) == 0.0)
+      return number_text(seconds / unit) + name;
+  return number_text(seconds) + " s";
 }
 
 std::string counted(std::uint64_t count, std::string_view what) {

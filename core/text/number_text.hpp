@@ -17,6 +17,8 @@ namespace mpm {
 [[nodiscard]] std::string confidence_text(double probability);
 /// The same as "95 %", "99.6 %", "> 99.9 %"; never "100 %".
 [[nodiscard]] std::string sure_text(double probability);
+/// "45 s", "90 min", "8 h", "7 d": in the largest unit that leaves a whole number, or with digits.
+[[nodiscard]] std::string duration_text(double seconds);
 /// "1 sample", "2 samples" of "sample"
 [[nodiscard]] std::string counted(std::uint64_t count, std::string_view what);
 

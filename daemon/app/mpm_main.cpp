@@ -39,6 +39,9 @@ int run(int argc, char** argv) {
   add_delay(app, exit_code);
   add_doctor(app, exit_code);
   add_status(app, exit_code);
+  add_alarms(app, exit_code);
+  add_alarm_actions(app, exit_code);
+  add_journal(app, exit_code);
   add_completion(app, exit_code);
   add_man(app, exit_code);
   app.footer(

@@ -59,8 +59,13 @@ UnitAlarms::UnitAlarms(const config::UnitConfig& unit, const idl::OutputWriters&
 void UnitAlarms::keep(AlarmJournal& journal, std::int64_t wall_ns) {
   journal_ = &journal;
   for (const history::AlarmEntry& before : journal.before(unit_))
-    if (desk_.restore(before.mv, before.cv, before.standing))
-      refresh(desk_.find(before.mv, before.cv));
+    if (desk_.restore(before.mv, before.cv, before.standing)) {
+      const int alarm = desk_.find(before.mv, before.cv);
+      (alarm == AlarmDesk::kController ? controller_.view
+                                       : alarms_[static_cast<std::size_t>(alarm)].view)
+          .message = before.message;
+      refresh(alarm);
+    }
   desk_.tick({source_time_ns_, wall_ns});  // what was shelved until a time that has passed
   settle(wall_ns, nullptr);
   if (!publish_again(true)) spdlog::warn("{}: the alarms could not be published", unit_);
@@ -95,11 +100,12 @@ bool UnitAlarms::push(const std::vector<ChannelRecord>& channels,
 bool UnitAlarms::diagnosed(const AlarmRecord& diagnosis, std::int64_t wall_ns) {
   AlarmStateRecord* alarm = find(diagnosis.mv, diagnosis.cv);
   if (alarm == nullptr) return true;
+  const bool news = alarm->view.message != diagnosis.named.text;
   *alarm = AlarmStateRecord(diagnosis);
   alarm->view.message = diagnosis.named.text;
   const int index = static_cast<int>(alarm - alarms_.data());
   refresh(index);
-  if (journal_ != nullptr) journal_->push(entry(index, "diagnosed", wall_ns));
+  if (journal_ != nullptr && news) journal_->push(entry(index, "diagnosed", wall_ns));
   return write(index);
 }
 

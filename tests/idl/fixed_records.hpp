@@ -2,6 +2,8 @@
 
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
+#include "core/record/command_record.hpp"
+#include "core/record/controller_alarm_record.hpp"
 #include "core/record/health_record.hpp"
 #include "core/record/performance_record.hpp"
 
@@ -92,6 +94,61 @@ namespace mpm::test {
                   "y1 answers FIC-101.SP late.",
                   0.98,
                   {{"gain_ratio", 0.75, 0.72, 0.78}, {"dead_time_error", 60.0, 30.0, 90.5}}};
+  return record;
+}
+
+[[nodiscard]] inline ControlRoomView shelved_view() {
+  ControlRoomView view;
+  view.alarm_state = AlarmWord::kShelved;
+  view.acknowledged = false;
+  view.shelving_state = Shelving::kOneShot;
+  view.unshelve_time_ns = 7001;
+  view.suppressed = true;
+  view.suppressed_by_design = true;
+  view.out_of_service = true;
+  view.retain = true;
+  view.active_time_ns = 7002;
+  view.ack_time_ns = 7003;
+  view.client_user_id = "ann";
+  view.comment = "work order 4711";
+  view.notification_class = NotificationClass::kAlarm;
+  view.priority = AlarmPriority::kHigh;
+  view.severity = 833;
+  view.message = "gain +41 %";
+  return view;
+}
+
+[[nodiscard]] inline ControllerAlarmRecord controller_alarm() {
+  ControllerAlarmRecord record;
+  record.unit = "shell";
+  record.interval = 5;
+  record.source_time_ns = 5'000'000'000;
+  record.state = AlarmState::kActive;
+  record.view = shelved_view();
+  record.channels = 3;
+  record.consequence = "the column floods";
+  record.action = "shed u1";
+  record.time_to_respond_s = 600.0;
+  record.guidance = "see the shift book";
+  record.display_url = "http://plant/hmi";
+  record.runbook = "RB-7";
+  return record;
+}
+
+[[nodiscard]] inline CommandRecord command() {
+  CommandRecord record;
+  record.unit = "shell";
+  record.mv = "u1";
+  record.cv = "y1";
+  record.action = "shelve";
+  record.duration_s = 28800;
+  record.once = true;
+  record.user = "ann";
+  record.host = "panel";
+  record.comment = "known";
+  record.id = "4711";
+  record.time_ns = 1234567;
+  record.proof = "0a1b";
   return record;
 }
 

@@ -158,6 +158,17 @@ TEST_CASE("the words of a verdict and its reason go to DDS and back") {
   CHECK(record_of<ChannelRecord>(sample).confounder == "TIC with 7");
 }
 
+void fill_normal(mpm_Alarm& sample) {
+  sample.alarm_state = text("normal");
+  sample.acknowledged = true;
+  sample.shelving_state = text("unshelved");
+  sample.client_user_id = text("");
+  sample.comment = text("");
+  sample.notification_class = text("alert");
+  sample.priority = text("low");
+  sample.message = text("");
+}
+
 TEST_CASE("an alarm's change, its state and its cause go to DDS and back") {
   std::vector<mpm_CauseParameter> parameters;
   for (const auto& [to, word] :
@@ -167,6 +178,7 @@ TEST_CASE("an alarm's change, its state and its cause go to DDS and back") {
     check_both_ways(test::alarm(to), event);
     auto state = alarm_sample<mpm_Alarm>();
     state.state = text(word);
+    fill_normal(state);
     check_both_ways(AlarmStateRecord(test::alarm(to)), state);
   }
   auto event = diagnosed_sample<mpm_AlarmEvent>(parameters);
@@ -174,7 +186,85 @@ TEST_CASE("an alarm's change, its state and its cause go to DDS and back") {
   check_both_ways(test::diagnosed_alarm(), event);
   auto state = diagnosed_sample<mpm_Alarm>(parameters);
   state.state = text("active");  // still
+  fill_normal(state);
   check_both_ways(AlarmStateRecord(test::diagnosed_alarm()), state);
+}
+
+template <class Sample>
+void fill_shelved(Sample& sample) {
+  sample.alarm_state = text("shelved");
+  sample.acknowledged = false;
+  sample.shelving_state = text("one_shot_shelved");
+  sample.unshelve_time_ns = 7001;
+  sample.suppressed = true;
+  sample.suppressed_by_design = true;
+  sample.out_of_service = true;
+  sample.retain = true;
+  sample.active_time_ns = 7002;
+  sample.ack_time_ns = 7003;
+  sample.client_user_id = text("ann");
+  sample.comment = text("work order 4711");
+  sample.notification_class = text("alarm");
+  sample.priority = text("high");
+  sample.severity = 833;
+  sample.message = text("gain +41 %");
+}
+
+TEST_CASE("what a control room knows of an alarm goes both ways") {
+  auto sample = alarm_sample<mpm_Alarm>();
+  sample.state = text("active");
+  fill_shelved(sample);
+  AlarmStateRecord record(test::alarm(AlarmChange::kActive));
+  record.view = test::shelved_view();
+  check_both_ways(record, sample);
+}
+
+TEST_CASE("the alarm of a controller goes both ways") {
+  mpm_ControllerAlarm sample{};
+  sample.unit = text("shell");
+  sample.interval = 5;
+  sample.source_time_ns = 5'000'000'000;
+  sample.state = text("active");
+  fill_shelved(sample);
+  sample.channels = 3;
+  sample.consequence = text("the column floods");
+  sample.action = text("shed u1");
+  sample.time_to_respond_s = 600.0;
+  sample.guidance = text("see the shift book");
+  sample.display_url = text("http://plant/hmi");
+  sample.runbook = text("RB-7");
+  check_both_ways(test::controller_alarm(), sample);
+}
+
+TEST_CASE("a command and its answer go both ways") {
+  mpm_Command sample{};
+  sample.unit = text("shell");
+  sample.mv = text("u1");
+  sample.cv = text("y1");
+  sample.action = text("shelve");
+  sample.duration_s = 28800;
+  sample.once = true;
+  sample.user = text("ann");
+  sample.host = text("panel");
+  sample.comment = text("known");
+  sample.id = text("4711");
+  sample.time_ns = 1234567;
+  sample.proof = text("0a1b");
+  check_both_ways(test::command(), sample);
+
+  mpm_CommandReply answer{};
+  answer.unit = text("shell");
+  answer.id = text("4711");
+  answer.accepted = true;
+  answer.text = text("shelved for 8 h");
+  answer.time_ns = 99;
+  CommandReplyRecord reply;
+  reply.unit = "shell";
+  reply.id = "4711";
+  reply.accepted = true;
+  reply.text = "shelved for 8 h";
+  reply.time_ns = 99;
+  check_both_ways(reply, answer);
 }
 
 TEST_CASE("the health goes to its sample and back") {

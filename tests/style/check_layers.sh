@@ -101,16 +101,17 @@ report/identification files/times report/terminal
 report/page files/times report/diagnosis report/identification
 report/closed_loop files/csv report/diagnosis
 report files/times files report/terminal report/diagnosis report/identification report/page
-history files/csv report
+history files/times files/csv report
 history/trend files/times report/terminal report history
 bus
+bus/alarms files/times report/terminal report bus
 bus/watch files/times report/terminal report bus
 bus/doctor bus
 bag files/times files files/csv mcap/format mcap/read mcap/write
 bag/record host files/times files mcap/read mcap/write mcap bag
 bag/replay host files/times mcap/read bag
 live host files/times files report/diagnosis report history bus
-app/commands host files/times files files/csv mcap/read mcap report/terminal report/diagnosis report/closed_loop report/identification report history history/trend bus bus/watch bus/doctor bag bag/record bag/replay live
+app/commands host files/times files files/csv mcap/read mcap report/terminal report/diagnosis report/closed_loop report/identification report history history/trend bus bus/alarms bus/watch bus/doctor bag bag/record bag/replay live
 app host live app/commands
 TABLE
 exit $status

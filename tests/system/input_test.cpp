@@ -109,18 +109,19 @@ TEST_CASE("the daemon writes outputs only: never an input topic, never a layout"
   };
   CHECK(idl::eventually([&] {
     take();
-    return topics.size() >= 5;
+    return topics.size() >= 7;
   }));
   // A participant tells of its writers in their order: once all have gone there were no others.
   bench.daemon.send(SIGTERM);
   CHECK(bench.daemon.wait(std::chrono::seconds(10)) == 0);
   CHECK(idl::eventually([&] {
     take();
-    return gone >= 5;
+    return gone >= 7;
   }));
-  CHECK(gone == 5);
+  CHECK(gone == 7);
   CHECK(topics == std::set<std::string>{"mpm/alarm", "mpm/alarm_event", "mpm/channel_status",
-                                        "mpm/health", "mpm/performance"});
+                                        "mpm/command_reply", "mpm/controller_alarm", "mpm/health",
+                                        "mpm/performance"});
 }
 
 TEST_CASE("a layout that differs from the unit file is noticed, until it is right") {

@@ -43,6 +43,12 @@ void add_delay(CLI::App& app, int& exit_code);
 void add_doctor(CLI::App& app, int& exit_code);
 /// `mpm status`: one line for a monitoring system.
 void add_status(CLI::App& app, int& exit_code);
+/// `mpm alarms`: which alarms stand; `mpm alarms stats`: how much they asked of people.
+void add_alarms(CLI::App& app, int& exit_code);
+/// `mpm ack`, `shelve`, `unshelve`, `suppress`, `unsuppress`, `out-of-service`, `in-service`.
+void add_alarm_actions(CLI::App& app, int& exit_code);
+/// `mpm journal`: what happened to alarms.
+void add_journal(CLI::App& app, int& exit_code);
 /// `mpm completion`: what a shell needs to complete command lines. `mpm man`: the manual page. Both
 /// tell of the commands that there are when they run.
 void add_completion(CLI::App& app, int& exit_code);

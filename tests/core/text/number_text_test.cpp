@@ -7,6 +7,15 @@ namespace mpm {
 namespace {
 
 // All by hand.
+TEST_CASE("a time is told in the largest unit that leaves it whole") {
+  CHECK(duration_text(86400.0) == "1 d");
+  CHECK(duration_text(28800.0) == "8 h");
+  CHECK(duration_text(5400.0) == "90 min");
+  CHECK(duration_text(61.0) == "61 s");
+  CHECK(duration_text(0.0) == "0 s");
+  CHECK(duration_text(1e300) != "");
+}
+
 TEST_CASE("numbers read as people write them") {
   CHECK(number_text(0.25) == "0.25");
   CHECK(number_text(-0.0) == "0");

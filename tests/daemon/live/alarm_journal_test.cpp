@@ -1,0 +1,67 @@
+#include "daemon/live/alarm_journal.hpp"
+
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <thread>
+
+#include "tests/system/process.hpp"
+
+namespace mpm::live {
+namespace {
+
+history::AlarmEntry entry(int number) {
+  history::AlarmEntry entry;
+  entry.written_ns = number;
+  entry.unit = "shell";
+  entry.what = std::to_string(number);
+  entry.standing.out_of_service = true;
+  return entry;
+}
+
+std::size_t entries(const std::string& path) {
+  return history::AlarmStore(path, history::AlarmStore::Access::kRead).verify().entries;
+}
+
+TEST_CASE("all that was pushed is written before the journal goes") {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("alarms.sqlite");
+  {
+    AlarmJournal journal(path);
+    for (int i = 0; i < 1000; ++i) journal.push(entry(i));
+    CHECK(journal.problem().empty());
+  }
+  CHECK(entries(path) == 1000);
+  const AlarmJournal journal(path);
+  REQUIRE(journal.before("shell").size() == 1);
+  CHECK(journal.before("shell")[0].what == "999");
+  CHECK(journal.before("shell")[0].standing.out_of_service);
+}
+
+TEST_CASE("what cannot be written waits until it can, and that is said meanwhile") {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("not yet/alarms.sqlite");
+  AlarmJournal journal(path);
+  CHECK_FALSE(journal.problem().empty());
+  CHECK(journal.before("shell").empty());
+  journal.push(entry(1));
+  ::mkdir(folder.file("not yet").c_str(), 0700);
+  for (int i = 0; i < 100 && !journal.problem().empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  CHECK(journal.problem().empty());
+  journal.push(entry(2));
+  for (int i = 0; i < 100 && entries(path) < 2; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  CHECK(entries(path) == 2);
+}
+
+TEST_CASE("what waits for a disk that stays away does not fill the memory") {
+  const test::TemporaryFolder folder;
+  AlarmJournal journal(folder.file("never/alarms.sqlite"));
+  for (int i = 0; i < 10'007; ++i) journal.push(entry(i));
+  CHECK_THAT(journal.problem(), Catch::Matchers::Contains("entries are lost"));
+}
+
+}  // namespace
+}  // namespace mpm::live
