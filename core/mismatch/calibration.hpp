@@ -10,6 +10,10 @@
 ///            choice gives (docs/validation.md), the named test what it is for.
 namespace mpm::calibration {
 
+/// Of the largest value that a signal has had: what is below is rounding, of a simulation without
+/// noise. Instruments have a million times more. Chosen.
+inline constexpr double kRounding = 1e-12;
+
 /// Errors of a channel's model up to which it is good enough, unless the user sets others. Chosen:
 /// a controller hardly notices errors that small; some error every model has.
 namespace materiality {

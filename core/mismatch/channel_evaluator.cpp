@@ -41,7 +41,11 @@ void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
 
 void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence) {
   estimates_.read(cv, memory.factor);
-  const EstimateNoise noise = estimate_noise(memory);
+  EstimateNoise noise = estimate_noise(memory);
+  if (noise.variance == 0.0) {  // a simulation without any: known as far as its numbers go
+    noise.variance = std::pow(rounding_of(cv), 2) / memory.weight_sum;
+    noise.block_variance = noise.variance;
+  }
   joint_.read(cv, memory.factor, signatures_, noise, estimates_);
   const double all = estimates_.rotated().squaredNorm();
   explained_ = {all, all - joint_.left_square(), noise.variance};
@@ -56,6 +60,14 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
     if (evidence[i].excitation_index >
         calibration::confounding::kMasked * evidence[i].excitation_index_alone)
       evidence[i].confounder = excitation_.confounder(i, estimates_);
+}
+
+// Of what the model makes the inputs do, over all rows.
+double ChannelEvaluator::rounding_of(int cv) const {
+  double largest = 0.0;
+  for (int i = 0; i < shape_.inputs; ++i)
+    largest = std::max(largest, std::abs(signatures_[index(cv, i)].gain) * estimates_.norms(i)(0));
+  return calibration::kRounding * largest;
 }
 
 void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,

@@ -70,6 +70,7 @@ class ChannelEvaluator {
   /// The error's coefficients on the input's block, scaled.
   void scaled_error(const Signature& error, int input, Eigen::Ref<Eigen::VectorXd> out) const;
   [[nodiscard]] double reference_gain(int cv, int input) const;
+  [[nodiscard]] double rounding_of(int cv) const;
 
   Explained explained_;
   RegressionShape shape_;

@@ -11,12 +11,24 @@ using calibration::usual_errors::kTailFitMost;
 using calibration::usual_errors::kTailFitTimeConstants;
 using calibration::usual_errors::kTimeConstantStep;
 
+namespace {
+
+double slowest_of(const std::vector<double>& tail_poles) {
+  return -1.0 / std::log(*std::max_element(tail_poles.begin(), tail_poles.end()));
+}
+
+}  // namespace
+
+int BlockBasis::lags_beyond(const std::vector<double>& tail_poles) {
+  return static_cast<int>(std::clamp<double>(kTailFitTimeConstants * slowest_of(tail_poles),
+                                             kTailFitFewest,
+                                             kTailFitMost));  // an int need not hold the slowest
+}
+
 BlockBasis::BlockBasis(int fir_lags, std::vector<double> tail_poles)
     : fir_lags_(fir_lags), tail_poles_(std::move(tail_poles)) {
-  const double slowest_pole = *std::max_element(tail_poles_.begin(), tail_poles_.end());
-  slowest_ = -1.0 / std::log(slowest_pole);
-  beyond_ = static_cast<int>(std::clamp<double>(kTailFitTimeConstants * slowest_, kTailFitFewest,
-                                                kTailFitMost));  // an int need not hold slowest_
+  slowest_ = slowest_of(tail_poles_);
+  beyond_ = lags_beyond(tail_poles_);
   Eigen::MatrixXd steps(beyond_, static_cast<Eigen::Index>(tail_poles_.size()));
   for (Eigen::Index t = 0; t < steps.cols(); ++t)
     for (int l = 0; l < beyond_; ++l)

@@ -16,6 +16,8 @@ class BlockBasis {
  public:
   BlockBasis(int fir_lags, std::vector<double> tail_poles);
 
+  /// Lags beyond the first at which a response is looked at for the tails.
+  [[nodiscard]] static int lags_beyond(const std::vector<double>& tail_poles);
   [[nodiscard]] int columns() const { return fir_lags_ + static_cast<int>(tail_poles_.size()); }
   [[nodiscard]] int fir_lags() const { return fir_lags_; }
   /// Values of a pulse response, from lag 0 on, that `tail_coefficients` looks at.

@@ -119,6 +119,9 @@ namespace evaluation {
 /// For 88 columns every eighth sample. Chosen.
 inline constexpr double kColumnsPerStride = 11.0;
 inline constexpr int kLongestStride = 30;  ///< samples
+/// How large an error is takes time in proportion to the lags that a response is looked at: for 400
+/// of them every second sample. What is that slow changes slowly, too. Chosen.
+inline constexpr double kLagsPerStride = 200.0;
 /// The threshold of F is kept until the degrees of freedom have changed by this share, which moves
 /// it by some 1e-5. Chosen.
 inline constexpr double kKeptThresholdShare = 0.01;
@@ -145,10 +148,12 @@ inline constexpr double kSlowerThanLags = 2.0;
 }  // namespace regression_shape
 
 /// What a monitor takes (`monitor_cost`). Measured, `./run bench`: seconds for each entry of a
-/// factor that a row is rotated into, and for each that an evaluation inverts.
+/// factor that a row is rotated into, for each that an evaluation inverts, and for each lag of a
+/// pulse and number of what it is projected on where the size of an error is fitted.
 namespace cost {
 inline constexpr double kPerRotated = 2e-10;
 inline constexpr double kPerInverted = 1e-10;
+inline constexpr double kPerFitted = 4e-8;
 }  // namespace cost
 
 /// No setting counts more samples than these: an int holds them, and nobody waits for them.

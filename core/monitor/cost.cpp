@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/mismatch/calibration.hpp"
+#include "core/mismatch/signature.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/calibration.hpp"
 #include "core/monitor/derived_settings.hpp"
@@ -13,6 +13,7 @@
 namespace mpm {
 namespace {
 
+using calibration::cost::kPerFitted;
 using calibration::cost::kPerInverted;
 using calibration::cost::kPerRotated;
 
@@ -40,10 +41,8 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   const double own = inputs * (derived.controlling_lags + 1.0);  // of the reported correlations
   const double responses = cvs * (derived.last_lag - derived.first_lag + 1.0);
   const double tree = (1.0 + std::log2(inputs)) * own * (0.5 * own + responses);
-  const double slowest = 1.0 / std::abs(std::log(derived.tail_poles.front()));  // of 1: infinite
-  const double shapes = kTwice * inputs * cvs *
-                        std::min(calibration::usual_errors::kTailFitTimeConstants * slowest,
-                                 static_cast<double>(calibration::usual_errors::kTailFitMost));
+  const double lags = BlockBasis::lags_beyond(derived.tail_poles);
+  const double shapes = kTwice * inputs * cvs * lags;
   const double terms = NonlinearTerms::columns_of(derived.nonlinear, spec.input_count);
   const RegressionShape shape{spec.input_count,
                               spec.cv_count,
@@ -62,6 +61,10 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
                  kPerInverted * cvs *
                      (memories * std::pow(inputs * block, 3) + std::pow(terms, 3)) /
                      derived.evaluation_stride;
+  const double past =
+      2.0 + derived.residual_order + static_cast<double>(derived.residual_poles.size());
+  cost.seconds_alarmed = cost.seconds + kPerFitted * cvs * memories * (derived.fir_lags + lags) *
+                                            past * (2.0 + tails) / derived.evaluation_stride;
   return cost;
 }
 

@@ -11,7 +11,8 @@ struct MonitorCost {
   double columns = 0.0;     ///< of the regression of each CV
   double remembered = 0.0;  ///< samples
   double bytes = 0.0;
-  double seconds = 0.0;  ///< a sample, on one core
+  double seconds = 0.0;          ///< a sample, on one core
+  double seconds_alarmed = 0.0;  ///< while a channel of each CV is wrong, at most
 };
 
 /// `spec` is a possible model, or has no channels.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mismatch/signature.hpp"
 #include "core/monitor/calibration.hpp"
 
 namespace mpm {
@@ -67,6 +68,9 @@ void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
   derived.remembered = whole(std::ceil(memories::kRememberedShare * lasting));
   derived.evaluation_stride = std::clamp(static_cast<int>(columns / evaluation::kColumnsPerStride),
                                          1, evaluation::kLongestStride);
+  const double lags = derived.fir_lags + BlockBasis::lags_beyond(derived.tail_poles);
+  derived.evaluation_stride =
+      std::max(derived.evaluation_stride, static_cast<int>(lags / evaluation::kLagsPerStride));
 }
 
 void derive_materiality(const ModelSpec& spec, const LinearModel& model,

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mismatch/calibration.hpp"
+
 namespace mpm {
 
 UnitResiduals::UnitResiduals(int cvs)
     : values_(Eigen::VectorXd::Zero(cvs)),
       held_(Eigen::VectorXd::Zero(cvs)),
+      largest_(Eigen::VectorXd::Zero(cvs)),
       unknown_runs_(static_cast<std::size_t>(cvs), 0) {}
 
 void UnitResiduals::read(const Frame& frame, const Predictions& predictions) {
@@ -15,7 +18,10 @@ void UnitResiduals::read(const Frame& frame, const Predictions& predictions) {
     values_(j) = predictions.residual(j, frame);
     std::int64_t& run = unknown_runs_[static_cast<std::size_t>(j)];
     run = std::isfinite(values_(j)) ? 0 : run + 1;
-    if (run == 0) held_(j) = values_(j);
+    if (run > 0) continue;
+    largest_(j) = std::max(largest_(j), std::abs(frame[SignalKind::kCv].values(j)));
+    if (std::abs(values_(j)) < calibration::kRounding * largest_(j)) values_(j) = 0.0;
+    held_(j) = values_(j);
   }
 }
 

@@ -9,7 +9,8 @@
 
 namespace mpm {
 
-/// The residuals of a unit, and what is taken where they are unknown.
+/// The residuals of a unit, and what is taken where they are unknown. What rounding alone makes of
+/// a prediction that is exact is no residual: 0.
 class UnitResiduals {
  public:
   explicit UnitResiduals(int cvs);
@@ -31,6 +32,7 @@ class UnitResiduals {
 
  private:
   Eigen::VectorXd values_, held_;
+  Eigen::VectorXd largest_;  // magnitude that each CV has had
   std::vector<std::int64_t> unknown_runs_;
 };
 

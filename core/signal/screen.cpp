@@ -251,6 +251,9 @@ void Screen::screen_spikes(int cv) {
     }
   }
   if (!known[2] || !known[3]) return;
+  // A coarse reading that repeats says nothing of how far the next one jumps: at least a step.
+  const SignalBlock& measured = ago(0)[SignalKind::kCv];
+  if (measured.values(cv) == ago(1)[SignalKind::kCv].values(cv)) return;
   const double difference = std::abs(levels[3] - levels[2]);
   jumps.samples += 1.0;
   const double bounded = jumps.samples > kFirstSamples

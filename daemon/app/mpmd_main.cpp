@@ -103,8 +103,9 @@ void declare(CLI::App& app, Options& options) {
 std::string cost_text(const config::UnitConfig& unit) {
   const MonitorCost cost = monitor_cost(unit.model, unit.monitor);
   return unit.unit + ": about " + number_text(1e-6 * cost.bytes, 2) + " MB and " +
-         number_text(1e6 * cost.seconds, 2) + " us a sample (" + number_text(cost.columns) +
-         " regression columns per CV)";
+         number_text(1e6 * cost.seconds, 2) + " us a sample, up to " +
+         number_text(1e6 * cost.seconds_alarmed, 2) + " us while a channel of each CV is wrong (" +
+         number_text(cost.columns) + " regression columns per CV)";
 }
 
 int serve(const Options& options, const std::vector<config::UnitConfig>& units,

@@ -175,7 +175,7 @@ TEST_CASE("Every mistake in a section is told at its place") {
        "u.yaml:8:30: error: alarms.controller.class: must be one of event, alert, alarm, not "
        "'loud'"},
       {kModel + "alarms: {max_shelve: 0}\n",
-       "u.yaml:8:22: error: alarms.max_shelve: must be at least 1 and at most 2678400, not 0"},
+       "u.yaml:8:22: error: alarms.max_shelve: must be >= 1 and <= 2678400, not 0"},
       {kModel + "alarms: {on_dely: 1}\n",
        "u.yaml:8:10: error: alarms.on_dely: unknown key (did you mean 'on_delay'?)"},
       {kModel + "dds: {domain: 101}\n",

@@ -12,6 +12,8 @@ constexpr double kLater[] = {0.3, 2.0, 5.0, 10.0};
 constexpr double kSooner[] = {-2.0, -5.0};
 constexpr double kLaterFromOnset[] = {2.0, 5.0};
 constexpr double kSoonerFromOnset = -2.0;
+/// Of what there is where that is less: a fit that begins at the end of its range hardly leaves it.
+constexpr double kSoonerShare = 0.5;
 
 /// A channel answers later or sooner than the model.
 class DeadTime : public SingleChannelError {
@@ -31,7 +33,8 @@ class DeadTime : public SingleChannelError {
                                  members + error_onset_cost(), onset));
         };
         for (const double start : kLaterFromOnset) add(start);
-        if (removable >= -kSoonerFromOnset) add(kSoonerFromOnset);
+        if (removable > 0.0)
+          add(removable >= -kSoonerFromOnset ? kSoonerFromOnset : -kSoonerShare * removable);
       }
     }
   }
@@ -48,6 +51,8 @@ std::vector<double> dead_time_starts(double removable_samples) {
   std::vector<double> starts(std::begin(kLater), std::end(kLater));
   for (const double start : kSooner)
     if (removable_samples >= -start) starts.push_back(start);
+  if (removable_samples > 0.0 && removable_samples < -kSooner[0])
+    starts.push_back(-kSoonerShare * removable_samples);
   return starts;
 }
 

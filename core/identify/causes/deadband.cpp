@@ -20,7 +20,7 @@ class PlayOfInput : public InputBlockCause {
   PlayOfInput() : InputBlockCause(kInputNonlinearity, "deadband") {}
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
-    for (const BlockPlace& at : block_places(outlook)) {
+    for (const BlockPlace& at : curve_places(outlook)) {
       const double range = at.input.range();
       for (const double share : kStarts)
         found.push_back(effect(at.place,

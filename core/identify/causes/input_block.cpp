@@ -48,6 +48,12 @@ std::vector<BlockPlace> InputBlockCause::block_places(const Outlook& outlook) {
   return places;
 }
 
+std::vector<BlockPlace> InputBlockCause::curve_places(const Outlook& outlook, int levels) {
+  std::vector<BlockPlace> places = block_places(outlook);
+  std::erase_if(places, [levels](const BlockPlace& at) { return at.input.levels() < levels; });
+  return places;
+}
+
 double InputBlockCause::since_s(const Effect& effect, const Surroundings& surroundings) {
   if (effect.onset == 0) return -std::numeric_limits<double>::infinity();
   return surroundings.start_s + static_cast<double>(effect.onset) * surroundings.sample_time_s;

@@ -34,6 +34,9 @@ class InputBlockCause : public Cause {
   [[nodiscard]] static double since_s(const Effect& effect, const Surroundings& surroundings);
   /// Where nothing is in the way of a block.
   [[nodiscard]] static std::vector<BlockPlace> block_places(const Outlook& outlook);
+  /// Of these, where the input has been at so many levels: on fewer a curve through them is a
+  /// straight line with an offset, and nothing tells them apart.
+  [[nodiscard]] static std::vector<BlockPlace> curve_places(const Outlook& outlook, int levels = 3);
   /// The one CV that the model has this input act on; -1 where there are several.
   [[nodiscard]] static int only_cv(const ModelSpec& model, int input);
   /// The tag of what the block stands before: a CV's, or "the plant".

@@ -16,6 +16,8 @@ constexpr Quantity kCubic{"cubic", Form::kPlain, Unit::kNone};
 
 /// s.d. of what the curved part adds at the end of the input's range, as a share of the linear one.
 constexpr double kBend = 0.3;
+/// Levels of the input that a parabola and an offset go through, whatever the plant does.
+constexpr int kLevelsOfSquare = 3;
 
 /// A smooth curve between an input and what the plant sees of it.
 class InputPolynomial : public InputBlockCause {
@@ -25,7 +27,7 @@ class InputPolynomial : public InputBlockCause {
   [[nodiscard]] bool is_curve() const override { return true; }
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
-    for (const BlockPlace& at : block_places(outlook)) {
+    for (const BlockPlace& at : curve_places(outlook)) {
       const double origin = outlook.model().input_origin(at.place.input);
       const double reach =
           std::max(std::abs(at.input.high - origin), std::abs(at.input.low - origin));
@@ -46,7 +48,8 @@ class InputPolynomial : public InputBlockCause {
       const Coordinate quadratic = curved(kQuadratic, kBend / reach);
       const Coordinate cubic = curved(kCubic, kBend / (reach * reach));
       found.push_back(effect(at.place, {linear, quadratic}, cost_of(at.members)));
-      found.push_back(effect(at.place, {linear, quadratic, cubic}, cost_of(at.members)));
+      if (at.input.levels() > kLevelsOfSquare)
+        found.push_back(effect(at.place, {linear, quadratic, cubic}, cost_of(at.members)));
     }
   }
 

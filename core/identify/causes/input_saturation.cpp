@@ -21,7 +21,7 @@ class InputSaturation : public InputBlockCause {
   [[nodiscard]] bool is_curve() const override { return true; }
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
-    for (const BlockPlace& at : block_places(outlook)) {
+    for (const BlockPlace& at : curve_places(outlook)) {
       const double range = at.input.range();
       const auto level = [&](const Quantity& quantity, double start) {
         return Coordinate{.quantity = &quantity,

@@ -16,6 +16,9 @@ struct Spread {
     return sorted[static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1))];
   }
   [[nodiscard]] double range() const { return high - low; }
+  /// Values that it rests at or passes, as far as they can be told apart: a binary test signal has
+  /// two. So many at most as there are steps in its range.
+  [[nodiscard]] int levels() const;
 };
 
 /// Nothing where fewer than 20 values are known or the signal hardly moves.

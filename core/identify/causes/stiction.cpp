@@ -48,7 +48,7 @@ class StickingValve : public InputBlockCause {
   }
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
-    for (const BlockPlace& at : block_places(outlook)) {
+    for (const BlockPlace& at : curve_places(outlook)) {
       if (!at.whole_input) continue;
       const double range = at.input.range();
       const double cost = cost_of(2 * at.members);

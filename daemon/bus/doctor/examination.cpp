@@ -206,6 +206,14 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
   if (unit.described) {
     const std::vector<Trouble> troubles = unit.inputs.troubles(around, now);
     findings.troubles.insert(findings.troubles.end(), troubles.begin(), troubles.end());
+    // Who has just left is not silent yet.
+    for (const TopicFindings& topic : findings.topics)
+      if (topic.needed && topic.writers.empty() &&
+          std::none_of(troubles.begin(), troubles.end(), [&topic](const Trouble& trouble) {
+            return trouble.text.find(topic.topic) != std::string::npos;
+          }))
+        findings.troubles.push_back({"silent " + topic.topic, Severity::kOutOfSpecification,
+                                     "nothing on " + topic.topic + " any more (nobody writes it)"});
   }
   for (const auto& [writer, word] : unit.monitors) {
     const idl::Endpoint* endpoint = find_writer(around, writer);

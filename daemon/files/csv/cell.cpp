@@ -59,6 +59,26 @@ std::optional<double> parse_value(std::string_view text, bool decimal_comma) {
   return std::nullopt;
 }
 
+bool may_be_thousands(std::string_view text) {
+  constexpr std::size_t kGroup = 3;  // digits
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
+  const auto digits = [&text] {
+    std::size_t count = 0;
+    while (count < text.size() && text[count] >= '0' && text[count] <= '9') ++count;
+    text.remove_prefix(count);
+    return count;
+  };
+  if (text.empty() || text.front() == '0') return false;
+  const std::size_t first = digits();
+  if (first == 0 || first > kGroup || text.empty()) return false;
+  while (!text.empty()) {
+    if (text.front() != '.') return false;
+    text.remove_prefix(1);
+    if (digits() != kGroup) return false;
+  }
+  return true;
+}
+
 bool is_state(std::string_view text) {
   if (text.find('#') != std::string_view::npos) return true;  // 1.#QNAN, #DIV/0!
   const std::size_t first = text.find_first_not_of("+-");

@@ -11,6 +11,9 @@ namespace mpm::files {
 /// for any other text.
 [[nodiscard]] std::optional<double> parse_value(std::string_view text, bool decimal_comma);
 
+/// True for a text such as 1.050, which is 1050 where the comma is the decimal point.
+[[nodiscard]] bool may_be_thousands(std::string_view text);
+
 /// True for a text that is no attempt at a number: the name of a state, such as `Manual` or
 /// `Over Range`, or a message.
 [[nodiscard]] bool is_state(std::string_view text);

@@ -98,6 +98,12 @@ double read_value(const LineReader& lines, const CsvFormat& format, const Cell& 
   if (comma && std::isfinite(*value)) ++tally.decimal_commas;
   if (format.decimal_comma() && cell.text.find('.') != std::string_view::npos)
     ++tally.decimal_points;
+  if (format.decimal_comma() && may_be_thousands(cell.text)) tally.may_be_thousands = true;
+  if (tally.may_be_thousands && tally.decimal_commas > 0)
+    lines.fail(cell.column,
+               "'" + printable(cell.text) +
+                   "': the file has decimal commas, and a number such as 1.050, which may be 1050 "
+                   "or 1.05; export it without thousands separators");
   if (!std::isinf(*value)) return *value;
   ++tally.not_finite;
   return std::numeric_limits<double>::quiet_NaN();

@@ -23,6 +23,7 @@ struct ReadTally {
   std::uint64_t not_finite = 0;      ///< values; taken as missing
   std::uint64_t repeated = 0;        ///< values of a tag at a time that it has already
   std::uint64_t decimal_commas = 0;  ///< values
+  bool may_be_thousands = false;     ///< some value may be a thousand of what it looks like
   std::uint64_t decimal_points = 0;  ///< values, where the comma may be one too
   std::uint64_t empty_rows = 0;      ///< without time and values
   std::map<std::string, std::uint64_t, std::less<>> states;     ///< instead of numbers

@@ -417,5 +417,37 @@ TEST_CASE("correlations stay as they were until they are asked for again") {
   CHECK(monitor.partial_correlations(0, 0) != early);
 }
 
+// As somebody's first simulation gives them. The plant is not the model's own object: it differs in
+// rounding.
+TEST_CASE("a right model of data without noise matches") {
+  ModelSpec model;
+  model.sample_time_s = 1.0;
+  model.input_count = model.cv_count = 1;
+  model.input_blocks.resize(1);
+  model.output_blocks.resize(1);
+  model.input_origin = model.output_origin = Eigen::VectorXd::Zero(1);
+  model.channels = {{0, 0, TransferFunction{1.0, {10}, 0, 2, false}, {}}};
+  const SignalCounts counts{1, 0, 1, 0};
+  Monitor monitor(model, counts, {false}, {}, {});
+  const double pole = std::exp(-0.1);
+  double x = 0.0, u = 0.0, before = 0.0, before_that = 0.0;
+  for (int k = 0; k < 3000; ++k) {
+    if (k % 17 == 0) u = test::uniform(61, k);
+    Frame frame(counts);
+    frame.interval = k;
+    frame.source_time_ns = k * std::int64_t{1'000'000'000};
+    for (SignalBlock& block : frame.blocks)
+      std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
+    frame[SignalKind::kMv].values(0) = u;
+    frame[SignalKind::kCv].values(0) = x;
+    frame[SignalKind::kPrediction].quality[0] = Quality::kBad;
+    monitor.push(frame);
+    x = pole * x + (1.0 - pole) * before_that;
+    before_that = before;
+    before = u;
+  }
+  CHECK(monitor.channel(0, 0).verdict == Verdict::kMatch);
+}
+
 }  // namespace
 }  // namespace mpm

@@ -159,5 +159,29 @@ TEST_CASE("the screen allocates nothing per frame") {
   CHECK(test::allocation_count() == before);
 }
 
+// The usual difference is then mostly 0, and a step of the sensor many times that.
+TEST_CASE("a step of a sensor that mostly repeats is no spike") {
+  for (const bool with_prediction : {false, true}) {
+    Screen screen(kCounts, {with_prediction}, {true}, 0);
+    double noise = 0.0;
+    for (int k = 0; k < 4000; ++k) {
+      Frame frame(kCounts);
+      for (SignalBlock& block : frame.blocks)
+        std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
+      if (!with_prediction) frame[SignalKind::kPrediction].quality[0] = Quality::kBad;
+      frame.interval = k;
+      noise = 0.9 * noise + 0.02 * test::uniform(43, k);
+      frame[SignalKind::kMv].values(0) = test::uniform(44, k);
+      frame[SignalKind::kPrediction].values(0) = 0.3 * std::sin(0.02 * k);
+      frame[SignalKind::kCv].values(0) = 0.1 * std::round((0.3 * std::sin(0.02 * k) + noise) / 0.1);
+      screen.push(frame);
+      while (screen.next() != nullptr) {
+      }
+    }
+    CHECK(screen.repeated_share(0) > 0.6);
+    CHECK(screen.spikes(0) <= 2);
+  }
+}
+
 }  // namespace
 }  // namespace mpm

@@ -26,8 +26,10 @@ TEST_CASE("topics are chosen by name and by pattern, and excluded last") {
   CHECK(chosen_topics({{"mpm/mv", "theirs"}, "", {}, ""}, kDefault) == Topics{"mpm/mv", "theirs"});
   CHECK(chosen_topics({{"theirs"}, "^mpm/[cd]v$", {}, ""}, kDefault) ==
         Topics{"mpm/cv", "mpm/dv", "theirs"});
-  CHECK(chosen_topics({{}, "alarm", {}, ""}, kDefault) == Topics{"mpm/alarm", "mpm/alarm_event"});
-  CHECK(chosen_topics({{}, "alarm", {"mpm/alarm"}, ""}, kDefault) == Topics{"mpm/alarm_event"});
+  CHECK(chosen_topics({{}, "alarm", {}, ""}, kDefault) ==
+        Topics{"mpm/alarm", "mpm/alarm_event", "mpm/controller_alarm"});
+  CHECK(chosen_topics({{}, "alarm", {"mpm/alarm"}, ""}, kDefault) ==
+        Topics{"mpm/alarm_event", "mpm/controller_alarm"});
   CHECK(chosen_topics({{}, "", {"mpm/health"}, ""}, kDefault) ==
         Topics{"mpm/mv", "mpm/cv", "mpm/dv"});
   CHECK(chosen_topics({{}, "", {}, "[mc]v"}, kDefault) == Topics{"mpm/dv"});

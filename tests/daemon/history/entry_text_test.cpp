@@ -35,7 +35,7 @@ TEST_CASE("an entry is a line that people read") {
 
 TEST_CASE("an entry is a row of a table, whatever its comment") {
   CHECK(entry_csv(entry()) ==
-        "2026-03-01T06:00:00Z,2026-03-01T05:59:58.5Z,shell,u1,y1,shelved,shelved,alert,low,ann,"
+        "2026-03-01T06:00:00Z,2026-03-01T05:59:58.500Z,shell,u1,y1,shelved,shelved,alert,low,ann,"
         "panel,known,gain +41 %");
   AlarmEntry quoted = entry();
   quoted.comment = "he said \"no\", twice\n";

@@ -65,7 +65,11 @@ TEST_CASE("records are the JSON lines that readers know, byte for byte") {
         R"("cause":"dynamics","cause_text":"y1 answers FIC-101.SP late.",)"
         R"("cause_confidence":0.98,"cause_parameters":{"gain_ratio":0.75,)"
         R"("dead_time_error":60.0},"cause_intervals":{"gain_ratio":[0.72,0.78],)"
-        R"("dead_time_error":[30.0,90.5]}})");
+        R"("dead_time_error":[30.0,90.5]},"alarm_state":"normal","acknowledged":true,)"
+        R"("shelving_state":"unshelved","unshelve_time_ns":0,"suppressed":false,)"
+        R"("suppressed_by_design":false,"out_of_service":false,"retain":false,)"
+        R"("active_time_ns":0,"ack_time_ns":0,"client_user_id":"","comment":"",)"
+        R"("notification_class":"alert","priority":"low","severity":0,"message":""})");
   CHECK(json_of(health()).dump() ==
         R"({"record":"health","unit":"shell","interval":99,"time_ns":99000000000,)"
         R"("state":"maintenance_required","detail":"2 alarms","frames":101,"used":102,)"

@@ -55,5 +55,16 @@ TEST_CASE("too few values, or some that hardly move, have no spread") {
   CHECK_FALSE(spread_of(VectorXd::Constant(100, kUnknown)));
 }
 
+TEST_CASE("a binary signal has two levels, however it began, and one of an MPC has many") {
+  VectorXd binary = VectorXd::NullaryExpr(1000, [](Index k) {
+    return k < 12 ? 0.0 : (k * 37) % 101 < 50 ? -1.0 : 1.0;
+  });
+  CHECK(spread_of(binary)->levels() == 2);
+  VectorXd steps =
+      VectorXd::NullaryExpr(1000, [](Index k) { return static_cast<double>(k / 250 % 3); });
+  CHECK(spread_of(steps)->levels() == 3);
+  CHECK(spread_of(shuffled(1001, 37))->levels() > 40);
+}
+
 }  // namespace
 }  // namespace mpm

@@ -66,6 +66,39 @@ TEST_CASE("a hidden gain is named, measured and repaired") {
   CHECK(diagnosis.channels[0].gain_ratio.value == Approx(1.4).margin(0.05));
 }
 
+// What a stranger tries first: +-1 on the input, and a plant that answers twice as strongly. Two
+// levels and an offset hold any curve, and a valve that sticks for less than a move is none.
+TEST_CASE("a gain is no curve, no offset and no sticking valve to a binary test signal") {
+  for (const std::uint64_t stream : {1, 3, 5}) {
+    const VectorXd u = test::telegraph(stream, kRows, 1);
+    const Diagnosis diagnosis =
+        diagnosis_of(test::recording_of(u, 2.0 * test::first_order(u, 2.0, 10.0) + noise()));
+    REQUIRE(diagnosis.findings.size() == 1);
+    CHECK(diagnosis.findings[0].subject == Subject{&causes::gain(), {0, 0}});
+    CHECK(diagnosis.findings[0].parameters[0].value == Approx(2.0).margin(0.1));
+  }
+}
+
+// There is one sample of dead time to take away, and a fit from beside it must find that.
+TEST_CASE("a dead time that is not there is named, with whatever else is wrong of the channel") {
+  const ModelSpec late = test::model_of({lag(0, 0, 2.0, 5.0, 1.0)}, 1, 1);
+  for (const bool graded : {false, true})
+    for (const double gain : {1.0, 2.0}) {
+      CAPTURE(graded, gain);
+      const VectorXd u = graded ? test::white(9, kRows) : test::telegraph(9, kRows, 1);
+      DiagnosisSettings settings;
+      settings.mv_count = 1;
+      const Diagnosis diagnosis = diagnose(
+          late, test::recording_of(u, gain * test::first_order(u, 2.0, 5.0) + 0.5 * noise()),
+          nullptr, settings);
+      REQUIRE(diagnosis.findings.size() == 1);
+      const Finding& finding = diagnosis.findings[0];
+      CHECK(finding.subject ==
+            Subject{gain == 1.0 ? &causes::dead_time() : &causes::dynamics(), {0, 0}});
+      CHECK(finding.parameters.back().value == Approx(-1.0).margin(0.1));
+    }
+}
+
 TEST_CASE("a sensor that clips is read from its plateau") {
   Recording recording = plant(1.0);
   recording.cvs = recording.cvs.cwiseMin(1.4);

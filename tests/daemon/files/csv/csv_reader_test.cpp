@@ -216,6 +216,12 @@ TEST_CASE("Bad input is an error at its place") {
       {"time;u1;u2;y1\n0;1.234,5;2;3\n",
        "d.csv:2:3: error: '1.234,5' is no number; export it with a decimal point and without "
        "thousands separators"},
+      {"time;u1;u2;y1\n0;980;2,5;3\n1;1.050;2,5;3\n",
+       "d.csv:3:3: error: '1.050': the file has decimal commas, and a number such as 1.050, which "
+       "may be 1050 or 1.05; export it without thousands separators"},
+      {"time;u1;u2;y1\n0;1.050;2;3\n1;980;2,5;3\n",
+       "d.csv:3:7: error: '2,5': the file has decimal commas, and a number such as 1.050, which "
+       "may be 1050 or 1.05; export it without thousands separators"},
       {"\xFF\xFEt\n", "d.csv:1:1: error: is UTF-16 text; save it as UTF-8"},
       {std::string("time,u1,u2,y1\n0,1,\0,3\n", 22),
        "d.csv:2:1: error: is no text file: it holds a zero byte"},
