@@ -21,6 +21,8 @@
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/standard_output.hpp"
+#include "daemon/http/server.hpp"
+#include "daemon/live/command_queue.hpp"
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/make_diagnosis.hpp"
 #include "daemon/live/monitor_service.hpp"
@@ -51,7 +53,15 @@ struct Options {
   live::ServiceOptions service;
   std::string state_folder = default_state_folder();
   std::string log_level = "info";
+  std::string http;  // address; empty: no page
+  std::vector<std::string> http_names;
+  std::string token_file;
 };
+
+std::string address_problem(const std::string& text) {
+  return http::parse_address(text) ? ""
+                                   : "expected [ADDRESS:]PORT, the address in numbers: " + text;
+}
 
 void declare(CLI::App& app, Options& options) {
   app.add_option("-c,--config", options.config, "unit file, or folder of unit files; repeatable")
@@ -77,6 +87,16 @@ void declare(CLI::App& app, Options& options) {
                  "keep the reports of diagnosed alarms in this folder (default: $STATE_DIRECTORY)");
   app.add_flag("--dds-from-environment", options.service.use_environment,
                "take the DDS settings from CYCLONEDDS_URI instead of the unit files");
+  app.add_option(
+         "--http", options.http,
+         "serve the operator page and the HTTP API at [ADDRESS:]PORT; without an address on "
+         "127.0.0.1, port 0 is any that is free")
+      ->check(address_problem);
+  app.add_option("--http-name", options.http_names,
+                 "another host name by which the page is reached, as behind a proxy; repeatable");
+  app.add_option("--token-file", options.token_file,
+                 "who knows the token in the first line of this file may acknowledge and shelve "
+                 "alarms over HTTP; without it nobody may");
   app.add_option("--log-level", options.log_level, "what to log")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
@@ -86,6 +106,7 @@ void declare(CLI::App& app, Options& options) {
       "Examples:\n"
       "  mpmd --config /etc/mpm/shell.yaml\n"
       "  mpmd --config /etc/mpm/units --journal /var/lib/mpm/journal --journal-keep 2GB\n"
+      "  mpmd --config /etc/mpm/units --http 8080 --token-file /etc/mpm/token\n"
       "  mpmd --config /etc/mpm/units --check\n"
       "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or unit file");
 }
@@ -97,6 +118,42 @@ std::string cost_text(const config::UnitConfig& unit) {
          " regression columns per CV)";
 }
 
+/// The operator page and all that stands behind it.
+class Page {
+ public:
+  Page(const Options& options, const std::vector<config::UnitConfig>& units)
+      : board_(units), server_(*http::parse_address(options.http), board_, parts(options)) {
+    board_.start();
+    server_.start();
+    spdlog::info("operator page at {}", server_.address().url());
+    if (!server_.address().is_local())
+      spdlog::warn(
+          "the operator page is open to the network and not encrypted: put a proxy with TLS "
+          "before it");
+  }
+
+  void attach_to(live::ServiceOptions& service) {
+    service.observer = [this](const config::UnitConfig& unit) { return board_.feed_of(unit.unit); };
+    service.commands = &commands_;
+  }
+
+ private:
+  http::Api::Parts parts(const Options& options) {
+    const std::string token =
+        options.token_file.empty() ? "" : http::read_token(options.token_file);
+    return {.board = &board_,
+            .guard = http::Guard(options.http_names, token),
+            .reports = http::KeptReports(options.state_folder),
+            .version = idl::version_text("mpmd"),
+            .command = [this](const AlarmCommand& command) { return commands_.ask(command); },
+            .server = {}};
+  }
+
+  live::CommandQueue commands_;
+  http::Board board_;
+  http::Server server_;
+};
+
 int serve(const Options& options, const std::vector<config::UnitConfig>& units,
           host::StopSignal& stop, host::AwaitedSignal& hang_up) {
   spdlog::info("{} starts", idl::version_text("mpmd"));
@@ -105,8 +162,11 @@ int serve(const Options& options, const std::vector<config::UnitConfig>& units,
       [&store](const live::DiagnosisJob& job, const live::DiagnosisWorker::GoOn& go_on) {
         return live::make_diagnosis(job, store, go_on);
       });
+  std::optional<Page> page;
+  if (!options.http.empty()) page.emplace(options, units);
   {
     live::ServiceOptions service_options = options.service;
+    if (page) page->attach_to(service_options);
     service_options.report_problem = store.problem();
     live::MonitorService service(units, service_options, worker);
     service.run([&] {
@@ -115,6 +175,7 @@ int serve(const Options& options, const std::vector<config::UnitConfig>& units,
       return stop.received();
     });
   }
+  page.reset();
   const bool idle = worker.stop(kPatience);
   spdlog::info("stopped");
   if (!idle) {

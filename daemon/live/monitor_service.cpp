@@ -28,7 +28,8 @@ idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOpti
 }  // namespace
 
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
-                               const ServiceOptions& options, DiagnosisWorker& worker) {
+                               const ServiceOptions& options, DiagnosisWorker& worker)
+    : commands_(options.commands) {
   if (!options.sample_journal.empty()) samples_.emplace(options.sample_journal);
   idl::DomainOptions any;
   any.use_environment = options.use_environment;
@@ -56,6 +57,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       pipeline.keep({unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                  options.journal_keep / units.size())});
     pipeline.diagnose_with(worker, asker++);
+    if (options.observer) pipeline.show_to(options.observer(unit));
     if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);
     spdlog::info(
         "{}: watching {} on domain {}{}", unit.unit,
@@ -75,12 +77,17 @@ void MonitorService::run(const std::function<bool()>& stop) {
       if (readable) domain->poll(now);
       domain->tick(now);
     }
+    if (commands_ != nullptr) commands_->serve(carry_out);
     notifier_.feed_watchdog(now);
     if (now < next_status) continue;
     next_status = now + kStatusPeriod;
     notifier_.status(status());
   }
   notifier_.stopping();
+}
+
+CommandReply MonitorService::carry_out(const AlarmCommand& command) {
+  return {false, std::string(to_string(command.action)) + " is not yet supported by this monitor"};
 }
 
 std::string MonitorService::status() const {

@@ -9,6 +9,7 @@
 
 #include "config/unit_config.hpp"
 #include "daemon/host/notifier.hpp"
+#include "daemon/live/command_queue.hpp"
 #include "daemon/live/domain.hpp"
 
 namespace mpm::live {
@@ -19,6 +20,9 @@ struct ServiceOptions {
   std::string sample_journal;                  ///< file of every sample's records; empty: none
   bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
   std::string report_problem;    ///< why reports of diagnoses cannot be kept; empty: they can
+  /// Who looks on at a unit, null: nobody; may be empty. They must outlive the service.
+  std::function<UnitObserver*(const config::UnitConfig&)> observer;
+  CommandQueue* commands = nullptr;  ///< to be answered by the loop; may be null
 };
 
 /// All units of a daemon and the loop that drives them. Everything but the diagnoses happens in the
@@ -37,10 +41,12 @@ class MonitorService {
   using Clock = std::chrono::steady_clock;
 
   [[nodiscard]] std::string status() const;
+  [[nodiscard]] static CommandReply carry_out(const AlarmCommand& command);
 
   std::optional<SampleJournal> samples_;
   std::vector<std::unique_ptr<Domain>> domains_;  // one per distinct DDS setting
   idl::WaitSet wait_set_;
+  CommandQueue* commands_;
   host::Notifier notifier_;
 };
 

@@ -1,0 +1,109 @@
+#include "daemon/http/unit_feed.hpp"
+
+#include <limits>
+#include <utility>
+
+namespace mpm::http {
+namespace {
+
+float value_of(const SignalBlock& block, int index) {
+  if (index >= block.size() || !block.usable(index)) return std::numeric_limits<float>::quiet_NaN();
+  return static_cast<float>(block.values(index));
+}
+
+}  // namespace
+
+void Delivery::clear() {
+  rows.clear();
+  values.clear();
+  judged.clear();
+  readings.clear();
+  digests.clear();
+  alarms.clear();
+  diagnosis.reset();
+  view.reset();
+  dropped = 0;
+}
+
+UnitFeed::UnitFeed(const config::UnitConfig& unit)
+    : columns_{unit.counts().cv, unit.counts().inputs()}, counts_(unit.counts()), digests_(unit) {}
+
+void UnitFeed::on_frame(const Frame& frame, const report::UnitMonitor& monitor) {
+  news_ = true;
+  std::optional<history::Digest> digest = digests_.push(monitor);
+  const MutexLock lock(mutex_);
+  if (digest) delivery_.digests.push_back(std::move(*digest));
+  if (delivery_.rows.size() >= kMostRows) {
+    ++delivery_.dropped;
+    return;
+  }
+  note_frame(frame);
+  note_readings(monitor.monitor());
+  delivery_.rows.back().judged = delivery_.judged.size();
+}
+
+void UnitFeed::note_frame(const Frame& frame) {
+  delivery_.rows.push_back({frame.interval, frame.source_time_ns, 0});
+  for (int j = 0; j < columns_.cvs; ++j) {
+    delivery_.values.push_back(value_of(frame[SignalKind::kCv], j));
+    delivery_.values.push_back(value_of(frame[SignalKind::kPrediction], j));
+    delivery_.values.push_back(value_of(frame[SignalKind::kSetpoint], j));
+  }
+  for (int i = 0; i < counts_.mv; ++i)
+    delivery_.values.push_back(value_of(frame[SignalKind::kMv], i));
+  for (int i = 0; i < counts_.dv; ++i)
+    delivery_.values.push_back(value_of(frame[SignalKind::kDv], i));
+}
+
+void UnitFeed::note_readings(const Monitor& monitor) {
+  for (const JudgedFrame& judged : monitor.judged()) {
+    delivery_.judged.push_back(judged.interval);
+    for (int j = 0; j < columns_.cvs; ++j) {
+      const CvReading& reading = judged.readings[static_cast<std::size_t>(j)];
+      bool matches = true;
+      for (int i = 0; i < columns_.inputs; ++i)
+        matches = matches && monitor.channel(j, i).verdict != Verdict::kMismatch;
+      delivery_.readings.push_back(static_cast<float>(reading.measured - reading.residual));
+      delivery_.readings.push_back(static_cast<float>(reading.residual));
+      delivery_.readings.push_back(matches ? 1.0F : 0.0F);
+    }
+  }
+}
+
+void UnitFeed::on_alarm(const AlarmRecord& alarm) {
+  news_ = true;
+  const MutexLock lock(mutex_);
+  delivery_.alarms.push_back(alarm);
+}
+
+void UnitFeed::on_diagnosis(const live::DiagnosisOutcome& outcome) {
+  news_ = true;
+  const MutexLock lock(mutex_);
+  delivery_.diagnosis = outcome;
+  delivery_.diagnosis->unwritten.reset();  // a report in memory is nobody's here
+}
+
+bool UnitFeed::wants_view(Clock::time_point now) {
+  if (now - last_view_ < (news_ ? kViewPeriod : kIdlePeriod)) return false;
+  last_view_ = now;
+  news_ = false;
+  return true;
+}
+
+void UnitFeed::on_view(const live::UnitView& view) {
+  auto copy = std::make_shared<UnitSnapshot>();
+  copy->channels = view.channels;
+  copy->alarms = view.alarms;
+  copy->health = view.health;
+  copy->troubles = view.troubles;
+  copy->performance = view.performance;
+  const MutexLock lock(mutex_);
+  delivery_.view = std::move(copy);
+}
+
+void UnitFeed::fetch(Delivery& emptied) {
+  const MutexLock lock(mutex_);
+  std::swap(delivery_, emptied);
+}
+
+}  // namespace mpm::http
