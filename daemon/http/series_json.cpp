@@ -58,7 +58,7 @@ Json series_json(const UnitStore& store, int cv, const SeriesQuery& query) {
   if (extent) {
     until = query.until_s ? nanoseconds(*query.until_s) : extent->second;
     from = query.from_s ? nanoseconds(*query.from_s)
-                        : until - std::llround(kUsualSamples * unit.sample_time_s * kSecond);
+                        : until - nanoseconds(query.span_s.value_or(kUsualSamples * unit.sample_time_s));
     drawing = store.draw(
         from, until, std::clamp(query.points, SeriesQuery::kFewestPoints, SeriesQuery::kMostPoints),
         wanted);
@@ -90,7 +90,7 @@ Json series_json(const UnitStore& store, int cv, const SeriesQuery& query) {
           {"prediction", column_json(drawing.reaches[1], &Reach::mean)},
           {"setpoint", column_json(drawing.reaches[2], &Reach::mean)},
           {"residual", full_json(drawing.reaches[3])},
-          {"residual_band", band.samples > 1 ? Json{{"low", band.mean - half},
+          {"residual_band", band.samples >= ResidualBand::kFewest ? Json{{"low", band.mean - half},
                                                     {"high", band.mean + half},
                                                     {"samples", band.samples}}
                                              : Json()},

@@ -9,6 +9,7 @@ struct SeriesQuery {
   static constexpr int kFewestPoints = 10, kMostPoints = 2000, kUsualPoints = 600;
 
   std::optional<double> from_s, until_s;
+  std::optional<double> span_s;  ///< before the end, where no beginning is given
   int points = kUsualPoints;
 };
 

@@ -11,6 +11,19 @@ float value_of(const SignalBlock& block, int index) {
   return static_cast<float>(block.values(index));
 }
 
+/// Some channel of the CV matches, none mismatches, and nothing is being looked for.
+bool is_known_to_match(const Monitor& monitor, int cv, int inputs) {
+  bool some = false;
+  for (int i = 0; i < inputs; ++i) {
+    const ChannelStatus& channel = monitor.channel(cv, i);
+    if (channel.verdict == Verdict::kMismatch || channel.reason == Reason::kWarmingUp ||
+        channel.reason == Reason::kIsolating)
+      return false;
+    some = some || channel.verdict == Verdict::kMatch;
+  }
+  return some;
+}
+
 }  // namespace
 
 void Delivery::clear() {
@@ -60,12 +73,9 @@ void UnitFeed::note_readings(const Monitor& monitor) {
     delivery_.judged.push_back(judged.interval);
     for (int j = 0; j < columns_.cvs; ++j) {
       const CvReading& reading = judged.readings[static_cast<std::size_t>(j)];
-      bool matches = true;
-      for (int i = 0; i < columns_.inputs; ++i)
-        matches = matches && monitor.channel(j, i).verdict != Verdict::kMismatch;
       delivery_.readings.push_back(static_cast<float>(reading.measured - reading.residual));
       delivery_.readings.push_back(static_cast<float>(reading.residual));
-      delivery_.readings.push_back(matches ? 1.0F : 0.0F);
+      delivery_.readings.push_back(is_known_to_match(monitor, j, columns_.inputs) ? 1.0F : 0.0F);
     }
   }
 }

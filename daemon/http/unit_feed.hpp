@@ -22,7 +22,7 @@ struct Delivery {
   std::vector<Row> rows;             ///< frames
   std::vector<float> values;         ///< of each: see FeedColumns
   std::vector<std::int64_t> judged;  ///< intervals, later than they came
-  std::vector<float> readings;       ///< of each CV: prediction, residual, 1 if it matches so far
+  std::vector<float> readings;       ///< of each CV: prediction, residual, 1 while it is known to match
   std::vector<history::Digest> digests;
   std::vector<AlarmRecord> alarms;
   std::optional<live::DiagnosisOutcome> diagnosis;

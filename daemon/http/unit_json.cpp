@@ -199,6 +199,21 @@ int attention(const UnitSnapshot& snapshot, std::size_t calling) {
   return snapshot.health.state == "normal" ? 0 : 1;
 }
 
+/// What a card has room for.
+Json first_calls(const Json& alarms) {
+  constexpr std::size_t kMost = 3;
+  Json first = Json::array();
+  for (const Json& alarm : alarms) {
+    if (!calls(alarm) || first.size() >= kMost) continue;
+    Json call = Json::object();
+    for (const char* key :
+         {"mv", "cv", "text", "to", "alarm_state", "priority", "message", "time_ns"})
+      if (alarm.contains(key)) call[key] = alarm[key];
+    first.push_back(std::move(call));
+  }
+  return first;
+}
+
 std::size_t calling_alarms(const Json& alarms) {
   return static_cast<std::size_t>(std::count_if(alarms.begin(), alarms.end(), calls));
 }
@@ -230,6 +245,7 @@ Json overview_json(const UnitStore& store) {
           {"health", {{"state", snapshot->health.state}, {"detail", snapshot->health.detail}}},
           {"alarms", calling},
           {"silenced_alarms", alarms.size() - calling},
+          {"first_alarms", first_calls(alarms)},
           {"match", snapshot->health.matching},
           {"mismatch", snapshot->health.mismatching},
           {"undetermined", snapshot->health.undetermined},

@@ -21,7 +21,9 @@ namespace mpm::http {
 /// Where 95 % of a CV's residuals were while no channel of it was said to mismatch.
 struct ResidualBand {
   double mean = 0.0, deviation = 0.0;
-  std::int64_t samples = 0;  ///< 0: none yet
+  std::int64_t samples = 0;
+  /// Fewer are no band: a swing of a setpoint or two.
+  static constexpr std::int64_t kFewest = 300;
 };
 
 /// Indices of a unit over time: one row a digest.

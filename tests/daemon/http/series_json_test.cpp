@@ -34,6 +34,9 @@ TEST_CASE("a stretch is chosen in seconds, with so many points") {
   CHECK(few["times"].size() == 11);
   CHECK(few["times"][0] == 600.0);
   query = {};
+  query.span_s = 300.0;
+  CHECK(series_json(sample.store(), 1, query)["from"] == 60'000.0 - 300.0);
+  query = {};
   query.from_s = 0.0;
   query.points = 20;
   CHECK(series_json(sample.store(), 1, query)["times"].size() <= 21);
