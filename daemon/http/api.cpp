@@ -151,8 +151,10 @@ Reply Api::cv(const UnitStore& store, int cv, const std::string& what, const Que
   series.until_s = number_of<double>(query, "until", bad);
   series.span_s = number_of<double>(query, "span", bad);
   series.points = number_of<int>(query, "points", bad).value_or(SeriesQuery::kUsualPoints);
-  if (bad) return error_reply(400, "from and until are seconds since 1970, span is seconds, points "
-                              "is a number");
+  if (bad)
+    return error_reply(400,
+                       "from and until are seconds since 1970, span is seconds, points "
+                       "is a number");
   return json_reply(series_json(store, cv, series));
 }
 

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <memory>
+#include <string>
 
 #include "core/parallel/mutex.hpp"
 #include "core/record/alarm_record.hpp"
@@ -17,13 +18,19 @@ class RecentEvents : public EventSource {
 
   explicit RecentEvents(std::size_t kept = kKept) : kept_(kept) {}
 
-  void add(const AlarmRecord& alarm);
+  /// `text`: what is wrong, in words, as of then.
+  void add(const AlarmRecord& alarm, std::string text);
   [[nodiscard]] std::vector<nlohmann::ordered_json> query(const EventQuery& query) const override;
 
  private:
+  struct Event {
+    AlarmRecord alarm;
+    std::string text;
+  };
+
   std::size_t kept_;
   mutable Mutex mutex_;
-  std::deque<std::shared_ptr<const AlarmRecord>> events_ MPM_GUARDED_BY(mutex_);
+  std::deque<std::shared_ptr<const Event>> events_ MPM_GUARDED_BY(mutex_);
 };
 
 }  // namespace mpm::http

@@ -57,8 +57,9 @@ Json series_json(const UnitStore& store, int cv, const SeriesQuery& query) {
   std::int64_t from = 0, until = 0;
   if (extent) {
     until = query.until_s ? nanoseconds(*query.until_s) : extent->second;
-    from = query.from_s ? nanoseconds(*query.from_s)
-                        : until - nanoseconds(query.span_s.value_or(kUsualSamples * unit.sample_time_s));
+    from = query.from_s
+               ? nanoseconds(*query.from_s)
+               : until - nanoseconds(query.span_s.value_or(kUsualSamples * unit.sample_time_s));
     drawing = store.draw(
         from, until, std::clamp(query.points, SeriesQuery::kFewestPoints, SeriesQuery::kMostPoints),
         wanted);
@@ -91,9 +92,9 @@ Json series_json(const UnitStore& store, int cv, const SeriesQuery& query) {
           {"setpoint", column_json(drawing.reaches[2], &Reach::mean)},
           {"residual", full_json(drawing.reaches[3])},
           {"residual_band", band.samples >= ResidualBand::kFewest ? Json{{"low", band.mean - half},
-                                                    {"high", band.mean + half},
-                                                    {"samples", band.samples}}
-                                             : Json()},
+                                                                         {"high", band.mean + half},
+                                                                         {"samples", band.samples}}
+                                                                  : Json()},
           {"limits",
            {{"low", limits.low ? Json(*limits.low) : Json()},
             {"high", limits.high ? Json(*limits.high) : Json()}}},

@@ -44,56 +44,53 @@ UnitFeed::UnitFeed(const config::UnitConfig& unit)
 void UnitFeed::on_frame(const Frame& frame, const report::UnitMonitor& monitor) {
   news_ = true;
   std::optional<history::Digest> digest = digests_.push(monitor);
-  const MutexLock lock(mutex_);
-  if (digest) delivery_.digests.push_back(std::move(*digest));
-  if (delivery_.rows.size() >= kMostRows) {
-    ++delivery_.dropped;
+  if (digest) noted_.digests.push_back(std::move(*digest));
+  if (noted_.rows.size() >= kMostRows) {
+    ++noted_.dropped;
     return;
   }
   note_frame(frame);
   note_readings(monitor.monitor());
-  delivery_.rows.back().judged = delivery_.judged.size();
+  noted_.rows.back().judged = noted_.judged.size();
+  offer();
 }
 
 void UnitFeed::note_frame(const Frame& frame) {
-  delivery_.rows.push_back({frame.interval, frame.source_time_ns, 0});
+  noted_.rows.push_back({frame.interval, frame.source_time_ns, 0});
   for (int j = 0; j < columns_.cvs; ++j) {
-    delivery_.values.push_back(value_of(frame[SignalKind::kCv], j));
-    delivery_.values.push_back(value_of(frame[SignalKind::kPrediction], j));
-    delivery_.values.push_back(value_of(frame[SignalKind::kSetpoint], j));
+    noted_.values.push_back(value_of(frame[SignalKind::kCv], j));
+    noted_.values.push_back(value_of(frame[SignalKind::kPrediction], j));
+    noted_.values.push_back(value_of(frame[SignalKind::kSetpoint], j));
   }
-  for (int i = 0; i < counts_.mv; ++i)
-    delivery_.values.push_back(value_of(frame[SignalKind::kMv], i));
-  for (int i = 0; i < counts_.dv; ++i)
-    delivery_.values.push_back(value_of(frame[SignalKind::kDv], i));
+  for (int i = 0; i < counts_.mv; ++i) noted_.values.push_back(value_of(frame[SignalKind::kMv], i));
+  for (int i = 0; i < counts_.dv; ++i) noted_.values.push_back(value_of(frame[SignalKind::kDv], i));
 }
 
 void UnitFeed::note_readings(const Monitor& monitor) {
   for (const JudgedFrame& judged : monitor.judged()) {
-    delivery_.judged.push_back(judged.interval);
+    noted_.judged.push_back(judged.interval);
     for (int j = 0; j < columns_.cvs; ++j) {
       const CvReading& reading = judged.readings[static_cast<std::size_t>(j)];
-      delivery_.readings.push_back(static_cast<float>(reading.measured - reading.residual));
-      delivery_.readings.push_back(static_cast<float>(reading.residual));
-      delivery_.readings.push_back(is_known_to_match(monitor, j, columns_.inputs) ? 1.0F : 0.0F);
+      noted_.readings.push_back(static_cast<float>(reading.measured - reading.residual));
+      noted_.readings.push_back(static_cast<float>(reading.residual));
+      noted_.readings.push_back(is_known_to_match(monitor, j, columns_.inputs) ? 1.0F : 0.0F);
     }
   }
 }
 
 void UnitFeed::on_alarm(const AlarmRecord& alarm) {
   news_ = true;
-  const MutexLock lock(mutex_);
-  delivery_.alarms.push_back(alarm);
+  noted_.alarms.push_back(alarm);
 }
 
 void UnitFeed::on_diagnosis(const live::DiagnosisOutcome& outcome) {
   news_ = true;
-  const MutexLock lock(mutex_);
-  delivery_.diagnosis = outcome;
-  delivery_.diagnosis->unwritten.reset();  // a report in memory is nobody's here
+  noted_.diagnosis = outcome;
+  noted_.diagnosis->unwritten.reset();  // a report in memory is nobody's here
 }
 
 bool UnitFeed::wants_view(Clock::time_point now) {
+  offer();
   if (now - last_view_ < (news_ ? kViewPeriod : kIdlePeriod)) return false;
   last_view_ = now;
   news_ = false;
@@ -107,13 +104,23 @@ void UnitFeed::on_view(const live::UnitView& view) {
   copy->health = view.health;
   copy->troubles = view.troubles;
   copy->performance = view.performance;
-  const MutexLock lock(mutex_);
-  delivery_.view = std::move(copy);
+  noted_.view = std::move(copy);
+  offer();
+}
+
+void UnitFeed::offer() {
+  if (!mutex_.try_lock()) return;
+  const MutexLock lock(mutex_, std::adopt_lock);
+  if (!fetched_) return;
+  std::swap(noted_, offered_);  // which is empty
+  fetched_ = false;
 }
 
 void UnitFeed::fetch(Delivery& emptied) {
   const MutexLock lock(mutex_);
-  std::swap(delivery_, emptied);
+  if (fetched_) return;
+  std::swap(offered_, emptied);
+  fetched_ = true;
 }
 
 }  // namespace mpm::http

@@ -22,7 +22,7 @@ struct Delivery {
   std::vector<Row> rows;             ///< frames
   std::vector<float> values;         ///< of each: see FeedColumns
   std::vector<std::int64_t> judged;  ///< intervals, later than they came
-  std::vector<float> readings;       ///< of each CV: prediction, residual, 1 while it is known to match
+  std::vector<float> readings;  ///< of each CV: prediction, residual, 1 while it is known to match
   std::vector<history::Digest> digests;
   std::vector<AlarmRecord> alarms;
   std::optional<live::DiagnosisOutcome> diagnosis;
@@ -45,7 +45,8 @@ struct FeedColumns {
 };
 inline constexpr int kReadingWidth = 3;
 
-/// The event loop's side: notes what a unit does and never waits, but for who swaps two pointers.
+/// The event loop's side: notes what a unit does, and never waits for anybody. What it has noted is
+/// its own until it can hand it over without waiting.
 class UnitFeed : public live::UnitObserver {
  public:
   /// Between two views, while frames come and while none do. An eye takes no more.
@@ -61,20 +62,25 @@ class UnitFeed : public live::UnitObserver {
   [[nodiscard]] bool wants_view(Clock::time_point now) override;
   void on_view(const live::UnitView& view) override;
 
-  /// From any thread: takes what has come, and leaves `emptied` in its place.
+  /// In the loop: hands over what has been noted, where all before has been fetched and nobody is
+  /// at it just now. Done after each frame and whenever a view might be wanted.
+  void offer();
+  /// From any thread: takes what was handed over, if anything, and leaves `emptied` in its place.
   void fetch(Delivery& emptied);
 
  private:
-  void note_frame(const Frame& frame) MPM_REQUIRES(mutex_);
-  void note_readings(const Monitor& monitor) MPM_REQUIRES(mutex_);
+  void note_frame(const Frame& frame);
+  void note_readings(const Monitor& monitor);
 
   FeedColumns columns_;
   SignalCounts counts_;
   history::DigestMaker digests_;
   Clock::time_point last_view_{};
-  bool news_ = true;  // since the last view; in the loop's thread
+  bool news_ = true;  // since the last view
+  Delivery noted_;
   Mutex mutex_;
-  Delivery delivery_ MPM_GUARDED_BY(mutex_);
+  Delivery offered_ MPM_GUARDED_BY(mutex_);
+  bool fetched_ MPM_GUARDED_BY(mutex_) = true;  // nothing is offered
 };
 
 }  // namespace mpm::http

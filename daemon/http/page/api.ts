@@ -69,7 +69,7 @@ export interface Diagnosis {
 }
 export interface Event {
   record: string; unit: string; mv: string; cv: string; to: string; time_ns: number; cause_text?: string;
-  effect_size?: number; p_value?: number; message?: string; client_user_id?: string; comment?: string;
+  text?: string; message?: string; client_user_id?: string; comment?: string;
 }
 export interface SystemUnit extends Record<string, unknown> {
   unit: string; state: string; detail: string; time_ns: number; troubles: Trouble[]; samples_per_second: number;

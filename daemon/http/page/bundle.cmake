@@ -16,3 +16,7 @@ foreach(command "tsc;-p;source" "esbuild;source/main.ts;--bundle;--minify;--targ
     message(FATAL_ERROR "${program}: ${said}${complained}")
   endif()
 endforeach()
+# Who gets the page gets the licence of what is in it.
+file(READ ${WORK}/node_modules/uplot/LICENSE licence)
+file(READ ${WORK}/page.js bundle)
+file(WRITE ${WORK}/page.js "/* With uPlot, of which holds:\n${licence}*/\n${bundle}")

@@ -63,18 +63,17 @@ export class CvPage {
   private drawSeries(series: Series, has_setpoint: boolean): void {
     const x = { clock: true, values: series.times };
     const ends: [number, number] = [series.from, series.until];
-    const unit = series.cv_unit ? `, ${series.cv_unit}` : '';
     const [limits, note] = this.limitLines(series.limits, series);
     const lines: Line[] = [{ name: 'measured', role: 'measured', values: series.measured.mean },
       { name: 'predicted by the model', role: 'prediction', values: series.prediction }];
     if (has_setpoint) lines.push({ name: 'set-point', role: 'setpoint', values: series.setpoint });
-    this.draw('measured', { title: 'Measured and predicted', note, x, y: { label: series.cv + unit }, ends, lines: [...lines, ...limits],
+    this.draw('measured', { title: 'Measured and predicted', note, x, y: { label: series.cv_unit }, ends, lines: [...lines, ...limits],
       bands: [{ role: 'measured', low: series.measured.min, high: series.measured.max }] }, false);
     const band = series.residual_band;
     const edges: Line[] = [['95 % from', band?.low ?? null] as const, ['to', band?.high ?? null] as const].map(([name, value]) =>
       ({ name, role: 'limit', dashed: true, values: constant(value, series.times) }));
     this.draw('residual', { title: 'Residual: measured minus predicted', note: band ? 'dashed: where 95 % lay while the CV matched' : '', x,
-      y: { label: `residual${unit}` }, ends, lines: [{ name: 'residual', role: 'measured', values: series.residual.mean }, ...edges],
+      y: { label: series.cv_unit }, ends, lines: [{ name: 'residual', role: 'measured', values: series.residual.mean }, ...edges],
       bands: [{ role: 'measured', low: series.residual.min, high: series.residual.max }] }, false);
     for (const input of series.inputs)
       this.draw(`input ${input.tag}`, { title: input.tag, x, y: { label: input.unit ? `${input.tag}, ${input.unit}` : input.tag }, ends,

@@ -54,7 +54,7 @@ export async function diagnosisPage(unit: string): Promise<HTMLElement> {
       h('strong', {}, `${each.title ?? each.cause}${each.mv || each.cv ? `, ${[each.mv, each.cv].filter(Boolean).join('\u00a0→\u00a0')}` : ''}`),
       h('span', { class: 'word' }, `${each.confidence > 0.999 ? '> 99.9' : number(100 * each.confidence, 3)} % sure`),
       h('p', {}, each.explanation),
-      each.against?.length ? h('p', { class: 'note' }, `Against it speaks: ${each.against.join('; ')}`) : null)))) : null,
+      each.against?.length ? h('p', { class: 'note' }, `Tried instead: ${each.against.join('; ')}`) : null)))) : null,
     numbers(diagnosis), validation(diagnosis),
     newest ? h('section', { 'data-key': 'report' }, h('h2', {}, 'Report'),
       h('p', {}, ...reports.flatMap((each, i) => [i ? ', ' : '', h('a', { href: each.html, target: '_blank', rel: 'noopener' }, `alarm of ${each.name.replace(/^(\d+)(\d\d)(\d\d)T(\d\d)(\d\d)(\d\d).*/, '$1-$2-$3 $4:$5:$6 UTC')}`)])),

@@ -3,7 +3,6 @@ import { get, type Card, type Event } from './api';
 import { h } from './dom';
 import { title } from './alarm';
 import { cvLink, time, unitLink } from './parts';
-import { number } from './text';
 
 const SINCE: [string, number][] = [['last hour', 3600], ['last day', 86400], ['last week', 604800], ['all that is kept', 0]];
 const chosen = { unit: '', cv: '', since: 0 };
@@ -42,6 +41,6 @@ export async function journal(): Promise<HTMLElement> {
         h('td', { 'data-label': 'Event', class: `event ${each.to}` }, WORDS[each.to] ?? each.to.replaceAll('_', ' ')),
         h('td', { 'data-label': 'Unit' }, h('a', { href: unitLink(each.unit) }, each.unit)),
         h('td', { 'data-label': 'Channel' }, each.cv ? h('a', { href: cvLink(each.unit, each.cv) }, title(each)) : title(each)),
-        h('td', { 'data-label': 'What' }, each.message || each.cause_text || (each.effect_size ? `gain off by ${number(each.effect_size, 3)}` : '–'),
+        h('td', { 'data-label': 'What' }, each.message || each.cause_text || each.text || '–',
           each.client_user_id ? ` (${each.client_user_id}${each.comment ? `: ${each.comment}` : ''})` : '')))))) : h('p', {}, 'No such event.'));
 }

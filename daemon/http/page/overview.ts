@@ -23,6 +23,9 @@ function card(unit: Card): HTMLElement {
 
 export async function overview(): Promise<HTMLElement> {
   const { units } = await get<{ units: Card[] }>('units');
+  // Of units that are alike in what they need, by name, and 2 before 10.
+  const rank = (a: Card, b: Card) => b.attention - a.attention || b.alarms - a.alarms || b.mismatch - a.mismatch;
+  units.sort((a, b) => rank(a, b) || a.unit.localeCompare(b.unit, 'en', { numeric: true }));
   const calling = units.filter(unit => unit.attention >= 2).length;
   return h('div', {},
     h('div', { class: 'head' }, h('h1', { tabindex: -1 }, 'Overview'),

@@ -52,12 +52,11 @@ struct Bench {
 TEST_CASE("each resource answers with JSON") {
   Bench bench;
   bench.sample.push(10);
-  for (const char* target :
-       {"/healthz", "/readyz", "/api/v1/units", "/api/v1/units/column",
-        "/api/v1/units/column/alarms", "/api/v1/units/column/diagnosis",
-        "/api/v1/units/column/cvs/AI-201/series?points=50&from=1&until=2",
-        "/api/v1/units/column/cvs/AI%2D201/correlations", "/api/v1/journal?since=0&unit=column",
-        "/api/v1/system"}) {
+  for (const char* target : {"/healthz", "/readyz", "/api/v1/units", "/api/v1/units/column",
+                             "/api/v1/units/column/alarms", "/api/v1/units/column/diagnosis",
+                             "/api/v1/units/column/cvs/AI-201/series?points=50&from=1&until=2",
+                             "/api/v1/units/column/cvs/AI%2D201/correlations",
+                             "/api/v1/journal?since=0&unit=column", "/api/v1/system"}) {
     CAPTURE(target);
     const Reply reply = bench.api.answer(get(target));
     CHECK(reply.status == 200);

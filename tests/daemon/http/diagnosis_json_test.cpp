@@ -27,7 +27,7 @@ TEST_CASE("the last diagnosis and its report are told") {
   outcome.causes[3].text = "41 % more";
   outcome.causes[3].parameters = {{"gain_ratio", 1.41, 1.31, 1.51}};
   sample.feed().on_diagnosis(outcome);
-  sample.board.fetch({});
+  sample.fetch();
   const Json json = diagnosis_json(sample.store(), reports);
   CHECK(json["last"]["headline"] == "one cause was found");
   REQUIRE(json["last"]["causes"].size() == 1);

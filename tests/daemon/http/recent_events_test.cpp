@@ -17,12 +17,13 @@ AlarmRecord alarm(const std::string& unit, const std::string& cv, std::int64_t t
 
 TEST_CASE("events are chosen by time, unit and CV, the youngest first") {
   RecentEvents events;
-  for (int k = 1; k <= 4; ++k) events.add(alarm(k % 2 == 0 ? "a" : "b", "y1", k));
+  for (int k = 1; k <= 4; ++k) events.add(alarm(k % 2 == 0 ? "a" : "b", "y1", k), "gain +41 %");
   EventQuery query;
   const auto all = events.query(query);
   REQUIRE(all.size() == 4);
   CHECK(all.front()["time_ns"] == 4);
   CHECK(all.front()["record"] == "alarm");
+  CHECK(all.front()["text"] == "gain +41 %");
   query.unit = "a";
   CHECK(events.query(query).size() == 2);
   query.since_ns = 3;
@@ -37,7 +38,7 @@ TEST_CASE("events are chosen by time, unit and CV, the youngest first") {
 
 TEST_CASE("of many events the last ones are kept") {
   RecentEvents events(3);
-  for (int k = 1; k <= 10; ++k) events.add(alarm("a", "y1", k));
+  for (int k = 1; k <= 10; ++k) events.add(alarm("a", "y1", k), "");
   const auto all = events.query({});
   REQUIRE(all.size() == 3);
   CHECK(all.back()["time_ns"] == 8);

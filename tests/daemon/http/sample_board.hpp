@@ -36,9 +36,16 @@ struct SampleBoard {
       monitor.push(frame);
       feed().on_frame(frame, monitor);
     }
+    fetch();
+  }
+  /// What is offered, and what was noted while it was.
+  void fetch() {
+    board.fetch({});
+    feed().offer();
     board.fetch({});
   }
-  /// An alarm on FIC-101 -> AI-201 and its mismatch; FIC-101 -> AI-202 is not excited; the rest match.
+  /// An alarm on FIC-101 -> AI-201 and its mismatch; FIC-101 -> AI-202 is not excited; the rest
+  /// match.
   void show(bool alarmed) {
     channels.clear();
     for (const std::string& mv : unit.input_tags())
@@ -63,7 +70,7 @@ struct SampleBoard {
     health.state = alarmed ? "maintenance_required" : "normal";
     performance.service_factor = 0.75;
     feed().on_view({channels, alarms, health, troubles, performance});
-    board.fetch({});
+    fetch();
   }
   [[nodiscard]] http::UnitFeed& feed() { return *board.feed_of(unit.unit); }
   [[nodiscard]] const http::UnitStore& store() const { return *board.find(unit.unit); }

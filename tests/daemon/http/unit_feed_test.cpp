@@ -20,13 +20,18 @@ TEST_CASE("frames are noted with their values and judgements, which come later")
   }
   Delivery delivery;
   feed.fetch(delivery);
-  REQUIRE(delivery.rows.size() == 10);
+  CHECK(delivery.rows.size() == 1);  // offered at once; the others meanwhile
+  CHECK(delivery.values[0] == 1.0F);
+  delivery.clear();
+  feed.offer();
+  feed.fetch(delivery);
+  REQUIRE(delivery.rows.size() == 9);
   const FeedColumns columns{2, 3};
-  REQUIRE(delivery.values.size() == 10U * static_cast<std::size_t>(columns.width()));
-  CHECK(delivery.values[static_cast<std::size_t>(columns.measured(1))] == 1.0F);
+  REQUIRE(delivery.values.size() == 9U * static_cast<std::size_t>(columns.width()));
+  CHECK(delivery.values[static_cast<std::size_t>(columns.measured(1))] == 2.0F);
   CHECK(std::isnan(delivery.values[static_cast<std::size_t>(columns.prediction(1))]));
-  CHECK(delivery.values[static_cast<std::size_t>(columns.input(2))] == 100.0F);
-  CHECK(delivery.judged.size() < 10);
+  CHECK(delivery.values[static_cast<std::size_t>(columns.input(2))] == 200.0F);
+  CHECK(delivery.judged.size() < 9);
   CHECK(delivery.rows.back().judged == delivery.judged.size());
 
   delivery.clear();
@@ -51,8 +56,13 @@ TEST_CASE("what nobody fetches is dropped and counted") {
   UnitFeed feed(sample.unit);
   const Frame frame = test::frame_at(1, sample.unit.counts());
   sample.monitor.push(frame);
+  feed.on_frame(frame, sample.monitor);  // offered
   for (std::size_t k = 0; k < UnitFeed::kMostRows + 5; ++k) feed.on_frame(frame, sample.monitor);
   Delivery delivery;
+  feed.fetch(delivery);
+  CHECK(delivery.rows.size() == 1);
+  delivery.clear();
+  feed.offer();
   feed.fetch(delivery);
   CHECK(delivery.rows.size() == UnitFeed::kMostRows);
   CHECK(delivery.dropped == 5);

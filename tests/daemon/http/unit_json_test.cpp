@@ -43,14 +43,14 @@ TEST_CASE("what is blind is worse than what is doubtful") {
   test::SampleBoard sample;
   sample.show(false);
   sample.health.state = "out_of_specification";
-  sample.feed().on_view({sample.channels, sample.alarms, sample.health, sample.troubles,
-                         sample.performance});
-  sample.board.fetch({});
+  sample.feed().on_view(
+      {sample.channels, sample.alarms, sample.health, sample.troubles, sample.performance});
+  sample.fetch();
   CHECK(overview_json(sample.store())["attention"] == 2);
   sample.health.state = "failure";
-  sample.feed().on_view({sample.channels, sample.alarms, sample.health, sample.troubles,
-                         sample.performance});
-  sample.board.fetch({});
+  sample.feed().on_view(
+      {sample.channels, sample.alarms, sample.health, sample.troubles, sample.performance});
+  sample.fetch();
   CHECK(overview_json(sample.store())["attention"] == 3);
 }
 
@@ -67,8 +67,7 @@ TEST_CASE("a unit's channels are told in words") {
   CHECK(json["cvs"][1]["setpoint"].is_null());
   CHECK(json["channels"][0]["text"] ==
         "gain +41 % (31 to 51; +0.041 t/h per %), time constant ok, dead time ok");
-  CHECK(json["channels"][1]["text"] ==
-        "needs a gain error of 70 % to show; move FIC-101");
+  CHECK(json["channels"][1]["text"] == "needs a gain error of 70 % to show; move FIC-101");
   CHECK(json["channels"][3]["modelled"] == false);
   CHECK(json["troubles"][0]["text"] == "no data");
   CHECK(json["alarms"].size() == 1);

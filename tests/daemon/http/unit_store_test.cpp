@@ -20,9 +20,9 @@ TEST_CASE("what a feed noted can be drawn, and readings find the rows that they 
   CHECK(store.latest(store.columns().input(0)) == 1000.0);
   // No prediction came: the monitor's own is there a few frames later.
   CHECK(std::isnan(store.latest(store.columns().prediction(0))));
-  const Drawing drawing = store.draw(0, 6'000'000'000'000, 1000,
-                                     {store.columns().measured(0), store.columns().prediction(0),
-                                      store.residual(0)});
+  const Drawing drawing =
+      store.draw(0, 6'000'000'000'000, 1000,
+                 {store.columns().measured(0), store.columns().prediction(0), store.residual(0)});
   REQUIRE(drawing.times_s.size() == 100);
   const std::size_t k = 50;
   CHECK(drawing.reaches[0][k].mean == 51.0F);

@@ -52,6 +52,7 @@ async function accessible(page, what) {
 async function check(page, name, { full = false } = {}) {
   for (const [size, viewport] of [["wide", wide], ["narrow", narrow]]) {
     await page.setViewportSize(viewport);
+    await page.evaluate(() => scrollTo(0, 0));
     await page.waitForTimeout(250);
     const beyond = await overflow(page);
     await page.screenshot({ path: path.join(pictures, `${name}_${size}.png`), fullPage: full || size === "narrow" });
