@@ -177,13 +177,16 @@ Json cv_json(const UnitStore& store, int index) {
           {"setpoint", known(store.latest(columns.setpoint(index)))}};
 }
 
+/// Before the first look nothing is determined.
 Json cells_json(const UnitSnapshot& snapshot, const config::UnitConfig& unit) {
   Json rows = Json::array();
+  const auto inputs = static_cast<std::size_t>(unit.counts().inputs());
   const auto cvs = static_cast<std::size_t>(unit.counts().cv);
-  for (std::size_t i = 0; i * cvs < snapshot.channels.size(); ++i) {
+  for (std::size_t i = 0; i < inputs; ++i) {
     Json row = Json::array();
-    for (std::size_t j = 0; j < cvs; ++j)
-      row.push_back(channel_state(snapshot.channels[i * cvs + j]));
+    for (std::size_t c = i * cvs; c < (i + 1) * cvs; ++c)
+      row.push_back(c < snapshot.channels.size() ? channel_state(snapshot.channels[c])
+                                                 : to_string(Verdict::kUndetermined));
     rows.push_back(std::move(row));
   }
   return rows;

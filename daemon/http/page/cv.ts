@@ -120,6 +120,7 @@ export class CvPage {
       h('div', { class: 'tools', role: 'group', 'aria-label': 'Time shown' },
         ...SPANS.map(([name, seconds]) => h('button', { type: 'button', 'data-do': 'span', 'data-span': seconds,
           'aria-pressed': !this.chosen && this.span === seconds ? 'true' : 'false' }, name)),
+        this.chosen ? h('button', { type: 'button', class: 'main', 'data-do': 'span', 'data-span': this.span }, 'Show the latest') : null,
         h('span', { class: 'note' }, shown)),
       series.times.length > 1 ? null : h('p', { class: 'note' }, 'Nothing was measured in this time.'),
       this.plots,

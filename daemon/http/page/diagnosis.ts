@@ -10,20 +10,34 @@ const NAMES: Record<string, [string, number]> = { // and what an unchanged model
 
 const cell = (text: string, label: string, name = '') => h('td', { 'data-label': label, class: name }, text);
 
+type Numbers = NonNullable<NonNullable<Diagnosis['report']>['channels']>[number];
+
+const isChanged = (each: Numbers, key: string): boolean => {
+  const range = each.interval[key], modelled = NAMES[key]?.[1] ?? 0;
+  return range !== undefined && (range[0] > modelled || range[1] < modelled);
+};
+
+function numberTable(channels: Numbers[], names: string[]): HTMLElement {
+  const row = (each: Numbers) => h('tr', {}, h('th', { scope: 'row' }, `${each.mv}\u00a0→\u00a0${each.cv}`), ...names.map(key => {
+    const value = each.parameters[key], range = each.interval[key], name = NAMES[key]?.[0] ?? key, changed = isChanged(each, key);
+    if (value === undefined) return cell('–', name, 'number');
+    return cell(`${number(value, 3)}${range ? ` (${number(range[0], 3)} to ${number(range[1], 3)})` : ''}${changed ? ' ▲' : ''}`, name, changed ? 'number changed' : 'number');
+  }));
+  return h('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': `Old model and new, ${channels.length} channels` }, h('table', { class: 'wide' },
+    h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Channel'), ...names.map(key => h('th', { scope: 'col', class: 'number' }, NAMES[key]?.[0] ?? key)))),
+    h('tbody', {}, ...channels.map(row))));
+}
+
 function numbers(diagnosis: Diagnosis): HTMLElement | null {
   const channels = diagnosis.report?.channels ?? [];
   if (!channels.length) return null;
-  const names = Object.entries(NAMES).filter(([key]) => channels.some(each => each.parameters[key] !== undefined));
-  return h('section', { 'data-key': 'numbers' }, h('h2', {}, 'Old model and new'), h('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Old model and new' }, h('table', { class: 'wide' },
-    h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Channel'), ...names.map(([, [name]]) => h('th', { scope: 'col', class: 'number' }, name)))),
-    h('tbody', {}, ...channels.map(each => h('tr', {}, h('th', { scope: 'row' }, `${each.mv}\u00a0→\u00a0${each.cv}`),
-      ...names.map(([key, [name, as_modelled]]) => {
-        const value = each.parameters[key], range = each.interval[key];
-        if (value === undefined) return cell('–', name, 'number');
-        const changed = range !== undefined && (range[0] > as_modelled || range[1] < as_modelled);
-        return cell(`${number(value, 3)}${range ? ` (${number(range[0], 3)} to ${number(range[1], 3)})` : ''}${changed ? ' ▲' : ''}`, name, changed ? 'number changed' : 'number');
-      })))))),
-  h('p', { class: 'note' }, 'In brackets 95 % intervals; ▲ what does not hold the old value.'));
+  const names = Object.keys(NAMES).filter(key => channels.some(each => each.parameters[key] !== undefined));
+  const changed = channels.filter(each => names.some(key => isChanged(each, key)));
+  const others = channels.filter(each => !changed.includes(each));
+  return h('section', { 'data-key': 'numbers' }, h('h2', {}, 'Old model and new'),
+    changed.length ? numberTable(changed, names) : h('p', {}, 'No channel is surely another than the model says.'),
+    h('p', { class: 'note' }, 'In brackets 95 % intervals; ▲ what does not hold the old value.'),
+    others.length ? h('details', {}, h('summary', {}, `${others.length} ${changed.length ? 'other ' : ''}channel${others.length === 1 ? '' : 's'} as modelled`), numberTable(others, names)) : null);
 }
 
 function validation(diagnosis: Diagnosis): HTMLElement | null {

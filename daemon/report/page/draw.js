@@ -277,7 +277,7 @@ function figure(plot, {keys = true, title = plot.title, height = plot.low ? 110 
       setCursor: [u => {
         const i = u.cursor.idx;
         readout.textContent = plot.paths || !known(i) || u.cursor.left < 0 ? ''
-          : [place(plot, x[i]), ...plot.lines.map(line => `${line.name} ${number(line.values[i])}`)].join(' · ');
+          : [place(plot, x[i]), ...plot.lines.filter(line => !line.dashed || known(line.values[i])).map(line => `${line.name} ${number(line.values[i])}`)].join(' · ');
       }]},
   };
   const make = () => {

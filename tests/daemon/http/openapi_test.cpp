@@ -1,5 +1,5 @@
-// daemon/http/openapi.json says what the API really answers: every answer fits its schema, and names
-// nothing that the schema does not.
+// daemon/http/openapi.json says what the API really answers: every answer fits its schema, and
+// names nothing that the schema does not.
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -82,9 +82,7 @@ struct Bench {
     Api::Parts parts;
     parts.board = &sample.board;
     parts.guard = Guard({}, "0123456789abcdef");
-    parts.command = [](const AlarmCommand& command) {
-      return CommandReply{command.once, "words"};
-    };
+    parts.command = [](const AlarmCommand& command) { return CommandReply{command.once, "words"}; };
     return Api(std::move(parts));
   }
   test::SampleBoard sample;

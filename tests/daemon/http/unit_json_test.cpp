@@ -24,6 +24,7 @@ TEST_CASE("a channel is shown by what it needs") {
 TEST_CASE("a card says how many and how well") {
   test::SampleBoard sample;
   CHECK(overview_json(sample.store())["attention"] == 1);
+  CHECK(overview_json(sample.store())["matrix"][2] == Json({"undetermined", "undetermined"}));
   sample.show(false);
   Json card = overview_json(sample.store());
   CHECK(card["attention"] == 0);
