@@ -93,10 +93,12 @@ void declare(CLI::App& app, Options& options) {
          "127.0.0.1, port 0 is any that is free")
       ->check(address_problem);
   app.add_option("--http-name", options.http_names,
-                 "another host name by which the page is reached, as behind a proxy; repeatable");
+                 "another host name by which the page is reached, as behind a proxy; repeatable")
+      ->needs("--http");
   app.add_option("--token-file", options.token_file,
                  "who knows the token in the first line of this file may acknowledge and shelve "
-                 "alarms over HTTP; without it nobody may");
+                 "alarms over HTTP; without it nobody may")
+      ->needs("--http");
   app.add_option("--log-level", options.log_level, "what to log")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));

@@ -12,16 +12,16 @@ extern const std::string_view kPageCss, kPageCssTag;
 extern const std::string_view kOpenapiJson, kOpenapiJsonTag;
 
 const Asset* find_asset(std::string_view path) {
-  static const std::array kAssets{
+  static const std::array assets{
       Asset{"/", "text/html; charset=utf-8", kIndexHtml, kIndexHtmlTag},
       Asset{"/page.js", "text/javascript; charset=utf-8", kPageJs, kPageJsTag},
       Asset{"/page.css", "text/css; charset=utf-8", kPageCss, kPageCssTag},
       Asset{"/api/v1/openapi.json", "application/json; charset=utf-8", kOpenapiJson,
             kOpenapiJsonTag},
   };
-  const auto found = std::find_if(kAssets.begin(), kAssets.end(),
+  const auto found = std::find_if(assets.begin(), assets.end(),
                                   [path](const Asset& asset) { return asset.path == path; });
-  return found == kAssets.end() ? nullptr : &*found;
+  return found == assets.end() ? nullptr : &*found;
 }
 
 }  // namespace mpm::http

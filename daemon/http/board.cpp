@@ -34,6 +34,7 @@ void Board::run() {
 }
 
 void Board::fetch(Clock::time_point now) {
+  const MutexLock one(fetching_);
   bool news = false;
   for (const auto& [name, unit] : units_) {
     unit->spare.clear();

@@ -37,7 +37,7 @@ class Board {
 
   /// Begins to fetch. Feeds may be written before.
   void start();
-  /// Fetches all there is now; for tests, instead of `start`.
+  /// Fetches all there is now; from any thread, one at a time.
   void fetch(Clock::time_point now);
 
   [[nodiscard]] UnitFeed* feed_of(const std::string& unit);
@@ -59,6 +59,7 @@ class Board {
 
   RecentEvents events_;
   std::map<std::string, std::unique_ptr<Unit>> units_;
+  Mutex fetching_;  // of all units' `spare`, and what is behind their feeds in its order
   mutable Mutex mutex_;
   mutable ConditionVariable changed_;
   std::uint64_t version_ MPM_GUARDED_BY(mutex_) = 0;

@@ -45,7 +45,7 @@ std::string EventStream::next(bool& ended) {
   }
   ended = board_.closed();
   if (ended) return {};
-  if (version != told_ || text.size() > 0) {
+  if (version != told_ || !text.empty()) {
     told_ = version;
     last_ = Clock::now();
     return text + state();

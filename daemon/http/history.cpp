@@ -85,7 +85,7 @@ RowRing::RowRing(int width, std::size_t capacity)
 
 void RowRing::push(std::int64_t time_ns, std::span<const float> row) {
   if (count_ == capacity_) {
-    first_ = (first_ + 1) % capacity_;
+    first_ = slot(1);
     --count_;
     full_ = true;
   }

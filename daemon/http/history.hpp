@@ -38,7 +38,10 @@ class RowRing {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  [[nodiscard]] std::size_t slot(std::size_t index) const { return (first_ + index) % capacity_; }
+  [[nodiscard]] std::size_t slot(std::size_t index) const {
+    const std::size_t place = first_ + index;
+    return place < capacity_ ? place : place - capacity_;
+  }
 
   std::size_t width_, capacity_, first_ = 0, count_ = 0;
   bool full_ = false;

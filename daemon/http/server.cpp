@@ -144,7 +144,7 @@ void Server::Parts::set_up() {
   server.Delete(kAll, handler);
   server.Options(kAll, handler);
   server.set_exception_handler(
-      [this](const httplib::Request&, httplib::Response& response, std::exception_ptr) {
+      [this](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
         reply(error_reply(500, "the monitor could not answer this"), response);
       });
 }

@@ -98,7 +98,8 @@ bool is_normal(const Json& alarm) {
 bool calls(const Json& alarm) {
   const auto state = alarm.find("alarm_state");
   return state == alarm.end() ? !is_normal(alarm)
-                              : *state == "unacknowledged" || *state == "acknowledged";
+                              : *state == "unacknowledged" || *state == "acknowledged" ||
+                                    *state == "returned_unacknowledged";
 }
 
 const ChannelRecord* channel_of(const UnitSnapshot& snapshot, const AlarmRecord& alarm) {

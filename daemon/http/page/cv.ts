@@ -65,7 +65,7 @@ export class CvPage {
     const ends: [number, number] = [series.from, series.until];
     const [limits, note] = this.limitLines(series.limits, series);
     const lines: Line[] = [{ name: 'measured', role: 'measured', values: series.measured.mean },
-      { name: 'predicted by the model', role: 'prediction', values: series.prediction }];
+      { name: 'predicted', role: 'prediction', values: series.prediction }];
     if (has_setpoint) lines.push({ name: 'set-point', role: 'setpoint', values: series.setpoint });
     this.draw('measured', { title: 'Measured and predicted', note, x, y: { label: series.cv_unit }, ends, lines: [...lines, ...limits],
       bands: [{ role: 'measured', low: series.measured.min, high: series.measured.max }] }, false);

@@ -22,6 +22,7 @@ TEST_CASE("the loop answers who asks") {
     }
   });
   std::vector<std::thread> askers;
+  askers.reserve(8);
   std::atomic<int> right = 0;
   for (int k = 0; k < 8; ++k)
     askers.emplace_back([&, k] {
@@ -50,6 +51,7 @@ TEST_CASE("a loop that does not turn leaves nobody waiting, and carries nothing 
 TEST_CASE("no more wait than are meant to") {
   CommandQueue queue(300ms);
   std::vector<std::thread> askers;
+  askers.reserve(CommandQueue::kMostWaiting);
   for (std::size_t k = 0; k < CommandQueue::kMostWaiting; ++k)
     askers.emplace_back([&] { (void)queue.ask({}); });
   std::this_thread::sleep_for(100ms);

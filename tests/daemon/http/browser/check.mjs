@@ -162,6 +162,7 @@ try {
   await page.locator("iframe.report").scrollIntoViewIfNeeded(); // a browser draws no frame out of sight
   await report.locator("canvas").first().waitFor({ state: "attached" });
   await page.waitForTimeout(300);
+  await page.screenshot({ path: path.join(pictures, "report_wide.png") });
   await check(page, "diagnosis", { full: true });
   say("diagnosed, with its report");
 
