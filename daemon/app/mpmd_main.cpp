@@ -63,6 +63,15 @@ std::string address_problem(const std::string& text) {
                                    : "expected [ADDRESS:]PORT, the address in numbers: " + text;
 }
 
+std::string token_problem(const std::string& path) {
+  try {
+    (void)http::read_token(path);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
 void declare(CLI::App& app, Options& options) {
   app.add_option("-c,--config", options.config, "unit file, or folder of unit files; repeatable")
       ->required();
@@ -98,6 +107,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--token-file", options.token_file,
                  "who knows the token in the first line of this file may acknowledge and shelve "
                  "alarms over HTTP; without it nobody may")
+      ->check(token_problem)
       ->needs("--http");
   app.add_option("--log-level", options.log_level, "what to log")
       ->capture_default_str()

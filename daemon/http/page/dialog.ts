@@ -41,12 +41,16 @@ export function ask(alarm: { unit: string; mv: string; cv: string }, action: str
       else order.duration_s = Number(duration.value);
     send.disabled = true;
     problem.textContent = '';
-    command(order, token.value).then(text => {
+    const keep = () => { // what was right is not asked for again
       sessionStorage.setItem(kUser, order.user);
       sessionStorage.setItem(kToken, token.value);
+    };
+    command(order, token.value).then(text => {
+      keep();
       dialog.close();
       done(text || `${word}: done`);
     }).catch((error: unknown) => {
+      if (error instanceof Refused && error.status !== 401 && error.status !== 403) keep();
       if (error instanceof Refused && error.status === 401) {
         sessionStorage.removeItem(kToken);
         if (!token.isConnected) problem.before(field('Token', token));

@@ -23,7 +23,7 @@ const banner = h('div', { id: 'lost', role: 'alert' });
 const notice = h('div', { id: 'notice', role: 'status' });
 const clock = h('p', { id: 'clock' });
 const nav = h('nav', { 'aria-label': 'Pages' });
-let page: Page, turn = 0, looked = 0, pending = 0, state: Link['state'] = 'connecting';
+let page: Page, turn = 0, looked = 0, pending = 0, busy = 0, again = false, arriving = false, state: Link['state'] = 'connecting';
 
 const show = (name: string, update: () => Promise<HTMLElement>): Page => ({ name, update });
 
@@ -49,8 +49,19 @@ function drawNav(): void {
 
 /// Looks anew; of several that are under way the last one counts.
 async function look(): Promise<void> {
+  ++busy;
+  try {
+    await lookOnce();
+  } finally {
+    --busy;
+    if (!busy && again) news();
+  }
+}
+
+async function lookOnce(): Promise<void> {
   const mine = ++turn, at = page;
   looked = Date.now();
+  again = false;
   let next: HTMLElement;
   try {
     next = await at.update();
@@ -60,14 +71,23 @@ async function look(): Promise<void> {
     if (!(error instanceof Refused)) return;
     next = h('div', {}, h('h1', { tabindex: -1 }, at.name), h('p', { class: 'problem' }, error.message));
   }
-  if (mine === turn && at === page) morph(main, h('main', {}, next));
+  if (mine !== turn || at !== page) return;
+  morph(main, h('main', {}, next));
+  if (!arriving) return;
+  arriving = false;
+  scrollTo(0, 0);
+  main.querySelector('h1')?.focus();
 }
 
+/// Where answers take longer than news, a look that is under way is not overtaken by the next one: the
+/// page would never be drawn.
 function news(): void {
-  if (pending) return;
+  if (busy) again = true;
+  if (busy || pending) return;
   pending = window.setTimeout(() => {
     pending = 0;
-    void look();
+    if (busy) again = true;
+    else void look();
   }, Math.max(0, kLeast - (Date.now() - looked)));
 }
 
@@ -77,11 +97,8 @@ function go(focus: boolean): void {
   document.title = `${page.name} – MPM monitor`;
   drawNav();
   main.replaceChildren(h('p', { class: 'note' }, 'Reading …'));
-  void look().then(() => {
-    if (!focus) return;
-    scrollTo(0, 0);
-    main.querySelector('h1')?.focus();
-  });
+  arriving = focus;
+  void look();
 }
 
 function showLink({ state: next, since }: Link): void {

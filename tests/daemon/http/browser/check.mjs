@@ -118,6 +118,41 @@ try {
     say("acknowledged, shelved and unshelved");
   }
   expectLoss = false;
+
+  // A monitor that keeps the states of ISA-18.2, as far as the page can tell.
+  const kUntil = Math.round((Date.now() + 3_000_000) * 1e6), day = { time_ns: 1e9, to: "active", text: "gain +41 %", unit: "shell" };
+  const kept = [
+    { ...day, mv: "", cv: "", alarm_state: "unacknowledged", priority: "high", notification_class: "alarm", message: "Model not trustworthy: shed y3", guidance: "Call the APC engineer." },
+    { ...day, mv: "u1", cv: "y1", alarm_state: "acknowledged", priority: "medium", client_user_id: "ann", comment: "seen" },
+    { ...day, mv: "u2", cv: "y1", alarm_state: "returned_unacknowledged", priority: "low" },
+    { ...day, mv: "u1", cv: "y2", alarm_state: "shelved", unshelve_time_ns: kUntil },
+    { ...day, mv: "u2", cv: "y2", alarm_state: "suppressed" },
+    { ...day, mv: "u3", cv: "y2", alarm_state: "out_of_service" }];
+  let ordered;
+  await page.route("**/api/v1/units/shell", async (route) => {
+    const response = await route.fetch();
+    await route.fulfill({ response, json: { ...await response.json(), alarms: kept } });
+  });
+  await page.route("**/api/v1/commands", (route) => {
+    ordered = route.request().postDataJSON();
+    return route.fulfill({ json: { accepted: true, text: "shelved" } });
+  });
+  for (const [tab, count] of [["active", 3], ["shelved", 1], ["suppressed", 1], ["out_of_service", 1]]) {
+    await page.click(`#tab-${tab}`);
+    await page.waitForFunction((wanted) => document.querySelectorAll(".alarm").length === wanted, count);
+    await check(page, `alarms_${tab}`);
+  }
+  await page.click("#tab-active");
+  await page.click("[data-command=shelve] >> nth=0");
+  await page.selectOption("dialog [name=duration]", "14400");
+  await page.fill("dialog [name=user]", "ann");
+  await page.fill("dialog [name=comment]", "the analyser is being calibrated");
+  await page.click("dialog [type=submit]");
+  await page.waitForFunction(() => /shelved/.test(document.querySelector("#notice").textContent));
+  assert.deepEqual(ordered, { unit: "shell", mv: "", cv: "", command: "shelve", user: "ann", comment: "the analyser is being calibrated", duration_s: 14400 });
+  await page.unroute("**/api/v1/units/shell");
+  await page.unroute("**/api/v1/commands");
+  say("alarms in all their states");
   assert.ok(await page.evaluate(() => localStorage.length === 0), "nothing outlives the tab");
   await page.reload();
   await page.waitForSelector(".alarm");
