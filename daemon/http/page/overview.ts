@@ -7,7 +7,7 @@ import { needsAck, title } from './alarm';
 const kAttention = ['well', 'unsettled', 'doubtful', 'blind', 'alarmed'];
 
 const alarmLine = (alarm: Alarm) => h('li', { class: needsAck(alarm) ? 'alarm-line unacknowledged' : 'alarm-line' },
-  h('span', { class: 'sign', 'aria-hidden': 'true' }, '▲ '), h('strong', {}, title(alarm)), alarm.text ? ` ${alarm.text}` : '');
+  h('span', { class: 'sign', 'aria-hidden': 'true' }, '▲ '), h('strong', {}, title(alarm)), alarm.message || alarm.text ? ` ${alarm.message || alarm.text}` : '');
 
 function card(unit: Card): HTMLElement {
   const more = unit.alarms - unit.first_alarms.length;

@@ -150,8 +150,7 @@ try {
   await page.click("dialog [type=submit]");
   await page.waitForFunction(() => /shelved/.test(document.querySelector("#notice").textContent));
   assert.deepEqual(ordered, { unit: "shell", mv: "", cv: "", command: "shelve", user: "ann", comment: "the analyser is being calibrated", duration_s: 14400 });
-  await page.unroute("**/api/v1/units/shell");
-  await page.unroute("**/api/v1/commands");
+  await page.unrouteAll({ behavior: "wait" });
   say("alarms in all their states");
   assert.ok(await page.evaluate(() => localStorage.length === 0), "nothing outlives the tab");
   await page.reload();
