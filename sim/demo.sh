@@ -10,16 +10,22 @@ unit=$here/../config/plants/shell3x3.yaml
 seed=$(od -An -N2 -tu2 /dev/urandom | tr -d ' ')
 scenario=hidden_gain
 samples=6000
-rate=200 # samples per second
+rate= # samples per second
+page=no
 
 while [ $# -gt 0 ]; do
   case "$1" in
     --seed) seed=$2; shift 2 ;;
     --nothing-hidden) scenario=none; samples=3000; shift ;;
     --rate) rate=$2; shift 2 ;;
-    *) echo "usage: ./run demo [--seed N] [--nothing-hidden] [--rate SAMPLES_PER_SECOND]" >&2; exit 3 ;;
+    --page) page=yes; shift ;;
+    *) echo "usage: ./run demo [--seed N] [--nothing-hidden] [--page] [--rate SAMPLES_PER_SECOND]" >&2; exit 3 ;;
   esac
 done
+# With the page slower, for a person to see it happen: an alarm after some fifteen seconds.
+if [ "$page" = yes ]; then : "${rate:=60}"; else : "${rate:=200}"; fi
+start_time="--start-time 0" # the same numbers each time
+[ "$page" = no ] || start_time=""
 
 work=$(mktemp -d)
 tag=mpm-demo-$$ # keeps this demo apart from any other on the machine
@@ -31,16 +37,35 @@ clean_up() {
 trap clean_up EXIT
 trap 'exit 2' INT TERM
 
-"$bin/mpmd" --config "$unit" --partition "$tag" --log-level warning 2>"$work/mpmd.log" &
+if [ "$page" = yes ]; then
+  set -- --log-level info --http 0 --state-dir "$work/state"
+else
+  set -- --log-level warning
+fi
+"$bin/mpmd" --config "$unit" --partition "$tag" "$@" 2>"$work/mpmd.log" &
 daemon=$!
 children=$daemon
+if [ "$page" = yes ]; then
+  address=
+  while [ -z "$address" ]; do
+    kill -0 "$daemon" 2>/dev/null || { cat "$work/mpmd.log" >&2; exit 2; }
+    sleep 0.1
+    address=$(sed -n 's/.*operator page at //p' "$work/mpmd.log")
+  done
+  echo "The operator page: $address"
+  if [ -t 0 ]; then
+    printf 'Open it in a browser, then press Enter: '
+    read -r _ || :
+  fi
+fi
 "$bin/mpm" watch --partition "$tag" --alarms-only --json --until-alarm --for 300 \
   >"$work/alarms" 2>"$work/watch.log" &
 reader=$!
 children="$children $reader"
 start=$(date +%s%N)
+# shellcheck disable=SC2086  # none or two words
 "$bin/mpmsim" --config "$unit" --scenario "$scenario" --seed "$seed" --samples "$samples" \
-  --speed "$rate" --start-time 0 --wait-readers 10 --partition "$tag" \
+  --speed "$rate" $start_time --wait-readers 10 --partition "$tag" \
   --truth "$work/truth.json" 2>"$work/mpmsim.log" &
 simulator=$!
 children="$children $simulator"
@@ -52,8 +77,19 @@ children="$children $table"
 while kill -0 "$simulator" 2>/dev/null && kill -0 "$reader" 2>/dev/null; do sleep 0.2; done
 seconds=$(awk -v a="$start" -v b="$(date +%s%N)" 'BEGIN { printf "%.1f", (b - a) / 1e9 }')
 sleep 1 # for the table to show it
-kill "$table" "$simulator" 2>/dev/null || :
+kill "$table" 2>/dev/null || :
 wait "$table" 2>/dev/null || :
+if [ "$page" = yes ] && kill -0 "$simulator" 2>/dev/null; then
+  echo
+  echo "The page goes on until the run is over; $address"
+  while kill -0 "$simulator" 2>/dev/null; do sleep 0.5; done
+  if [ -t 0 ]; then
+    printf 'The run is over; press Enter to end: '
+    read -r _ || :
+  fi
+else
+  kill "$simulator" 2>/dev/null || :
+fi
 if wait "$simulator"; then status=0; else status=$?; fi
 if [ "$status" -ne 0 ] && [ "$status" -ne 143 ]; then
   cat "$work/mpmsim.log" >&2

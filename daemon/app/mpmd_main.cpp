@@ -21,6 +21,9 @@
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/standard_output.hpp"
+#include "daemon/http/server.hpp"
+#include "daemon/http/stored_events.hpp"
+#include "daemon/live/command_queue.hpp"
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/make_diagnosis.hpp"
 #include "daemon/live/monitor_service.hpp"
@@ -50,10 +53,16 @@ struct Options {
   std::optional<std::string> partition;
   live::ServiceOptions service;
   std::string state_folder = default_state_folder();
-  std::string alarm_journal;
   std::string token_file;
   std::string log_level = "info";
+  std::string http;  // address; empty: no page
+  std::vector<std::string> http_names;
 };
+
+std::string address_problem(const std::string& text) {
+  return http::parse_address(text) ? ""
+                                   : "expected [ADDRESS:]PORT, the address in numbers: " + text;
+}
 
 void declare(CLI::App& app, Options& options) {
   app.add_option("-c,--config", options.config, "unit file, or folder of unit files; repeatable")
@@ -78,15 +87,23 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--state-dir", options.state_folder,
                  "keep the reports of diagnosed alarms and the journal of alarms in this folder "
                  "(default: $STATE_DIRECTORY)");
-  app.add_option("--alarm-journal", options.alarm_journal,
+  app.add_option("--alarm-journal", options.service.alarm_journal,
                  "keep what happens to alarms in this SQLite file, and what people did about them "
                  "over a restart; `mpm journal` reads it (default: alarms.sqlite in the state "
                  "folder)");
   app.add_option("--token-file", options.token_file,
-                 "take commands (mpm ack, shelve ...) from those who know the first line of this "
-                 "file; without it nobody can give any");
+                 "take commands (mpm ack, shelve ..., and those of the operator page) from those "
+                 "who know the first line of this file; without it nobody can give any");
   app.add_flag("--dds-from-environment", options.service.use_environment,
                "take the DDS settings from CYCLONEDDS_URI instead of the unit files");
+  app.add_option(
+         "--http", options.http,
+         "serve the operator page and the HTTP API at [ADDRESS:]PORT; without an address on "
+         "127.0.0.1, port 0 is any that is free")
+      ->check(address_problem);
+  app.add_option("--http-name", options.http_names,
+                 "another host name by which the page is reached, as behind a proxy; repeatable")
+      ->needs("--http");
   app.add_option("--log-level", options.log_level, "what to log")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
@@ -96,6 +113,7 @@ void declare(CLI::App& app, Options& options) {
       "Examples:\n"
       "  mpmd --config /etc/mpm/shell.yaml\n"
       "  mpmd --config /etc/mpm/units --journal /var/lib/mpm/journal --journal-keep 2GB\n"
+      "  mpmd --config /etc/mpm/units --http 8080 --token-file /etc/mpm/token\n"
       "  mpmd --config /etc/mpm/units --check\n"
       "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or unit file");
 }
@@ -108,6 +126,43 @@ std::string cost_text(const config::UnitConfig& unit) {
          number_text(cost.columns) + " regression columns per CV)";
 }
 
+/// The operator page and all that stands behind it.
+class Page {
+ public:
+  Page(const Options& options, const std::vector<config::UnitConfig>& units)
+      : board_(units), server_(*http::parse_address(options.http), board_, parts(options)) {
+    board_.start();
+    server_.start();
+    spdlog::info("operator page at {}", server_.address().url());
+    if (!server_.address().is_local())
+      spdlog::warn(
+          "the operator page is open to the network and not encrypted: put a proxy with TLS "
+          "before it");
+  }
+
+  void attach_to(live::ServiceOptions& service) {
+    service.observer = [this](const config::UnitConfig& unit) { return board_.feed_of(unit.unit); };
+    service.commands = &commands_;
+  }
+
+ private:
+  http::Api::Parts parts(const Options& options) {
+    if (!options.service.alarm_journal.empty()) stored_.emplace(options.service.alarm_journal);
+    return {.board = &board_,
+            .events = stored_ ? &*stored_ : nullptr,
+            .guard = http::Guard(options.http_names, options.service.token),
+            .reports = http::KeptReports(options.state_folder),
+            .version = idl::version_text("mpmd"),
+            .command = [this](const AlarmCommand& command) { return commands_.ask(command); },
+            .server = {}};
+  }
+
+  std::optional<http::StoredEvents> stored_;
+  live::CommandQueue commands_;
+  http::Board board_;
+  http::Server server_;
+};
+
 int serve(const Options& options, const std::vector<config::UnitConfig>& units,
           host::StopSignal& stop, host::AwaitedSignal& hang_up) {
   spdlog::info("{} starts", idl::version_text("mpmd"));
@@ -116,13 +171,11 @@ int serve(const Options& options, const std::vector<config::UnitConfig>& units,
       [&store](const live::DiagnosisJob& job, const live::DiagnosisWorker::GoOn& go_on) {
         return live::make_diagnosis(job, store, go_on);
       });
+  std::optional<Page> page;
+  if (!options.http.empty()) page.emplace(options, units);
   {
     live::ServiceOptions service_options = options.service;
-    service_options.alarm_journal = options.alarm_journal;
-    if (service_options.alarm_journal.empty() && !options.state_folder.empty())
-      service_options.alarm_journal = options.state_folder + "/alarms.sqlite";
-    if (!options.token_file.empty())
-      service_options.token = host::CommandToken::read(options.token_file);
+    if (page) page->attach_to(service_options);
     service_options.report_problem = store.problem();
     live::MonitorService service(units, service_options, worker);
     service.run([&] {
@@ -131,6 +184,7 @@ int serve(const Options& options, const std::vector<config::UnitConfig>& units,
       return stop.received();
     });
   }
+  page.reset();
   const bool idle = worker.stop(kPatience);
   spdlog::info("stopped");
   if (!idle) {
@@ -142,7 +196,7 @@ int serve(const Options& options, const std::vector<config::UnitConfig>& units,
   return kDone;
 }
 
-int run(const Options& options) {
+int run(Options& options) {
   config::LoadUnitsResult loaded = config::load_units(options.config);
   for (const config::Finding& finding : loaded.findings)
     (options.check ? std::cout : std::cerr) << config::format(finding) << '\n';
@@ -173,6 +227,10 @@ int run(const Options& options) {
   host::AwaitedSignal hang_up({SIGHUP});
   host::set_up_logging(options.log_level);
   try {
+    if (!options.token_file.empty())
+      options.service.token = host::CommandToken::read(options.token_file);
+    if (options.service.alarm_journal.empty() && !options.state_folder.empty())
+      options.service.alarm_journal = options.state_folder + "/alarms.sqlite";
     return serve(options, loaded.units, stop, hang_up);
   } catch (const std::exception& error) {
     if (!spdlog::should_log(spdlog::level::err)) throw;  // no log is silence

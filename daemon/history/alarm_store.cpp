@@ -234,6 +234,18 @@ void AlarmStore::append(const std::vector<AlarmEntry>& entries) {
 
 void AlarmStore::each(const AlarmQuery& query,
                       const std::function<void(const AlarmEntry&)>& visit) const {
+  select(query, "id", visit);
+}
+
+std::vector<AlarmEntry> AlarmStore::youngest(const AlarmQuery& query, std::size_t most) const {
+  std::vector<AlarmEntry> entries;
+  select(query, "id DESC LIMIT " + std::to_string(most),
+         [&](const AlarmEntry& entry) { entries.push_back(entry); });
+  return entries;
+}
+
+void AlarmStore::select(const AlarmQuery& query, const std::string& order,
+                        const std::function<void(const AlarmEntry&)>& visit) const {
   std::string where = "1";
   if (query.since_ns) where += " AND written_ns >= " + std::to_string(*query.since_ns);
   if (query.until_ns) where += " AND written_ns < " + std::to_string(*query.until_ns);
@@ -246,8 +258,8 @@ void AlarmStore::each(const AlarmQuery& query,
   match("unit", query.unit);
   match("mv", query.mv);
   match("cv", query.cv);
-  const Statement rows =
-      prepare("SELECT " + std::string(kColumns) + " FROM event WHERE " + where + " ORDER BY id");
+  const Statement rows = prepare("SELECT " + std::string(kColumns) + " FROM event WHERE " + where +
+                                 " ORDER BY " + order);
   for (std::size_t i = 0; i < texts.size(); ++i)
     sqlite3_bind_text(rows.get(), static_cast<int>(i) + 1, texts[i]->data(),
                       static_cast<int>(texts[i]->size()), SQLITE_TRANSIENT);

@@ -59,6 +59,8 @@ class AlarmStore {
   void append(const std::vector<AlarmEntry>& entries);
   /// In the order of writing.
   void each(const AlarmQuery& query, const std::function<void(const AlarmEntry&)>& visit) const;
+  /// At most so many, the youngest first.
+  [[nodiscard]] std::vector<AlarmEntry> youngest(const AlarmQuery& query, std::size_t most) const;
   /// The last entry of each alarm of the unit, commands that were refused apart.
   [[nodiscard]] std::vector<AlarmEntry> last_of_each(const std::string& unit) const;
   /// Reads everything.
@@ -71,6 +73,8 @@ class AlarmStore {
   using Statement = std::unique_ptr<sqlite3_stmt, CloseStatement>;
 
   void run(const std::string& sql) const;
+  void select(const AlarmQuery& query, const std::string& order,
+              const std::function<void(const AlarmEntry&)>& visit) const;
   [[nodiscard]] Statement prepare(const std::string& sql) const;
   [[noreturn]] void fail(const std::string& doing) const;
   void insert(sqlite3_stmt* statement, const AlarmEntry& entry);

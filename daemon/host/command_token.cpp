@@ -6,7 +6,9 @@
 #include <openssl/rand.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -52,6 +54,9 @@ CommandToken CommandToken::read(const std::string& path) {
   if (secret.size() < kShortest)
     throw fail("its first line must have " + std::to_string(kShortest) +
                " characters at least, such as `openssl rand -hex 32` makes");
+  if (!std::all_of(secret.begin(), secret.end(),
+                   [](unsigned char letter) { return std::isgraph(letter) != 0; }))
+    throw fail("its first line must be of letters, digits and marks without spaces");
   if (secret.size() >= kLongest) throw fail("its first line is too long");
   return CommandToken(secret);
 }

@@ -10,8 +10,8 @@ namespace mpm::host {
 /// a command carries a proof that its sender knows it, which fits that command alone.
 class CommandToken {
  public:
-  /// The first line of `path`, 16 bytes at least. Throws std::runtime_error where there is none, or
-  /// where others than its owner and group may read it.
+  /// The first line of `path`, 16 letters, digits and marks at least. Throws std::runtime_error
+  /// where there is none, or where others than its owner and group may read it.
   static CommandToken read(const std::string& path);
   /// For tests and for what comes from elsewhere.
   explicit CommandToken(std::string_view secret) : secret_(secret) {}

@@ -29,7 +29,7 @@ idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOpti
 
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
                                const ServiceOptions& options, DiagnosisWorker& worker)
-    : gate_(options.token) {
+    : gate_(options.token), commands_(options.commands) {
   if (!options.alarm_journal.empty()) alarm_journal_.emplace(options.alarm_journal);
   if (!options.sample_journal.empty()) samples_.emplace(options.sample_journal);
   idl::DomainOptions any;
@@ -60,6 +60,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
                                                  options.journal_keep / units.size())});
     if (alarm_journal_) pipeline.keep(*alarm_journal_);
     pipeline.diagnose_with(worker, asker++);
+    if (options.observer) pipeline.show_to(options.observer(unit));
     if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);
     spdlog::info(
         "{}: watching {} on domain {}{}", unit.unit,
@@ -79,12 +80,21 @@ void MonitorService::run(const std::function<bool()>& stop) {
       if (readable) domain->poll(now);
       domain->tick(now);
     }
+    if (commands_ != nullptr)
+      commands_->serve([this](const AlarmCommand& command) { return carry_out(command); });
     notifier_.feed_watchdog(now);
     if (now < next_status) continue;
     next_status = now + kStatusPeriod;
     notifier_.status(status());
   }
   notifier_.stopping();
+}
+
+CommandReply MonitorService::carry_out(const AlarmCommand& command) {
+  for (const auto& domain : domains_)
+    if (const auto it = domain->units().find(command.unit); it != domain->units().end())
+      return it->second->obey(command);
+  return {false, "there is no unit " + command.unit};
 }
 
 std::string MonitorService::status() const {

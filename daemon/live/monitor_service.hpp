@@ -12,6 +12,7 @@
 #include "daemon/host/notifier.hpp"
 #include "daemon/live/alarm_journal.hpp"
 #include "daemon/live/command_gate.hpp"
+#include "daemon/live/command_queue.hpp"
 #include "daemon/live/domain.hpp"
 
 namespace mpm::live {
@@ -24,6 +25,9 @@ struct ServiceOptions {
   std::optional<host::CommandToken> token;     ///< of those who may give commands; none: nobody may
   bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
   std::string report_problem;    ///< why reports of diagnoses cannot be kept; empty: they can
+  /// Who looks on at a unit, null: nobody; may be empty. They must outlive the service.
+  std::function<UnitObserver*(const config::UnitConfig&)> observer;
+  CommandQueue* commands = nullptr;  ///< to be answered by the loop; may be null
 };
 
 /// All units of a daemon and the loop that drives them. Everything but the diagnoses happens in the
@@ -42,12 +46,14 @@ class MonitorService {
   using Clock = std::chrono::steady_clock;
 
   [[nodiscard]] std::string status() const;
+  [[nodiscard]] CommandReply carry_out(const AlarmCommand& command);
 
   CommandGate gate_;
   std::optional<AlarmJournal> alarm_journal_;
   std::optional<SampleJournal> samples_;
   std::vector<std::unique_ptr<Domain>> domains_;  // one per distinct DDS setting
   idl::WaitSet wait_set_;
+  CommandQueue* commands_;
   host::Notifier notifier_;
 };
 

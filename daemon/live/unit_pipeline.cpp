@@ -206,18 +206,26 @@ void UnitPipeline::on_frame(const Frame& frame) {
   // Of either the problem is in the health.
   if (journal_) journal_->push(monitor_);
   if (samples_ != nullptr) (void)samples_->write(monitor_.channels(), monitor_.alarms());
+  if (observer_ != nullptr) {
+    observer_->on_frame(frame, monitor_);
+    for (const AlarmRecord& alarm : monitor_.alarms()) observer_->on_alarm(alarm);
+  }
   // Last, when everybody has been told: it may copy the unit's samples.
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
 }
 
-// Not into the journal, whose digests keep what a trend needs.
-void UnitPipeline::publish_performance() {
+PerformanceRecord UnitPipeline::performance() {
   PerformanceRecord record =
       report::performance_record(config_, performance_.setup(), performance_.total());
   record.interval = monitor_.interval();
   record.source_time_ns = monitor_.source_time_ns();
   record.window_samples = performance_.samples();
-  if (!outputs_.write(record) && output_limit_.admit(now_))
+  return record;
+}
+
+// Not into the journal, whose digests keep what a trend needs.
+void UnitPipeline::publish_performance() {
+  if (!outputs_.write(performance()) && output_limit_.admit(now_))
     spdlog::warn("{}: the control performance could not be published", config_.unit);
 }
 
@@ -235,6 +243,7 @@ void UnitPipeline::publish_diagnosis() {
                    outcome->folder);
     return;
   }
+  if (observer_ != nullptr) observer_->on_diagnosis(*outcome);
   spdlog::warn("{}: diagnosed up to interval {}: {}{}", config_.unit, outcome->interval,
                outcome->headline,
                outcome->folder.empty() ? "" : " Report in " + outcome->folder + ".");
@@ -244,6 +253,7 @@ void UnitPipeline::publish_diagnosis() {
     alarm.interval = outcome->interval;
     alarm.source_time_ns = outcome->time_ns;
     written = outputs_.write(alarm) && written;
+    if (observer_ != nullptr) observer_->on_alarm(alarm);
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
@@ -294,12 +304,19 @@ void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
   go_on(now);
   if (aligner_.pending() && now - last_frame_ > patience_) aligner_.expire();
   if (diagnosis_) publish_diagnosis();
-  if (now < next_health_) return;
-  next_health_ = now + kHealthPeriod;
-  if (!alarms_.tick(wall_ns()) && output_limit_.admit(now_))
-    spdlog::warn("{}: the alarms could not be published", config_.unit);
-  publish_health(unknown_unit, around);
-  publish_alarms_again();
+  if (now >= next_health_) {
+    next_health_ = now + kHealthPeriod;
+    if (!alarms_.tick(wall_ns()) && output_limit_.admit(now_))
+      spdlog::warn("{}: the alarms could not be published", config_.unit);
+    publish_health(unknown_unit, around);
+    publish_alarms_again();
+  }
+  if (observer_ != nullptr && observer_->wants_view(now)) show();
+}
+
+void UnitPipeline::show() {
+  observer_->on_view({monitor_.channels(), alarms_.channels(), alarms_.controller(), health_,
+                      troubles_, performance()});
 }
 
 void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around) {
@@ -327,7 +344,8 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
       ++health_.undetermined;
     if (channel.alarm == AlarmState::kActive) ++health_.active_alarms;
   }
-  const std::vector<bus::Trouble> found = troubles(around);
+  troubles_ = troubles(around);
+  const std::vector<bus::Trouble>& found = troubles_;
   trouble_text_ = bus::joined_text(found, kMostInDetail);
   constexpr std::int64_t kSecond = 1'000'000'000;
   for (const TroubleLog::Line& line : trouble_log_.update(found, now_, wall_ns() / kSecond))

@@ -19,6 +19,7 @@
 #include "daemon/live/sample_journal.hpp"
 #include "daemon/live/trouble_log.hpp"
 #include "daemon/live/unit_alarms.hpp"
+#include "daemon/live/unit_observer.hpp"
 #include "daemon/report/unit_monitor.hpp"
 #include "idl/output_writers.hpp"
 #include "idl/sample_view.hpp"
@@ -49,6 +50,8 @@ class UnitPipeline {
   [[nodiscard]] static std::int64_t wall_ns();
   /// From now on alarms are diagnosed, if the unit file wants that. `asker`: no other unit's.
   void diagnose_with(DiagnosisWorker& worker, int asker);
+  /// From now on it looks on; null: nobody does.
+  void show_to(UnitObserver* observer) { observer_ = observer; }
   UnitPipeline(const UnitPipeline&) = delete;  // the aligner's sink points here
   UnitPipeline& operator=(const UnitPipeline&) = delete;
 
@@ -82,9 +85,12 @@ class UnitPipeline {
   void publish_alarms_again();
   [[nodiscard]] bool other_monitor_speaks() const;
   [[nodiscard]] std::string monitors_text(const std::string& self) const;
+  /// Over what there is of the window.
+  [[nodiscard]] PerformanceRecord performance();
   void publish_performance();
   void publish_diagnosis();
   void publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around);
+  void show();
   [[nodiscard]] std::vector<bus::Trouble> troubles(const bus::Surroundings& around) const;
   void judge_health(const std::vector<bus::Trouble>& troubles);
   void report_refused(const idl::SampleView& sample);
@@ -100,9 +106,11 @@ class UnitPipeline {
   Frame calculated_;  // a copy of the aligner's, with what is calculated
   Aligner aligner_;
   std::optional<LiveDiagnosis> diagnosis_;
+  UnitObserver* observer_ = nullptr;
   Clock::duration patience_;  // without a frame while something waits
   bus::UnitInputs inputs_;
   TroubleLog trouble_log_;
+  std::vector<bus::Trouble> troubles_;  // at the last health
   std::string trouble_text_;
   Clock::time_point now_;  // of the event loop
   Clock::time_point last_frame_;

@@ -111,7 +111,8 @@ bag files/times files files/csv mcap/format mcap/read mcap/write
 bag/record host files/times files mcap/read mcap/write mcap bag
 bag/replay host files/times mcap/read bag
 live host files/times files report/diagnosis report history bus
+http host files report history bus live
 app/commands host files/times files files/csv mcap/read mcap report/terminal report/diagnosis report/closed_loop report/identification report history history/trend bus bus/alarms bus/watch bus/doctor bag bag/record bag/replay live
-app host live app/commands
+app host live http app/commands
 TABLE
 exit $status

@@ -4,9 +4,12 @@
 //   x      {clock | label, stretches: [[start, step, count], ...]}, seconds; an unknown value stands
 //          between two stretches; or {label, values, log}
 //   y      {label, log}
-//   lines  [{name, role: measured | before | after, values, dashed, points, x}]
+//   lines  [{name, role: measured | before | after | ..., values, dashed, points, x}]
 //   bands  [{role, low, high}]; marks [{x, label}]; unseen: shaded from here on
 //   group  plots that share zoom and cursor; paths: x goes back, each line has its own
+// and, where values come later (the operator page):
+//   ends   [first, last] of x, where that is not what the values have
+//   onZoom called with the stretch that was chosen, or with null for all, instead of zooming
 // Colours are those of the style sheet, read when something is drawn.
 
 function element(name, attributes, ...children) {
@@ -69,8 +72,8 @@ function positions(x) {
 
 // Lines by size: two models as strong lines, the measured one thin and on top of them, so that none
 // hides another.
-const WIDTH = {measured: 1, before: 2, after: 2};
-const ORDER = {before: 0, after: 1, measured: 2};
+const WIDTH = {measured: 1, before: 2, after: 2, prediction: 2, setpoint: 1, limit: 1, input: 1};
+const ORDER = {limit: -2, setpoint: -1, before: 0, after: 1, prediction: 1, input: 1, measured: 2};
 
 function series(line) {
   const stroke = () => colour(line.role);
@@ -233,11 +236,12 @@ function key(line) {
 
 // A figure. The keys of the lines are drawn unless an earlier figure beside it shows the same.
 function figure(plot, {keys = true, title = plot.title, height = plot.low ? 110 : 210} = {}) {
-  const lines = [...plot.lines].sort((a, b) => ORDER[a.role] - ORDER[b.role]);
+  let lines = [...plot.lines].sort((a, b) => ORDER[a.role] - ORDER[b.role]);
   const readout = element('span', {class: 'readout', 'aria-live': 'polite'});
+  const note = element('span', {class: 'note'}, plot.note || '');
   const caption = element('figcaption', {}, title ? element('b', {}, title) : null,
       ...(keys && plot.lines.length > 1 ? plot.lines.filter(line => !line.dashed).map(key) : []),
-      plot.note ? element('span', {class: 'note'}, plot.note) : null, readout);
+      plot.note || plot.onZoom ? note : null, readout);
   const canvas = element('div', {class: 'canvas', role: 'img', tabindex: 0,
     'aria-label': [title, plot.note, plot.y.label, plot.lines.map(line => line.name).join(', ')].filter(Boolean).join('. ')});
   // Below a title that is the tag, its unit alone.
@@ -245,24 +249,35 @@ function figure(plot, {keys = true, title = plot.title, height = plot.low ? 110 
   const node = element('figure', {class: plot.low ? 'low' : ''}, unit ? element('div', {class: 'unit'}, unit) : null, canvas);
   if (caption.childNodes.length > 1 || title) node.prepend(caption); else node.append(readout);
 
-  const x = plot.paths ? [...new Set(plot.lines.flatMap(line => line.x))].filter(known).sort((a, b) => a - b) : positions(plot.x);
-  const values = lines.map(line => plot.paths ? x.map(() => null) : line.values);
-  const y = span([...lines.map(line => line.values), ...(plot.bands || []).flatMap(band => [band.low, band.high])], plot.y.log);
-  const ends = plot.paths || plot.x.values ? span([x], plot.x.log) : [x[0], x.at(-1)];
-  if (!(ends[1] > ends[0])) ends[1] = ends[0] + 1;
+  let x, values, y, ends;
+  const measure = () => {
+    x = plot.paths ? [...new Set(plot.lines.flatMap(line => line.x))].filter(known).sort((a, b) => a - b) : positions(plot.x);
+    values = lines.map(line => plot.paths ? x.map(() => null) : line.values);
+    y = span([...lines.map(line => line.values), ...(plot.bands || []).flatMap(band => [band.low, band.high])], plot.y.log);
+    ends = plot.ends ? [...plot.ends] : plot.paths || plot.x.values ? span([x], plot.x.log) : [x[0], x.at(-1)];
+    if (!(ends[1] > ends[0])) ends[1] = ends[0] + 1;
+  };
+  measure();
   const options = {
     width: 300, height, padding: [6, 10, 0, 0], legend: {show: false}, tzDate: localDate, ms: 1,
-    cursor: {drag: {x: !plot.paths, y: false}, points: {show: false}, y: false,
+    cursor: {drag: {x: !plot.paths, y: false, setScale: !plot.onZoom},
+      bind: plot.onZoom ? {dblclick: () => () => { plot.onZoom(null); return null; }} : {}, points: {show: false}, y: false,
       sync: plot.group ? {key: plot.group, setSeries: false} : undefined},
     scales: {x: {time: dated(plot), distr: plot.x.log ? 3 : 1, range: (u, min, max) => u.zoomed || min !== null && max - min < 0.999 * (ends[1] - ends[0]) && min >= ends[0] && max <= ends[1] ? [min, max] : ends},
       y: {distr: plot.y.log ? 3 : 1, range: () => y}},
     series: [{}, ...lines.map(series)],
     axes: axes(plot, ends[1] - ends[0]),
     hooks: {...extras(plot, lines), setScale: plot.group ? [(u, name) => name === 'x' && zoomTogether(plot)(u)] : [],
+      setSelect: plot.onZoom ? [u => {
+        const {left, width} = u.select;
+        if (width < 4) return;
+        u.setSelect({left: 0, top: 0, width: 0, height: 0}, false);
+        plot.onZoom(u.posToVal(left, 'x'), u.posToVal(left + width, 'x'));
+      }] : [],
       setCursor: [u => {
         const i = u.cursor.idx;
         readout.textContent = plot.paths || !known(i) || u.cursor.left < 0 ? ''
-          : [place(plot, x[i]), ...plot.lines.map(line => `${line.name} ${number(line.values[i])}`)].join(' · ');
+          : [place(plot, x[i]), ...plot.lines.filter(line => !line.dashed || known(line.values[i])).map(line => `${line.name} ${number(line.values[i])}`)].join(' · ');
       }]},
   };
   const make = () => {
@@ -278,17 +293,35 @@ function figure(plot, {keys = true, title = plot.title, height = plot.low ? 110 
     if (!groups.has(plot.group)) groups.set(plot.group, {plots: [], busy: false});
     groups.get(plot.group).plots.push(node.plot);
   };
-  canvas.addEventListener('keydown', event => moveCursor(event, node.plot));
+  canvas.addEventListener('keydown', event => moveCursor(event, node.plot, plot.onZoom));
   node.make = make;
-  new ResizeObserver(make).observe(canvas);
+  // The same lines with other values, and another note.
+  node.update = next => {
+    Object.assign(plot, next);
+    note.textContent = plot.note || '';
+    lines = [...plot.lines].sort((a, b) => ORDER[a.role] - ORDER[b.role]);
+    measure();
+    if (node.plot) node.plot.setData([x, ...values]);
+  };
+  const observer = new ResizeObserver(make);
+  observer.observe(canvas);
+  node.destroy = () => {
+    observer.disconnect();
+    if (!node.plot) return;
+    drawnPlots.delete(node.plot);
+    const group = groups.get(plot.group);
+    if (group) group.plots.splice(group.plots.indexOf(node.plot), 1);
+    node.plot.destroy();
+  };
   return node;
 }
 
 // With the keyboard: arrows move the cursor, 0 shows all.
-function moveCursor(event, u) {
+function moveCursor(event, u, onZoom) {
   const by = {ArrowLeft: -1, ArrowRight: 1}[event.key];
   if (!u || (!by && event.key !== '0')) return;
   event.preventDefault();
+  if (!by && onZoom) return onZoom(null);
   if (!by) {
     u.setScale('x', {min: u.data[0][0], max: u.data[0].at(-1)});
     return;

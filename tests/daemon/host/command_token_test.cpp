@@ -62,6 +62,10 @@ TEST_CASE("a token that is short, missing or open to all is refused") {
     CHECK_THAT(refused(small.path), Contains("16 characters"));
   }
   {
+    const TokenFile spaced("0123456789 abcdef\n");
+    CHECK_THAT(refused(spaced.path), Contains("without spaces"));
+  }
+  {
     const TokenFile large(std::string(100'000, 'x'));
     CHECK_THAT(refused(large.path), Contains("too long"));
   }

@@ -1,7 +1,7 @@
-# Sourced with $build and $source set: what drives the browser, in $work, which becomes current.
+# Sourced with $build and $source set: what drives the browser, in $work, which becomes current. $here and
+# $work may be set before, to another folder of checks and where they are run.
 # Exit 77 (skipped) where the browser or what drives it cannot be had.
-here=$source/tests/daemon/report/page/browser
-work=$build/page_browser
+: "${here:=$source/tests/daemon/report/page/browser}" "${work:=$build/page_browser}"
 skip() { printf 'SKIPPED: %s\n' "$*" >&2; exit 77; }
 
 command -v chromium >/dev/null || skip "no chromium on this machine"

@@ -1,0 +1,83 @@
+// What several pages show.
+import type { Card, Channel, Kpi, State, Trend } from './api';
+import { h, svg } from './dom';
+import { healthOf, moment, percent, STATES, utc, inUtc } from './text';
+
+export const unitLink = (unit: string) => `#/unit/${encodeURIComponent(unit)}`;
+export const cvLink = (unit: string, cv: string) => `${unitLink(unit)}/cv/${encodeURIComponent(cv)}`;
+
+/// A moment in the viewer's zone with the plant's beside it.
+export function time(ns: number | null | undefined): HTMLElement {
+  return h('span', { class: 'time' }, h('span', {}, moment(ns)),
+    !inUtc && ns ? h('span', { class: 'utc' }, ` (${utc(ns)})`) : null);
+}
+
+/// No colour where all is well.
+export function healthChip(state: string): HTMLElement {
+  const { word, sign, name } = healthOf(state);
+  return h('span', { class: `chip health ${name}` }, sign ? h('span', { 'aria-hidden': 'true' }, `${sign} `) : null, word);
+}
+
+export function stateChip(state: State): HTMLElement {
+  const { word, sign } = STATES[state];
+  return h('span', { class: `state ${state}` }, h('span', { 'aria-hidden': 'true' }, `${sign} `), word);
+}
+
+/// A small line, its range 0..1: how it went, without numbers.
+export function spark(trend: Trend): Element {
+  const kWidth = 96, kHeight = 24, kEdge = 2;
+  const { times, values } = trend;
+  const first = times[0] ?? 0, last = times.at(-1) ?? 1;
+  let path = '', down = false;
+  values.forEach((value, i) => {
+    if (value === null) { down = false; return; }
+    const x = kEdge + (kWidth - 2 * kEdge) * ((times[i] ?? first) - first) / Math.max(last - first, 1e-9);
+    const y = kHeight - kEdge - (kHeight - 2 * kEdge) * Math.min(1, Math.max(0, value));
+    path += `${down ? 'L' : 'M'}${x.toFixed(1)} ${y.toFixed(1)}`;
+    down = true;
+  });
+  return svg('svg', { class: 'spark', viewBox: `0 0 ${kWidth} ${kHeight}`, width: kWidth, height: kHeight, 'aria-hidden': 'true' },
+    svg('path', { d: `M0 ${kHeight - 0.5}H${kWidth}`, class: 'base' }), svg('path', { d: path }));
+}
+
+function trendWord({ change }: Trend): string {
+  const kNoticed = 0.05; // of a share
+  if (change === null || Math.abs(change) < kNoticed) return '';
+  return change < 0 ? 'falling' : 'rising';
+}
+
+const kpi = (name: string, value: string, title: string, ...more: (Element | null)[]) =>
+  h('div', { class: 'kpi', title }, h('dt', {}, name), h('dd', {}, h('span', { class: 'value' }, value), ...more));
+
+export function kpiStrip(kpis: Kpi): HTMLElement {
+  const accuracy = kpis.model_accuracy, word = trendWord(accuracy);
+  return h('dl', { class: 'kpis' },
+    kpi('Service', percent(kpis.service_factor), 'Service factor: share of the time in which the controller acts'),
+    kpi('At limits', percent(kpis.at_limits), 'Share of the time that MVs rest at a limit'),
+    kpi('Prediction error', percent(kpis.prediction_error),
+      'Error of the predictions over a settling time, in per cent of what the CVs move meanwhile: 100 % is no better than predicting no change'),
+    kpi('Determined', percent(kpis.determined), 'Share of the channels that move enough to be judged'),
+    kpi('Model accuracy', percent(accuracy.now),
+      'How much smaller the errors of the predictions are than those of predicting no change; 100 % is a perfect model',
+      word ? h('span', { class: 'note' }, word) : null, accuracy.now === null ? null : spark(accuracy)));
+}
+
+/// The matrix of a card: shapes alone, told in words to who cannot see them.
+export function smallMatrix(card: Card): HTMLElement {
+  const text = `${card.mismatch} mismatch, ${card.match} match, ${card.undetermined} undetermined`;
+  return h('div', { class: 'small-matrix', role: 'img', 'aria-label': `${card.inputs.length} inputs by ${card.cvs.length} CVs: ${text}` },
+    ...card.matrix.map(row => h('div', { class: 'row' },
+      ...row.map(state => h('span', { class: `cell ${state}` }, STATES[state].sign)))));
+}
+
+export function legend(states: State[]): HTMLElement {
+  const order: State[] = ['mismatch', 'watch', 'match', 'undetermined'];
+  return h('p', { class: 'legend' }, ...order.filter(each => states.includes(each)).map(stateChip));
+}
+
+export function shortText(channel: Channel): string {
+  if (channel.state === 'match') return '';
+  if (channel.verdict === 'mismatch' && channel.gain_error_percent !== undefined && Math.abs(channel.gain_error_percent) >= 0.5)
+    return `gain ${channel.gain_error_percent > 0 ? '+' : '−'}${Math.abs(channel.gain_error_percent).toFixed(0)} %`;
+  return (channel.reason ?? '').replaceAll('_', ' ');
+}

@@ -1,0 +1,175 @@
+#include "daemon/http/server.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/daemon/http/sample_board.hpp"
+
+namespace mpm::http {
+namespace {
+
+using namespace std::chrono_literals;
+using Catch::Matchers::Contains;
+
+/// A connection to the server, as a browser has one.
+class Connection {
+ public:
+  explicit Connection(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_port = htons(static_cast<std::uint16_t>(port));
+    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    REQUIRE(connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0);
+    const timeval patience{10, 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  }
+  Connection(Connection&& other) noexcept : socket_(other.socket_) { other.socket_ = -1; }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() {
+    if (socket_ >= 0) close(socket_);
+  }
+  void say(const std::string& text) const {
+    (void)!::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
+  }
+  /// Until `end` has come, or the connection ends.
+  [[nodiscard]] std::string hear(const std::string& end = "") const {
+    std::string text;
+    std::array<char, 4096> part{};
+    for (;;) {
+      const ssize_t got = recv(socket_, part.data(), part.size(), 0);
+      if (got <= 0) return text;
+      text.append(part.data(), static_cast<std::size_t>(got));
+      if (!end.empty() && text.find(end) != std::string::npos) return text;
+    }
+  }
+
+ private:
+  int socket_;
+};
+
+struct Bench {
+  Bench() : server(Address{}, sample.board, parts()) {
+    sample.board.start();
+    sample.show(true);
+    server.start();
+  }
+  Api::Parts parts() {
+    Api::Parts parts;
+    parts.board = &sample.board;
+    return parts;
+  }
+  [[nodiscard]] std::string ask(const std::string& line, const std::string& more = "",
+                                const std::string& body = "") const {
+    const Connection connection(server.address().port);
+    connection.say(line + " HTTP/1.1\r\nHost: 127.0.0.1\r\n" + more + "\r\n" + body);
+    return connection.hear();
+  }
+  [[nodiscard]] std::size_t streams() const {
+    const std::string answer = ask("GET /api/v1/system");
+    return Json::parse(answer.substr(answer.find("\r\n\r\n")))["server"]["streams"];
+  }
+
+  test::SampleBoard sample;
+  Server server;
+};
+
+TEST_CASE("each answer says what a browser may do with it") {
+  const Bench bench;
+  CHECK(bench.server.address().port > 0);
+  for (const char* line : {"GET /", "GET /page.js", "GET /api/v1/units", "GET /nothing",
+                           "POST /api/v1/commands", "DELETE /"}) {
+    CAPTURE(line);
+    const std::string answer = bench.ask(line, "Content-Length: 0\r\n");
+    CHECK_THAT(answer, Contains("Content-Security-Policy: default-src 'none'; script-src 'self'"));
+    CHECK_THAT(answer, Contains("X-Content-Type-Options: nosniff"));
+    CHECK_THAT(answer, Contains("Referrer-Policy: no-referrer"));
+    CHECK(answer.find("unsafe-") == std::string::npos);
+  }
+}
+
+TEST_CASE("a file that a browser has is not sent again") {
+  const Bench bench;
+  const std::string first = bench.ask("GET /page.css");
+  const std::size_t at = first.find("ETag: ") + 6;
+  const std::string tag = first.substr(at, first.find('\r', at) - at);
+  CHECK_THAT(bench.ask("GET /page.css", "If-None-Match: " + tag + "\r\n"),
+             Contains("HTTP/1.1 304"));
+  CHECK_THAT(bench.ask("GET /page.css", "If-None-Match: \"x\"\r\n"), Contains("HTTP/1.1 200"));
+  CHECK_THAT(bench.ask("HEAD /"), Contains("Content-Length: "));
+}
+
+TEST_CASE("a name that is not ours is refused before anything is told") {
+  const Bench bench;
+  const Connection connection(bench.server.address().port);
+  connection.say("GET /api/v1/events HTTP/1.1\r\nHost: evil.example\r\n\r\n");
+  const std::string answer = connection.hear();
+  CHECK_THAT(answer, Contains("HTTP/1.1 421"));
+  CHECK(answer.find("column") == std::string::npos);
+}
+
+TEST_CASE("large and broken requests are refused") {
+  const Bench bench;
+  CHECK_THAT(bench.ask("POST /api/v1/commands", "Content-Length: 1000000\r\n",
+                       std::string(1'000'000, 'x')),
+             Contains("HTTP/1.1 413"));
+  CHECK_THAT(bench.ask("GET /" + std::string(20'000, 'x')), Contains("HTTP/1.1 414"));
+  const Connection connection(bench.server.address().port);
+  connection.say("nonsense\r\n\r\n");
+  CHECK_THAT(connection.hear(), Contains("HTTP/1.1 400"));
+}
+
+TEST_CASE("streams are told of news, are counted, and there is a most of them") {
+  Bench bench;
+  std::vector<Connection> open;
+  for (std::size_t k = 0; k < Server::kMostStreams; ++k) {
+    open.emplace_back(bench.server.address().port);
+    open.back().say("GET /api/v1/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    CHECK_THAT(open.back().hear("event: state"), Contains("text/event-stream"));
+  }
+  CHECK_THAT(bench.ask("GET /api/v1/events"), Contains("HTTP/1.1 503"));
+  CHECK(bench.streams() == Server::kMostStreams);
+  CHECK_THAT(bench.ask("GET /api/v1/units"), Contains("HTTP/1.1 200"));  // others are served
+  bench.sample.show(false);
+  CHECK_THAT(open.front().hear("-2\n"), Contains("event: state"));
+  // Who leaves makes room.
+  open.clear();
+  bool room = false;
+  for (int waits = 0; waits < 100 && !room; ++waits) {
+    std::this_thread::sleep_for(100ms);
+    room = bench.streams() == 0;
+  }
+  CHECK(room);
+}
+
+TEST_CASE("a server ends with streams open") {
+  auto bench = std::make_unique<Bench>();
+  const Connection connection(bench->server.address().port);
+  connection.say("GET /api/v1/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  (void)connection.hear("event: state");
+  const auto before = std::chrono::steady_clock::now();
+  bench.reset();
+  CHECK(std::chrono::steady_clock::now() - before < 5s);
+}
+
+TEST_CASE("a port that is taken is not shared") {
+  const Bench bench;
+  test::SampleBoard other;
+  Api::Parts parts;
+  parts.board = &other.board;
+  CHECK_THROWS_AS(Server(bench.server.address(), other.board, std::move(parts)),
+                  std::runtime_error);
+}
+
+}  // namespace
+}  // namespace mpm::http
