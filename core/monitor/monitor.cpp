@@ -320,7 +320,7 @@ void Monitor::State::move_alarms() {
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
     const auto changed = [&](int input) {
-      transitions.push_back({j, input, cv.alarms.state(input)});
+      transitions.push_back({j, input, cv.alarms.state(input), status[index(j, input)]});
     };
     if (cv.rival.wins || cv.compressed)  // what spoke against a channel was never evidence
       cv.alarms.clear(changed);

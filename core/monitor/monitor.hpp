@@ -23,6 +23,7 @@ struct AlarmTransition {
   int cv = 0;
   int input = 0;
   AlarmState to = AlarmState::kCleared;
+  AlarmEvidence before;  ///< as of the sample before: what a CV that begins anew has forgotten
 };
 
 /// What the monitor did with the frames so far.

@@ -45,9 +45,16 @@ void fill_errors(const ChannelStatus& status, double sample_time_s, ChannelRecor
   }
 }
 
-AlarmRecord alarm_of(const ChannelRecord& channel, AlarmState to) {
+// Of a CV that begins anew with its alarm nothing is known for now; what raised it is.
+AlarmRecord alarm_of(const ChannelRecord& channel, const AlarmTransition& transition) {
+  const AlarmState to = transition.to;
   AlarmRecord alarm;
   static_cast<AlarmEvidence&>(alarm) = channel;
+  if (channel.reason == Reason::kIsolating && channel.statistic == 0.0) {
+    static_cast<AlarmEvidence&>(alarm) = transition.before;
+    alarm.partial_correlation = channel.partial_correlation;
+    alarm.lag = channel.lag;
+  }
   alarm.unit = channel.unit;
   alarm.mv = channel.mv;
   alarm.cv = channel.cv;
@@ -87,9 +94,8 @@ void UnitMonitor::push(const Frame& frame) {
   if (monitor_.transitions().empty()) return;
   const int cvs = config_.counts().cv;
   for (const AlarmTransition& transition : monitor_.transitions())
-    alarms_.push_back(
-        alarm_of(channels()[static_cast<std::size_t>(transition.input * cvs + transition.cv)],
-                 transition.to));
+    alarms_.push_back(alarm_of(
+        channels()[static_cast<std::size_t>(transition.input * cvs + transition.cv)], transition));
 }
 
 // Nobody reads all records of every frame of a recording.

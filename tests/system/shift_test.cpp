@@ -45,6 +45,7 @@ struct Outcome {
   std::set<Name> engineer;  // channels that came after their change
   std::set<Name> wrong;     // channels that came and had none
   AlarmLoad load;           // of the alerts
+  int without_reason = 0;   // alerts that came without any evidence
 };
 
 /// A shift of one unit, with data losses, as its monitor tells it to people.
@@ -82,6 +83,8 @@ Outcome shift(const Trouble& trouble) {
   while (frames->next(frame)) {
     const auto k = static_cast<int>(frame.interval);
     monitor.push(frame);
+    for (const AlarmRecord& alarm : monitor.alarms())
+      if (alarm.to == AlarmChange::kActive && !(alarm.p_value < 1e-3)) ++outcome.without_reason;
     const AlarmMoment now{k * kSecond, k * kSecond};
     for (std::size_t i = 0; i < names.size(); ++i)
       seen[i] = {monitor.channels()[i].alarm == AlarmState::kActive,
@@ -125,6 +128,7 @@ TEST_CASE("a shift of trouble is one alarm for each operator and all of it for t
     }
     for (const Name& name : outcome.wrong) UNSCOPED_INFO(name.first << " -> " << name.second);
     CHECK(outcome.wrong.empty());
+    CHECK(outcome.without_reason == 0);
     CHECK(outcome.load.chattering == 0);
     CHECK(outcome.load.floods == 0);
   }
