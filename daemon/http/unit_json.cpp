@@ -228,8 +228,18 @@ Json first_calls(const Json& alarms) {
   return first;
 }
 
+std::size_t silenced_alarms(const Json& alarms) {
+  return static_cast<std::size_t>(
+      std::count_if(alarms.begin(), alarms.end(), [](const Json& alarm) { return !calls(alarm); }));
+}
+
+/// Of channels; that of the controller stands for them, and counts where it is the last.
 std::size_t calling_alarms(const Json& alarms) {
-  return static_cast<std::size_t>(std::count_if(alarms.begin(), alarms.end(), calls));
+  const auto of_channels = std::count_if(alarms.begin(), alarms.end(), [](const Json& alarm) {
+    return calls(alarm) && !alarm["cv"].get_ref<const std::string&>().empty();
+  });
+  const bool any = std::any_of(alarms.begin(), alarms.end(), calls);
+  return std::max(static_cast<std::size_t>(of_channels), std::size_t{any ? 1U : 0U});
 }
 
 }  // namespace
@@ -258,7 +268,7 @@ Json overview_json(const UnitStore& store) {
           {"time_ns", snapshot->health.source_time_ns},
           {"health", {{"state", snapshot->health.state}, {"detail", snapshot->health.detail}}},
           {"alarms", calling},
-          {"silenced_alarms", alarms.size() - calling},
+          {"silenced_alarms", silenced_alarms(alarms)},
           {"first_alarms", first_calls(alarms)},
           {"match", snapshot->health.matching},
           {"mismatch", snapshot->health.mismatching},

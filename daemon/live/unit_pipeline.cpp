@@ -391,11 +391,11 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
           "the " + which + " cannot be written: " + problem);
   };
   if (journal_) add_journal("journal", journal_->problem());
-  add_journal("journal of alarms", alarms_.journal_problem());
   if (samples_ != nullptr) add_journal("journal of every sample", samples_->problem());
   if (diagnosis_ && !diagnosis_->file_problem().empty())
     add("reports", Severity::kMaintenanceRequired,
         "reports of diagnoses cannot be kept: " + diagnosis_->file_problem());
+  add_journal("journal of alarms", alarms_.journal_problem());
   sort_by_severity(found);
   return found;
 }

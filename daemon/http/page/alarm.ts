@@ -52,7 +52,7 @@ export function alarmRow(alarm: Alarm, unit: string): HTMLElement {
         h('span', { class: 'word' }, WORDS[state] ?? state),
         alarm.notification_class && alarm.notification_class !== 'alarm' ? h('span', { class: 'word' }, alarm.notification_class) : null),
       h('p', {}, alarm.message || alarm.text || 'no size known yet'),
-      alarm.cause_text ? h('p', { class: 'note' }, `Diagnosed: ${alarm.cause_text}`) : null,
+      alarm.cause_text && alarm.cause_text !== alarm.message ? h('p', { class: 'note' }, `Diagnosed: ${alarm.cause_text}`) : null,
       alarm.guidance ? h('p', { class: 'note' }, alarm.guidance) : null,
       h('p', { class: 'note' }, 'since ', time(alarm.active_time_ns || alarm.time_ns),
         until ? `; for another ${span(until)}` : '',

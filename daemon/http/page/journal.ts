@@ -15,6 +15,8 @@ export function choose(name: string, value: string): void {
 
 const WORDS: Record<string, string> = { active: '▲ Alarm', cleared: 'Cleared', diagnosed: 'Diagnosed' };
 
+const sentence = (words: string) => words.charAt(0).toUpperCase() + words.slice(1);
+
 function select(name: string, text: string, options: [string, string][], value: string): HTMLElement {
   return h('label', {}, `${text} `, h('select', { 'data-choose': name, 'data-key': `${name} ${value}` },
     ...options.map(([key, word]) => h('option', { value: key, selected: key === value }, word))));
@@ -38,7 +40,7 @@ export async function journal(): Promise<HTMLElement> {
       h('thead', {}, h('tr', {}, ...['Time', 'Event', 'Unit', 'Channel', 'What'].map(each => h('th', { scope: 'col' }, each)))),
       h('tbody', {}, ...events.map(each => h('tr', { 'data-key': `${each.unit} ${each.mv} ${each.cv} ${each.time_ns} ${each.to}` },
         h('td', { 'data-label': 'Time' }, time(each.time_ns)),
-        h('td', { 'data-label': 'Event', class: `event ${each.to}` }, WORDS[each.to] ?? each.to.replaceAll('_', ' ')),
+        h('td', { 'data-label': 'Event', class: `event ${each.to}` }, WORDS[each.to] ?? sentence(each.to.replaceAll('_', ' '))),
         h('td', { 'data-label': 'Unit' }, h('a', { href: unitLink(each.unit) }, each.unit)),
         h('td', { 'data-label': 'Channel' }, each.cv ? h('a', { href: cvLink(each.unit, each.cv) }, title(each)) : title(each)),
         h('td', { 'data-label': 'What' }, each.message || each.cause_text || each.text || '–',
