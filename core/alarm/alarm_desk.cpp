@@ -10,8 +10,7 @@ namespace {
 
 int samples_of(double seconds, double sample_time_s) {
   const double samples = std::ceil(seconds / sample_time_s);
-  return static_cast<int>(
-      std::clamp(samples, 1.0, static_cast<double>(std::numeric_limits<int>::max() / 2)));
+  return static_cast<int>(std::clamp(samples, 1.0, 0.5 * std::numeric_limits<int>::max()));
 }
 
 }  // namespace

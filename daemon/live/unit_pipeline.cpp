@@ -269,7 +269,7 @@ CommandReply UnitPipeline::obey(const CommandRecord& record,
   refused.user = printable(record.user);
   refused.host = printable(record.host);
   refused.comment = printable(record.comment);
-  const std::string& why = std::get<std::string>(admitted);
+  const auto& why = std::get<std::string>(admitted);
   alarms_.note_refused(refused, why, wall_ns());
   spdlog::warn("{}: a command of {} on {} was refused: {}", config_.unit,
                refused.user.empty() ? "nobody" : refused.user,

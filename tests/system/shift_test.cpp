@@ -116,6 +116,7 @@ Outcome shift(const Trouble& trouble) {
 // load is 144 a day for all that an operator watches.
 TEST_CASE("a shift of trouble is one alarm for each operator and all of it for the engineer") {
   std::vector<std::future<Outcome>> shifts;
+  shifts.reserve(kTroubles.size());
   for (const Trouble& trouble : kTroubles)
     shifts.push_back(std::async(std::launch::async, shift, trouble));
   for (std::size_t i = 0; i < kTroubles.size(); ++i) {

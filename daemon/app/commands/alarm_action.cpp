@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -37,7 +38,8 @@ std::string this_user() {
 std::string this_host() {
   std::string name(256, '\0');
   if (::gethostname(name.data(), name.size() - 1) != 0) return "";
-  return {name.c_str()};
+  name.resize(std::strlen(name.c_str()));
+  return name;
 }
 
 std::string usual_token_file() {

@@ -36,11 +36,11 @@ AlarmList listen_to_alarms(const idl::Participant& participant, Clock::time_poin
     if (wait_set.wait(kLongestWait)) {
       last_word = Clock::now();
       controllers.take([&](const mpm_ControllerAlarm& sample) {
-        ControllerAlarmRecord record = idl::record_of<ControllerAlarmRecord>(sample);
+        auto record = idl::record_of<ControllerAlarmRecord>(sample);
         list.controllers[record.unit] = std::move(record);
       });
       channels.take([&](const mpm_Alarm& sample) {
-        AlarmStateRecord record = idl::record_of<AlarmStateRecord>(sample);
+        auto record = idl::record_of<AlarmStateRecord>(sample);
         list.channels[{record.unit, record.cv, record.mv}] = std::move(record);
       });
     }

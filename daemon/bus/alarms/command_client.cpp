@@ -32,7 +32,7 @@ std::optional<CommandReplyRecord> CommandClient::give(const CommandRecord& comma
   while (!reply && !stop() && Clock::now() < deadline)
     if (wait_set_.wait(kLongestWait))
       replies_.take([&](const mpm_CommandReply& sample) {
-        CommandReplyRecord heard = idl::record_of<CommandReplyRecord>(sample);
+        auto heard = idl::record_of<CommandReplyRecord>(sample);
         if (heard.id == command.id) reply = std::move(heard);
       });
   return reply;

@@ -69,7 +69,7 @@ TEST_CASE("a hidden gain is named, measured and repaired") {
 // What a stranger tries first: +-1 on the input, and a plant that answers twice as strongly. Two
 // levels and an offset hold any curve, and a valve that sticks for less than a move is none.
 TEST_CASE("a gain is no curve, no offset and no sticking valve to a binary test signal") {
-  for (const std::uint64_t stream : {1, 3, 5}) {
+  for (const std::uint64_t stream : {1U, 3U, 5U}) {
     const VectorXd u = test::telegraph(stream, kRows, 1);
     const Diagnosis diagnosis =
         diagnosis_of(test::recording_of(u, 2.0 * test::first_order(u, 2.0, 10.0) + noise()));
