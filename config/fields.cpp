@@ -64,7 +64,7 @@ const std::vector<Field<ManagedAlarm::Settings>>& managed_alarm_fields() {
   static const std::vector<Field<S>> fields = {
       {"latching", &S::latching, kAny, "what has gone waits until it is acknowledged"},
       {"realarm", &S::realarm_s, kNotNegative, "s, from acknowledged on; 0 = never"},
-      {"max_shelve", &S::max_shelve_s, {.low = 1.0, .high = 31.0 * 86400.0}, "s"},
+      {"max_shelve", &S::max_shelve_s, {.low = 1.0, .high = calibration::kMostShelf}, "s"},
   };
   return fields;
 }

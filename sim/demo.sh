@@ -38,7 +38,9 @@ trap clean_up EXIT
 trap 'exit 2' INT TERM
 
 if [ "$page" = yes ]; then
-  set -- --log-level info --http 0 --state-dir "$work/state"
+  token=$(od -An -N16 -tx1 /dev/urandom | tr -d ' \n')
+  (umask 077; echo "$token" >"$work/token")
+  set -- --log-level info --http 0 --state-dir "$work/state" --token-file "$work/token"
 else
   set -- --log-level warning
 fi
@@ -53,6 +55,7 @@ if [ "$page" = yes ]; then
     address=$(sed -n 's/.*operator page at //p' "$work/mpmd.log")
   done
   echo "The operator page: $address"
+  echo "Token to acknowledge and shelve with: $token"
   if [ -t 0 ]; then
     printf 'Open it in a browser, then press Enter: '
     read -r _ || :

@@ -7,15 +7,15 @@
 
 namespace mpm {
 
-/// What a person may do to an alarm.
+/// What a person may do to an alarm: silence it in one of three ways, and end that.
 enum class AlarmAction : unsigned char {
   kAcknowledge,
-  kShelve,        ///< not now: for a time, or until it clears
-  kUnshelve,      ///<
-  kSuppress,      ///< it means nothing in this state of the plant
-  kUnsuppress,    ///<
+  kShelve,  ///< not now: for a time, or until it clears
+  kUnshelve,
+  kSuppress,  ///< it means nothing in this state of the plant
+  kUnsuppress,
   kOutOfService,  ///< maintenance
-  kInService,     ///<
+  kInService,
 };
 [[nodiscard]] constexpr auto words_of(AlarmAction) {
   return std::array{"acknowledge", "shelve",         "unshelve",  "suppress",

@@ -16,6 +16,7 @@ namespace mpm {
 class AlarmDesk {
  public:
   static constexpr int kController = -1;
+  static constexpr int kNone = -2;
 
   struct Channel {
     std::string mv, cv;  ///< tags
@@ -52,12 +53,10 @@ class AlarmDesk {
   [[nodiscard]] const Channel& channel(int index) const {
     return names_[static_cast<std::size_t>(index)];
   }
-  /// kController where both are empty; -2 where there is none.
+  /// kController where both are empty; kNone where there is no such channel.
   [[nodiscard]] int find(const std::string& mv, const std::string& cv) const;
 
  private:
-  static constexpr int kNone = -2;
-
   [[nodiscard]] const ManagedAlarm& of(int alarm) const {
     return alarm == kController ? controller_ : alarms_[static_cast<std::size_t>(alarm)];
   }

@@ -11,8 +11,6 @@ namespace {
 
 using namespace calibration::load;
 
-constexpr auto kDay = static_cast<double>(kStale);
-
 /// What has come within the last `width` of time.
 class Window {
  public:
@@ -110,7 +108,7 @@ AlarmLoad alarm_load(const std::vector<AlarmLoadEvent>& events, int alarms, std:
   load.floods = floods.count();
   const auto span = static_cast<double>(until_ns - from_ns);
   if (span > 0.0) {
-    load.days = span / kDay;
+    load.days = span / static_cast<double>(kDay);
     load.per_day = static_cast<double>(load.annunciated) / load.days;
     load.time_in_flood = static_cast<double>(floods.lasted()) / span;
   }

@@ -20,6 +20,8 @@ inline constexpr std::array kSeverities = {167, 500, 833};
 inline constexpr double kControllerOffDelay = 8 * 3600.0;
 /// s; the longest that an alarm can be shelved for. Chosen: no shelf outlives a day unseen.
 inline constexpr double kLongestShelf = 86400.0;
+/// s; the most that a unit may allow: a longer time is another way of saying "for ever". Chosen.
+inline constexpr double kMostShelf = 31.0 * 86400.0;
 /// Samples in a row that must say that a question has no meaning, or has one again. Chosen: a gap
 /// in the data is no event.
 inline constexpr int kSettled = 10;
@@ -32,7 +34,8 @@ inline constexpr std::size_t kFloodBegins = 11;  ///< in a window: more than 10
 inline constexpr std::size_t kFloodEnds = 4;     ///< in a window: less than 5
 inline constexpr std::size_t kChatter = 3;       ///< of one alarm
 inline constexpr std::int64_t kChatterWindow = 60 * kSecond;
-inline constexpr std::int64_t kStale = 86'400 * kSecond;
+inline constexpr std::int64_t kDay = 86'400 * kSecond;
+inline constexpr std::int64_t kStale = kDay;
 }  // namespace load
 
 }  // namespace mpm::calibration

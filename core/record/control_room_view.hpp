@@ -1,6 +1,7 @@
 #pragma once
 
-#include <string_view>
+#include <cstdint>
+#include <string>
 
 #include "core/alarm/alarm_settings.hpp"
 #include "core/alarm/managed_alarm.hpp"

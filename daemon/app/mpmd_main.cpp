@@ -154,6 +154,8 @@ class Page {
             .reports = http::KeptReports(options.state_folder),
             .version = idl::version_text("mpmd"),
             .command = [this](const AlarmCommand& command) { return commands_.ask(command); },
+            .refused = [this](const AlarmCommand& command,
+                              const std::string& why) { commands_.tell_refused(command, why); },
             .server = {}};
   }
 

@@ -1,8 +1,10 @@
 #include "daemon/history/alarm_store.hpp"
 
+#include <fcntl.h>
 #include <openssl/sha.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
 #include <stdexcept>
@@ -151,6 +153,11 @@ void AlarmStore::CloseStatement::operator()(sqlite3_stmt* statement) const {
 
 AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most)
     : path_(path), most_(most) {
+  if (access == Access::kAppend)  // before anything is in it
+    if (const int made =
+            ::open(path.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, S_IRUSR | S_IWUSR | S_IRGRP);
+        made >= 0)
+      ::close(made);
   const int flags =
       access == Access::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   const int opened = sqlite3_open_v2(path.c_str(), &database_, flags, nullptr);
@@ -158,7 +165,6 @@ AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most
     if (opened != SQLITE_OK) fail("cannot be opened");
     sqlite3_busy_timeout(database_, kBusyMs);
     if (access == Access::kAppend) {
-      ::chmod(path.c_str(), S_IRUSR | S_IWUSR | S_IRGRP);
       run("PRAGMA journal_mode=WAL");
       run("PRAGMA synchronous=FULL");
       run(kSchema);

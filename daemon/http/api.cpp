@@ -207,26 +207,31 @@ Reply Api::report(const std::vector<std::string>& path) const {
 }
 
 Reply Api::command(const Request& request) const {
+  auto parsed = parse_command(request.body);
+  auto* command = std::get_if<AlarmCommand>(&parsed);
+  if (command != nullptr) command->host = request.peer;
+  const auto refuse = [&](int status, const std::string& why) {
+    if (parts_.refused && command != nullptr && parts_.board->find(command->unit) != nullptr)
+      parts_.refused(*command, why);
+    return error_reply(status, why);
+  };
   if (!parts_.guard.takes_commands())
-    return error_reply(403,
-                       "this monitor takes no commands over HTTP: it was started without "
-                       "--token-file");
+    return refuse(403,
+                  "this monitor takes no commands over HTTP: it was started without "
+                  "--token-file");
   if (!parts_.guard.is_authorized(header(request, "authorization"))) {
-    Reply reply = error_reply(401, "the token is missing or wrong");
+    Reply reply = refuse(401, "the token is missing or wrong");
     reply.headers["WWW-Authenticate"] = "Bearer";
     return reply;
   }
   // What a form of another page can send without asking is none.
   if (header(request, "content-type").rfind("application/json", 0) != 0)
     return error_reply(415, "the body is to be application/json");
-  auto parsed = parse_command(request.body);
-  if (const auto* problem = std::get_if<std::string>(&parsed)) return error_reply(400, *problem);
-  auto& command = std::get<AlarmCommand>(parsed);
-  if (parts_.board->find(command.unit) == nullptr)
-    return error_reply(404, "there is no unit '" + command.unit + "'");
-  command.host = request.peer;
+  if (command == nullptr) return error_reply(400, std::get<std::string>(parsed));
+  if (parts_.board->find(command->unit) == nullptr)
+    return error_reply(404, "there is no unit '" + command->unit + "'");
   if (!parts_.command) return error_reply(501, "commands are not carried out by this monitor");
-  const CommandReply done = parts_.command(command);
+  const CommandReply done = parts_.command(*command);
   return json_reply({{"accepted", done.accepted}, {"text", done.text}}, done.accepted ? 200 : 409);
 }
 

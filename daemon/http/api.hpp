@@ -41,6 +41,8 @@ class Api {
     KeptReports reports{""};
     std::string version;
     std::function<CommandReply(const AlarmCommand&)> command;  ///< empty: none are carried out
+    /// Told of commands that were refused for want of the token, and why; may be empty.
+    std::function<void(const AlarmCommand&, const std::string&)> refused;
     std::function<Json()> server;  ///< what the server tells of itself; may be empty
   };
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "core/alarm/calibration.hpp"
 #include "core/text/printable.hpp"
 
 namespace mpm::http {
@@ -79,7 +80,7 @@ std::variant<AlarmCommand, std::string> parse_command(const std::string& body) {
   command.unit = reader.text("unit", kLongestName);
   command.mv = reader.text("mv", kLongestName);
   command.cv = reader.text("cv", kLongestName);
-  command.duration_s = reader.number("duration_s", kLongestShelving);
+  command.duration_s = reader.number("duration_s", calibration::kMostShelf);
   command.once = reader.flag("once");
   command.user = reader.text("user", kLongestUser);
   command.comment = reader.text("comment", kLongestComment);

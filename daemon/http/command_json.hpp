@@ -10,9 +10,6 @@ namespace mpm::http {
 
 /// Longest texts that are taken, bytes.
 inline constexpr std::size_t kLongestUser = 100, kLongestComment = 1000;
-/// A longer time is another way of saying "for ever", which shelving is not.
-inline constexpr double kLongestShelving = 7 * 24 * 3600.0;
-
 /// A command from its JSON, or in words what is wrong with it.
 [[nodiscard]] std::variant<AlarmCommand, std::string> parse_command(const std::string& body);
 

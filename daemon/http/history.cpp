@@ -11,6 +11,8 @@ constexpr double kSecond = 1e9;
 // Of what an entry stands for: after a longer silence a line is broken.
 constexpr double kGap = 3.0;
 constexpr std::size_t kParts = 3;  // of a Reach
+// The coarsest buckets of longer steps would be too long for whole ns.
+constexpr double kLongestStep = 1e6;  // s
 
 std::int64_t floor_div(std::int64_t value, std::int64_t by) {
   return value / by - (value % by < 0 ? 1 : 0);
@@ -116,7 +118,7 @@ std::size_t RowRing::bytes() const {
 History::History(int columns, double step_s, std::size_t settling)
     : columns_(static_cast<std::size_t>(columns)),
       settling_(settling),
-      step_ns_(std::max<std::int64_t>(1, std::llround(step_s * kSecond))),
+      step_ns_(std::max<std::int64_t>(1, std::llround(std::min(step_s, kLongestStep) * kSecond))),
       raw_(columns, kRawRows),
       scratch_(kParts * columns_) {
   std::int64_t span = step_ns_;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSecond = 1e9;
 constexpr double kUsualSamples = 3600.0;  // shown where nobody says what
-constexpr double kLatest = 1e10;          // s since 1970, beyond which no ns count
+constexpr double kLatest = 9e9;           // s since 1970: what whole ns can count
 
 /// With the digits of a float and no more: a third of the text.
 Json known(float value) {

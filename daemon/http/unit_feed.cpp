@@ -78,9 +78,9 @@ void UnitFeed::note_readings(const Monitor& monitor) {
   }
 }
 
-void UnitFeed::on_alarm(const AlarmRecord& alarm) {
+void UnitFeed::on_alarm(const AlarmRecord& alarm, const std::string& text) {
   news_ = true;
-  noted_.alarms.push_back(alarm);
+  noted_.alarms.emplace_back(alarm, text);
 }
 
 void UnitFeed::on_diagnosis(const live::DiagnosisOutcome& outcome) {

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/parallel/mutex.hpp"
@@ -24,7 +26,7 @@ struct Delivery {
   std::vector<std::int64_t> judged;  ///< intervals, later than they came
   std::vector<float> readings;  ///< of each CV: prediction, residual, 1 while it is known to match
   std::vector<history::Digest> digests;
-  std::vector<AlarmRecord> alarms;
+  std::vector<std::pair<AlarmRecord, std::string>> alarms;  ///< changes, in words
   std::optional<live::DiagnosisOutcome> diagnosis;
   std::shared_ptr<UnitSnapshot> view;  ///< the last one; null: none since
   std::uint64_t dropped = 0;           ///< frames that nobody fetched in time
@@ -57,7 +59,7 @@ class UnitFeed : public live::UnitObserver {
   explicit UnitFeed(const config::UnitConfig& unit);
 
   void on_frame(const Frame& frame, const report::UnitMonitor& monitor) override;
-  void on_alarm(const AlarmRecord& alarm) override;
+  void on_alarm(const AlarmRecord& alarm, const std::string& text) override;
   void on_diagnosis(const live::DiagnosisOutcome& outcome) override;
   [[nodiscard]] bool wants_view(Clock::time_point now) override;
   void on_view(const live::UnitView& view) override;

@@ -6,8 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "daemon/report/channel_text.hpp"
-
 namespace mpm::http {
 namespace {
 
@@ -59,8 +57,7 @@ UnitStore::UnitStore(const config::UnitConfig& unit, RecentEvents& events)
 
 bool UnitStore::absorb(Delivery& delivery, Clock::time_point now) {
   const MutexLock lock(mutex_);
-  for (const AlarmRecord& alarm : delivery.alarms)
-    events_.add(alarm, text_of(alarm, delivery.view ? *delivery.view : *snapshot_));
+  for (const auto& [alarm, text] : delivery.alarms) events_.add(alarm, text);
   take_rows(delivery);
   for (const history::Digest& digest : delivery.digests) take_digest(digest);
   measure_rate(delivery.rows.size(), now);
@@ -70,16 +67,6 @@ bool UnitStore::absorb(Delivery& delivery, Clock::time_point now) {
   delivery.view->id = snapshot_->id + 1;
   snapshot_ = std::move(delivery.view);
   return true;
-}
-
-std::string UnitStore::text_of(const AlarmRecord& alarm, const UnitSnapshot& snapshot) const {
-  if (alarm.to != AlarmChange::kActive) return {};
-  const auto channel = std::find_if(
-      snapshot.channels.begin(), snapshot.channels.end(),
-      [&alarm](const ChannelRecord& each) { return each.mv == alarm.mv && each.cv == alarm.cv; });
-  const bool told = channel != snapshot.channels.end() &&
-                    report::channel_file(config_, alarm.mv, alarm.cv).modelled;
-  return report::error_text(alarm, told ? &*channel : nullptr);
 }
 
 void UnitStore::take_rows(const Delivery& delivery) {

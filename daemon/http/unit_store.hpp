@@ -64,7 +64,6 @@ class UnitStore {
   /// Readings come up to so many frames late (Screen::kLongestDelay, and one that is being judged).
   static constexpr std::size_t kSettling = 16;
 
-  [[nodiscard]] std::string text_of(const AlarmRecord& alarm, const UnitSnapshot& snapshot) const;
   void take_rows(const Delivery& delivery) MPM_REQUIRES(mutex_);
   void take_reading(std::int64_t interval, std::span<const float> readings) MPM_REQUIRES(mutex_);
   void take_digest(const history::Digest& digest) MPM_REQUIRES(mutex_);

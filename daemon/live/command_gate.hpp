@@ -22,9 +22,6 @@ class CommandGate {
   /// The command, or why not. `wall_ns`: UTC.
   [[nodiscard]] std::variant<AlarmCommand, std::string> admit(const CommandRecord& record,
                                                               std::int64_t wall_ns);
-  /// Of who comes another way than over the bus, and shows the token itself.
-  [[nodiscard]] bool knows(std::string_view token) const { return token_ && token_->is(token); }
-  [[nodiscard]] bool open() const { return token_.has_value(); }
 
  private:
   [[nodiscard]] std::string refusal(const CommandRecord& record, std::int64_t wall_ns) const;

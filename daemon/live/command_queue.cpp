@@ -23,12 +23,22 @@ CommandReply CommandQueue::ask(const AlarmCommand& command) {
   return *entry->reply;
 }
 
-void CommandQueue::serve(const std::function<CommandReply(const AlarmCommand&)>& handler) {
+void CommandQueue::tell_refused(const AlarmCommand& command, const std::string& why) {
+  const MutexLock lock(mutex_);
+  if (refused_.size() < kMostWaiting) refused_.emplace_back(command, why);
+}
+
+void CommandQueue::serve(
+    const std::function<CommandReply(const AlarmCommand&)>& handler,
+    const std::function<void(const AlarmCommand&, const std::string&)>& on_refused) {
   std::deque<std::shared_ptr<Entry>> taken;
+  std::vector<std::pair<AlarmCommand, std::string>> refused;
   {
     const MutexLock lock(mutex_);
     taken.swap(waiting_);
+    refused.swap(refused_);
   }
+  for (const auto& [command, why] : refused) on_refused(command, why);
   for (const std::shared_ptr<Entry>& entry : taken) {
     CommandReply reply = handler(entry->command);
     const MutexLock lock(mutex_);

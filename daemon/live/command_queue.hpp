@@ -5,6 +5,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/alarm/alarm_command.hpp"
 #include "core/parallel/mutex.hpp"
@@ -24,8 +27,11 @@ class CommandQueue {
 
   /// Waits until the loop has answered; what it has not taken by then is never carried out.
   [[nodiscard]] CommandReply ask(const AlarmCommand& command);
-  /// In the event loop: answers all that waits.
-  void serve(const std::function<CommandReply(const AlarmCommand&)>& handler);
+  /// Of who may not give it: to be kept, and nobody waits. Of many some are lost.
+  void tell_refused(const AlarmCommand& command, const std::string& why);
+  /// In the event loop: answers all that waits, and hands on what was refused.
+  void serve(const std::function<CommandReply(const AlarmCommand&)>& handler,
+             const std::function<void(const AlarmCommand&, const std::string&)>& on_refused);
 
  private:
   struct Entry {
@@ -37,6 +43,7 @@ class CommandQueue {
   Mutex mutex_;
   ConditionVariable answered_;
   std::deque<std::shared_ptr<Entry>> waiting_ MPM_GUARDED_BY(mutex_);
+  std::vector<std::pair<AlarmCommand, std::string>> refused_ MPM_GUARDED_BY(mutex_);
 };
 
 }  // namespace mpm::live

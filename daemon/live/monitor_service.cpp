@@ -81,7 +81,11 @@ void MonitorService::run(const std::function<bool()>& stop) {
       domain->tick(now);
     }
     if (commands_ != nullptr)
-      commands_->serve([this](const AlarmCommand& command) { return carry_out(command); });
+      commands_->serve([this](const AlarmCommand& command) { return carry_out(command); },
+                       [this](const AlarmCommand& command, const std::string& why) {
+                         if (UnitPipeline* unit = find(command.unit))
+                           unit->refuse(command, std::string(to_string(command.action)), why);
+                       });
     notifier_.feed_watchdog(now);
     if (now < next_status) continue;
     next_status = now + kStatusPeriod;
@@ -90,11 +94,17 @@ void MonitorService::run(const std::function<bool()>& stop) {
   notifier_.stopping();
 }
 
-CommandReply MonitorService::carry_out(const AlarmCommand& command) {
+UnitPipeline* MonitorService::find(const std::string& unit) const {
   for (const auto& domain : domains_)
-    if (const auto it = domain->units().find(command.unit); it != domain->units().end())
-      return it->second->obey(command);
-  return {false, "there is no unit " + command.unit};
+    if (const auto it = domain->units().find(unit); it != domain->units().end())
+      return it->second.get();
+  return nullptr;
+}
+
+CommandReply MonitorService::carry_out(const AlarmCommand& command) {
+  UnitPipeline* unit = find(command.unit);
+  return unit == nullptr ? CommandReply{false, "there is no unit " + command.unit}
+                         : unit->obey(command);
 }
 
 std::string MonitorService::status() const {

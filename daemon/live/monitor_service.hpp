@@ -46,6 +46,8 @@ class MonitorService {
   using Clock = std::chrono::steady_clock;
 
   [[nodiscard]] std::string status() const;
+  /// Null where there is none of this name.
+  [[nodiscard]] UnitPipeline* find(const std::string& unit) const;
   [[nodiscard]] CommandReply carry_out(const AlarmCommand& command);
 
   CommandGate gate_;

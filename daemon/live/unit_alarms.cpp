@@ -119,22 +119,22 @@ CommandReply UnitAlarms::apply(const AlarmCommand& command, std::int64_t wall_ns
   if (reply.accepted)
     settle(wall_ns, &command);
   else
-    note_refused(command, reply.text, wall_ns);
+    note_refused(command, std::string(to_string(command.action)), reply.text, wall_ns);
   return reply;
 }
 
-void UnitAlarms::note_refused(const AlarmCommand& command, const std::string& why,
-                              std::int64_t wall_ns) {
+void UnitAlarms::note_refused(const AlarmCommand& command, const std::string& action,
+                              const std::string& why, std::int64_t wall_ns) {
   if (journal_ == nullptr) return;
   const int alarm = desk_.find(command.mv, command.cv);
   history::AlarmEntry refused =
-      entry(alarm < AlarmDesk::kController ? AlarmDesk::kController : alarm, "refused", wall_ns);
+      entry(alarm == AlarmDesk::kNone ? AlarmDesk::kController : alarm, "refused", wall_ns);
   refused.mv = command.mv;
   refused.cv = command.cv;
   refused.user = command.user;
   refused.host = command.host;
   refused.comment = command.comment;
-  refused.message = std::string(to_string(command.action)) + ": " + why;
+  refused.message = action + ": " + why;
   journal_->push(std::move(refused));
 }
 

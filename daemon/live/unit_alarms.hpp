@@ -35,8 +35,10 @@ class UnitAlarms {
   /// What time alone brings. `wall_ns`: UTC.
   bool tick(std::int64_t wall_ns);
   CommandReply apply(const AlarmCommand& command, std::int64_t wall_ns);
-  /// For the journal: a command that was refused before it came here.
-  void note_refused(const AlarmCommand& command, const std::string& why, std::int64_t wall_ns);
+  /// For the journal: a command that was refused before it came here. `action`: as it was given,
+  /// which may be a word that means nothing.
+  void note_refused(const AlarmCommand& command, const std::string& action, const std::string& why,
+                    std::int64_t wall_ns);
 
   /// Anew, for readers that were told otherwise: all, or those that stand.
   bool publish_again(bool all);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 #include <vector>
 
 #include "config/unit_config.hpp"
@@ -38,8 +39,8 @@ class UnitObserver {
 
   /// A frame was judged, and its outputs are written.
   virtual void on_frame(const Frame& frame, const report::UnitMonitor& monitor) = 0;
-  /// An alarm changed.
-  virtual void on_alarm(const AlarmRecord& alarm) = 0;
+  /// An alarm changed; `text`: what is wrong, in words, where it rose.
+  virtual void on_alarm(const AlarmRecord& alarm, const std::string& text) = 0;
   virtual void on_diagnosis(const DiagnosisOutcome& outcome) = 0;
   /// Whether it wants to be shown the unit now.
   [[nodiscard]] virtual bool wants_view(Clock::time_point now) = 0;

@@ -29,6 +29,9 @@ constexpr std::chrono::seconds kTold{60};
 // Another monitor says something each second.
 constexpr std::chrono::seconds kOtherMonitorGone{10};
 constexpr std::size_t kMostInDetail = 3;
+// Of those without the token, to be kept: enough to see who tries, too few to fill a journal.
+constexpr int kMostRefusals = 60;
+constexpr std::chrono::minutes kRefusalPeriod{1};
 
 host::RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
                                               std::chrono::seconds at_least) {
@@ -79,7 +82,8 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       inputs_(expected_of(config), now),
       now_(now),
       last_frame_(now),
-      next_health_(now) {
+      next_health_(now),
+      refusal_limit_(kMostRefusals, kRefusalPeriod) {
   health_.unit = config.unit;
   for (const config::InputSignal& aux : config.aux)
     for (const config::CalculatedSignal& signal : config.calc)
@@ -208,7 +212,8 @@ void UnitPipeline::on_frame(const Frame& frame) {
   if (samples_ != nullptr) (void)samples_->write(monitor_.channels(), monitor_.alarms());
   if (observer_ != nullptr) {
     observer_->on_frame(frame, monitor_);
-    for (const AlarmRecord& alarm : monitor_.alarms()) observer_->on_alarm(alarm);
+    for (std::size_t i = 0; i < texts.size(); ++i)
+      observer_->on_alarm(monitor_.alarms()[i], texts[i]);
   }
   // Last, when everybody has been told: it may copy the unit's samples.
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
@@ -253,7 +258,7 @@ void UnitPipeline::publish_diagnosis() {
     alarm.interval = outcome->interval;
     alarm.source_time_ns = outcome->time_ns;
     written = outputs_.write(alarm) && written;
-    if (observer_ != nullptr) observer_->on_alarm(alarm);
+    if (observer_ != nullptr) observer_->on_alarm(alarm, alarm.named.text);
   }
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: the diagnosis could not be published completely", config_.unit);
@@ -265,16 +270,22 @@ CommandReply UnitPipeline::obey(const CommandRecord& record,
   AlarmCommand refused;
   refused.mv = printable(record.mv);
   refused.cv = printable(record.cv);
-  refused.action = from_string<AlarmAction>(record.action).value_or(AlarmAction{});
   refused.user = printable(record.user);
   refused.host = printable(record.host);
   refused.comment = printable(record.comment);
   const auto& why = std::get<std::string>(admitted);
-  alarms_.note_refused(refused, why, wall_ns());
-  spdlog::warn("{}: a command of {} on {} was refused: {}", config_.unit,
-               refused.user.empty() ? "nobody" : refused.user,
-               refused.host.empty() ? "no host" : refused.host, why);
+  refuse(refused, printable(record.action), why);
   return {false, why};
+}
+
+// Nobody knows who it was, and whoever it was may go on for ever.
+void UnitPipeline::refuse(const AlarmCommand& command, const std::string& action,
+                          const std::string& why) {
+  if (!refusal_limit_.admit(now_)) return;
+  alarms_.note_refused(command, action, why, wall_ns());
+  spdlog::warn("{}: a command of {} on {} was refused: {}", config_.unit,
+               command.user.empty() ? "nobody" : command.user,
+               command.host.empty() ? "no host" : command.host, why);
 }
 
 CommandReply UnitPipeline::obey(const AlarmCommand& command) {

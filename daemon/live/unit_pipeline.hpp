@@ -45,6 +45,8 @@ class UnitPipeline {
   CommandReply obey(const CommandRecord& record,
                     const std::variant<AlarmCommand, std::string>& admitted);
   CommandReply obey(const AlarmCommand& command);
+  /// Keeps that somebody who may not gave a command; of many the first few a minute.
+  void refuse(const AlarmCommand& command, const std::string& action, const std::string& why);
   [[nodiscard]] const UnitAlarms& alarms() const { return alarms_; }
   /// UTC.
   [[nodiscard]] static std::int64_t wall_ns();
@@ -127,6 +129,7 @@ class UnitPipeline {
   HealthRecord health_;
   std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
   host::RateLimiter refused_limit_, beyond_limit_, output_limit_, restart_limit_;
+  host::RateLimiter refusal_limit_;
 };
 
 }  // namespace mpm::live

@@ -45,7 +45,8 @@ void fill_errors(const ChannelStatus& status, double sample_time_s, ChannelRecor
   }
 }
 
-// Of a CV that begins anew with its alarm nothing is known for now; what raised it is.
+// A CV that begins anew with its alarm has no evidence of its own: the alarm carries what raised
+// it.
 AlarmRecord alarm_of(const ChannelRecord& channel, const AlarmTransition& transition) {
   const AlarmState to = transition.to;
   AlarmRecord alarm;

@@ -145,7 +145,7 @@ namespace mpm::test {
   record.once = true;
   record.user = "ann";
   record.host = "panel";
-  record.comment = "known";
+  record.comment = "3:abc,";  // as a netstring itself
   record.id = "4711";
   record.time_ns = 1234567;
   record.proof = "0a1b";

@@ -246,7 +246,7 @@ TEST_CASE("a command and its answer go both ways") {
   sample.once = true;
   sample.user = text("ann");
   sample.host = text("panel");
-  sample.comment = text("known");
+  sample.comment = text("3:abc,");
   sample.id = text("4711");
   sample.time_ns = 1234567;
   sample.proof = text("0a1b");

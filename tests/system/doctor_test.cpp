@@ -180,6 +180,29 @@ TEST_CASE("a monitor that starts and leaves beside another one takes none of its
   CHECK(states("u1").back() == AlarmChange::kActive);
 }
 
+// It was heard, and no topic is silent yet: that takes five seconds.
+TEST_CASE("a gateway that leaves under the doctor's eyes is missed at once") {
+  TemporaryFolder folder;
+  Bench bench("doctor-left");
+  std::optional<Process> doctor;
+  {
+    const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+    Plant plant(2.0);
+    bench.publish(publisher, plant, 100);
+    doctor.emplace(mpm("doctor", bench.options,
+                       {"--config", bench.folder.file("toy.yaml"), "--seconds", "4", "--json"}),
+                   folder.file("out"), folder.file("err"));
+    for (int i = 0; i < 20; ++i) {
+      bench.publish(publisher, plant, 10);
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+  }
+  CHECK(doctor->wait(std::chrono::seconds(20)) == 1);
+  const Json said = Json::parse(read_file(folder.file("out")));
+  INFO(said.dump(1));
+  CHECK(any_text(said["troubles"], "nobody writes mpm/cv"));
+}
+
 TEST_CASE("doctor tells what ails a monitor beside its alarms") {
   TemporaryFolder folder;
   Bench bench("doctor-alarms", {"--journal-every-sample", "/dev/full"});

@@ -1,11 +1,14 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,7 +69,8 @@ CommandRecord command_of(const ActionOptions& options) {
   command.mv = options.mv;
   command.cv = options.cv;
   command.action = to_string(options.action);
-  command.duration_s = static_cast<std::int32_t>(options.duration_s);
+  command.duration_s = static_cast<std::int32_t>(
+      std::ceil(std::min(options.duration_s, double{std::numeric_limits<std::int32_t>::max()})));
   command.once = options.once;
   command.user = options.user;
   command.host = this_host();

@@ -54,6 +54,19 @@ std::vector<Trouble> unheard(const std::vector<idl::Endpoint>& endpoints) {
   return troubles;
 }
 
+/// Whoever has just left is not silent yet: what nobody writes is told at once.
+void add_unwritten(const std::vector<Trouble>& told, UnitFindings& findings) {
+  const auto has = [&told](const std::string& key) {
+    return std::any_of(told.begin(), told.end(),
+                       [&key](const Trouble& trouble) { return trouble.key == key; });
+  };
+  if (has("no data")) return;
+  for (const TopicFindings& topic : findings.topics)
+    if (topic.needed && topic.writers.empty() && !has("silent " + topic.topic))
+      findings.troubles.push_back(
+          {"silent " + topic.topic, Severity::kOutOfSpecification, "nobody writes " + topic.topic});
+}
+
 }  // namespace
 
 Examination::Examination(const idl::Participant& participant, std::string place,
@@ -206,14 +219,7 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
   if (unit.described) {
     const std::vector<Trouble> troubles = unit.inputs.troubles(around, now);
     findings.troubles.insert(findings.troubles.end(), troubles.begin(), troubles.end());
-    // Who has just left is not silent yet.
-    for (const TopicFindings& topic : findings.topics)
-      if (topic.needed && topic.writers.empty() &&
-          std::none_of(troubles.begin(), troubles.end(), [&topic](const Trouble& trouble) {
-            return trouble.text.find(topic.topic) != std::string::npos;
-          }))
-        findings.troubles.push_back({"silent " + topic.topic, Severity::kOutOfSpecification,
-                                     "nothing on " + topic.topic + " any more (nobody writes it)"});
+    add_unwritten(troubles, findings);
   }
   for (const auto& [writer, word] : unit.monitors) {
     const idl::Endpoint* endpoint = find_writer(around, writer);

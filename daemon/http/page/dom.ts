@@ -3,7 +3,7 @@
 
 export type Child = Node | string | null | undefined | false;
 
-/// `data-do` names what a click does (see actions.ts); styles and handlers in attributes would be
+/// `data-do` names what a click does (see main.ts); styles and handlers in attributes would be
 /// refused by the page's own policy.
 export function h(name: string, attributes: Record<string, string | number | boolean | null | undefined> = {},
     ...children: Child[]): HTMLElement {

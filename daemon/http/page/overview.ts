@@ -10,7 +10,7 @@ const alarmLine = (alarm: Alarm) => h('li', { class: needsAck(alarm) ? 'alarm-li
   h('span', { class: 'sign', 'aria-hidden': 'true' }, '▲ '), h('strong', {}, title(alarm)), alarm.message || alarm.text ? ` ${alarm.message || alarm.text}` : '');
 
 function card(unit: Card): HTMLElement {
-  const more = unit.alarms - unit.first_alarms.length;
+  const more = unit.alarms - unit.first_alarms.filter(each => each.cv).length; // that of the whole unit counts none
   return h('article', { class: `card ${kAttention[unit.attention]}`, 'data-key': unit.unit },
     h('header', {}, h('h2', {}, h('a', { href: unitLink(unit.unit) }, unit.unit)), healthChip(unit.health.state),
       unit.alarms ? h('span', { class: 'chip alarmed' }, h('span', { 'aria-hidden': 'true' }, '▲ '), `${unit.alarms} alarm${unit.alarms > 1 ? 's' : ''}`) : null,

@@ -3,30 +3,17 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "tests/idl/fixed_records.hpp"
+
 namespace mpm {
 namespace {
 
-CommandRecord command() {
-  CommandRecord record;
-  record.unit = "shell";
-  record.mv = "u1";
-  record.cv = "y1";
-  record.action = "shelve";
-  record.duration_s = 60;
-  record.once = true;
-  record.user = "ann";
-  record.host = "pc";
-  record.comment = "3:abc,";
-  record.id = "id";
-  record.time_ns = 7;
-  record.proof = "none of it";
-  return record;
-}
+using test::command;
 
 // Written by hand after D. J. Bernstein's definition of netstrings.
 TEST_CASE("what is signed is the fields in their order, each with its length") {
   CHECK(signed_text(command()) ==
-        "5:shell,2:u1,2:y1,6:shelve,2:60,1:1,3:ann,2:pc,6:3:abc,,2:id,1:7,");
+        "5:shell,2:u1,2:y1,6:shelve,5:28800,1:1,3:ann,5:panel,6:3:abc,,4:4711,7:1234567,");
   CHECK(signed_text({}) == "0:,0:,0:,0:,1:0,1:0,0:,0:,0:,0:,1:0,");
 }
 
@@ -41,7 +28,7 @@ TEST_CASE("no two commands that differ are signed alike") {
   CHECK(differs([](CommandRecord& r) { r.mv = "u1y1", r.cv = ""; }));
   CHECK(differs([](CommandRecord& r) { r.mv = "", r.cv = "u1y1"; }));
   CHECK(differs([](CommandRecord& r) { r.action = "unshelve"; }));
-  CHECK(differs([](CommandRecord& r) { r.duration_s = 61; }));
+  CHECK(differs([](CommandRecord& r) { r.duration_s = 28801; }));
   CHECK(differs([](CommandRecord& r) { r.once = false; }));
   CHECK(differs([](CommandRecord& r) { r.user = "bob"; }));
   CHECK(differs([](CommandRecord& r) { r.host = ""; }));

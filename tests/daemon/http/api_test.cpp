@@ -40,12 +40,16 @@ struct Bench {
       given.push_back(command);
       return CommandReply{command.comment.empty(), "done"};
     };
+    parts.refused = [this](const AlarmCommand& command, const std::string& why) {
+      refused.emplace_back(command, why);
+    };
     return parts;
   }
   [[nodiscard]] int status(const Request& request) const { return api.answer(request).status; }
 
   test::SampleBoard sample;
   std::vector<AlarmCommand> given;
+  std::vector<std::pair<AlarmCommand, std::string>> refused;
   Api api;
 };
 
@@ -110,6 +114,10 @@ TEST_CASE("commands without the token, of other pages or in other forms are refu
   Request request = post(kCommand);
   request.headers["authorization"] = "Bearer wrong";
   CHECK(bench.status(request) == 401);
+  // That somebody tried is to be kept, where it is known what he tried.
+  REQUIRE(bench.refused.size() == 1);
+  CHECK(bench.refused[0].first.host == "10.0.0.7");
+  CHECK(bench.refused[0].second == "the token is missing or wrong");
   request.headers.erase("authorization");
   CHECK(bench.status(request) == 401);
   request = post(kCommand);

@@ -122,5 +122,13 @@ TEST_CASE("nothing is drawn of nothing") {
   CHECK(std::isnan(history.value(0, 0)));
 }
 
+TEST_CASE("a unit however slow has buckets of whole nanoseconds") {
+  for (const double step_s : {1e6, 1e9, 1e300}) {
+    History history(1, step_s);
+    for (int k = 0; k < 20; ++k) push(history, k * 1'000'000, static_cast<float>(k));
+    CHECK(history.draw(0, history.last_ns(), 600, kFirst).times_s.size() == 20);
+  }
+}
+
 }  // namespace
 }  // namespace mpm::http

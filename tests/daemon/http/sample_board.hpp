@@ -66,7 +66,7 @@ struct SampleBoard {
       alarms[0].unit = unit.unit;
       alarms[0].view.alarm_state = AlarmWord::kUnacknowledged;
       alarms[0].view.retain = true;
-      feed().on_alarm(alarms[0]);
+      feed().on_alarm(alarms[0], "gain +41 %");
     }
     health.unit = unit.unit;
     health.state = alarmed ? "maintenance_required" : "normal";

@@ -51,6 +51,14 @@ TEST_CASE("wild times choose nothing and break nothing") {
   query.until_s = -1e300;
   query.points = -5;
   CHECK(series_json(sample.store(), 0, query)["times"].empty());
+  for (const double from : {1e10, 9.3e9, -1e10})
+    for (const double until : {1e10, 9.3e9, 0.0}) {
+      query = {};
+      query.from_s = from;
+      query.until_s = until;
+      query.span_s = 1e300;
+      CHECK(series_json(sample.store(), 0, query)["from"] <= 9e9);
+    }
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST_CASE("a view is wanted twice a second while frames come, and seldom else") 
   const auto start = UnitFeed::Clock::now();
   CHECK(feed.wants_view(start));
   CHECK_FALSE(feed.wants_view(start + 600ms));
-  feed.on_alarm({});
+  feed.on_alarm({}, "");
   CHECK(feed.wants_view(start + 600ms));
   CHECK_FALSE(feed.wants_view(start + 1200ms));
   CHECK(feed.wants_view(start + 2700ms));
