@@ -64,6 +64,14 @@ inline constexpr double kLenientClip = 6.0;
 /// Rows per column that give the first estimate of the noise level. Chosen: half of them are left
 /// for it.
 inline constexpr int kFirstRowsPerColumn = 2;
+/// After a fresh start as many rows are weighed together, by what the fit leaves of them, so often.
+/// Chosen: of 48 rows of before a change nothing is left in the weights (residual_regression_test).
+inline constexpr int kSettlingTurns = 5;
+/// Of a row that the fit follows nearly all the way no less than this is taken to be left, as a
+/// share of its variance. Chosen: half of it is left of a usual one.
+inline constexpr double kLeastLeft = 0.02;
+/// Median of |x| of a standard normal x.
+inline constexpr double kMedianMagnitude = 0.6745;
 /// Rows over which the errors of now are compared with those of long; chosen.
 inline constexpr double kRecentRows = 100.0;
 inline constexpr double kLastingRows = 2000.0;

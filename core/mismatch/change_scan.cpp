@@ -78,11 +78,12 @@ std::optional<ChangePoint> ChangeScan::scan(const MismatchDetector& detector, in
 
 ChangePoint ChangeScan::strongest(ChangeKind kind, const std::vector<Part>& after,
                                   const std::vector<Part>& before, double least, int fewest) {
-  ChangePoint best{kind, 0, least};
+  ChangePoint best{kind, 0, 0, least};
   for (std::size_t m = 0; m < moments_.size(); ++m) {
     if (moments_[m] < fewest) continue;
     const double gain = gain_of(after[m], before[m], best.gain);
-    if (gain > best.gain) best = {kind, moments_[m], gain};
+    if (gain > best.gain)
+      best = {kind, moments_[m], moments_[m] - (m > 0 ? moments_[m - 1] : 0), gain};
   }
   return best;
 }

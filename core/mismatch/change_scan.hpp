@@ -16,6 +16,7 @@ enum class ChangeKind : unsigned char { kBegan, kEnded, kOther };
 struct ChangePoint {
   ChangeKind kind = ChangeKind::kBegan;
   int samples = 0;         ///< since the change
+  int resolution = 0;      ///< samples by which it may be less or more
   double gain = 0.0;       ///< by how much it beats "no change", in residual variances
   int input = -1;          ///< that explains the rows since then best, were it alone
   double p_value = 1.0;    ///< of no change in any input, from these rows; kEnded: 1

@@ -19,12 +19,16 @@ void NoiseLevel::begin(double mean_square, double freedom) {
 }
 
 double NoiseLevel::weigh(const GivensQr::Preview& preview, bool together) {
-  double weight = 1.0 / scale_;
+  const double weight = 1.0 / scale_;
   const double leverage = preview.leverage * weight * weight;
-  const double error = std::abs(preview.error) * weight / std::sqrt(1.0 + leverage);  // in s.d.
+  return weigh(std::abs(preview.error) * weight / std::sqrt(1.0 + leverage),
+               together && leverage > kNewDirectionLeverage);
+}
+
+double NoiseLevel::weigh(double error, bool new_direction) {
   const double clipped = std::min(error, kClip);
+  double weight = 1.0 / scale_;
   if (error > clipped) weight *= clipped / error;
-  const bool new_direction = together && leverage > kNewDirectionLeverage;
   square_rows_ += 1.0;
   clipped_share_ += ((error > kClip && !new_direction ? 1.0 : 0.0) - clipped_share_) /
                     std::min(heavy_tails::kPriorRows + square_rows_, kLastingRows);

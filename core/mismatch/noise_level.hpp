@@ -21,6 +21,8 @@ class NoiseLevel {
   /// Weight of the row of which this is known before it is taken, 1 / CV units; follows the noise
   /// level. `together`: rows after it were previewed with it.
   double weigh(const GivensQr::Preview& preview, bool together);
+  /// The same of an error in s.d., of which its leverage is taken out.
+  double weigh(double error) { return weigh(error, false); }
   /// Forgets what the last rows were like, from a scale of before on.
   void restart(double scale);
 
@@ -36,6 +38,8 @@ class NoiseLevel {
   }
 
  private:
+  double weigh(double error, bool new_direction);
+
   bool known_ = false;
   double scale_ = 1.0;
   double scale_rows_ = 0.0;      // that it rests on

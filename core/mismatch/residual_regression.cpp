@@ -36,6 +36,7 @@ ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
       throw std::invalid_argument("impossible memory of the mismatch detector");
     memories_.emplace_back(columns_, length);
   }
+  reserve_first_rows();
 }
 
 void ResidualRegression::take_in(VolterraTerms terms, const RegressionHistory& history,
@@ -44,6 +45,7 @@ void ResidualRegression::take_in(VolterraTerms terms, const RegressionHistory& h
   columns_ += terms.columns() - (terms_ ? terms_->columns() : 0);
   terms_ = std::move(terms);
   for (RegressionMemory& memory : memories_) memory = RegressionMemory(columns_, memory.length);
+  reserve_first_rows();
   start_afresh(span_, history, work);
 }
 
@@ -84,7 +86,7 @@ void ResidualRegression::fold(const RegressionHistory& history, RowWorkspace& wo
 void ResidualRegression::take(int oldest, int newest, const RegressionHistory& history,
                               RowWorkspace& work) {
   gather(oldest, newest, history, work);
-  if (noise_.known()) preview(work);
+  if (noise_.known() && settled_) preview(work);
   weigh(oldest, newest, work);
   const int count = static_cast<int>(work.ages.size());
   for (RegressionMemory& memory : memories_) {
@@ -93,6 +95,7 @@ void ResidualRegression::take(int oldest, int newest, const RegressionHistory& h
     memory.take(work.weighed, count);
   }
   if (!noise_.known()) begin_noise();
+  if (!settled_) settle(newest, history, work);
 }
 
 void ResidualRegression::gather(int oldest, int newest, const RegressionHistory& history,
@@ -126,7 +129,11 @@ void ResidualRegression::weigh(int oldest, int newest, const RowWorkspace& work)
   for (int age = oldest; age >= newest; --age) {
     scales_.set(age, noise_.scale());
     if (k == count || work.ages[k] != age) continue;
-    weights_.set(age, noise_.known() ? noise_.weigh(work.previews[k], count > 1) : 1.0);
+    if (!noise_.known())
+      weights_.set(age, 1.0);
+    else
+      weights_.set(age,
+                   settled_ ? noise_.weigh(work.previews[k], count > 1) : 1.0 / noise_.scale());
     ++k;
   }
   if (!noise_.known() || count == 0) return;
@@ -155,6 +162,59 @@ void ResidualRegression::begin_noise() {
     weights_.set(age, row_weight(age) > 0.0 ? weight : 0.0);
     scales_.set(age, noise_.scale());
   }
+}
+
+void ResidualRegression::reserve_first_rows() {
+  const auto rows =
+      static_cast<std::size_t>(calibration::row_weights::kFirstRowsPerColumn * columns_);
+  left_.reserve(rows);
+  sorted_.reserve(rows);
+}
+
+// Some of the first rows after a fresh start may be of before the change that it is for, and while
+// rows are hardly more than columns each of them spoils the predictions of all that follow. So the
+// first ones are weighed together once they are enough, by what the fit leaves of each, in turns
+// (iteratively reweighted least squares: Holland and Welsch 1977).
+void ResidualRegression::settle(int newest, const RegressionHistory& history, RowWorkspace& work) {
+  if (memories_.front().rows < calibration::row_weights::kFirstRowsPerColumn * columns_) return;
+  settled_ = true;
+  for (int turn = 0; turn < calibration::row_weights::kSettlingTurns; ++turn) {
+    const double scale = spread(newest, history, work);
+    if (!(scale > 0.0)) break;
+    noise_.restart(scale);
+    std::size_t k = 0;
+    for (int age = span_ - 1; age >= newest; --age)
+      if (row_weight(age) > 0.0) weights_.set(age, noise_.weigh(left_[k++] / scale));
+    for (RegressionMemory& memory : memories_) {
+      const int window = memory.length.window;
+      refill(memory, window > 0 ? std::min(window, span_) : span_, history, work);
+    }
+  }
+  for (int age = span_ - 1; age >= newest; --age) scales_.set(age, noise_.scale());
+  for (RegressionMemory& memory : memories_) memory.heavy_tails = noise_.heavy_tails();
+}
+
+// Into `left_` what the fit leaves of each row, in CV units, its leverage taken out; their s.d. by
+// the median of their magnitudes, which half of the rows cannot spoil.
+double ResidualRegression::spread(int newest, const RegressionHistory& history,
+                                  RowWorkspace& work) {
+  left_.clear();
+  for (int age = span_ - 1; age >= newest; --age) {
+    const double weight = row_weight(age);
+    if (!(weight > 0.0)) continue;
+    double* row = work.weighed.row(0);
+    fill(history, age, row);
+    row[columns_] = history.residual(cv_, age);
+    for (int c = 0; c <= columns_; ++c) row[c] *= weight;
+    memories_.front().factor.preview_batch(work.weighed, 1, work.previews.data());
+    const double share =
+        std::max(calibration::row_weights::kLeastLeft, 1.0 - work.previews[0].leverage);
+    left_.push_back(std::abs(work.previews[0].error) / weight / std::sqrt(share));
+  }
+  sorted_ = left_;
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  return *middle / calibration::row_weights::kMedianMagnitude;
 }
 
 // The window is rebuilt now and then: never a row is taken out of a factor, which would lose digits
@@ -195,6 +255,7 @@ void ResidualRegression::start_afresh(int samples, const RegressionHistory& hist
   span_ = std::min(samples, span_);
   for (RegressionMemory& memory : memories_) memory.clear();
   std::fill(slides_.begin(), slides_.end(), 0);
+  settled_ = !noise_.known();
   if (span_ == 0) return;
   noise_.restart(scales_.window()[span_ - 1]);
   for (int age = span_ - 1; age >= 0; --age)

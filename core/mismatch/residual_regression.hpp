@@ -96,6 +96,9 @@ class ResidualRegression {
   void weigh(int oldest, int newest, const RowWorkspace& work);
   void copy_weighed(int k, double weight, RowWorkspace& work) const;
   void begin_noise();
+  void reserve_first_rows();
+  void settle(int newest, const RegressionHistory& history, RowWorkspace& work);
+  [[nodiscard]] double spread(int newest, const RegressionHistory& history, RowWorkspace& work);
   void slide(std::size_t index, const RegressionHistory& history, RowWorkspace& work);
   void refill(RegressionMemory& memory, int samples, const RegressionHistory& history,
               RowWorkspace& work) const;
@@ -107,12 +110,14 @@ class ResidualRegression {
   int span_ = 0;
   int waiting_ = 0;  // samples since the last fold
   std::uint64_t restarts_ = 0;
+  bool settled_ = true;  // false: since a fresh start rows are too few to be weighed
   NoiseLevel noise_;
   LagWindow weights_;  // per sample: 1 / scale, times the clip; 0 = no row, < 0: it waits
   LagWindow scales_;   // per sample: the noise level before it
   std::optional<VolterraTerms> terms_;
   std::vector<RegressionMemory> memories_;
-  std::vector<int> slides_;  // per memory: samples since its window was rebuilt
+  std::vector<double> left_, sorted_;  // of the first rows since a fresh start
+  std::vector<int> slides_;            // per memory: samples since its window was rebuilt
 };
 
 }  // namespace mpm

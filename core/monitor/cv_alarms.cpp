@@ -120,7 +120,8 @@ void CvAlarms::look_for_change(int cv, bool risen, MismatchDetector& detector, C
   // What was there when the memory first spoke is no change since then.
   const bool shaken_since = change->kind == ChangeKind::kBegan && change->samples < spoken_;
   if (!detector.memory(cv).ready() && !shaken_since) return;
-  detector.start_afresh(cv, change->samples);
+  // Behind the change for sure: rows of before it are what the fresh memory must not know.
+  detector.start_afresh(cv, change->samples - change->resolution);
   isolating_ = true;
   change_ = *change;
   if (!quiet || change->kind == ChangeKind::kEnded) return;
