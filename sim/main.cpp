@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "config/cli/color.hpp"
 #include "config/cli/command_tree.hpp"
 #include "config/cli/help_format.hpp"
 #include "config/cli/slips.hpp"
@@ -173,6 +174,7 @@ int parse_and_run(int argc, char** argv) {
   Options options;
   declare(app, options);
   app.set_version_flag("--version", idl::version_text("mpmsim"));
+  cli::add_no_color(app);
   cli::add_self_description(app, idl::version_text("mpmsim"));
   try {
     app.parse(argc, argv);
@@ -182,7 +184,8 @@ int parse_and_run(int argc, char** argv) {
     std::cerr << slips << "Run with --help for more information.\n";
     return kBadInput;
   }
-  spdlog::set_default_logger(spdlog::stderr_color_mt("mpmsim"));
+  spdlog::set_default_logger(spdlog::stderr_color_mt(
+      "mpmsim", cli::color_refused() ? spdlog::color_mode::never : spdlog::color_mode::automatic));
   spdlog::set_pattern("%n: %^%l%$: %v");
   return run(options);
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "config/cli/color.hpp"
 #include "config/load_unit.hpp"
 #include "config/replacement_file.hpp"
 #include "daemon/app/commands/commands.hpp"
@@ -144,6 +145,7 @@ void add_trend(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"hour", "day", "week"}));
   add_time_choice(*command, options->time);
   add_times(*command, options->times);
+  cli::add_no_color(*command);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--csv", options->csv,
                       "write a row for each period and channel to this file (-: print that alone)");
