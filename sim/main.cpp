@@ -5,13 +5,13 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "config/cli/color.hpp"
 #include "config/cli/command_tree.hpp"
 #include "config/cli/help_format.hpp"
 #include "config/cli/slips.hpp"
@@ -22,6 +22,7 @@
 #include "sim/options.hpp"
 #include "sim/output/bad_data.hpp"
 #include "sim/output/csv_writer.hpp"
+#include "sim/output/result_file.hpp"
 #include "sim/output/truth.hpp"
 #include "sim/publish.hpp"
 #include "sim/scenario/materiality.hpp"
@@ -111,21 +112,15 @@ LoopSetup prepare(const Options& options) {
 
 void write_truth(const LoopSetup& setup, const Options& options, const BadDataFilter& filter) {
   if (options.truth.empty()) return;
-  std::ofstream out(options.truth, std::ios::binary);
-  out << truth_json(setup, options.controller_model, &filter);
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + options.truth);
+  ResultFile out(options.truth);
+  out.stream() << truth_json(setup, options.controller_model, &filter);
+  out.commit();
 }
 
 int run_csv(const LoopSetup& setup, const Options& options, BadDataFilter& filter) {
-  std::ofstream file;
-  if (options.csv != "-") {
-    file.open(options.csv, std::ios::binary);
-    if (!file) throw std::runtime_error("cannot write " + options.csv);
-  }
-  std::ostream& out = options.csv == "-" ? std::cout : file;
+  ResultFile out(options.csv);
   ClosedLoop loop(setup);
-  CsvWriter csv(out, setup.unit, static_cast<double>(setup.start_time_ns) * 1e-9,
+  CsvWriter csv(out.stream(), setup.unit, static_cast<double>(setup.start_time_ns) * 1e-9,
                 uncertain_tags(setup.scenario));
   const std::int64_t samples = options.samples.value_or(kDefaultSamples);
   for (std::int64_t k = 0; k < samples; ++k) {
@@ -136,8 +131,7 @@ int run_csv(const LoopSetup& setup, const Options& options, BadDataFilter& filte
     }
     if (const Frame* reported = filter.apply(frame)) csv.write(*reported, filter.time_error_s());
   }
-  out.flush();
-  if (!out) throw std::runtime_error("cannot write " + options.csv);
+  out.commit();
   if (loop.controller().held_count() > 0)
     spdlog::warn("the controller found no solution in {} of {} intervals and held its moves",
                  loop.controller().held_count(), samples);
@@ -180,6 +174,7 @@ int parse_and_run(int argc, char** argv) {
   Options options;
   declare(app, options);
   app.set_version_flag("--version", idl::version_text("mpmsim"));
+  cli::add_no_color(app);
   cli::add_self_description(app, idl::version_text("mpmsim"));
   try {
     app.parse(argc, argv);
@@ -189,7 +184,8 @@ int parse_and_run(int argc, char** argv) {
     std::cerr << slips << "Run with --help for more information.\n";
     return kBadInput;
   }
-  spdlog::set_default_logger(spdlog::stderr_color_mt("mpmsim"));
+  spdlog::set_default_logger(spdlog::stderr_color_mt(
+      "mpmsim", cli::color_refused() ? spdlog::color_mode::never : spdlog::color_mode::automatic));
   spdlog::set_pattern("%n: %^%l%$: %v");
   return run(options);
 }

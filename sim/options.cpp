@@ -23,7 +23,8 @@ void declare(CLI::App& app, Options& options) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--seed", options.seed, "of all random numbers; same seed, same numbers")
       ->capture_default_str();
-  app.add_option("--csv", options.csv, "write this data file (- is stdout); no DDS");
+  app.add_option("--csv", options.csv,
+                 "write this data file when it is whole (- is stdout); no DDS");
   app.add_option("--truth", options.truth, "write what was hidden to this JSON file");
   app.add_option(
          "--limits", options.limits_percent,

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "config/cli/color.hpp"
 #include "config/cli/command_tree.hpp"
 #include "config/cli/help_format.hpp"
 #include "config/cli/slips.hpp"
@@ -108,6 +109,7 @@ void declare(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
   app.set_version_flag("--version", idl::version_text("mpmd"));
+  cli::add_no_color(app);
   cli::add_self_description(app, idl::version_text("mpmd"));
   app.footer(
       "Examples:\n"

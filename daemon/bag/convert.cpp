@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <iostream>
 #include <stdexcept>
 #include <utility>
 
 #include "config/finding.hpp"
+#include "config/replacement_file.hpp"
 #include "daemon/bag/mcap_frame_writer.hpp"
-#include "daemon/files/replacement_file.hpp"
 #include "daemon/mcap/read/file_sequence.hpp"
 
 namespace mpm::bag {
@@ -77,9 +77,9 @@ ConvertReport convert(const std::string& input, const std::string& output,
   if (from_mcap && to_mcap) refuse(output, "both are MCAP files; there is nothing to convert");
   if (to_mcap && !options.unit)
     refuse(input, "give the unit file with --config: it tells which topic each tag belongs to");
-  std::optional<files::ReplacementFile> file;  // standard output is none
+  std::optional<config::ReplacementFile> file;  // standard output is none
   if (output != files::kStandardOutput) {
-    if (files::same_file(input, output)) refuse(output, "is the file that is read");
+    if (config::same_file(input, output)) refuse(output, "is the file that is read");
     file.emplace(output);
   }
   const TableOptions table_options{options.unit ? &*options.unit : nullptr, options.unit_name,
@@ -92,10 +92,11 @@ ConvertReport convert(const std::string& input, const std::string& output,
     const Table table = open_table(input, table_options);
     report.signals = table.columns.size();
     if (to_mcap) {
-      McapFrameWriter writer(file->temporary(), table.unit, table.columns);
+      McapFrameWriter writer({file->temporary(), file->descriptor()}, table.unit, table.columns);
       copy(table, options.choice, writer, report);
     } else {
-      files::CsvWriter writer(file ? file->temporary() : output, table.columns, std::move(csv));
+      files::CsvWriter writer(file ? file->stream() : std::cout, file ? output : "standard output",
+                              table.columns, std::move(csv));
       copy(table, options.choice, writer, report);
       report.bytes = writer.bytes_written();
     }
@@ -107,7 +108,7 @@ ConvertReport convert(const std::string& input, const std::string& output,
   }
   if (report.rows == 0) refuse(input, "holds no rows");
   if (!file) return report;
-  report.bytes = std::filesystem::file_size(file->temporary());
+  report.bytes = file->bytes();
   file->commit();
   return report;
 }

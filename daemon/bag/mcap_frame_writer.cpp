@@ -21,9 +21,9 @@ mcap::WriterOptions options() {
 
 }  // namespace
 
-McapFrameWriter::McapFrameWriter(const std::string& path, const config::UnitConfig& unit,
+McapFrameWriter::McapFrameWriter(const mcap::OutputPlace& place, const config::UnitConfig& unit,
                                  const std::vector<files::Column>& columns)
-    : writer_(path, options()), unit_(unit) {
+    : writer_(place, options()), unit_(unit) {
   const SignalCounts counts = unit.counts();
   for (const files::Column& column : columns) {
     std::vector<std::string>& tags = tags_[static_cast<std::size_t>(column.kind)];

@@ -17,7 +17,7 @@ namespace mpm::bag {
 class McapFrameWriter {
  public:
   /// `columns`: the signals that there are; a kind without any gets no topic.
-  McapFrameWriter(const std::string& path, const config::UnitConfig& unit,
+  McapFrameWriter(const mcap::OutputPlace& place, const config::UnitConfig& unit,
                   const std::vector<files::Column>& columns);
 
   /// Throws std::invalid_argument for a time before 1970.

@@ -43,7 +43,7 @@ void OutputFolder::write(const std::string& name, const std::string& text) {
 }
 
 void OutputFolder::commit() {
-  for (ReplacementFile& file : files_) file.commit();
+  for (config::ReplacementFile& file : files_) file.commit();
   files_.clear();
   made_.clear();
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/files/replacement_file.hpp"
+#include "config/replacement_file.hpp"
 
 namespace mpm::files {
 
@@ -28,7 +28,7 @@ class OutputFolder {
 
   std::filesystem::path path_;
   std::vector<std::filesystem::path> made_;  ///< folders, outermost first
-  std::list<ReplacementFile> files_;
+  std::list<config::ReplacementFile> files_;
 };
 
 }  // namespace mpm::files

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "core/text/printable.hpp"
+#include "daemon/host/terminal.hpp"
 #include "idl/log.hpp"
 
 namespace mpm::host {
@@ -60,7 +61,9 @@ void log_dds(idl::LogLevel level, const std::string& message) {
 }  // namespace
 
 void set_up_logging(const std::string& level) {
-  auto logger = spdlog::stderr_color_mt("mpm");
+  auto logger =
+      spdlog::stderr_color_mt("mpm", wants_color(STDERR_FILENO) ? spdlog::color_mode::automatic
+                                                                : spdlog::color_mode::never);
   if (isatty(STDERR_FILENO)) {
     logger->set_pattern("%Y-%m-%d %H:%M:%S %^%l%$ %v");
   } else {

@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 
+#include "config/cli/color.hpp"
+
 namespace mpm::host {
 
 bool is_terminal(int descriptor) { return isatty(descriptor) != 0; }
@@ -18,9 +20,6 @@ std::size_t terminal_width(int descriptor) {
   return columns > 0 ? static_cast<std::size_t>(columns) : kUsual;
 }
 
-bool wants_color(int descriptor) {
-  const char* no_color = std::getenv("NO_COLOR");
-  return is_terminal(descriptor) && (no_color == nullptr || *no_color == '\0');
-}
+bool wants_color(int descriptor) { return is_terminal(descriptor) && !cli::color_refused(); }
 
 }  // namespace mpm::host

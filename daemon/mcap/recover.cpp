@@ -18,7 +18,7 @@ ChannelId channel_id(ByteView content) { return Decoder(content).u16(); }
 
 class Recovery {
  public:
-  Recovery(const std::string& input, const std::string& output)
+  Recovery(const std::string& input, const OutputPlace& output)
       : file_(input), records_(file_), writer_(output, options()) {}
 
   RecoverReport run() {
@@ -202,7 +202,7 @@ class Recovery {
 
 }  // namespace
 
-RecoverReport recover(const std::string& input, const std::string& output) {
+RecoverReport recover(const std::string& input, const OutputPlace& output) {
   return Recovery(input, output).run();
 }
 

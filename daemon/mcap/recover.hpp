@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/mcap/write/writer.hpp"
+
 namespace mpm::mcap {
 
 /// What became of a torn or damaged file.
@@ -21,6 +23,6 @@ struct RecoverReport {
 /// chunks that are right, all messages before the tear in the one that is cut off, and what comes
 /// behind a damaged stretch. Memory as for reading. Throws config::InputError where `input` is no
 /// MCAP file, std::runtime_error where `output` cannot be written.
-[[nodiscard]] RecoverReport recover(const std::string& input, const std::string& output);
+[[nodiscard]] RecoverReport recover(const std::string& input, const OutputPlace& output);
 
 }  // namespace mpm::mcap

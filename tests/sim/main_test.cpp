@@ -106,7 +106,7 @@ TEST_CASE("mpmsim tells bad input from a failed run") {
   CHECK(folder.run("--config /nowhere.yaml --csv x") == 3);
   CHECK(folder.run("--config " + kShell + " --speed -1") == 3);
   CHECK(folder.run("--config " + kShell + " --start-time soon --csv x") == 3);
-  CHECK(folder.run("--config " + kShell + " --csv /nowhere/x.csv") == 2);
+  CHECK(folder.run("--config " + kShell + " --csv /nowhere/x.csv") == 3);
   CHECK(folder.run("--config " + kShell + " --scenario nonsense --csv x") == 3);
   CHECK(folder.read("err").find("s3_delay") != std::string::npos);  // lists what there is
   folder.write("s2.yaml", "scenario: s2\nchanges:\n  - {mv: u1, cv: [y1, y2], gain_ratio: 0.75}\n");
@@ -132,6 +132,25 @@ TEST_CASE("mpmsim spoils the reported data and says how") {
         "--bad-data: error: give one of missing, uncertain, gaps, frozen, spikes, clipping, "
         "time_jitter, clock_steps\n");
   CHECK(folder.run(run + "--scenario bad_data") == 0);
+}
+
+TEST_CASE("mpmsim leaves no half files and follows no links") {
+  const Folder folder;
+  const std::string run = "--config " + kShell + " --samples 50 ";
+  folder.write("victim", "precious");
+  fs::create_symlink(folder.file("victim"), folder.file("link"));
+  for (const char* option : {"--csv ", "--truth "}) {
+    const bool csv = std::string(option) == "--csv ";
+    CHECK(folder.run(run + option + folder.file("link") +
+                     (csv ? "" : " --csv " + folder.file("a"))) == 3);
+    CHECK(folder.read("err").find("/link: error: is a link") != std::string::npos);
+  }
+  CHECK(folder.read("victim") == "precious");
+  CHECK(folder.run(run + "--csv /dev/stdout") == 0);  // a link to a file here
+  CHECK(folder.read("out").rfind("time,sp1,", 0) == 0);
+  CHECK(folder.run(run + "--csv /dev/full") == 2);
+  CHECK(folder.read("err") ==
+        "mpmsim: error: /dev/full: cannot be written to: No space left on device\n");
 }
 
 TEST_CASE("mpmsim prints materiality limits for the unit file") {

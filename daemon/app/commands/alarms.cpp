@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "config/cli/color.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/journal_place.hpp"
@@ -130,6 +131,7 @@ void add_alarms(CLI::App& app, int& exit_code) {
                    [options](const config::UnitConfig& unit) { options->unit = unit.unit; });
   command->add_option("--unit", options->unit, "of this unit alone (default: that of --config)");
   command->add_flag("--all", options->all, "those that are normal, too");
+  cli::add_no_color(*command);
   command->add_flag("--json", options->json, "one JSON object a line and alarm");
   command->add_option("--wait", options->wait_s, "how long to listen at most")
       ->capture_default_str()

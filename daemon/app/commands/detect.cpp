@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "config/cli/color.hpp"
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
 #include "daemon/app/commands/notices.hpp"
@@ -166,6 +167,7 @@ void add_detect(CLI::App& app, int& exit_code) {
                       "scenario (name or file) whose `monitor` settings replace the unit file's");
   add_time_choice(*command, options->time);
   add_times(*command, options->times);
+  cli::add_no_color(*command);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_flag("--performance", options->performance,
                     "tell how well the unit is controlled as well; --json always does");

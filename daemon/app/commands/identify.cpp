@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
+#include "config/replacement_file.hpp"
 #include "core/identification/identification.hpp"
 #include "core/parallel/parallel.hpp"
 #include "daemon/app/commands/commands.hpp"
@@ -16,7 +17,6 @@
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/files/output_folder.hpp"
-#include "daemon/files/replacement_file.hpp"
 #include "daemon/report/identification/identification_report.hpp"
 #include "daemon/report/identification/new_unit.hpp"
 #include "daemon/report/identification/plan_report.hpp"
@@ -93,7 +93,7 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   const bool found = report::found_any(run);
   if (found && !options.out.empty()) {
     const std::string yaml = report::new_unit_yaml(run, text_of(options.config));
-    files::ReplacementFile out(options.out);
+    config::ReplacementFile out(options.out);
     out.write(yaml);
     out.commit();
   }

@@ -10,6 +10,7 @@
 
 #include "config/import_state_space.hpp"
 #include "config/load_unit.hpp"
+#include "config/replacement_file.hpp"
 #include "core/model/calibration.hpp"
 #include "core/model/reduce_step_response.hpp"
 #include "core/text/number_text.hpp"
@@ -17,7 +18,6 @@
 #include "daemon/app/commands/notices.hpp"
 #include "daemon/files/csv/state_space_folder.hpp"
 #include "daemon/files/csv/step_table.hpp"
-#include "daemon/files/replacement_file.hpp"
 
 namespace mpm::app {
 namespace {
@@ -120,7 +120,7 @@ int import_model(const ImportOptions& options) {
     Story story;
     if (!read_model(options, loaded.config, story)) return 3;
     const std::string text = unit_text(options, loaded.config);
-    files::ReplacementFile file(options.out);
+    config::ReplacementFile file(options.out);
     file.write(text);
     file.commit();
     for (const std::string& line : story) std::cout << line << '\n';

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "config/finding.hpp"
+#include "config/replacement_file.hpp"
 #include "core/text/number_text.hpp"
-#include "daemon/files/replacement_file.hpp"
 #include "daemon/mcap/recover.hpp"
 
 namespace mpm::app {
@@ -22,11 +22,11 @@ std::string default_output(const std::string& input) {
 // 0, or 3 on bad input.
 int run_recover(const std::string& input, const std::string& output) {
   try {
-    if (files::same_file(input, output))
+    if (config::same_file(input, output))
       throw config::InputError(
           {output, 0, 0, config::Severity::kError, "", "is the file that is read"});
-    files::ReplacementFile file(output);
-    const mcap::RecoverReport report = mcap::recover(input, file.temporary());
+    config::ReplacementFile file(output);
+    const mcap::RecoverReport report = mcap::recover(input, {file.temporary(), file.descriptor()});
     file.commit();
     for (const std::string& problem : report.problems)
       std::cerr << input << ": " << problem << '\n';

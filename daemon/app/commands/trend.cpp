@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "config/cli/color.hpp"
 #include "config/load_unit.hpp"
+#include "config/replacement_file.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
-#include "daemon/files/replacement_file.hpp"
 #include "daemon/history/digest_maker.hpp"
 #include "daemon/history/read_journal.hpp"
 #include "daemon/history/trend/changes.hpp"
@@ -82,7 +83,7 @@ void take_journal(const TrendOptions& options, const files::TimeChoice& choice,
 
 void write_file(const std::string& path, const std::string& text) {
   if (path.empty()) return;
-  files::ReplacementFile file(path);
+  config::ReplacementFile file(path);
   file.write(text);
   file.commit();
 }
@@ -144,6 +145,7 @@ void add_trend(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"hour", "day", "week"}));
   add_time_choice(*command, options->time);
   add_times(*command, options->times);
+  cli::add_no_color(*command);
   command->add_flag("--json", options->json, "print one JSON object");
   command->add_option("--csv", options->csv,
                       "write a row for each period and channel to this file (-: print that alone)");

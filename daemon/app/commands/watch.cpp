@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "config/cli/color.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/bus/unit_inputs.hpp"
@@ -31,7 +32,6 @@ struct WatchOptions {
   std::string unit;
   idl::DomainOptions domain;
   bool json = false;
-  bool no_color = false;
   bool alarms_only = false;
   bool until_alarm = false;
   double for_s = 0.0;  // 0 = until interrupted
@@ -43,9 +43,8 @@ bus::ViewMode mode_of(const WatchOptions& options) {
 }
 
 bus::RenderOptions render_options(const WatchOptions& options) {
-  return {
-      {host::terminal_width(STDOUT_FILENO), !options.no_color && host::wants_color(STDOUT_FILENO)},
-      options.alarms_only};
+  return {{host::terminal_width(STDOUT_FILENO), host::wants_color(STDOUT_FILENO)},
+          options.alarms_only};
 }
 
 /// The processes behind writers; asks who is there when one is not known yet.
@@ -124,7 +123,7 @@ void add_watch(CLI::App& app, int& exit_code) {
   command->add_option("--unit", options->unit, "only this unit");
   add_domain_flags(*command, options->domain);
   command->add_flag("--json", options->json, "print each record as a JSON line");
-  command->add_flag("--no-color", options->no_color, "words only; also with NO_COLOR set");
+  cli::add_no_color(*command);
   command->add_flag("--alarms-only", options->alarms_only, "leave out what is not an alarm");
   command->add_flag("--until-alarm", options->until_alarm,
                     "end when an alarm is active; exit code 2 if none came");

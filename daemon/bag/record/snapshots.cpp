@@ -10,10 +10,10 @@
 #include <system_error>
 #include <utility>
 
+#include "config/replacement_file.hpp"
 #include "core/record/alarm_record.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/folder_name.hpp"
-#include "daemon/files/replacement_file.hpp"
 #include "daemon/files/times/time_text.hpp"
 #include "daemon/mcap/recover.hpp"
 #include "idl/cdr.hpp"
@@ -148,8 +148,9 @@ void Snapshots::save(const RecordingFiles::File& file, Open& snapshot) {
     } else if (file.whole) {
       fs::create_hard_link(file.path, to);
     } else {
-      files::ReplacementFile mended(to.string());
-      static_cast<void>(mcap::recover(file.path.string(), mended.temporary()));
+      config::ReplacementFile mended(to.string());
+      static_cast<void>(
+          mcap::recover(file.path.string(), {mended.temporary(), mended.descriptor()}));
       mended.commit();
     }
   } catch (const std::exception& error) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 
 namespace mpm::files {
 namespace {
@@ -62,6 +63,23 @@ std::string plain_name(std::string_view name) {
       plain += c;
   }
   return plain;
+}
+
+std::string zone_in_name(std::string_view name) {
+  static const std::regex kUtc(
+      R"((?:^|[^a-z])(?:utc|gmt)(?:([+-])0?([0-9]{1,2})(?::?([0-9]{2}))?)?[^a-z0-9]*$|^utc ?(?:time|date)|(?:time|timestamp|date)utc$)",
+      std::regex::icase);
+  static const std::regex kNamed(R"([(\[]\s*([A-Z][A-Za-z_]+/[A-Za-z_+/0-9-]+)\s*[)\]]\s*$)");
+  std::cmatch match;
+  const char* end = name.data() + name.size();
+  if (std::regex_search(name.data(), end, match, kNamed)) return match[1];
+  if (!std::regex_search(name.data(), end, match, kUtc)) return {};
+  const int hours = match[2].matched ? std::stoi(match[2]) : 0;
+  const bool whole = !match[3].matched || match[3] == "00";
+  if (!whole || hours > 14) return {};
+  if (hours == 0) return "UTC";
+  // These names have the sign of what UTC is later than.
+  return std::string("Etc/GMT") + (match[1] == "+" ? '-' : '+') + std::to_string(hours);
 }
 
 bool is_time_name(std::string_view name) { return rank_in(kTimes, name) >= 0; }

@@ -13,6 +13,10 @@ namespace mpm::files {
 /// Names of a time wherever they stand, and those that only a first column has (`t`, `ts`).
 [[nodiscard]] bool is_time_name(std::string_view name);
 [[nodiscard]] bool is_short_time_name(std::string_view name);
+/// The zone that the name of a time column tells, as the database of zones calls it: UTC for `Time
+/// (UTC)`, `timestamp_utc`, `Zeit [GMT]`, Etc/GMT-1 for `Time (UTC+1)`, Europe/Berlin for `Time
+/// (Europe/Berlin)`, which may be none; empty where it tells none.
+[[nodiscard]] std::string zone_in_name(std::string_view name);
 /// A date beside which there may be a time of day, and that.
 [[nodiscard]] bool is_date_name(std::string_view name);
 [[nodiscard]] bool is_clock_name(std::string_view name);

@@ -13,7 +13,30 @@ namespace {
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kLongestLine = std::size_t{4} << 20U;  // names of some 100 000 signals
 
+constexpr int kMostLinesOfCell = 20;  // else a quote stands there by mistake
+
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+/// Where a cell begins with a quote that nothing closes, whatever parts the cells; npos if none
+/// does.
+std::size_t open_quote(std::string_view line) {
+  constexpr std::string_view kDelimiters = ",;\t|";
+  if (line.find('"') == std::string_view::npos) return std::string_view::npos;
+  bool begins = true;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (begins && line[i] == '"') {
+      const std::size_t open = i;
+      do {
+        i = line.find('"', i + 1);
+        if (i == std::string_view::npos) return open;
+      } while (i + 1 < line.size() && line[i + 1] == '"' && ++i != 0);
+      begins = false;
+    } else {
+      begins = kDelimiters.find(line[i]) != std::string_view::npos || (begins && is_blank(line[i]));
+    }
+  }
+  return std::string_view::npos;
+}
 
 }  // namespace
 
@@ -36,7 +59,7 @@ LineReader::LineReader(std::unique_ptr<std::istream> input, std::string name)
 bool LineReader::read_line() {
   if (std::exchange(too_long_, false))
     input_->ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  ++number_;
+  ++lines_read_;
   line_.clear();
   while (true) {
     input_->getline(piece_.data(), piece_.size());
@@ -48,12 +71,13 @@ bool LineReader::read_line() {
     if (!goes_on) return complete_ ? !input_->fail() : !line_.empty();
     input_->clear();
     too_long_ = line_.size() > kLongestLine;
-    if (too_long_) fail(1, "a line of more than 4 MiB");
+    if (too_long_) fail(lines_read_, 1, "a line of more than 4 MiB");
   }
 }
 
 bool LineReader::next() {
   while (read_line()) {
+    number_ = lines_read_;
     if (number_ == 1) {
       if (line_.size() > 1 &&
           (line_.substr(0, 2) == "\xFF\xFE" || line_.substr(0, 2) == "\xFE\xFF"))
@@ -61,14 +85,36 @@ bool LineReader::next() {
       if (line_.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
         line_.erase(0, kByteOrderMark.size());
     }
-    if (line_.find('\0') != std::string::npos) fail(1, "is no text file: it holds a zero byte");
-    latin1_ = latin1_ || find_invalid_utf8(line_) != std::string::npos;
-    if (latin1_) line_ = utf8_from_latin1(line_);
+    check_text();
     std::size_t first = 0;
     while (first < line_.size() && is_blank(line_[first])) ++first;
-    if (first < line_.size() && line_[first] != '#') return true;
+    if (first < line_.size() && line_[first] != '#') {
+      if (joins_) close_quote();
+      return true;
+    }
   }
   return false;
+}
+
+void LineReader::check_text() {
+  if (line_.find('\0') != std::string::npos) fail(1, "is no text file: it holds a zero byte");
+  latin1_ = latin1_ || find_invalid_utf8(line_) != std::string::npos;
+  if (latin1_) line_ = utf8_from_latin1(line_);
+}
+
+void LineReader::close_quote() {
+  std::size_t open = open_quote(line_);
+  if (open == std::string::npos) return;
+  std::string whole = std::move(line_);
+  for (int more = 0; open != std::string::npos; ++more) {
+    if (more == kMostLinesOfCell || !read_line())
+      fail(static_cast<int>(open) + 1, "a quote is not closed");
+    check_text();
+    while (!whole.empty() && whole.back() == '\r') whole.pop_back();
+    whole.append(" ").append(line_);
+    open = open_quote(whole);
+  }
+  line_ = std::move(whole);
 }
 
 void LineReader::split(char delimiter, std::vector<Cell>& cells) {
@@ -111,7 +157,7 @@ void LineReader::split(char delimiter, std::vector<Cell>& cells) {
 void LineReader::rewind() {
   input_->clear();
   input_->seekg(0);
-  number_ = 0;
+  number_ = lines_read_ = 0;
   bytes_read_ = 0;
   too_long_ = false;
 }
@@ -130,7 +176,7 @@ void LineReader::fail(int line, int column, const std::string& message) const {
 }
 
 char find_delimiter(std::string_view header) {
-  char best = ',';
+  char best = header.find('|') == std::string_view::npos ? ',' : '|';
   std::size_t most = 0;
   for (const char candidate : {',', ';', '\t'}) {
     std::size_t count = 0;

@@ -29,6 +29,9 @@ class LineReader {
   /// on behind it.
   [[nodiscard]] bool next();
   [[nodiscard]] const std::string& text() const { return line_; }
+  /// From the next line on, one where a quote is open goes on in those behind it, the break between
+  /// them a blank.
+  void join_quoted() { joins_ = true; }
   /// Cuts the line into cells, which stay valid until `next`.
   void split(char delimiter, std::vector<Cell>& cells);
   /// Back to the first line.
@@ -50,13 +53,17 @@ class LineReader {
   std::string name_;
   /// Everything up to the next newline; false at the end of the input.
   [[nodiscard]] bool read_line();
+  void check_text();
+  void close_quote();
 
   std::array<char, 4096> piece_{};  // as it comes from the input
   std::string line_;
-  int number_ = 0;
+  int number_ = 0;  // of the line's beginning
+  int lines_read_ = 0;
   std::uint64_t bytes_read_ = 0;
   bool complete_ = true;
   bool too_long_ = false;  // the rest of the line is still to come
+  bool joins_ = false;
   bool latin1_ = false;
   bool told_ = false;
 };
@@ -64,7 +71,7 @@ class LineReader {
 /// A file to read lines from. Throws config::InputError where it cannot be read.
 [[nodiscard]] std::unique_ptr<std::istream> open_file(const std::string& path);
 
-/// Of `;`, tab and comma the one that the header uses most; comma if none.
+/// Of `;`, tab and comma the one that the header uses most; where there is none `|`, else comma.
 [[nodiscard]] char find_delimiter(std::string_view header);
 
 }  // namespace mpm::files

@@ -59,6 +59,7 @@ CsvReader::CsvReader(std::unique_ptr<std::istream> input, const std::string& nam
 
 void CsvReader::open(const config::UnitConfig& unit, const TimeStyle& times) {
   const SignalCounts counts = unit.counts();
+  lines_.join_quoted();
   std::vector<Cell> header;
   const CsvFormat format = find_format(lines_, times, sample_time_s_, &tags_, header, row_notices_);
   const int header_line = lines_.number();

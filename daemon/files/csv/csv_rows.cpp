@@ -35,6 +35,7 @@ std::vector<std::string> long_tags(LineReader& lines, const CsvFormat& format) {
 
 CsvRows::CsvRows(const std::string& path, const TimeStyle& times, const config::UnitConfig* known)
     : lines_(open_file(path), path) {
+  lines_.join_quoted();
   std::vector<Cell> header;
   format_ = find_format(lines_, times, 0.0, nullptr, header, notices_);
   const int header_line = lines_.number();

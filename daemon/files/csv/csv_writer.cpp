@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <iostream>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -53,13 +52,12 @@ bool needs_quality(const SignalBlock& block, int index) {
          block.quality[static_cast<std::size_t>(index)] != Quality::kGood;
 }
 
-CsvWriter::CsvWriter(const std::string& path, std::vector<Column> columns, CsvOptions options)
-    : path_(path == kStandardOutput ? "standard output" : path),
-      out_(path == kStandardOutput ? std::cout : file_),
+CsvWriter::CsvWriter(std::ostream& out, std::string name, std::vector<Column> columns,
+                     CsvOptions options)
+    : out_(out),
+      name_(std::move(name)),
       columns_(std::move(columns)),
       options_(std::move(options)) {
-  if (path != kStandardOutput) file_.open(path, std::ios::binary);
-  if (!out_) throw std::runtime_error(path_ + ": cannot be written to");
   options_.quality.resize(columns_.size());
   std::set<std::string> seen;
   for (const Column& column : columns_) {
@@ -141,14 +139,13 @@ void CsvWriter::drain() {
   out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
   bytes_ += buffer_.size();
   buffer_.clear();
-  if (!out_) throw std::runtime_error(path_ + ": cannot be written to");
+  if (!out_) throw std::runtime_error(name_ + ": cannot be written to");
 }
 
 void CsvWriter::finish() {
   drain();
   out_.flush();
-  if (file_.is_open()) file_.close();
-  if (!out_) throw std::runtime_error(path_ + ": cannot be written to");
+  if (!out_) throw std::runtime_error(name_ + ": cannot be written to");
 }
 
 }  // namespace mpm::files

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -27,9 +27,9 @@ inline constexpr const char* kStandardOutput = "-";
 /// give the same double, times to the nanosecond. Missing values are empty cells.
 class CsvWriter {
  public:
-  /// `path` "-": standard output. Throws std::runtime_error where the file cannot be made,
-  /// std::invalid_argument where a tag cannot stand in a CSV file or stands there twice.
-  CsvWriter(const std::string& path, std::vector<Column> columns, CsvOptions options);
+  /// `name`: of what `out` writes to, for messages. Throws std::invalid_argument where a tag cannot
+  /// stand in a CSV file or stands there twice.
+  CsvWriter(std::ostream& out, std::string name, std::vector<Column> columns, CsvOptions options);
 
   /// Throws config::InputError for a time that `CsvReader` would not read.
   void write(const Frame& frame);
@@ -45,9 +45,8 @@ class CsvWriter {
   void set_time(std::int64_t time_ns);
   void drain();
 
-  std::string path_;
-  std::ofstream file_;
   std::ostream& out_;
+  std::string name_;
   std::uint64_t bytes_ = 0;
   std::vector<Column> columns_;
   std::vector<std::string> cells_;  ///< the tags, quoted where needed

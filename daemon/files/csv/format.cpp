@@ -6,6 +6,7 @@
 
 #include "config/suggest.hpp"
 #include "daemon/files/csv/cell.hpp"
+#include "daemon/files/csv/column_names.hpp"
 #include "daemon/files/times/date_order.hpp"
 #include "daemon/files/times/serial_dates.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -269,6 +270,27 @@ class Survey {
   Codes codes_ = Codes::kNone;
 };
 
+/// The header may tell the zone of local times; --time-zone has the last word.
+void take_zone(const std::vector<Cell>& header, const TimeColumns& columns, TimeStyle& times) {
+  for (const std::size_t column : {columns.time, columns.clock.value_or(columns.time)}) {
+    if (column >= header.size()) continue;
+    const std::string name(header[column].text);
+    const std::string zone = zone_in_name(name);
+    if (zone.empty()) continue;
+    try {
+      const auto told = std::make_shared<TimeZone>(zone);
+      if (!times.zone) {
+        times.zone = told;
+        times.zone_said = ", as the header '" + name + "' says";
+      } else if (times.zone->name() != zone) {
+        times.zone_said = ", as --time-zone says; the header '" + name + "' says " + zone;
+      }
+      return;
+    } catch (const config::InputError&) {  // words that are no zone
+    }
+  }
+}
+
 }  // namespace
 
 std::string time_text(const std::vector<Cell>& cells, const TimeColumns& columns) {
@@ -300,6 +322,9 @@ CsvFormat find_format(LineReader& lines, const TimeStyle& times, double sample_t
   format.delimiter = found->delimiter;
   format.times = times;
   format.layout = found->layout;
+  return_to(lines, found->line);
+  header = split_header(lines, format.delimiter);
+  take_zone(header, format.layout.time, format.times);
   return_to(lines, found->line);
   Survey survey(lines, format, sample_time_s);
   survey.run();

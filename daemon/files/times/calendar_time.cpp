@@ -1,6 +1,5 @@
 #include "daemon/files/times/calendar_time.hpp"
 
-#include <array>
 #include <chrono>
 #include <utility>
 
@@ -13,7 +12,11 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 
 std::string lower(std::string_view text) {
   std::string result(text);
-  for (char& c : result) c = lower(c);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto code = static_cast<unsigned char>(result[i]);
+    const bool accented = i > 0 && result[i - 1] == '\xC3' && code >= 0x80 && code <= 0x9E;
+    result[i] = accented ? static_cast<char>(code + 0x20) : lower(result[i]);
+  }
   return result;
 }
 
@@ -33,6 +36,8 @@ char take_separator(Cursor& cursor) {
 int take_month(Cursor& cursor) {
   if (Cursor::is_digit(cursor.peek())) return cursor.take_number(1, 2);
   const int month = month_of(cursor.take_letters());
+  Cursor ahead = cursor;  // the dot of janv. belongs to it, where a sign comes behind
+  if (ahead.take('.') && !ahead.done() && !Cursor::is_digit(ahead.peek())) cursor = ahead;
   return month == 0 ? -1 : month;
 }
 
@@ -47,6 +52,19 @@ bool fill(CalendarTime& time, int year, int month, int day) {
   time.month = month;
   time.day = day;
   return year >= 0 && month >= 0 && day >= 0;
+}
+
+/// 20260328 before a time of day; alone it is a number.
+bool take_compact_date(Cursor& cursor, CalendarTime& time) {
+  Cursor ahead = cursor;
+  const std::string_view digits = ahead.take_digits();
+  if (digits.size() != 8 || (ahead.peek() != ' ' && ahead.peek() != 'T' && ahead.peek() != 't'))
+    return false;
+  const auto number = [&digits](std::size_t from, std::size_t count) {
+    return Cursor(digits.substr(from, count)).take_number(count);
+  };
+  cursor = ahead;
+  return fill(time, number(0, 4), number(4, 2), number(6, 2));
 }
 
 /// 2026-03-28, 2026/3/28, 28.03.2026, 28-Mar-26, Mar 28, 2026, and what may be either order.
@@ -94,13 +112,14 @@ std::optional<bool> take_afternoon(Cursor& cursor) {
   return letter == 'p';
 }
 
-/// 14:05[:00[.25]], 2:05 PM
-bool take_clock(Cursor& cursor, CalendarTime& time) {
+/// 14:05[:00[.25]], 2:05 PM; behind a compact date 1405[00[.25]] too. 24:00 ends a day.
+bool take_clock(Cursor& cursor, bool compact, CalendarTime& time) {
   int hour = cursor.take_number(1, 2);
-  if (hour < 0 || !cursor.take(':')) return false;
+  const bool colons = cursor.take(':');
+  if (hour < 0 || (!colons && !compact)) return false;
   const int minute = cursor.take_number(2);
   int second = 0;
-  if (cursor.take(':')) {
+  if (colons ? cursor.take(':') : Cursor::is_digit(cursor.peek())) {
     second = cursor.take_number(2);
     if (cursor.take('.') || cursor.take(',')) {
       const std::string_view digits = cursor.take_digits();
@@ -112,8 +131,9 @@ bool take_clock(Cursor& cursor, CalendarTime& time) {
     if (hour < 1 || hour > 12) return false;
     hour = hour % 12 + (*afternoon ? 12 : 0);
   }
-  if (hour > 23 || minute < 0 || minute > 59 || second < 0 || second > 60)  // 60 = leap second
+  if (hour > 24 || minute < 0 || minute > 59 || second < 0 || second > 60)  // 60 = leap second
     return false;
+  if (hour == 24 && (minute > 0 || second > 0 || time.fraction_ns > 0)) return false;
   time.second_of_day = 3600 * hour + 60 * minute + second;
   return true;
 }
@@ -134,36 +154,59 @@ std::optional<LocalTime> CalendarTime::local(DateOrder order) const {
 std::optional<CalendarTime> parse_calendar(std::string_view text) {
   Cursor cursor(text);
   CalendarTime time;
-  if (!take_date(cursor, time)) return std::nullopt;
+  const bool compact = take_compact_date(cursor, time);
+  if (!compact && !take_date(cursor, time)) return std::nullopt;
   if (cursor.done()) return time;
   cursor.take(',');
   if (cursor.peek() != ' ' && cursor.peek() != 'T' && cursor.peek() != 't') return std::nullopt;
   cursor.take(cursor.peek());
   cursor.take_blanks();
-  if (!take_clock(cursor, time)) return std::nullopt;
+  if (!take_clock(cursor, compact, time)) return std::nullopt;
   if (cursor.done()) return time;
   time.zone_s = take_zone(cursor);
   return time.zone_s ? std::optional(time) : std::nullopt;
 }
 
 int month_of(std::string_view name) {
-  static constexpr std::array<std::pair<std::string_view, int>, 17> kMonths = {{{"jan", 1},
-                                                                                {"feb", 2},
-                                                                                {"mar", 3},
-                                                                                {"m\xC3\xA4r", 3},
-                                                                                {"mrz", 3},
-                                                                                {"apr", 4},
-                                                                                {"may", 5},
-                                                                                {"mai", 5},
-                                                                                {"jun", 6},
-                                                                                {"jul", 7},
-                                                                                {"aug", 8},
-                                                                                {"sep", 9},
-                                                                                {"oct", 10},
-                                                                                {"okt", 10},
-                                                                                {"nov", 11},
-                                                                                {"dec", 12},
-                                                                                {"dez", 12}}};
+  // English, German, French, Spanish, Italian, none of which has another one's month under its
+  // name.
+  static constexpr std::pair<std::string_view, int> kMonths[] = {{"jan", 1},
+                                                                 {"ene", 1},
+                                                                 {"gen", 1},
+                                                                 {"feb", 2},
+                                                                 {"fev", 2},
+                                                                 {"f\xC3\xA9v", 2},
+                                                                 {"mar", 3},
+                                                                 {"mrz", 3},
+                                                                 {"m\xC3\xA4r", 3},
+                                                                 {"apr", 4},
+                                                                 {"avr", 4},
+                                                                 {"abr", 4},
+                                                                 {"may", 5},
+                                                                 {"mai", 5},
+                                                                 {"mag", 5},
+                                                                 {"jun", 6},
+                                                                 {"juin", 6},
+                                                                 {"giu", 6},
+                                                                 {"jul", 7},
+                                                                 {"juil", 7},
+                                                                 {"lug", 7},
+                                                                 {"aug", 8},
+                                                                 {"aou", 8},
+                                                                 {"ao\xC3\xBB", 8},
+                                                                 {"ago", 8},
+                                                                 {"sep", 9},
+                                                                 {"set", 9},
+                                                                 {"oct", 10},
+                                                                 {"okt", 10},
+                                                                 {"ott", 10},
+                                                                 {"nov", 11},
+                                                                 {"dec", 12},
+                                                                 {"dez", 12},
+                                                                 {"dic", 12},
+                                                                 {"d\xC3\xA9"
+                                                                  "c",
+                                                                  12}};
   const std::string text = lower(name);
   for (const auto& [beginning, month] : kMonths)
     if (text.starts_with(beginning)) return month;

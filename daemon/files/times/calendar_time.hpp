@@ -23,7 +23,7 @@ struct CalendarTime {
   int year = 0, month = 0, day = 0;
   /// `month` and `day` are two numbers as they stand, of which nothing tells which is which.
   bool two_numbers = false;
-  int second_of_day = 0;
+  int second_of_day = 0;  ///< up to 86400, where it is written as 24:00
   std::int64_t fraction_ns = 0;
   std::optional<int> zone_s;  ///< east of UTC, where it is written
 
@@ -31,13 +31,15 @@ struct CalendarTime {
   [[nodiscard]] std::optional<LocalTime> local(DateOrder order) const;
 };
 
-/// Year, month and day as numbers or with the month's name (English or German), the year first or
+/// Year, month and day as numbers or with the month's name (English, German, French, Spanish,
+/// Italian), the year first or
 /// last and of two digits too (70 to 69: 1970 to 2069); dots put the day first. Then the time of
-/// day, 24 hours or AM/PM, with fractions or without seconds, or none: midnight. Then a zone: `Z`,
-/// `UTC`, `+hh:mm`, or none. Nothing for any other text.
+/// day, 24 hours (24:00 is the next day's 0:00) or AM/PM, with fractions or without seconds, or
+/// none: midnight; also 20260328T140500. Then a zone: `Z`, `UTC`, `+hh:mm`, or none. Nothing for
+/// any other text.
 [[nodiscard]] std::optional<CalendarTime> parse_calendar(std::string_view text);
 
-/// A month by its name or the beginning of it, in English or German, 1 to 12; else 0.
+/// A month by its name or the beginning of it, in one of these languages, 1 to 12; else 0.
 [[nodiscard]] int month_of(std::string_view name);
 /// The year that two digits stand for.
 [[nodiscard]] int full_year(int two_digits);

@@ -1,6 +1,7 @@
 #include "daemon/files/times/local_times.hpp"
 
 #include "core/text/number_text.hpp"
+#include "daemon/files/times/serial_dates.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::files {
@@ -8,6 +9,12 @@ namespace {
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kHalfHourNs = 1800 * kNsPerSecond;
+
+/// 20260328140500
+bool looks_compact(std::string_view text) {
+  return text.size() == 14 && (text.starts_with("19") || text.starts_with("20")) &&
+         text.find_first_not_of("0123456789") == std::string_view::npos;
+}
 
 }  // namespace
 
@@ -50,6 +57,11 @@ std::optional<std::int64_t> LocalTimes::read_number(std::string_view text, std::
     problem = "is a number, where the times before it are dates";
     return std::nullopt;
   }
+  if (!time_ns)
+    if (std::string ticks = tick_problem(text); !ticks.empty()) problem = std::move(ticks);
+  if (!time_ns && looks_compact(text))
+    problem =
+        "is no time that tells itself: say with --time-format '%Y%m%d%H%M%S' how it is written";
   if (epoch) unit_ = epoch->unit;
   if (!time_ns && problem == kNoTime) problem += ", or say how it is written with --time-format";
   return time_ns;
@@ -104,7 +116,8 @@ std::vector<std::string> LocalTimes::notices() const {
   if (unit_ != nullptr)
     notices.push_back("times are read as " + std::string(unit_) + " since 1970");
   if (local_ > 0)
-    notices.push_back("times without a zone are read as those of " + style_.zone->name());
+    notices.push_back("times without a zone are read as those of " + style_.zone->name() +
+                      style_.zone_said);
   if (twice_ > 0)
     notices.push_back(counted(twice_, "time") + " in an hour that " + style_.zone->name() +
                       " has twice, taken in the order of the rows");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "daemon/files/times/cursor.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::files {
@@ -13,6 +14,9 @@ constexpr double kSecondsPerDay = 86400.0;
 constexpr double kDaysTo1970 = 25569.0;                    // from the first day of a spreadsheet
 constexpr double kFirstDay = 29221.0, kLastDay = 73051.0;  // 1980 to 2100
 constexpr double kTolerance = 0.1;                         // as between rows and sample time
+
+constexpr std::int64_t kTicksPerSecond = 10'000'000;
+constexpr std::int64_t kEarliest = 315'532'800, kLatest = 4'102'444'800;  // the same years, s
 
 // Rows an hour apart at most are days with a fraction; no process is sampled in such seconds.
 constexpr double kLongestStep = 0.05;
@@ -60,6 +64,26 @@ std::string serial_day_problem(double day) {
   return "is a day number of a spreadsheet (" + as_date(day, "%Y-%m-%d") +
          "), not a date: give its column a date format there, such as yyyy-mm-dd, that of the time "
          "of day hh:mm:ss, and export them again";
+}
+
+std::string tick_problem(std::string_view text) {
+  struct Epoch {
+    const char* name;
+    std::int64_t to_1970_s;
+  };
+  static constexpr Epoch kEpochs[] = {{"a Windows FILETIME", 11'644'473'600},
+                                      {".NET ticks", 62'135'596'800}};
+  Cursor cursor(text);
+  std::int64_t ticks = 0;
+  for (const char c : cursor.take_digits(18)) ticks = 10 * ticks + (c - '0');
+  if (text.size() != 18 || !cursor.done()) return {};
+  for (const Epoch& epoch : kEpochs) {
+    const std::int64_t second = ticks / kTicksPerSecond - epoch.to_1970_s;
+    if (second < kEarliest || second >= kLatest) continue;
+    return std::string("is ") + epoch.name + " (" + formatted_utc(second, "%Y-%m-%dT%H:%M:%SZ") +
+           "), which is not read: export the times as dates, or as milliseconds since 1970";
+  }
+  return {};
 }
 
 }  // namespace mpm::files

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace mpm::files {
@@ -12,5 +13,8 @@ namespace mpm::files {
                                               double sample_time_s);
 /// The same of one number that stands where a date is, beside a column for the time of day.
 [[nodiscard]] std::string serial_day_problem(double day);
+
+/// The same of a count of 100 ns since 1601 (FILETIME) or since the year 1 (.NET ticks).
+[[nodiscard]] std::string tick_problem(std::string_view text);
 
 }  // namespace mpm::files

@@ -98,7 +98,7 @@ bool take_letter(char letter, bool digit_follows, Cursor& cursor, Parts& parts) 
     case 'e':
       return number(parts.day, 2);
     case 'H':
-      return number(parts.hour, 2) && parts.hour < 24;
+      return number(parts.hour, 2) && parts.hour < 25;
     case 'I':
       return number(parts.hour_of_half, 2) && parts.hour_of_half > 0 && parts.hour_of_half < 13;
     case 'M':
@@ -183,7 +183,10 @@ std::optional<CalendarTime> TimeFormat::parse(std::string_view text) const {
       if (!take_letter(letter, digit_follows, cursor, parts)) return std::nullopt;
     }
   }
-  return cursor.done() ? assembled(parts) : std::nullopt;
+  if (!cursor.done()) return std::nullopt;
+  const bool past_midnight =
+      parts.hour == 24 && (parts.minute > 0 || parts.second > 0 || parts.time.fraction_ns > 0);
+  return past_midnight ? std::nullopt : assembled(parts);
 }
 
 }  // namespace mpm::files

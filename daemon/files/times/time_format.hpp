@@ -10,9 +10,9 @@ namespace mpm::files {
 
 /// How times are written, in letters of strftime, for what `parse_calendar` does not know:
 /// %Y %y %m %b %B %d %e %H %I %M %S (with a fraction, if there is one) %p %z %j %s %F %T %D %R %%;
-/// %b and %B in English or German, %s = seconds since 1970; %a %A %Z are words that tell nothing.
-/// Other letters stand for themselves, a blank for any number of them. Numbers may lack leading
-/// zeros where no digit follows.
+/// %b and %B in any language that parse_calendar knows, %s = seconds since 1970; %a %A %Z are words
+/// that tell nothing. Other letters stand for themselves, a blank for any number of them. Numbers
+/// may lack leading zeros where no digit follows.
 class TimeFormat {
  public:
   /// Throws config::InputError, naming `option`, for letters that are not known, and where the

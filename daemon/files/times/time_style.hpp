@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "daemon/files/times/time_format.hpp"
 #include "daemon/files/times/time_zone.hpp"
@@ -11,6 +12,7 @@ namespace mpm::files {
 struct TimeStyle {
   std::shared_ptr<const TimeZone> zone;      ///< of local times; null = they are refused
   std::shared_ptr<const TimeFormat> format;  ///< of all times; null = found
+  std::string zone_said = {};  ///< behind the zone where it is told: who said so, or another
 };
 
 }  // namespace mpm::files

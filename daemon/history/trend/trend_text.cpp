@@ -38,27 +38,39 @@ std::vector<MatrixRow> rows_of(const Trend& trend, std::size_t columns, Cells ce
   return rows;
 }
 
-MatrixCell error_cell(const CvPeriod& cv) {
+MatrixCell error_cell(const CvPeriod& cv, const CvHead& head) {
   if (!known(cv.prediction_rms)) return {kNothing, Tint::kGrey};
   std::string text = number_text(cv.prediction_rms);
+  if (!head.unit.empty()) text += ' ' + printable(head.unit);
   if (cv.movement_rms > 0.0) text += " (" + number_text(cv.fit(), 2) + " %)";
   return {text, Tint::kPlain};
 }
 
+/// Of a gain that the model does not have: " t/h per %"; empty where the units are not known.
+std::string gain_unit(const Trend& trend, const ChannelHead& channel) {
+  for (const CvHead& cv : trend.head.cvs)
+    if (cv.cv == channel.cv && !cv.unit.empty() && !channel.mv_unit.empty())
+      return ' ' + printable(cv.unit) + " per " + printable(channel.mv_unit);
+  return {};
+}
+
 // The verdict that held for most of the time it was determined.
-MatrixCell gain_cell(const ChannelPeriod& channel, const ChannelHead& head) {
+MatrixCell gain_cell(const ChannelPeriod& channel, const ChannelHead& head,
+                     const std::string& gain_unit) {
   if (!known(channel.gain_error)) return {kNothing, Tint::kGrey};
   const bool wrong = channel.mismatch > channel.match;
-  const std::string error =
-      head.modelled ? (channel.gain_error > 0.0 ? "+" : "") + number_text(channel.gain_error, 2)
-                    : number_text(channel.gain_error);
+  const std::string error = head.modelled ? (channel.gain_error > 0.0 ? "+" : "") +
+                                                number_text(channel.gain_error, 2) + " %"
+                                          : number_text(channel.gain_error) + gain_unit;
   return {error + (wrong ? " x" : ""), wrong ? Tint::kRed : Tint::kPlain};
 }
 
 void add_table(std::string& text, const std::string& title, const std::vector<std::string>& columns,
                const std::vector<MatrixRow>& rows, const report::Layout& layout) {
+  std::string lines = report::wrapped(title, 0, layout.width);
+  lines.pop_back();
   text +=
-      '\n' + layout.paint(Tint::kBold, title) + '\n' + report::matrix_text(columns, rows, layout);
+      '\n' + layout.paint(Tint::kBold, lines) + '\n' + report::matrix_text(columns, rows, layout);
 }
 
 void add_section(std::string& text, const char* title, const std::vector<std::string>& lines,
@@ -85,12 +97,15 @@ std::string to_text(const Trend& trend, const Findings& findings, const report::
           " s ahead, RMS (and how much of the movement was predicted)",
       cvs,
       rows_of(trend, cvs.size(),
-              [&](const Period& period, std::size_t c) { return error_cell(period.cvs[c]); }),
+              [&](const Period& period, std::size_t c) {
+                return error_cell(period.cvs[c], trend.head.cvs[c]);
+              }),
       layout);
   add_table(text, "Gain errors, % of the model's (x mismatch, . not known)", channels,
             rows_of(trend, channels.size(),
                     [&](const Period& period, std::size_t c) {
-                      return gain_cell(period.channels[c], trend.head.channels[c]);
+                      const ChannelHead& channel = trend.head.channels[c];
+                      return gain_cell(period.channels[c], channel, gain_unit(trend, channel));
                     }),
             layout);
   std::vector<std::string> changed, standing, silent;

@@ -27,6 +27,11 @@ bool write_all(int descriptor, ByteView bytes) {
   return true;
 }
 
+int open_file(const std::string& path, OutputFile::Opening opening) {
+  const int how = opening == OutputFile::Opening::kMakeNew ? O_EXCL : O_TRUNC;
+  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | how, 0666);
+}
+
 std::uint64_t most_file_bytes() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_FSIZE, &limit) != 0) return std::numeric_limits<std::uint64_t>::max();
@@ -35,12 +40,10 @@ std::uint64_t most_file_bytes() {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path, Opening opening)
-    : path_(path),
-      descriptor_(
-          ::open(path.c_str(),
-                 O_WRONLY | O_CREAT | O_CLOEXEC | (opening == Opening::kMakeNew ? O_EXCL : O_TRUNC),
-                 0666)),
+OutputFile::OutputFile(const OutputPlace& place, Opening opening)
+    : path_(place.path),
+      descriptor_(place.descriptor >= 0 ? ::fcntl(place.descriptor, F_DUPFD_CLOEXEC, 0)
+                                        : open_file(place.path, opening)),
       most_bytes_(most_file_bytes()) {
   if (descriptor_ < 0) fail("cannot be written to");
 }

@@ -2,10 +2,20 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "daemon/mcap/format/crc32.hpp"
 
 namespace mpm::mcap {
+
+/// Where to write: a file by its name or, with a descriptor, one that somebody made, empty, and
+/// keeps open. Nothing is opened by name then, and `path` is only told.
+struct OutputPlace {
+  OutputPlace(std::string its_path, int its_descriptor = -1)
+      : path(std::move(its_path)), descriptor(its_descriptor) {}
+  std::string path;
+  int descriptor;
+};
 
 /// A file that only grows, and knows its length and the CRC of what was written since a mark.
 class OutputFile {
@@ -13,7 +23,7 @@ class OutputFile {
   enum class Opening { kMakeOrEmpty, kMakeNew };  ///< the latter follows no link
 
   /// Throws std::runtime_error where it cannot, as do all the others.
-  OutputFile(const std::string& path, Opening opening);
+  OutputFile(const OutputPlace& place, Opening opening);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();

@@ -33,12 +33,12 @@ std::uint16_t next_id(std::size_t so_far, const char* what) {
 
 }  // namespace
 
-Writer::Writer(const std::string& path, WriterOptions options)
-    : file_(path, options.must_be_new ? OutputFile::Opening::kMakeNew
-                                      : OutputFile::Opening::kMakeOrEmpty),
+Writer::Writer(const OutputPlace& place, WriterOptions options)
+    : file_(place, options.must_be_new ? OutputFile::Opening::kMakeNew
+                                       : OutputFile::Opening::kMakeOrEmpty),
       options_(std::move(options)),
       compressor_(options_.compression),
-      chunk_indexes_(path) {
+      chunk_indexes_(place.path) {
   Encoder encode(record_);
   encode.bytes(kMagic);
   encode.record(Op::kHeader, [&] {
@@ -48,7 +48,7 @@ Writer::Writer(const std::string& path, WriterOptions options)
   try {
     write_record(ending_bytes());
   } catch (const std::runtime_error&) {
-    if (options_.must_be_new) static_cast<void>(std::remove(path.c_str()));
+    if (options_.must_be_new) static_cast<void>(std::remove(place.path.c_str()));
     throw;
   }
 }

@@ -35,7 +35,7 @@ struct WriterOptions {
 class Writer {
  public:
   /// Makes or empties the file; leaves none where nothing fits into it.
-  explicit Writer(const std::string& path, WriterOptions options = {});
+  explicit Writer(const OutputPlace& place, WriterOptions options = {});
 
   /// Ids count from 1; at most 65535 of each, std::length_error beyond.
   [[nodiscard]] SchemaId add_schema(std::string_view name, std::string_view encoding,

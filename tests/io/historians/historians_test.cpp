@@ -78,6 +78,22 @@ TEST_CASE("Day numbers of a spreadsheet are refused rather than taken as seconds
   CHECK(frame.source_time_ns == 46'107'586'810'000);
 }
 
+TEST_CASE("Ticks of Windows are refused with the moment that they are") {
+  // (1774530300 s since 1970 + 11644473600 s since 1601) * 10^7: 2026-03-26 13:05:00 UTC.
+  CHECK(contains(error_of("filetime.csv", {}),
+                 "filetime.csv:2:1: error: '134190039000000000' is a Windows FILETIME "
+                 "(2026-03-26T13:05:00Z), which is not read: "));
+}
+
+TEST_CASE("A header that tells the zone is believed, and contradicted aloud") {
+  const std::string file = "header_names_utc.csv";
+  CHECK(contains(notices_of(file, {}), "those of UTC, as the header 'Timestamp (UTC)' says\n"));
+  CHECK(contains(notices_of(file, {std::make_shared<TimeZone>("UTC"), nullptr}), "those of UTC\n"));
+  CHECK(contains(
+      notices_of(file, {std::make_shared<TimeZone>(kBerlin), nullptr}),
+      "those of Europe/Berlin, as --time-zone says; the header 'Timestamp (UTC)' says UTC\n"));
+}
+
 TEST_CASE("Names that a historian decorated are read as the unit's tags, by both readers") {
   const std::string file = GENERATE("pi_server_names.csv", "ignition_tag_paths.csv",
                                     "names_with_units.csv", "value_and_quality_columns.csv");

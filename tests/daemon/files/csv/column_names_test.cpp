@@ -26,3 +26,18 @@ TEST_CASE("Columns are known by their names") {
   CHECK(value_name_rank("Value") < value_name_rank("vValue"));
   CHECK(value_name_rank("FIC101.PV") == -1);
 }
+
+TEST_CASE("The name of a time column may tell its zone") {
+  for (const char* name :
+       {"Timestamp (UTC)", "Timestamp [UTC]", "Time (GMT)", "Time UTC", "UTC Time", "timestamp_utc",
+        "DateTimeUTC", "TimestampUTC", "time (utc+0)", "UTC"})
+    CHECK(zone_in_name(name) == "UTC");
+  CHECK(zone_in_name("Zeit (UTC+1)") == "Etc/GMT-1");
+  CHECK(zone_in_name("Time (GMT-05:00)") == "Etc/GMT+5");
+  CHECK(zone_in_name("Time (Europe/Berlin)") == "Europe/Berlin");
+  for (const char* name : {"", "time", "Timestamp", "Time (s)", "Time (UTC+5:30)", "Time (local)",
+                           "utcoffset", "outcome", "Time UTC offset", "Timestamp (yyyy/mm/dd)"}) {
+    CAPTURE(name);
+    CHECK(zone_in_name(name).empty());
+  }
+}

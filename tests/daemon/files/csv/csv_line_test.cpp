@@ -33,11 +33,41 @@ TEST_CASE("Values and the words for none") {
   CHECK_FALSE(parse_value("1,000,5", true));
 }
 
+TEST_CASE("A quoted cell goes on in the next lines, a quote that nothing closes does not") {
+  const auto reader = [](const std::string& text) {
+    LineReader made(std::make_unique<std::istringstream>(text), "a.csv");
+    made.join_quoted();
+    return made;
+  };
+  LineReader lines = reader("time,\"flow\r\n[m3/h]\",5\" pipe,\"a \"\"b\"\"\n\"\n1,2,3,4\n");
+  std::vector<Cell> cells;
+  for (int pass = 0; pass < 2; ++pass, lines.rewind()) {
+    REQUIRE(lines.next());
+    CHECK(lines.number() == 1);
+    lines.split(',', cells);
+    REQUIRE(cells.size() == 4);
+    CHECK(cells[1].text == "flow [m3/h]");
+    CHECK(cells[2].text == "5\" pipe");
+    CHECK(cells[3].text == "a \"b\" ");
+    REQUIRE(lines.next());
+    CHECK(lines.number() == 4);
+    CHECK(lines.text() == "1,2,3,4");
+    CHECK_FALSE(lines.next());
+  }
+  std::string open = "time,a\n1,\"2\n";
+  for (int row = 0; row < 100; ++row) open += "2,3\n";
+  LineReader never = reader(open);
+  REQUIRE(never.next());
+  CHECK_THROWS_WITH(never.next(), "a.csv:2:3: error: a quote is not closed");
+}
+
 TEST_CASE("The delimiter is what the header uses most, quotes aside") {
   CHECK(find_delimiter("time,a,b") == ',');
   CHECK(find_delimiter("time;a;b") == ';');
   CHECK(find_delimiter("time\ta") == '\t');
   CHECK(find_delimiter("time,\"a;b;c\"") == ',');
+  CHECK(find_delimiter("time|a|b") == '|');
+  CHECK(find_delimiter("time,A|PV,A|SP|OP") == ',');  // an attribute of an element
   CHECK(find_delimiter("time") == ',');
 }
 

@@ -4,6 +4,17 @@
 
 using namespace mpm::files;
 
+// date -u -d '2026-03-26 14:05:00' +%s = 1774533900; between 0001-01-01 and 1970 lie 719162 days.
+TEST_CASE("Counts of 100 ns are told from other numbers") {
+  CHECK(tick_problem("134190075000000000").find("FILETIME (2026-03-26T14:05:00Z)") !=
+        std::string::npos);
+  CHECK(tick_problem("639101307000000000").find(".NET ticks (2026-03-26T14:05:00Z)") !=
+        std::string::npos);
+  for (const char* text : {"", "1774533900", "1774533900000000000", "13419007500000000",
+                           "934190075000000000", "13419007500000000x"})
+    CHECK(tick_problem(text).empty());
+}
+
 TEST_CASE("Days of a spreadsheet are told from seconds") {
   const auto is_serial = [](const std::vector<double>& times, double sample_time_s) {
     return !serial_date_problem(times, sample_time_s).empty();

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <ext/stdio_filebuf.h>
+
+#include <cstdint>
 #include <filesystem>
+#include <ostream>
 #include <string>
 
-namespace mpm::files {
+namespace mpm::config {
 
 /// A file that appears when it is whole, or not at all: written under a temporary name beside its
 /// place and renamed by commit(). An older file of that name stays until then. What is there and
@@ -17,10 +21,17 @@ class ReplacementFile {
   ReplacementFile& operator=(const ReplacementFile&) = delete;
   ~ReplacementFile();
 
-  /// Where to write.
+  /// Where to write, all the time the file that was made: whoever may write to its folder can give
+  /// the temporary name to another one.
+  [[nodiscard]] std::ostream& stream() { return stream_; }
+  /// The same, for what writes by itself. Stays this object's.
+  [[nodiscard]] int descriptor() { return buffer_.fd(); }
+  /// The temporary name, to be told or to put something beside.
   [[nodiscard]] const std::string& temporary() const { return temporary_; }
   /// Throws std::runtime_error where it cannot.
   void write(const std::string& text);
+  /// Of the file so far. Throws as write() does.
+  [[nodiscard]] std::uint64_t bytes();
   /// It is on the disk before it has its name, so that no power cut leaves half of it. Throws
   /// std::runtime_error where it cannot.
   void commit();
@@ -30,10 +41,11 @@ class ReplacementFile {
 
   std::filesystem::path path_;
   std::string temporary_;
-  int descriptor_ = -1;
+  __gnu_cxx::stdio_filebuf<char> buffer_;
+  std::ostream stream_;
 };
 
 /// True where both are names of one file that exists.
 [[nodiscard]] bool same_file(const std::string& a, const std::string& b);
 
-}  // namespace mpm::files
+}  // namespace mpm::config

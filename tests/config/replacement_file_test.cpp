@@ -1,4 +1,4 @@
-#include "daemon/files/replacement_file.hpp"
+#include "config/replacement_file.hpp"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -6,11 +6,9 @@
 #include <catch2/catch.hpp>
 
 #include "config/finding.hpp"
-#include "daemon/files/output_folder.hpp"
 #include "tests/system/process.hpp"
 
-using mpm::files::OutputFolder;
-using mpm::files::ReplacementFile;
+using mpm::config::ReplacementFile;
 using mpm::test::read_file;
 using mpm::test::TemporaryFolder;
 using mpm::test::write_file;
@@ -39,7 +37,6 @@ TEST_CASE("a file that replaces another is written to nothing that others made")
   const std::string victim = folder.file("victim");
   write_file(victim, "precious");
   plant_links(folder, "out.csv", victim);
-  plant_links(folder, "report.json", victim);
   {
     ReplacementFile file(folder.file("out.csv"));
     write_file(folder.file("out.csv"), "old");
@@ -48,10 +45,19 @@ TEST_CASE("a file that replaces another is written to nothing that others made")
     file.commit();
   }
   CHECK(read_file(folder.file("out.csv")) == "new");
-  OutputFolder reports(folder.file("."));
-  reports.write("report.json", "{}");
-  reports.commit();
-  CHECK(read_file(folder.file("report.json")) == "{}");
+  CHECK(read_file(victim) == "precious");
+}
+
+TEST_CASE("what somebody puts in the temporary file's place is not written to") {
+  TemporaryFolder folder;
+  const std::string victim = folder.file("victim");
+  write_file(victim, "precious");
+  ReplacementFile file(folder.file("out.csv"));
+  std::filesystem::remove(file.temporary());
+  std::filesystem::create_symlink(victim, file.temporary());
+  file.write("new");
+  file.stream() << "er";
+  CHECK(file.bytes() == 5);
   CHECK(read_file(victim) == "precious");
 }
 

@@ -1,19 +1,19 @@
-#include "daemon/files/replacement_file.hpp"
+#include "config/replacement_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <random>
 #include <stdexcept>
 
 #include "config/finding.hpp"
 
-namespace mpm::files {
+namespace mpm::config {
 namespace fs = std::filesystem;
 namespace {
 
@@ -28,9 +28,10 @@ std::string unforeseen_ending() {
 
 }  // namespace
 
-ReplacementFile::ReplacementFile(const std::string& path) : path_(fs::absolute(path)) {
+ReplacementFile::ReplacementFile(const std::string& path)
+    : path_(fs::absolute(path)), stream_(&buffer_) {
   const auto refuse = [&](const std::string& message) {
-    throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
+    throw InputError({path, 0, 0, Severity::kError, "", message});
   };
   std::error_code ignored;
   const fs::path folder = path_.parent_path();
@@ -40,25 +41,31 @@ ReplacementFile::ReplacementFile(const std::string& path) : path_(fs::absolute(p
     refuse("is a link, a device or a pipe, which a file would replace; give the name of a file");
   if (!fs::is_directory(folder, ignored)) refuse("there is no folder " + folder.string());
   temporary_ = folder / ("." + path_.filename().string() + unforeseen_ending());
-  descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUsualMode);
-  if (descriptor_ < 0) refuse(std::string("cannot be written to: ") + std::strerror(errno));
+  const int made = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUsualMode);
+  if (made < 0) refuse(std::string("cannot be written to: ") + std::strerror(errno));
+  buffer_ = __gnu_cxx::stdio_filebuf<char>(made, std::ios::out | std::ios::binary);
 }
 
 ReplacementFile::~ReplacementFile() {
-  close(descriptor_);
   std::error_code ignored;
   fs::remove(temporary_, ignored);
 }
 
 void ReplacementFile::write(const std::string& text) {
-  std::ofstream out(temporary_, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) fail();
+  stream_ << text << std::flush;
+  if (!stream_) fail();
+}
+
+std::uint64_t ReplacementFile::bytes() {
+  struct stat there {};
+  if (!stream_.flush() || fstat(descriptor(), &there) != 0) fail();
+  return static_cast<std::uint64_t>(there.st_size);
 }
 
 void ReplacementFile::commit() {
-  if (fsync(descriptor_) != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
+  if (!stream_.flush() || fsync(descriptor()) != 0 ||
+      std::rename(temporary_.c_str(), path_.c_str()) != 0)
+    fail();
   const int folder = open(path_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return;  // one that may be written to and not read: the name comes in its time
   static_cast<void>(fsync(folder));
@@ -74,4 +81,4 @@ bool same_file(const std::string& a, const std::string& b) {
   return fs::equivalent(a, b, ignored);
 }
 
-}  // namespace mpm::files
+}  // namespace mpm::config
