@@ -45,7 +45,8 @@ struct Outcome {
   std::set<Name> engineer;  // channels that came after their change
   std::set<Name> wrong;     // channels that came and had none
   AlarmLoad load;           // of the alerts
-  int without_reason = 0;   // alerts that came without any evidence
+  int alerts = 0;
+  int without_reason = 0;  // alerts that came without any evidence
 };
 
 /// A shift of one unit, with data losses, as its monitor tells it to people.
@@ -102,6 +103,7 @@ Outcome shift(const Trouble& trouble) {
       (change != from.end() && k >= change->second ? outcome.engineer : outcome.wrong)
           .insert({channel.mv, channel.cv});
       events.push_back({now.source_ns, occurrence.alarm});
+      ++outcome.alerts;
     }
     if (called >= 0 && k >= called + kOperatorTakes) {
       (void)desk.apply({}, now);
@@ -129,6 +131,8 @@ TEST_CASE("a shift of trouble is one alarm for each operator and all of it for t
     }
     for (const Name& name : outcome.wrong) UNSCOPED_INFO(name.first << " -> " << name.second);
     CHECK(outcome.wrong.empty());
+    CHECK(outcome.alerts ==
+          static_cast<int>(kTroubles[i].changes.size()));  // none cleared and came again
     CHECK(outcome.without_reason == 0);
     CHECK(outcome.load.chattering == 0);
     CHECK(outcome.load.floods == 0);

@@ -7,6 +7,9 @@
 namespace mpm::files {
 namespace {
 
+// No time is called anything longer, and a regular expression takes stack for each letter.
+constexpr std::size_t kLongestTimeName = 200;
+
 constexpr std::array<std::string_view, 20> kTimes = {
     "time",      "timestamp",    "datetime",  "dateandtime", "datetimeutc",
     "timeutc",   "utctime",      "localtime", "timestring",  "times",
@@ -66,6 +69,7 @@ std::string plain_name(std::string_view name) {
 }
 
 std::string zone_in_name(std::string_view name) {
+  if (name.size() > kLongestTimeName) return {};
   static const std::regex kUtc(
       R"((?:^|[^a-z])(?:utc|gmt)(?:([+-])0?([0-9]{1,2})(?::?([0-9]{2}))?)?[^a-z0-9]*$|^utc ?(?:time|date)|(?:time|timestamp|date)utc$)",
       std::regex::icase);

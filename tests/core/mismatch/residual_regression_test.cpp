@@ -67,6 +67,32 @@ TEST_CASE("a fresh start rests on the last samples alone") {
   CHECK(run.regression.memory(0).rows == 1);
 }
 
+// Expected: noise uniform in +-0.1 has s.d. 0.0577; weighed by it a row has 17, and one that is 87
+// of them away 3 / 87 of that.
+TEST_CASE("a wild row right after a fresh start spoils nothing of what comes after it") {
+  const RegressionShape shape{1, 1, 30, 4, {0.5}};
+  RegressionHistory history(shape, 2000);
+  ResidualRegression regression(shape, 0, {{0.999, 0}}, 2000);
+  RowWorkspace work(shape.columns(), 8);
+  Eigen::VectorXd u(1), e(1);
+  double before = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    u(0) = test::coloured(1, k);
+    e(0) = 0.5 * before + 0.1 * test::uniform(2, k) + (k == 1003 ? 5.0 : 0.0);
+    before = u(0);
+    history.push(u, e);
+    regression.add_sample(history, work);
+    if (k == 1020) regression.start_afresh(21, history, work);
+  }
+  regression.fold(history, work);
+  CHECK(regression.noise().scale() == Approx(0.0577).epsilon(0.15));
+  CHECK(regression.noise().clipped_share() < 0.02);
+  const int wild = 1499 - 1003;
+  CHECK(regression.row_weight(wild) < 1.5);
+  CHECK(regression.row_weight(wild + 1) > 10.0);
+  CHECK(regression.row_weight(wild - 40) > 10.0);
+}
+
 TEST_CASE("gaps have no rows") {
   Run run({{1.0, 0}}, 500, 8);
   for (int k = 0; k < 100; ++k) run.sample(k);
