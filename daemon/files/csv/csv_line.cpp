@@ -93,6 +93,7 @@ bool LineReader::next() {
       return true;
     }
   }
+  number_ = lines_read_;
   return false;
 }
 

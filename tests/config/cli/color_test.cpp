@@ -6,7 +6,7 @@
 
 using namespace mpm::cli;
 
-TEST_CASE("--no-color of a command says what NO_COLOR says, before the command runs") {
+TEST_CASE("the option --no-color of a command says what NO_COLOR says, before the command runs") {
   unsetenv("NO_COLOR");
   bool refused = false;
   for (const bool given : {false, true}) {
