@@ -65,7 +65,7 @@ inline constexpr double kLenientClip = 6.0;
 /// for it.
 inline constexpr int kFirstRowsPerColumn = 2;
 /// After a fresh start as many rows are weighed together, by what the fit leaves of them, so often.
-/// Chosen: of 48 rows of before a change nothing is left in the weights (residual_regression_test).
+/// Chosen: a wild row among them has lost its weight then (residual_regression_test).
 inline constexpr int kSettlingTurns = 5;
 /// Of a row that the fit follows nearly all the way no less than this is taken to be left, as a
 /// share of its variance. Chosen: half of it is left of a usual one.

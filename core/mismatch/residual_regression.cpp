@@ -180,7 +180,7 @@ void ResidualRegression::settle(int newest, const RegressionHistory& history, Ro
   settled_ = true;
   for (int turn = 0; turn < calibration::row_weights::kSettlingTurns; ++turn) {
     const double scale = spread(newest, history, work);
-    if (!(scale > 0.0)) break;
+    if (!(scale > calibration::kRounding * noise_.scale())) break;  // a simulation without noise
     noise_.restart(scale);
     std::size_t k = 0;
     for (int age = span_ - 1; age >= newest; --age)

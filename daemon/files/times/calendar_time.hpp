@@ -32,11 +32,10 @@ struct CalendarTime {
 };
 
 /// Year, month and day as numbers or with the month's name (English, German, French, Spanish,
-/// Italian), the year first or
-/// last and of two digits too (70 to 69: 1970 to 2069); dots put the day first. Then the time of
-/// day, 24 hours (24:00 is the next day's 0:00) or AM/PM, with fractions or without seconds, or
-/// none: midnight; also 20260328T140500. Then a zone: `Z`, `UTC`, `+hh:mm`, or none. Nothing for
-/// any other text.
+/// Italian), the year first or last and of two digits too (70 to 69: 1970 to 2069); dots put the
+/// day first. Then the time of day, 24 hours (24:00 is the next day's 0:00) or AM/PM, with
+/// fractions or without seconds, or none: midnight; also 20260328T140500. Then a zone: `Z`, `UTC`,
+/// `+hh:mm`, or none. Nothing for any other text.
 [[nodiscard]] std::optional<CalendarTime> parse_calendar(std::string_view text);
 
 /// A month by its name or the beginning of it, in one of these languages, 1 to 12; else 0.

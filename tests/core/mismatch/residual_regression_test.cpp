@@ -93,6 +93,26 @@ TEST_CASE("a wild row right after a fresh start spoils nothing of what comes aft
   CHECK(regression.row_weight(wild - 40) > 10.0);
 }
 
+TEST_CASE("a fresh start on data without noise keeps its weights finite") {
+  Run run({{1.0, 0}}, 2000, 8);
+  Eigen::VectorXd u(1), e(1);
+  double before = 0.0;
+  for (int k = 0; k < 600; ++k) {
+    u(0) = test::coloured(1, k);
+    e(0) = 0.5 * before + (k < 400 ? 0.1 * test::uniform(2, k) : 0.0);
+    before = u(0);
+    run.history.push(u, e);
+    run.regression.add_sample(run.history, run.work);
+    if (k == 500) run.regression.start_afresh(90, run.history, run.work);
+  }
+  run.regression.fold(run.history, run.work);
+  CHECK(run.regression.noise().scale() > 0.0);
+  for (int age = 0; age < 190; ++age) {
+    CHECK(run.regression.row_weight(age) > 0.0);
+    CHECK(std::isfinite(run.regression.row_weight(age)));
+  }
+}
+
 TEST_CASE("gaps have no rows") {
   Run run({{1.0, 0}}, 500, 8);
   for (int k = 0; k < 100; ++k) run.sample(k);
