@@ -19,9 +19,11 @@ double slowest_of(const std::vector<double>& tail_poles) {
 
 }  // namespace
 
+// As many as there are tails at least: one that takes for ever brings hundreds, and its pole,
+// rounded to 1, no time constant.
 int BlockBasis::lags_beyond(const std::vector<double>& tail_poles) {
-  return static_cast<int>(std::clamp<double>(kTailFitTimeConstants * slowest_of(tail_poles),
-                                             kTailFitFewest,
+  const int fewest = std::max(kTailFitFewest, static_cast<int>(tail_poles.size()));
+  return static_cast<int>(std::clamp<double>(kTailFitTimeConstants * slowest_of(tail_poles), fewest,
                                              kTailFitMost));  // an int need not hold the slowest
 }
 

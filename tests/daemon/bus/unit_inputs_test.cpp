@@ -332,10 +332,11 @@ TEST_CASE("interval numbers beyond 2^53 are a failure with that reason, and no o
   Scene scene;
   const std::int64_t last = std::int64_t{1} << 53;
   scene.start_ns = 0;
+  std::int64_t time_ns = 0;
   const auto second = [&](std::int64_t k) {
+    time_ns += kSecond;
     for (const SignalKind kind : {kMv, kDv, kCv})
-      scene.inputs->push(kind, {kGateway, k, (k - last + 100) * kSecond, kind == kCv ? 2u : 1u, 0},
-                         scene.now);
+      scene.inputs->push(kind, {kGateway, k, time_ns, kind == kCv ? 2u : 1u, 0}, scene.now);
     scene.now += seconds(1);
   };
   for (int i = -70; i <= 0; ++i) second(last + i);
