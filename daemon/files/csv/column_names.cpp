@@ -70,14 +70,14 @@ std::string plain_name(std::string_view name) {
 
 std::string zone_in_name(std::string_view name) {
   if (name.size() > kLongestTimeName) return {};
-  static const std::regex kUtc(
+  static const std::regex utc(
       R"((?:^|[^a-z])(?:utc|gmt)(?:([+-])0?([0-9]{1,2})(?::?([0-9]{2}))?)?[^a-z0-9]*$|^utc ?(?:time|date)|(?:time|timestamp|date)utc$)",
       std::regex::icase);
-  static const std::regex kNamed(R"([(\[]\s*([A-Z][A-Za-z_]+/[A-Za-z_+/0-9-]+)\s*[)\]]\s*$)");
+  static const std::regex named(R"([(\[]\s*([A-Z][A-Za-z_]+/[A-Za-z_+/0-9-]+)\s*[)\]]\s*$)");
   std::cmatch match;
   const char* end = name.data() + name.size();
-  if (std::regex_search(name.data(), end, match, kNamed)) return match[1];
-  if (!std::regex_search(name.data(), end, match, kUtc)) return {};
+  if (std::regex_search(name.data(), end, match, named)) return match[1];
+  if (!std::regex_search(name.data(), end, match, utc)) return {};
   const int hours = match[2].matched ? std::stoi(match[2]) : 0;
   const bool whole = !match[3].matched || match[3] == "00";
   if (!whole || hours > 14) return {};

@@ -106,7 +106,7 @@ void LineReader::check_text() {
 void LineReader::close_quote() {
   std::size_t open = open_quote(line_);
   if (open == std::string::npos) return;
-  std::string whole = std::move(line_);
+  std::string whole = std::exchange(line_, {});
   for (int more = 0; open != std::string::npos; ++more) {
     if (more == kMostLinesOfCell || !read_line())
       fail(static_cast<int>(open) + 1, "a quote is not closed");

@@ -170,43 +170,14 @@ std::optional<CalendarTime> parse_calendar(std::string_view text) {
 int month_of(std::string_view name) {
   // English, German, French, Spanish, Italian, none of which has another one's month under its
   // name.
-  static constexpr std::pair<std::string_view, int> kMonths[] = {{"jan", 1},
-                                                                 {"ene", 1},
-                                                                 {"gen", 1},
-                                                                 {"feb", 2},
-                                                                 {"fev", 2},
-                                                                 {"f\xC3\xA9v", 2},
-                                                                 {"mar", 3},
-                                                                 {"mrz", 3},
-                                                                 {"m\xC3\xA4r", 3},
-                                                                 {"apr", 4},
-                                                                 {"avr", 4},
-                                                                 {"abr", 4},
-                                                                 {"may", 5},
-                                                                 {"mai", 5},
-                                                                 {"mag", 5},
-                                                                 {"jun", 6},
-                                                                 {"juin", 6},
-                                                                 {"giu", 6},
-                                                                 {"jul", 7},
-                                                                 {"juil", 7},
-                                                                 {"lug", 7},
-                                                                 {"aug", 8},
-                                                                 {"aou", 8},
-                                                                 {"ao\xC3\xBB", 8},
-                                                                 {"ago", 8},
-                                                                 {"sep", 9},
-                                                                 {"set", 9},
-                                                                 {"oct", 10},
-                                                                 {"okt", 10},
-                                                                 {"ott", 10},
-                                                                 {"nov", 11},
-                                                                 {"dec", 12},
-                                                                 {"dez", 12},
-                                                                 {"dic", 12},
-                                                                 {"d\xC3\xA9"
-                                                                  "c",
-                                                                  12}};
+  static constexpr std::pair<std::string_view, int> kMonths[] = {
+      {"jan", 1},        {"ene", 1},  {"gen", 1},  {"feb", 2},        {"fev", 2},
+      {"f\xC3\xA9v", 2}, {"mar", 3},  {"mrz", 3},  {"m\xC3\xA4r", 3}, {"apr", 4},
+      {"avr", 4},        {"abr", 4},  {"may", 5},  {"mai", 5},        {"mag", 5},
+      {"jun", 6},        {"juin", 6}, {"giu", 6},  {"jul", 7},        {"juil", 7},
+      {"lug", 7},        {"aug", 8},  {"aou", 8},  {"ao\xC3\xBB", 8}, {"ago", 8},
+      {"sep", 9},        {"set", 9},  {"oct", 10}, {"okt", 10},       {"ott", 10},
+      {"nov", 11},       {"dec", 12}, {"dez", 12}, {"dic", 12},       {"d\303\251c", 12}};
   const std::string text = lower(name);
   for (const auto& [beginning, month] : kMonths)
     if (text.starts_with(beginning)) return month;

@@ -65,9 +65,7 @@ TEST_CASE("24:00 is the end of its day") {
 TEST_CASE("Months have their names in five languages") {
   const char* const kYears[][12] = {
       {"janv.", "f\xC3\xA9vr.", "mars", "avr.", "mai", "juin", "juil.", "ao\xC3\xBBt", "sept.",
-       "oct.", "nov.",
-       "d\xC3\xA9"
-       "c."},
+       "oct.", "nov.", "d\303\251c."},
       {"ene", "feb", "mar", "abr", "may", "jun", "jul", "ago", "set", "oct", "nov", "dic"},
       {"gennaio", "febbraio", "marzo", "aprile", "maggio", "giugno", "luglio", "agosto",
        "settembre", "ottobre", "novembre", "dicembre"},
