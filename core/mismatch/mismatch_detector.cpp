@@ -48,7 +48,7 @@ void MismatchDetector::evaluate(int cv, int memory) {
   if (memory == 0) explained_[static_cast<std::size_t>(cv)] = evaluator_.explained();
 }
 
-Rival MismatchDetector::rival(int cv, const FollowedSignal& followed) const {
+RivalSignal MismatchDetector::rival(int cv, const FollowedSignal& followed) const {
   if (followed.signal < 0) return {};
   const ChannelEvaluator::Explained& by = explained_[static_cast<std::size_t>(cv)];
   const double margin = calibration::confounding::kMargin * by.variance;

@@ -17,7 +17,7 @@
 namespace mpm {
 
 /// A signal that a CV follows, beside errors of the CV's channels as the cause of what is off.
-struct Rival {
+struct RivalSignal {
   int signal = -1;
   bool wins = false;  ///< it clearly explains more
   bool loses = true;  ///< it clearly explains less
@@ -65,7 +65,7 @@ class MismatchDetector {
   }
   /// What a signal that is no input says of a CV beside errors of its channels. After
   /// `evaluate(cv, 0)`.
-  [[nodiscard]] Rival rival(int cv, const FollowedSignal& followed) const;
+  [[nodiscard]] RivalSignal rival(int cv, const FollowedSignal& followed) const;
   /// Forgets of this CV what is older than its last `samples` samples (>= 0).
   void start_afresh(int cv, int samples);
 

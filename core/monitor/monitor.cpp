@@ -39,7 +39,7 @@ struct Monitor::State {
     bool judged = false;       // there is evidence from the present memory
     bool compressed = false;   // its values, or an input's from which it is simulated
     std::int64_t settled = 0;  // samples
-    Rival rival;
+    RivalSignal rival;
     std::int64_t followed_next = 0;  // sample
   };
 

@@ -28,7 +28,7 @@ struct Loop {
         outside(shape, 2, {std::exp(-1.0 / 20.0), std::exp(-1.0 / 7.0)}, 1500) {}
 
   // `of_input`: gain error, relative; `of_signal`: what a lag of 10 samples of signal 1 adds.
-  Rival run(double of_input, double of_signal) {
+  RivalSignal run(double of_input, double of_signal) {
     LinearModel model(spec);
     Eigen::VectorXd u(1), e(1), signals(2);
     double noise = 0.0, lag = 0.0;
@@ -56,10 +56,10 @@ struct Loop {
 
 TEST_CASE("what a signal adds to a CV is told from an error of the input that moves with it") {
   // Expected: the one that was put in.
-  const Rival signal = Loop().run(0.0, 0.5);
+  const RivalSignal signal = Loop().run(0.0, 0.5);
   CHECK(signal.wins);
   CHECK(signal.signal == 1);
-  const Rival input = Loop().run(0.3, 0.0);
+  const RivalSignal input = Loop().run(0.3, 0.0);
   CHECK_FALSE(input.wins);
   CHECK(input.loses);
 }
