@@ -78,6 +78,14 @@ bool AlarmDesk::restore(const std::string& mv, const std::string& cv, const Alar
   return true;
 }
 
+bool AlarmDesk::resume(const std::string& mv, const std::string& cv, const AlarmStanding& before) {
+  const int alarm = find(mv, cv);
+  if (alarm == kNone) return false;
+  of(alarm).resume(before);
+  if (alarm == kController && of(alarm).active()) trouble_.set(AlarmState::kActive);
+  return true;
+}
+
 int AlarmDesk::standing_channels() const {
   return static_cast<int>(std::count_if(alarms_.begin(), alarms_.end(), [](const auto& alarm) {
     return alarm.active() && !alarm.standing().silenced();

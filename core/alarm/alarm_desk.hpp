@@ -42,8 +42,10 @@ class AlarmDesk {
   CommandReply apply(const AlarmCommand& command, const AlarmMoment& now);
   /// As ManagedAlarm::restore; false where there is no such alarm.
   bool restore(const std::string& mv, const std::string& cv, const AlarmStanding& before);
+  /// As ManagedAlarm::resume; false where there is no such alarm.
+  bool resume(const std::string& mv, const std::string& cv, const AlarmStanding& before);
 
-  /// What the last call of the four above brought about.
+  /// What the last `observe`, `tick` or `apply` brought about.
   [[nodiscard]] const std::vector<Occurrence>& occurred() const { return occurred_; }
   [[nodiscard]] const AlarmStanding& standing(int alarm) const { return of(alarm).standing(); }
   [[nodiscard]] bool active(int alarm) const { return of(alarm).active(); }

@@ -151,4 +151,10 @@ void ManagedAlarm::restore(const AlarmStanding& before, const Settings& settings
   standing_.suppressed_by_design = false;
 }
 
+void ManagedAlarm::resume(const AlarmStanding& before) {
+  standing_ = before;
+  active_ = before.annunciation == Annunciation::kUnacknowledged ||
+            before.annunciation == Annunciation::kAcknowledged;
+}
+
 }  // namespace mpm

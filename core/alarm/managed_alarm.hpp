@@ -106,6 +106,8 @@ class ManagedAlarm {
   /// What held before a restart: what people did holds still. Whether its cause is there is to be
   /// found anew; one that nobody had seen waits as if it had returned.
   void restore(const AlarmStanding& before, const Settings& settings);
+  /// What held before a restart after which the cause is known as it was: all of it holds.
+  void resume(const AlarmStanding& before);
 
  private:
   CommandReply shelve(const AlarmCommand& command, const AlarmMoment& now, const Settings& settings,

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/cli/color.hpp"
@@ -85,9 +86,11 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--journal-every-sample", options.service.sample_journal,
                  "append every sample's records to this file as JSON lines; a gigabyte a day of "
                  "nine channels at 1 s");
-  app.add_option("--state-dir", options.state_folder,
-                 "keep the reports of diagnosed alarms and the journal of alarms in this folder "
-                 "(default: $STATE_DIRECTORY)");
+  app.add_option(
+      "--state-dir", options.state_folder,
+      "keep in this folder what a restart must not lose (the last samples of each unit), "
+      "the reports of diagnosed alarms and the journal of alarms (default: "
+      "$STATE_DIRECTORY)");
   app.add_option("--alarm-journal", options.service.alarm_journal,
                  "keep what happens to alarms in this SQLite file, and what people did about them "
                  "over a restart; `mpm journal` reads it (default: alarms.sqlite in the state "
@@ -167,28 +170,65 @@ class Page {
   http::Server server_;
 };
 
-int serve(const Options& options, const std::vector<config::UnitConfig>& units,
-          host::StopSignal& stop, host::AwaitedSignal& hang_up) {
+config::LoadUnitsResult load(const Options& options) {
+  config::LoadUnitsResult loaded = config::load_units(options.config);
+  for (config::UnitConfig& unit : loaded.units) {
+    if (options.domain) unit.dds.domain = *options.domain;
+    if (options.partition) unit.dds.partition = *options.partition;
+  }
+  return loaded;
+}
+
+/// The units as their files say now; nothing, and the log says why, where they cannot be taken.
+std::optional<std::vector<config::UnitConfig>> load_anew(const Options& options) {
+  if (options.service.samples.empty()) {
+    spdlog::warn(
+        "SIGHUP: the unit files are not read anew without --state-dir, for all statistics "
+        "would begin anew; restart to have that");
+    return std::nullopt;
+  }
+  config::LoadUnitsResult loaded = load(options);
+  for (const config::Finding& finding : loaded.findings)
+    spdlog::warn("SIGHUP: {}", config::format(finding));
+  if (!loaded.ok() || loaded.units.empty()) {
+    spdlog::error("SIGHUP: the unit files are not taken: {}; the units go on as they were",
+                  loaded.units.empty() && loaded.ok() ? "there are none" : "they have errors");
+    return std::nullopt;
+  }
+  spdlog::info("SIGHUP: the unit files were read anew");
+  return std::move(loaded.units);
+}
+
+int serve(const Options& options, std::vector<config::UnitConfig> units, host::StopSignal& stop,
+          host::AwaitedSignal& hang_up) {
   spdlog::info("{} starts", idl::version_text("mpmd"));
   const live::ReportStore store(options.state_folder);
   live::DiagnosisWorker worker(
       [&store](const live::DiagnosisJob& job, const live::DiagnosisWorker::GoOn& go_on) {
         return live::make_diagnosis(job, store, go_on);
       });
-  std::optional<Page> page;
-  if (!options.http.empty()) page.emplace(options, units);
-  {
+  // Read anew, all units begin anew, and take again what they took: one way for what has changed
+  // and for what has not.
+  int askers = 0;
+  for (bool again = true; again;) {
+    again = false;
+    std::optional<Page> page;
+    if (!options.http.empty()) page.emplace(options, units);
     live::ServiceOptions service_options = options.service;
     if (page) page->attach_to(service_options);
     service_options.report_problem = store.problem();
+    service_options.first_asker = std::exchange(askers, askers + static_cast<int>(units.size()));
     live::MonitorService service(units, service_options, worker);
     service.run([&] {
       if (hang_up.take())
-        spdlog::warn("SIGHUP: reloading is not supported; restart to read the unit files anew");
-      return stop.received();
+        if (auto anew = load_anew(options)) {
+          units = std::move(*anew);
+          again = true;
+        }
+      return again || stop.received();
     });
+    if (!again) service.say_stopping();
   }
-  page.reset();
   const bool idle = worker.stop(kPatience);
   spdlog::info("stopped");
   if (!idle) {
@@ -201,7 +241,7 @@ int serve(const Options& options, const std::vector<config::UnitConfig>& units,
 }
 
 int run(Options& options) {
-  config::LoadUnitsResult loaded = config::load_units(options.config);
+  config::LoadUnitsResult loaded = load(options);
   for (const config::Finding& finding : loaded.findings)
     (options.check ? std::cout : std::cerr) << config::format(finding) << '\n';
   if (!loaded.ok()) return options.check ? kFound : kBadInput;
@@ -210,10 +250,6 @@ int run(Options& options) {
     return kDone;
   }
 
-  for (config::UnitConfig& unit : loaded.units) {
-    if (options.domain) unit.dds.domain = *options.domain;
-    if (options.partition) unit.dds.partition = *options.partition;
-  }
   if (options.print_config) {
     for (std::size_t i = 0; i < loaded.units.size(); ++i) {
       if (i > 0) std::cout << "---\n";
@@ -235,7 +271,8 @@ int run(Options& options) {
       options.service.token = host::CommandToken::read(options.token_file);
     if (options.service.alarm_journal.empty() && !options.state_folder.empty())
       options.service.alarm_journal = options.state_folder + "/alarms.sqlite";
-    return serve(options, loaded.units, stop, hang_up);
+    if (!options.state_folder.empty()) options.service.samples = options.state_folder + "/samples";
+    return serve(options, std::move(loaded.units), stop, hang_up);
   } catch (const std::exception& error) {
     if (!spdlog::should_log(spdlog::level::err)) throw;  // no log is silence
     spdlog::error("mpmd: error: {}", error.what());

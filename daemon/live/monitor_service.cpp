@@ -2,8 +2,13 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <map>
+#include <sstream>
 
+#include "config/load_unit.hpp"
+#include "core/monitor/cost.hpp"
+#include "core/text/netstring.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/bus/domain_options.hpp"
 #include "daemon/files/folder_name.hpp"
@@ -16,6 +21,8 @@ constexpr std::chrono::milliseconds kLongestWait{200};
 constexpr std::chrono::seconds kStatusPeriod{1};
 // A layout of 8000 tags of the greatest length. Whoever sends more fills the memory.
 constexpr int kLargestSampleKb = 1024;
+// What a CV can start afresh from, and what went before it, from which the rest was learnt.
+constexpr double kTimesRemembered = 2.0;
 constexpr std::size_t kMostInStatus = 3;  // units whose troubles are told
 
 idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOptions& options) {
@@ -23,6 +30,44 @@ idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOpti
   settings.use_environment = options.use_environment;
   settings.max_sample_kb = kLargestSampleKb;
   return settings;
+}
+
+// Of other signals the values mean something else; and predictions are those of a model, by which
+// a repaired one is not to be judged.
+std::string meaning_of(const config::UnitConfig& unit) {
+  std::string text = number_text(unit.sample_time_s);
+  bool predicted = false;
+  for (const auto* signals : {&unit.mv, &unit.dv, &unit.aux, &unit.raw}) {
+    text += ';';
+    for (const config::InputSignal& signal : *signals) append_netstring(text, signal.tag);
+  }
+  text += ';';
+  for (const config::CvSignal& cv : unit.cv) {
+    for (const std::string& tag : {cv.tag, cv.prediction, cv.setpoint}) append_netstring(text, tag);
+    predicted = predicted || !cv.prediction.empty();
+  }
+  if (!predicted) return text;
+  std::ostringstream model;
+  config::print_model_section(unit, model);
+  return text + model.str();
+}
+
+// What the statistics rest on, and a diagnosis; of a large unit less, for it is to be taken again
+// before the service is ready.
+std::uint64_t kept_intervals(const config::UnitConfig& unit) {
+  constexpr double kMostSeconds = 10.0;
+  const MonitorCost cost = monitor_cost(unit.model, unit.monitor);
+  const double wanted = std::max(kTimesRemembered * cost.remembered,
+                                 static_cast<double>(unit.monitor.diagnosis_samples));
+  return static_cast<std::uint64_t>(std::max(1.0, std::min(wanted, kMostSeconds / cost.seconds)));
+}
+
+void recall(UnitPipeline& pipeline, const config::UnitConfig& unit, const std::string& folder) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string text = pipeline.recall(
+      {folder + "/" + files::folder_name(unit.unit), meaning_of(unit), kept_intervals(unit)});
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  spdlog::info("{}: {} ({:.1f} s)", unit.unit, text, seconds.count());
 }
 
 }  // namespace
@@ -44,7 +89,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
   for (const config::UnitConfig& unit : units)
     units_of[idl::domain_xml(settings_of(unit, options))].push_back(unit.unit);
   std::map<std::string, Domain*> domain_of;
-  int asker = 0;
+  int asker = options.first_asker;
   for (const config::UnitConfig& unit : units) {
     const idl::DomainOptions settings = settings_of(unit, options);
     const std::string xml = idl::domain_xml(settings);
@@ -58,8 +103,10 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
     if (!options.journal.empty())
       pipeline.keep({unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                  options.journal_keep / units.size())});
-    if (alarm_journal_) pipeline.keep(*alarm_journal_);
     pipeline.diagnose_with(worker, asker++);
+    if (!options.samples.empty()) recall(pipeline, unit, options.samples);
+    if (alarm_journal_) pipeline.keep(*alarm_journal_);
+    pipeline.announce();
     if (options.observer) pipeline.show_to(options.observer(unit));
     if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);
     spdlog::info(
@@ -91,7 +138,6 @@ void MonitorService::run(const std::function<bool()>& stop) {
     next_status = now + kStatusPeriod;
     notifier_.status(status());
   }
-  notifier_.stopping();
 }
 
 UnitPipeline* MonitorService::find(const std::string& unit) const {

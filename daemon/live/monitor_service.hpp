@@ -22,9 +22,12 @@ struct ServiceOptions {
   std::uint64_t journal_keep = 1'000'000'000;  ///< bytes, of all units together
   std::string sample_journal;                  ///< file of every sample's records; empty: none
   std::string alarm_journal;                   ///< file of all that happens to alarms; empty: none
-  std::optional<host::CommandToken> token;     ///< of those who may give commands; none: nobody may
+  std::string samples;  ///< folder of the last samples of each unit, for a restart; empty: none
+  std::optional<host::CommandToken> token;  ///< of those who may give commands; none: nobody may
   bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
-  std::string report_problem;    ///< why reports of diagnoses cannot be kept; empty: they can
+  int first_asker =
+      0;  ///< of diagnoses; those of an earlier service on the same worker come before
+  std::string report_problem;  ///< why reports of diagnoses cannot be kept; empty: they can
   /// Who looks on at a unit, null: nobody; may be empty. They must outlive the service.
   std::function<UnitObserver*(const config::UnitConfig&)> observer;
   CommandQueue* commands = nullptr;  ///< to be answered by the loop; may be null
@@ -41,6 +44,8 @@ class MonitorService {
 
   /// Until `stop()` says so, which is asked at least five times a second.
   void run(const std::function<bool()>& stop);
+  /// Tells systemd that this was the end.
+  void say_stopping() { notifier_.stopping(); }
 
  private:
   using Clock = std::chrono::steady_clock;

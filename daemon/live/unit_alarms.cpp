@@ -53,13 +53,15 @@ UnitAlarms::UnitAlarms(const config::UnitConfig& unit, const idl::OutputWriters&
   controller_.display_url = settings_.display_url;
   controller_.runbook = settings_.runbook;
   for (int i = AlarmDesk::kController; i < desk_.channels(); ++i) refresh(i);
-  if (!publish_again(true)) spdlog::warn("{}: the alarms could not be published", unit_);
 }
+
+bool UnitAlarms::announce() { return publish_again(true); }
 
 void UnitAlarms::keep(AlarmJournal& journal, std::int64_t wall_ns) {
   journal_ = &journal;
   for (const history::AlarmEntry& before : journal.before(unit_))
-    if (desk_.restore(before.mv, before.cv, before.standing)) {
+    if (recalled_ ? desk_.resume(before.mv, before.cv, before.standing)
+                  : desk_.restore(before.mv, before.cv, before.standing)) {
       const int alarm = desk_.find(before.mv, before.cv);
       (alarm == AlarmDesk::kController ? controller_.view
                                        : alarms_[static_cast<std::size_t>(alarm)].view)
@@ -68,7 +70,6 @@ void UnitAlarms::keep(AlarmJournal& journal, std::int64_t wall_ns) {
     }
   desk_.tick({source_time_ns_, wall_ns});  // what was shelved until a time that has passed
   settle(wall_ns, nullptr);
-  if (!publish_again(true)) spdlog::warn("{}: the alarms could not be published", unit_);
 }
 
 AlarmStateRecord* UnitAlarms::find(const std::string& mv, const std::string& cv) {
@@ -77,11 +78,9 @@ AlarmStateRecord* UnitAlarms::find(const std::string& mv, const std::string& cv)
   return it == alarms_.end() ? nullptr : &*it;
 }
 
-bool UnitAlarms::push(const std::vector<ChannelRecord>& channels,
+void UnitAlarms::note(const std::vector<ChannelRecord>& channels,
                       const std::vector<AlarmRecord>& changes,
-                      const std::vector<std::string>& texts, std::int64_t wall_ns) {
-  for (std::size_t i = 0; i < channels.size(); ++i)
-    observed_[i] = {channels[i].alarm == AlarmState::kActive, meaningful(channels[i].reason)};
+                      const std::vector<std::string>& texts) {
   if (!channels.empty()) {
     interval_ = channels.front().interval;
     source_time_ns_ = channels.front().source_time_ns;
@@ -93,6 +92,22 @@ bool UnitAlarms::push(const std::vector<ChannelRecord>& channels,
       alarm->view.message = std::move(text);
       fresh_[static_cast<std::size_t>(alarm - alarms_.data())] = true;
     }
+}
+
+void UnitAlarms::recall(const std::vector<ChannelRecord>& channels,
+                        const std::vector<AlarmRecord>& changes,
+                        const std::vector<std::string>& texts) {
+  recalled_ = true;
+  note(channels, changes, texts);
+  fresh_.assign(fresh_.size(), false);  // `announce` tells all
+}
+
+bool UnitAlarms::push(const std::vector<ChannelRecord>& channels,
+                      const std::vector<AlarmRecord>& changes,
+                      const std::vector<std::string>& texts, std::int64_t wall_ns) {
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    observed_[i] = {channels[i].alarm == AlarmState::kActive, meaningful(channels[i].reason)};
+  note(channels, changes, texts);
   desk_.observe(observed_, {source_time_ns_, wall_ns});
   return settle(wall_ns, nullptr);
 }

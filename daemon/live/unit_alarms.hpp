@@ -18,13 +18,21 @@ namespace mpm::live {
 /// becomes of it, in the journal; what people do about it.
 class UnitAlarms {
  public:
-  /// `channels`: of the unit, of which nothing was said yet. Publishes that no alarm stands, which
-  /// clears what a daemon before this one left behind.
+  /// `channels`: of the unit, of which nothing was said yet. Nothing is published before
+  /// `announce`.
   UnitAlarms(const config::UnitConfig& unit, const idl::OutputWriters& outputs,
              const std::vector<ChannelRecord>& channels);
 
-  /// From now on what happens is kept there, and what people did before holds again.
+  /// As `push`, of a frame that was judged before a restart: nobody is told, and how it stands is
+  /// for `keep` and for the next frame to say.
+  void recall(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& changes,
+              const std::vector<std::string>& texts);
+  /// From now on what happens is kept there. What people did before holds again, and where frames
+  /// were recalled so does which alarms stand.
   void keep(AlarmJournal& journal, std::int64_t wall_ns);
+  /// How all of them stand, which clears what a daemon before this one left behind. False where it
+  /// could not be published.
+  bool announce();
 
   /// After a frame: `channels` in the order of before, the alarms that it changed, and what is
   /// wrong with the channel of each in words. False where something could not be published.
@@ -52,6 +60,8 @@ class UnitAlarms {
 
  private:
   [[nodiscard]] AlarmStateRecord* find(const std::string& mv, const std::string& cv);
+  void note(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& changes,
+            const std::vector<std::string>& texts);
   bool settle(std::int64_t wall_ns, const AlarmCommand* command);
   void refresh(int alarm);
   [[nodiscard]] std::string controller_text() const;
@@ -67,6 +77,7 @@ class UnitAlarms {
   std::vector<AlarmDesk::Observation> observed_;
   std::vector<bool> fresh_;  // to be written; the controller's last
   std::int64_t interval_ = 0, source_time_ns_ = 0;
+  bool recalled_ = false;
   AlarmJournal* journal_ = nullptr;
 };
 

@@ -75,7 +75,7 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
           [this](const Frame& frame) {
             calculated_ = frame;
             calculator_.fill(calculated_);
-            on_frame(calculated_);
+            recalling_ ? recall_frame(calculated_) : on_frame(calculated_);
           },
           files::aligner_settings(config)),
       patience_(files::frame_patience(config)),
@@ -146,8 +146,10 @@ void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
                 sample.quality.size()},
                now);
   const AlignerCounters before = aligner_.counters();
-  aligner_.push(
-      {sample.kind, sample.interval, sample.source_time_ns, sample.values, sample.quality});
+  const BlockView block{sample.kind, sample.interval, sample.source_time_ns, sample.values,
+                        sample.quality};
+  if (log_) log_->push(block);
+  aligner_.push(block);
   const AlignerCounters& after = aligner_.counters();
   if (after.wrong_length != before.wrong_length) report_refused(sample);
   if (after.beyond != before.beyond && beyond_limit_.admit(now))
@@ -194,14 +196,13 @@ void UnitPipeline::on_frame(const Frame& frame) {
   bool written = true;
   for (const ChannelRecord& channel : monitor_.channels())
     written = outputs_.write(channel) && written;
-  std::vector<std::string> texts;  // allocates where an alarm changes
-  for (const AlarmRecord& alarm : monitor_.alarms()) {
+  const std::vector<std::string> texts = alarm_texts();
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const AlarmRecord& alarm = monitor_.alarms()[i];
     written = outputs_.write(alarm) && written;
-    texts.push_back(
-        report::error_text(alarm, modelled_channel(config_, monitor_.channels(), alarm)));
     spdlog::log(alarm.to == AlarmChange::kActive ? spdlog::level::warn : spdlog::level::info,
                 "{}: {} -> {}: alarm {} at interval {} ({}, p {:.1e})", alarm.unit, alarm.mv,
-                alarm.cv, to_string(alarm.to), alarm.interval, texts.back(), alarm.p_value);
+                alarm.cv, to_string(alarm.to), alarm.interval, texts[i], alarm.p_value);
   }
   written = alarms_.push(monitor_.channels(), monitor_.alarms(), texts, wall_ns()) && written;
   if (!written && output_limit_.admit(now_))
@@ -217,6 +218,46 @@ void UnitPipeline::on_frame(const Frame& frame) {
   }
   // Last, when everybody has been told: it may copy the unit's samples.
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
+}
+
+// What is wrong with the channel of each alarm of the last frame; allocates where there is one.
+std::vector<std::string> UnitPipeline::alarm_texts() {
+  std::vector<std::string> texts;
+  for (const AlarmRecord& alarm : monitor_.alarms())
+    texts.push_back(
+        report::error_text(alarm, modelled_channel(config_, monitor_.channels(), alarm)));
+  return texts;
+}
+
+// A diagnosis that was due then is made again, for the causes that alarms were given are nowhere
+// else: only the last of them is left when the unit goes on.
+void UnitPipeline::recall_frame(const Frame& frame) {
+  health_.interval = frame.interval;
+  health_.source_time_ns = frame.source_time_ns;
+  monitor_.push(frame);
+  (void)performance_.push(frame, monitor_.monitor().judged());
+  if (!monitor_.alarms().empty())
+    alarms_.recall(monitor_.channels(), monitor_.alarms(), alarm_texts());
+  if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
+}
+
+std::string UnitPipeline::recall(SampleLog samples) {
+  log_.emplace(std::move(samples));
+  recalling_ = true;
+  const std::string lost = log_->recall([this](const BlockView* block) {
+    block != nullptr ? aligner_.push(*block) : aligner_.expire();
+  });
+  recalling_ = false;
+  const std::uint64_t frames = aligner_.counters().frames;
+  if (frames > 0) alarms_.recall(monitor_.channels(), {}, {});
+  std::string text =
+      frames == 0 ? "begins anew" : "goes on behind " + counted(frames, "sample") + " from before";
+  if (!lost.empty()) text += "; not all that was kept is used: " + lost;
+  return text;
+}
+
+void UnitPipeline::announce() {
+  if (!alarms_.announce()) spdlog::warn("{}: the alarms could not be published", config_.unit);
 }
 
 PerformanceRecord UnitPipeline::performance() {
@@ -313,7 +354,10 @@ void UnitPipeline::hear_other_monitor(std::uint64_t writer, std::string name,
 void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
                         const bus::Surroundings& around) {
   go_on(now);
-  if (aligner_.pending() && now - last_frame_ > patience_) aligner_.expire();
+  if (aligner_.pending() && now - last_frame_ > patience_) {
+    if (log_) log_->push_expiry();
+    aligner_.expire();
+  }
   if (diagnosis_) publish_diagnosis();
   if (now >= next_health_) {
     next_health_ = now + kHealthPeriod;
@@ -407,6 +451,7 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
     add("reports", Severity::kMaintenanceRequired,
         "reports of diagnoses cannot be kept: " + diagnosis_->file_problem());
   add_journal("journal of alarms", alarms_.journal_problem());
+  if (log_) add_journal("memory for a restart", log_->problem());
   sort_by_severity(found);
   return found;
 }

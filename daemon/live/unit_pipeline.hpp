@@ -17,6 +17,7 @@
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/live_diagnosis.hpp"
 #include "daemon/live/sample_journal.hpp"
+#include "daemon/live/sample_log.hpp"
 #include "daemon/live/trouble_log.hpp"
 #include "daemon/live/unit_alarms.hpp"
 #include "daemon/live/unit_observer.hpp"
@@ -39,8 +40,14 @@ class UnitPipeline {
   ~UnitPipeline();
   /// From now on what is to be known later is kept there.
   void keep(history::Journal journal) { journal_.emplace(std::move(journal)); }
+  /// Takes again what a process before this one took, and tells nobody: statistics, alarms and
+  /// what a diagnosis needs are as they were. From now on what is taken is kept there. After
+  /// `diagnose_with`, before anything else is taken. Says what became of it, in words for the log.
+  [[nodiscard]] std::string recall(SampleLog samples);
   /// From now on what happens to alarms is kept there, and what people did about them before holds.
   void keep(AlarmJournal& journal) { alarms_.keep(journal, wall_ns()); }
+  /// Tells readers how the alarms stand, at the start.
+  void announce();
   /// A person's command to this unit: `admitted`, or why not.
   CommandReply obey(const CommandRecord& record,
                     const std::variant<AlarmCommand, std::string>& admitted);
@@ -83,6 +90,8 @@ class UnitPipeline {
 
  private:
   void on_frame(const Frame& frame);
+  void recall_frame(const Frame& frame);
+  [[nodiscard]] std::vector<std::string> alarm_texts();
   void go_on(Clock::time_point now);
   void publish_alarms_again();
   [[nodiscard]] bool other_monitor_speaks() const;
@@ -101,6 +110,8 @@ class UnitPipeline {
   const idl::OutputWriters& outputs_;
   SampleJournal* samples_;
   std::optional<history::Journal> journal_;
+  std::optional<SampleLog> log_;
+  bool recalling_ = false;
   report::UnitMonitor monitor_;
   UnitAlarms alarms_;
   PerformanceWindow performance_;

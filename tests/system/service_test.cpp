@@ -56,7 +56,7 @@ TEST_CASE("systemd is told when the daemon is ready, alive, well and stopping") 
   CHECK(socket.hears("WATCHDOG=1"));
   bench.daemon.send(SIGHUP);
   CHECK(idl::eventually([&] {
-    return read_file(bench.folder.file("mpmd.err")).find("<4>SIGHUP: reloading is not supported") !=
+    return read_file(bench.folder.file("mpmd.err")).find("<6>SIGHUP: the unit files were read") !=
            std::string::npos;
   }));
   CHECK(socket.heard().find("STOPPING=1") == std::string::npos);

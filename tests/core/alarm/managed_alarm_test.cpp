@@ -190,5 +190,29 @@ TEST_CASE("a restart keeps what people have done, and what nobody has seen") {
   CHECK(later.word() == "unacknowledged");  // that was another one
 }
 
+TEST_CASE("where its cause is known over a restart an alarm goes on as it was") {
+  Bench before;
+  before.observe(true);
+  Bench after;
+  after.alarm.resume(before.alarm.standing());
+  CHECK(after.word() == "unacknowledged");
+  after.observe(true);
+  CHECK(after.occurred() == List{});
+  CHECK(after.apply(AlarmAction::kAcknowledge).accepted);
+
+  Bench later;
+  later.alarm.resume(after.alarm.standing());
+  CHECK(later.word() == "acknowledged");
+  later.observe(false);  // it went while nobody was there to tell
+  CHECK(later.occurred() == List{kCleared});
+  CHECK(later.word() == "normal");
+
+  Bench last;
+  last.alarm.resume(later.alarm.standing());
+  last.observe(true);
+  CHECK(last.occurred() == List{kActive});
+  CHECK(last.word() == "unacknowledged");
+}
+
 }  // namespace
 }  // namespace mpm

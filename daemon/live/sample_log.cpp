@@ -1,0 +1,267 @@
+#include "daemon/live/sample_log.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace mpm::live {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "mpm samples 1\n";
+constexpr std::string_view kPrefix = "samples-";
+constexpr std::uint64_t kFilesWithin = 64;       // of what is kept
+constexpr std::size_t kLargestRecord = 1 << 20;  // bytes; no sample of the bus is larger
+constexpr int kDigits = 12;
+
+// On disk as in memory: nothing is ever carried to another machine.
+template <class Number>
+void put(std::string& to, Number value) {
+  std::array<char, sizeof value> bytes{};
+  std::memcpy(bytes.data(), &value, sizeof value);
+  to.append(bytes.data(), bytes.size());
+}
+
+/// Takes numbers from the front of a record; nothing where it is too short.
+class Cursor {
+ public:
+  explicit Cursor(std::string_view bytes) : bytes_(bytes) {}
+  template <class Number>
+  [[nodiscard]] std::optional<Number> take() {
+    Number value{};
+    if (bytes_.size() < sizeof value) return std::nullopt;
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    bytes_.remove_prefix(sizeof value);
+    return value;
+  }
+  [[nodiscard]] std::string_view rest() const { return bytes_; }
+
+ private:
+  std::string_view bytes_;
+};
+
+std::uint32_t sum_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      ::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
+}
+
+struct Block {
+  BlockView view;
+  std::vector<double> values;
+  std::vector<std::uint8_t> quality;
+};
+
+void encode(const BlockView& block, std::string& to) {
+  put(to, static_cast<std::uint8_t>(block.kind));
+  put(to, block.interval);
+  put(to, block.source_time_ns);
+  put(to, static_cast<std::uint32_t>(block.values.size()));
+  put(to, static_cast<std::uint32_t>(block.quality.size()));
+  for (const double value : block.values) put(to, value);
+  to.append(reinterpret_cast<const char*>(block.quality.data()), block.quality.size());
+}
+
+bool decode(std::string_view record, Block& block) {
+  Cursor cursor(record);
+  const auto kind = cursor.take<std::uint8_t>();
+  const auto interval = cursor.take<std::int64_t>();
+  const auto time = cursor.take<std::int64_t>();
+  const auto values = cursor.take<std::uint32_t>();
+  const auto qualities = cursor.take<std::uint32_t>();
+  if (!qualities || *kind >= kSignalKindCount ||
+      cursor.rest().size() != std::size_t{*values} * sizeof(double) + *qualities)
+    return false;
+  block.values.resize(*values);
+  if (*values > 0)
+    std::memcpy(block.values.data(), cursor.rest().data(), block.values.size() * sizeof(double));
+  const std::string_view codes = cursor.rest().substr(block.values.size() * sizeof(double));
+  block.quality.assign(codes.begin(), codes.end());
+  block.view = {static_cast<SignalKind>(*kind), *interval, *time, block.values, block.quality};
+  return true;
+}
+
+/// The next record of a file; nothing at its end, or where it was torn or damaged.
+std::optional<std::string_view> next_record(std::string_view& bytes) {
+  Cursor cursor(bytes);
+  const auto size = cursor.take<std::uint32_t>();
+  const auto sum = cursor.take<std::uint32_t>();
+  if (!sum || *size > kLargestRecord || cursor.rest().size() < *size) return std::nullopt;
+  const std::string_view record = cursor.rest().substr(0, *size);
+  if (sum_of(record) != *sum) return std::nullopt;
+  bytes = cursor.rest().substr(*size);
+  return record;
+}
+
+}  // namespace
+
+SampleLog::SampleLog(std::string folder, std::string meaning, std::uint64_t keep)
+    : folder_(std::move(folder)), meaning_(std::move(meaning)), keep_(keep) {}
+
+SampleLog::SampleLog(SampleLog&& other) noexcept
+    : folder_(std::move(other.folder_)),
+      meaning_(std::move(other.meaning_)),
+      keep_(other.keep_),
+      files_(std::move(other.files_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      begun_(other.begun_),
+      blocks_(other.blocks_),
+      problem_(std::move(other.problem_)) {}
+
+SampleLog::~SampleLog() { close_file(); }
+
+std::string SampleLog::path_of(std::uint64_t number) const {
+  const std::string digits = std::to_string(number);
+  return folder_ + "/" + std::string(kPrefix) +
+         std::string(kDigits - std::min<std::size_t>(kDigits, digits.size()), '0') + digits;
+}
+
+void SampleLog::find_files() {
+  files_.clear();
+  std::error_code failed;
+  for (auto entry = fs::directory_iterator(folder_, failed);
+       !failed && entry != fs::directory_iterator(); entry.increment(failed)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(kPrefix)) continue;
+    std::uint64_t number = 0;
+    const char* end = name.data() + name.size();
+    const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
+    if (error == std::errc() && stop == end && entry->path() == path_of(number))
+      files_.push_back({number, 0});
+  }
+  std::sort(files_.begin(), files_.end(),
+            [](const File& a, const File& b) { return a.number < b.number; });
+}
+
+// False where the file is of another meaning.
+bool SampleLog::read(File& file, const Visit& visit, std::string& why) {
+  std::ifstream stream(path_of(file.number), std::ios::binary);
+  const std::string all((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::string_view bytes = all;
+  if (!bytes.starts_with(kMagic)) {
+    why = "some of it is damaged";
+    return true;
+  }
+  bytes.remove_prefix(kMagic.size());
+  const auto meaning = next_record(bytes);
+  if (!meaning) {
+    if (!bytes.empty()) why = "some of it is damaged";
+    return true;
+  }
+  if (*meaning != meaning_) return false;
+  std::array<std::uint64_t, kSignalKindCount> blocks{};
+  Block block;
+  while (const auto record = next_record(bytes)) {
+    if (record->empty()) {
+      visit(nullptr);
+    } else if (decode(*record, block)) {
+      visit(&block.view);
+      auto& count = blocks[static_cast<std::size_t>(block.view.kind)];
+      file.intervals = std::max(file.intervals, ++count);
+    }
+  }
+  // The last record of a file may be torn; what is behind it would have been written later.
+  if (!bytes.empty()) why = "some of it is damaged";
+  return true;
+}
+
+std::string SampleLog::recall(const Visit& visit) {
+  find_files();
+  std::string why;
+  std::deque<File> fitting;
+  // Of another meaning is what was before the unit file changed: what follows is a new beginning.
+  for (File& file : files_) {
+    if (read(file, visit, why)) {
+      fitting.push_back(file);
+      continue;
+    }
+    why = "the unit file has changed what it means";
+    std::error_code ignored;
+    fs::remove(path_of(file.number), ignored);
+  }
+  // A new file is begun for what comes: behind a torn record nothing is found again.
+  files_ = std::move(fitting);
+  return why;
+}
+
+void SampleLog::push(const BlockView& block) {
+  std::uint64_t& blocks = blocks_[static_cast<std::size_t>(block.kind)];
+  if (!begun_ || blocks > keep_ / kFilesWithin) begin_file();
+  ++blocks;
+  if (descriptor_ >= 0) files_.back().intervals = std::max(files_.back().intervals, blocks);
+  record_.clear();
+  encode(block, record_);
+  append(record_);
+}
+
+void SampleLog::push_expiry() { append({}); }
+
+void SampleLog::append(std::string_view payload) {
+  if (descriptor_ < 0) return;
+  bytes_.clear();
+  put(bytes_, static_cast<std::uint32_t>(payload.size()));
+  put(bytes_, sum_of(payload));
+  bytes_.append(payload);
+  write(bytes_);
+}
+
+// What did not fit leaves the file torn: what comes goes into the next one.
+void SampleLog::write(std::string_view bytes) {
+  if (descriptor_ < 0) return;
+  if (::write(descriptor_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+    fail("cannot be written");
+}
+
+void SampleLog::begin_file() {
+  close_file();
+  begun_ = true;
+  blocks_.fill(0);
+  std::error_code failed;
+  if (!fs::exists(folder_, failed)) {
+    fs::create_directories(folder_, failed);
+    if (!failed)
+      fs::permissions(folder_, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec,
+                      failed);
+  }
+  const std::uint64_t number = files_.empty() ? 1 : files_.back().number + 1;
+  descriptor_ = ::open(path_of(number).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_APPEND,
+                       S_IRUSR | S_IWUSR | S_IRGRP);
+  if (descriptor_ < 0) return fail("cannot be made");
+  files_.push_back({number, 0});
+  problem_.clear();
+  write(kMagic);
+  append(meaning_);
+  std::uint64_t others = 0;
+  for (const File& file : files_) others += file.intervals;
+  while (files_.size() > 1 && others - files_.front().intervals >= keep_) {
+    others -= files_.front().intervals;
+    fs::remove(path_of(files_.front().number), failed);
+    files_.pop_front();
+  }
+}
+
+void SampleLog::close_file() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = -1;
+}
+
+void SampleLog::fail(const std::string& doing) {
+  problem_ = folder_ + " " + doing + ": " + std::strerror(errno);
+  close_file();
+}
+
+}  // namespace mpm::live

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "core/signal/aligner.hpp"
+
+namespace mpm::live {
+
+/// What a unit took from its topics last, on disk in the order in which it came, so that a process
+/// that begins where another one ended can take it again. A record is handed to the system before
+/// it is acted upon: `kill -9` loses none; a power cut may, those of the last half minute, and what
+/// it tore is left out. Numbered files, of which the oldest goes when the others hold enough.
+class SampleLog {
+ public:
+  /// One of the records: a block, or null where the aligner was told that nothing more will come
+  /// (`Aligner::expire`).
+  using Visit = std::function<void(const BlockView*)>;
+
+  /// `meaning`: of the values; what was kept with another one is of no use and goes. `keep`:
+  /// intervals, at least. Touches nothing yet.
+  SampleLog(std::string folder, std::string meaning, std::uint64_t keep);
+  SampleLog(SampleLog&& other) noexcept;
+  SampleLog(const SampleLog&) = delete;
+  SampleLog& operator=(const SampleLog&) = delete;
+  SampleLog& operator=(SampleLog&&) = delete;
+  ~SampleLog();
+
+  /// To be called once, before anything is added: all that is there, oldest first. Returns why some
+  /// of it is not used, in words; empty: all is.
+  std::string recall(const Visit& visit);
+  /// Never throws for the disk: see `problem`.
+  void push(const BlockView& block);
+  void push_expiry();
+  /// Why nothing can be kept now; empty: it can. It is tried again when the next file is due, 64
+  /// times within `keep`.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+ private:
+  struct File {
+    std::uint64_t number = 0;
+    std::uint64_t intervals = 0;
+  };
+
+  [[nodiscard]] std::string path_of(std::uint64_t number) const;
+  void find_files();
+  bool read(File& file, const Visit& visit, std::string& why);
+  void append(std::string_view payload);
+  void write(std::string_view bytes);
+  void begin_file();
+  void close_file();
+  void fail(const std::string& doing);
+
+  std::string folder_;
+  std::string meaning_;
+  std::uint64_t keep_;
+  std::deque<File> files_;  // the last one is written to, while descriptor_ is open
+  int descriptor_ = -1;
+  bool begun_ = false;                                    // a file, or it was tried
+  std::array<std::uint64_t, kSignalKindCount> blocks_{};  // since then
+  std::string record_, bytes_;                            // kept for their memory
+  std::string problem_;
+};
+
+}  // namespace mpm::live

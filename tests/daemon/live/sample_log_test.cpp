@@ -1,0 +1,191 @@
+#include "daemon/live/sample_log.hpp"
+
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <limits>
+#include <random>
+
+#include "tests/system/process.hpp"
+
+namespace mpm::live {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What came back, in words: kind, interval, time, values, qualities; "expired".
+struct Told {
+  std::vector<std::string> lines;
+  std::string why;
+};
+
+std::string text_of(const BlockView& block) {
+  std::string text = std::to_string(static_cast<int>(block.kind)) + " " +
+                     std::to_string(block.interval) + " " + std::to_string(block.source_time_ns);
+  for (const double value : block.values) text += " " + std::to_string(value);
+  for (const std::uint8_t code : block.quality) text += " q" + std::to_string(code);
+  return text;
+}
+
+Told recall(SampleLog& log) {
+  Told told;
+  told.why = log.recall([&](const BlockView* block) {
+    told.lines.push_back(block == nullptr ? "expired" : text_of(*block));
+  });
+  return told;
+}
+
+Told recall(const std::string& folder, const std::string& meaning = "a") {
+  SampleLog log(folder, meaning, 1000);
+  return recall(log);
+}
+
+/// Block k of a kind; what it says goes to `lines`.
+void push(SampleLog& log, SignalKind kind, std::int64_t k, std::vector<std::string>* lines) {
+  const std::vector<double> values = {static_cast<double>(k), -0.0,
+                                      std::numeric_limits<double>::infinity()};
+  const std::vector<std::uint8_t> quality = {0, 1, 2};
+  const BlockView block{kind, k, k * 1'000'000'000, values, quality};
+  log.push(block);
+  if (lines != nullptr) lines->push_back(text_of(block));
+}
+
+std::vector<fs::path> files_of(const std::string& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST_CASE("what was taken comes back as it came, over several lives") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  std::vector<std::string> lines;
+  for (int life = 0; life < 3; ++life) {
+    SampleLog log(place, "a", 1000);
+    CHECK(recall(log).lines == lines);
+    for (int k = 0; k < 100; ++k) {
+      push(log, SignalKind::kMv, 100 * life + k, &lines);
+      push(log, SignalKind::kCv, 100 * life + k, &lines);
+    }
+    log.push_expiry();
+    lines.emplace_back("expired");
+    CHECK(log.problem().empty());
+  }
+  const Told told = recall(place);
+  CHECK(told.lines == lines);
+  CHECK(told.why.empty());
+}
+
+TEST_CASE("the last intervals stay, and not much more") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  SampleLog log(place, "a", 640);
+  (void)recall(log);
+  constexpr std::int64_t kAll = 5000;
+  for (std::int64_t k = 0; k < kAll; ++k) {
+    push(log, SignalKind::kMv, k, nullptr);
+    push(log, SignalKind::kCv, k, nullptr);
+  }
+  const Told told = recall(place);
+  CHECK(told.lines.size() >= 2 * 640);
+  CHECK(told.lines.size() <= 2 * (640 + 3 * 11));  // a file holds 11 intervals
+  CHECK(told.lines.back().starts_with("2 4999"));
+}
+
+TEST_CASE("who may not read the state does not") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  SampleLog log(place, "a", 100);
+  push(log, SignalKind::kMv, 1, nullptr);
+  struct stat file {
+  }, made{};
+  REQUIRE(::stat(files_of(place).front().c_str(), &file) == 0);
+  REQUIRE(::stat(place.c_str(), &made) == 0);
+  CHECK((file.st_mode & 07) == 0);
+  CHECK((made.st_mode & 07) == 0);
+}
+
+TEST_CASE("what was kept with another meaning goes, with a word") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  {
+    SampleLog log(place, "a", 1000);
+    push(log, SignalKind::kMv, 1, nullptr);
+  }
+  const Told other = recall(place, "b");
+  CHECK(other.lines.empty());
+  CHECK(other.why == "the unit file has changed what it means");
+  CHECK(files_of(place).empty());
+  CHECK(recall(place, "a").lines.empty());
+}
+
+// Torn by a power cut, or damaged: what is before it in the file comes back, of that file nothing
+// behind it, and of the other files all.
+TEST_CASE("damage anywhere takes no more than the rest of its file") {
+  const test::TemporaryFolder folder;
+  std::mt19937 random(20'260);
+  for (int round = 0; round < 300; ++round) {
+    const std::string place = folder.file("r" + std::to_string(round));
+    std::vector<std::string> lines;
+    std::vector<std::size_t> ends;  // lines up to the end of each file
+    for (int life = 0; life < 3; ++life) {
+      SampleLog log(place, "a", 1000);
+      (void)recall(log);
+      for (int k = 0; k < 5; ++k) push(log, SignalKind::kMv, 5 * life + k, &lines);
+      ends.push_back(lines.size());
+    }
+    const std::vector<fs::path> files = files_of(place);
+    REQUIRE(files.size() == 3);
+    const std::size_t hurt = random() % 3;
+    std::string bytes = test::read_file(files[hurt].string());
+    const std::size_t at = random() % bytes.size();
+    if (random() % 2 == 0)
+      bytes.resize(at);
+    else
+      bytes[at] = static_cast<char>(bytes[at] ^ (1 + static_cast<char>(random() % 255)));
+    test::write_file(files[hurt].string(), bytes);
+
+    SampleLog log(place, "a", 1000);
+    const Told told = recall(log);
+    CAPTURE(round, hurt, at, told.why);
+    const std::size_t begin = hurt == 0 ? 0 : ends[hurt - 1];
+    REQUIRE(told.lines.size() <= lines.size());
+    const std::size_t lost = lines.size() - told.lines.size();
+    REQUIRE(lost <= ends[hurt] - begin);
+    std::vector<std::string> expected = lines;
+    const auto gone = expected.begin() + static_cast<std::ptrdiff_t>(ends[hurt]);
+    expected.erase(gone - static_cast<std::ptrdiff_t>(lost), gone);
+    CHECK(told.lines == expected);
+    // And it goes on.
+    push(log, SignalKind::kMv, 99, &expected);
+    CHECK(recall(place).lines == expected);
+  }
+}
+
+TEST_CASE("a folder that cannot be made is a problem told, and no more") {
+  const test::TemporaryFolder folder;
+  test::write_file(folder.file("file"), "");
+  SampleLog log(folder.file("file") + "/samples", "a", 64);
+  CHECK(recall(log).lines.empty());
+  push(log, SignalKind::kMv, 1, nullptr);
+  CHECK_THAT(log.problem(), Catch::Matchers::Contains("cannot be made"));
+  fs::remove(folder.file("file"));
+  for (int k = 2; k < 5; ++k) push(log, SignalKind::kMv, k, nullptr);
+  CHECK(log.problem().empty());
+  CHECK_FALSE(recall(folder.file("file") + "/samples").lines.empty());
+}
+
+TEST_CASE("a file is never written to through a link") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  fs::create_directories(place);
+  SampleLog log(place, "a", 64);
+  fs::create_symlink("/dev/full", place + "/samples-000000000001");
+  push(log, SignalKind::kMv, 1, nullptr);
+  CHECK_THAT(log.problem(), Catch::Matchers::Contains("cannot be made"));
+}
+
+}  // namespace
+}  // namespace mpm::live

@@ -1,0 +1,190 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "daemon/report/record_json.hpp"
+#include "tests/system/bench.hpp"
+
+namespace mpm::test {
+namespace {
+
+constexpr int kFrames = 4000;
+
+/// A unit, and a monitor that keeps its state, which may be killed and comes back.
+struct Corner {
+  explicit Corner(const std::string& test)
+      : bench(test, {"--state-dir", folder.file("state")}),
+        publisher(bench.publisher(idl::WriterPace::kLossless)) {}
+
+  [[nodiscard]] std::int64_t last_interval() const {
+    const auto all = bench.seen<ChannelRecord>();
+    return all.empty() ? -1 : all.back().interval;
+  }
+  void publish(const std::vector<Frame>& frames) {
+    REQUIRE(publisher.wait_for_readers(std::chrono::seconds(20)));
+    for (const Frame& frame : frames) REQUIRE(publisher.publish(frame));
+  }
+  void await(std::int64_t interval) {
+    REQUIRE(bench.observe([&] { return last_interval() >= interval; }));
+  }
+  /// Kills whatever runs, and starts the next one.
+  void kill_and_start() {
+    Process& running = again ? *again : bench.daemon;
+    running.send(SIGKILL);
+    REQUIRE(running.wait(std::chrono::seconds(10)));
+    again.reset();
+    (void)bench.observe([] { return true; });
+    again.emplace(
+        std::vector<std::string>{"mpmd", "--config", bench.folder.file("toy.yaml"), "--domain",
+                                 std::to_string(bench.options.domain), "--partition",
+                                 bench.options.partition, "--state-dir", folder.file("state")},
+        folder.file("out"), folder.file("err"));
+  }
+  /// The verdict on each channel at `interval`, and the alarms that were raised and cleared.
+  [[nodiscard]] std::vector<std::string> verdicts(std::int64_t interval) const {
+    std::vector<std::string> lines;
+    for (const ChannelRecord& record : bench.seen<ChannelRecord>())
+      if (record.interval == interval) lines.push_back(report::json_text(report::json_of(record)));
+    return lines;
+  }
+  [[nodiscard]] std::vector<std::string> alarms() const {
+    std::vector<std::string> lines;
+    for (const AlarmRecord& record : bench.seen<AlarmRecord>())
+      if (record.to != AlarmChange::kDiagnosed)
+        lines.push_back(report::json_text(report::json_of(record)));
+    return lines;
+  }
+  [[nodiscard]] AlarmStateRecord standing(const std::string& mv) const {
+    AlarmStateRecord last;
+    for (const AlarmStateRecord& alarm : bench.seen<AlarmStateRecord>())
+      if (alarm.mv == mv) last = alarm;
+    return last;
+  }
+
+  TemporaryFolder folder;
+  Bench bench;
+  idl::UnitPublisher publisher;
+  std::optional<Process> again;
+};
+
+std::vector<Frame> frames_of(Plant& plant, int count) {
+  std::vector<Frame> frames;
+  for (int i = 0; i < count; ++i) frames.push_back(plant.next());
+  return frames;
+}
+
+// The expected numbers are those of a monitor that nobody killed. What the killed one had not yet
+// taken is sent once more, as its recording would be. At most `most` frames between two kills.
+void go_on_over_kills(const std::string& name, unsigned most, int least_kills) {
+  Corner whole(name + "-whole"), killed(name + "-killed");
+  Plant plant(3.0);
+  const std::vector<Frame> frames = frames_of(plant, kFrames);
+  whole.publish(frames);
+  whole.await(frames.back().interval);
+
+  std::mt19937 random(19);
+  int kills = 0;
+  for (std::size_t at = 0; at < frames.size();) {
+    std::size_t end = std::min(at + 1 + random() % most, frames.size());
+    const std::vector<Frame> chunk(frames.begin() + static_cast<std::ptrdiff_t>(at),
+                                   frames.begin() + static_cast<std::ptrdiff_t>(end));
+    killed.publish(chunk);
+    if (end < frames.size()) {
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 20'000));
+      killed.kill_and_start();
+      ++kills;
+      // From what it has said on, which may be a little less than what it took.
+      end = at;
+      while (end < frames.size() && frames[end].interval <= killed.last_interval()) ++end;
+    }
+    at = end;
+  }
+  killed.await(frames.back().interval);
+  CAPTURE(kills, read_file(killed.folder.file("err")));
+  CHECK(kills >= least_kills);
+  CHECK(whole.verdicts(frames.back().interval).size() == 2);
+  CHECK(killed.verdicts(frames.back().interval) == whole.verdicts(frames.back().interval));
+  CHECK(whole.alarms().size() == 1);
+  CHECK(killed.standing("u1").to == AlarmChange::kActive);
+  CHECK(killed.standing("u1").interval == whole.standing("u1").interval);
+  CHECK(killed.standing("u1").view.alarm_state == AlarmWord::kUnacknowledged);
+}
+
+TEST_CASE("a monitor that is killed at any moment goes on as if it had not been") {
+  go_on_over_kills("restart", 2000, 2);
+}
+
+// Some twenty minutes: a reader that was killed is waited for until its lease has run out.
+TEST_CASE("a monitor that is killed a hundred times goes on as if it had not been", "[.long]") {
+  go_on_over_kills("restart-hundred", 78, 100);
+}
+
+TEST_CASE("an alarm that stands over a restart is neither cleared nor raised anew") {
+  Corner corner("restart-alarm");
+  Plant plant(3.0);
+  corner.publish(frames_of(plant, kFrames));
+  REQUIRE(corner.bench.observe([&] { return corner.standing("u1").to == AlarmChange::kActive; }));
+  corner.await(kFrames - 1);
+  const AlarmStateRecord before = corner.standing("u1");
+  const std::size_t raised = corner.alarms().size();
+  corner.bench.outputs.clear();
+  corner.kill_and_start();
+  REQUIRE(corner.bench.observe([&] { return !corner.standing("u1").unit.empty(); }));
+  corner.publish(frames_of(plant, 5));
+  corner.await(kFrames);
+  for (const AlarmStateRecord& alarm : corner.bench.seen<AlarmStateRecord>()) {
+    if (alarm.mv != "u1") continue;
+    CHECK(alarm.to == AlarmChange::kActive);
+    CHECK(alarm.interval == before.interval);
+    CHECK(alarm.view.alarm_state == before.view.alarm_state);
+  }
+  for (const ControllerAlarmRecord& alarm : corner.bench.seen<ControllerAlarmRecord>())
+    CHECK(alarm.state == AlarmState::kActive);
+  CHECK(raised == 1);
+  CHECK(corner.alarms().empty());
+}
+
+// Three memories of evidence are not to be had again in five samples.
+TEST_CASE("unit files are read anew on SIGHUP, and nothing is forgotten") {
+  Corner corner("restart-reload");
+  Plant plant(3.0);
+  corner.publish(frames_of(plant, kFrames));
+  corner.await(kFrames - 1);
+  const std::string file = corner.bench.folder.file("toy.yaml"), text = read_file(file);
+  const auto log = [&] { return read_file(corner.bench.folder.file("mpmd.err")); };
+
+  write_file(file, text + "monitor: {memory: -1}\n");
+  corner.bench.daemon.send(SIGHUP);
+  REQUIRE(corner.bench.observe(
+      [&] { return log().find("the units go on as they were") != std::string::npos; }));
+  CHECK(log().find("toy.yaml:") != std::string::npos);
+  corner.publish(frames_of(plant, 5));
+  corner.await(kFrames + 4);
+
+  // The gain that the plant has.
+  std::string repaired = text;
+  const std::size_t at = repaired.find("gain: 2");
+  REQUIRE(at != std::string::npos);
+  repaired.replace(at, 7, "gain: 3");
+  write_file(file, repaired);
+  corner.bench.outputs.clear();
+  corner.bench.daemon.send(SIGHUP);
+  REQUIRE(corner.bench.observe([&] {
+    return log().find("goes on behind 4005 samples") != std::string::npos &&
+           !corner.standing("u1").unit.empty();
+  }));
+  corner.bench.outputs.clear();
+  corner.publish(frames_of(plant, 5));
+  corner.await(kFrames + 9);
+  int channels = 0;
+  for (const ChannelRecord& record : corner.bench.seen<ChannelRecord>())
+    if (record.interval == kFrames + 9) {
+      ++channels;
+      CHECK(record.verdict == Verdict::kMatch);
+    }
+  CHECK(channels == 2);
+}
+
+}  // namespace
+}  // namespace mpm::test
