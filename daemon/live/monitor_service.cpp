@@ -23,6 +23,8 @@ constexpr std::chrono::seconds kStatusPeriod{1};
 constexpr int kLargestSampleKb = 1024;
 // What a CV can start afresh from, and what went before it, from which the rest was learnt.
 constexpr double kTimesRemembered = 2.0;
+// By estimate; three times that is still within the patience of systemd.
+constexpr double kMostSecondsToJudge = 10.0;
 constexpr std::size_t kMostInStatus = 3;  // units whose troubles are told
 
 idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOptions& options) {
@@ -52,20 +54,21 @@ std::string meaning_of(const config::UnitConfig& unit) {
   return text + model.str();
 }
 
-// What the statistics rest on, and a diagnosis; of a large unit less, for it is to be taken again
-// before the service is ready.
-std::uint64_t kept_intervals(const config::UnitConfig& unit) {
-  constexpr double kMostSeconds = 10.0;
+// What the statistics rest on, and a diagnosis; of large units or many less, for all of it is to be
+// taken again before the service is ready.
+std::uint64_t kept_intervals(const config::UnitConfig& unit, std::size_t units) {
+  const double most_seconds = kMostSecondsToJudge / static_cast<double>(units);
   const MonitorCost cost = monitor_cost(unit.model, unit.monitor);
   const double wanted = std::max(kTimesRemembered * cost.remembered,
                                  static_cast<double>(unit.monitor.diagnosis_samples));
-  return static_cast<std::uint64_t>(std::max(1.0, std::min(wanted, kMostSeconds / cost.seconds)));
+  return static_cast<std::uint64_t>(std::max(1.0, std::min(wanted, most_seconds / cost.seconds)));
 }
 
-void recall(UnitPipeline& pipeline, const config::UnitConfig& unit, const std::string& folder) {
+void recall(UnitPipeline& pipeline, const config::UnitConfig& unit, std::size_t units,
+            const std::string& folder) {
   const auto start = std::chrono::steady_clock::now();
-  const std::string text = pipeline.recall(
-      {folder + "/" + files::folder_name(unit.unit), meaning_of(unit), kept_intervals(unit)});
+  const std::string text = pipeline.recall({folder + "/" + files::folder_name(unit.unit),
+                                            meaning_of(unit), kept_intervals(unit, units)});
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   spdlog::info("{}: {} ({:.1f} s)", unit.unit, text, seconds.count());
 }
@@ -104,7 +107,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       pipeline.keep({unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                  options.journal_keep / units.size())});
     pipeline.diagnose_with(worker, asker++);
-    if (!options.samples.empty()) recall(pipeline, unit, options.samples);
+    if (!options.samples.empty()) recall(pipeline, unit, units.size(), options.samples);
     if (alarm_journal_) pipeline.keep(*alarm_journal_);
     pipeline.announce();
     if (options.observer) pipeline.show_to(options.observer(unit));

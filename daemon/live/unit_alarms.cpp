@@ -12,6 +12,7 @@ namespace {
 
 std::vector<AlarmDesk::Channel> names_of(const std::vector<ChannelRecord>& channels) {
   std::vector<AlarmDesk::Channel> names;
+  names.reserve(channels.size());
   for (const ChannelRecord& channel : channels) names.push_back({channel.mv, channel.cv});
   return names;
 }

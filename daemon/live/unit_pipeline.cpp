@@ -57,6 +57,12 @@ const ChannelRecord* modelled_channel(const config::UnitConfig& unit,
   return it == channels.end() ? nullptr : &*it;
 }
 
+// What is of another length changes nothing, whoever sent it and however long it is.
+bool fits(const BlockView& block, const SignalCounts& counts) {
+  const auto count = static_cast<std::size_t>(counts.of(block.kind));
+  return block.values.size() == count && (block.quality.empty() || block.quality.size() == count);
+}
+
 }  // namespace
 
 UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWriters& outputs,
@@ -148,7 +154,7 @@ void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
   const AlignerCounters before = aligner_.counters();
   const BlockView block{sample.kind, sample.interval, sample.source_time_ns, sample.values,
                         sample.quality};
-  if (log_) log_->push(block);
+  if (log_ && fits(block, config_.counts())) log_->push(block);
   aligner_.push(block);
   const AlignerCounters& after = aligner_.counters();
   if (after.wrong_length != before.wrong_length) report_refused(sample);
@@ -248,6 +254,7 @@ std::string UnitPipeline::recall(SampleLog samples) {
     block != nullptr ? aligner_.push(*block) : aligner_.expire();
   });
   recalling_ = false;
+  health_.incomplete = aligner_.counters().incomplete;  // no news
   const std::uint64_t frames = aligner_.counters().frames;
   if (frames > 0) alarms_.recall(monitor_.channels(), {}, {});
   std::string text =
@@ -451,7 +458,7 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
     add("reports", Severity::kMaintenanceRequired,
         "reports of diagnoses cannot be kept: " + diagnosis_->file_problem());
   add_journal("journal of alarms", alarms_.journal_problem());
-  if (log_) add_journal("memory for a restart", log_->problem());
+  if (log_) add_journal("log of samples for a restart", log_->problem());
   sort_by_severity(found);
   return found;
 }

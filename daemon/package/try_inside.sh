@@ -32,13 +32,23 @@ before=$(pid)
 kill -9 "$before"
 comes_back() { systemctl is-active -q mpmd && [ "$(pid)" != "$before" ]; }
 wait_for 10 "restart after kill -9" comes_back
-echo "killed: back with another process"
+goes_on() { [ "$(journalctl -u mpmd --no-pager | grep -c 'goes on behind [1-9]')" -ge "$1" ]; }
+wait_for 10 "samples from before" goes_on 1
+echo "killed: back with another process: $(status)"
+
+before=$(pid)
+systemctl reload mpmd || fail "cannot be reloaded"
+wait_for 10 "unit files read anew" goes_on 2
+[ "$(pid)" = "$before" ] || fail "a reload is a restart"
+systemctl is-active -q mpmd || fail "is not active after a reload"
+echo "reloaded: $(status)"
 
 before=$(pid)
 dpkg -i /try/mpm.deb >/try/dpkg.log 2>&1 || fail "upgrade: $(tail -n 1 /try/dpkg.log)"
 wait_for 10 "restart by the upgrade" comes_back
 alarmed || fail "the upgrade lost the journal"
-echo "upgraded: the journal was kept"
+wait_for 10 "samples from before the upgrade" goes_on 3
+echo "upgraded: journal and statistics were kept"
 
 systemctl stop mpmd
 [ "$(systemctl show -p Result --value mpmd)" = success ] || fail "a stop is a failure"

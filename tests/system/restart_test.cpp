@@ -70,6 +70,7 @@ struct Corner {
 
 std::vector<Frame> frames_of(Plant& plant, int count) {
   std::vector<Frame> frames;
+  frames.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) frames.push_back(plant.next());
   return frames;
 }
