@@ -257,6 +257,7 @@ std::string UnitPipeline::recall(SampleLog samples) {
   health_.incomplete = aligner_.counters().incomplete;  // no news
   const std::uint64_t frames = aligner_.counters().frames;
   if (frames > 0) alarms_.recall(monitor_.channels(), {}, {});
+  count_channels();
   std::string text =
       frames == 0 ? "begins anew" : "goes on behind " + counted(frames, "sample") + " from before";
   if (!lost.empty()) text += "; not all that was kept is used: " + lost;
@@ -396,16 +397,7 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   health_.beyond = aligner.beyond;
   health_.unknown_unit = unknown_unit;
   health_.restarts = aligner.restarts;
-  health_.undetermined = health_.matching = health_.mismatching = health_.active_alarms = 0;
-  for (const ChannelRecord& channel : monitor_.channels()) {
-    if (channel.verdict == Verdict::kMatch)
-      ++health_.matching;
-    else if (channel.verdict == Verdict::kMismatch)
-      ++health_.mismatching;
-    else
-      ++health_.undetermined;
-    if (channel.alarm == AlarmState::kActive) ++health_.active_alarms;
-  }
+  count_channels();
   troubles_ = troubles(around);
   const std::vector<bus::Trouble>& found = troubles_;
   trouble_text_ = bus::joined_text(found, kMostInDetail);
@@ -417,6 +409,19 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   if (journal_) journal_->push(health_);
   if (!outputs_.write(health_) && output_limit_.admit(now_))
     spdlog::warn("{}: the health could not be published", config_.unit);
+}
+
+void UnitPipeline::count_channels() {
+  health_.undetermined = health_.matching = health_.mismatching = health_.active_alarms = 0;
+  for (const ChannelRecord& channel : monitor_.channels()) {
+    if (channel.verdict == Verdict::kMatch)
+      ++health_.matching;
+    else if (channel.verdict == Verdict::kMismatch)
+      ++health_.mismatching;
+    else
+      ++health_.undetermined;
+    if (channel.alarm == AlarmState::kActive) ++health_.active_alarms;
+  }
 }
 
 std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around) const {

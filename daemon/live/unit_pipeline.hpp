@@ -100,6 +100,7 @@ class UnitPipeline {
   [[nodiscard]] PerformanceRecord performance();
   void publish_performance();
   void publish_diagnosis();
+  void count_channels();
   void publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around);
   void show();
   [[nodiscard]] std::vector<bus::Trouble> troubles(const bus::Surroundings& around) const;
