@@ -1,6 +1,7 @@
 #include "daemon/live/monitor_service.hpp"
 
 #include <spdlog/spdlog.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <map>
@@ -51,7 +52,9 @@ std::string meaning_of(const config::UnitConfig& unit) {
   if (!predicted) return text;
   std::ostringstream model;
   config::print_model_section(unit, model);
-  return text + model.str();
+  const std::string whole = model.str();  // may be megabytes, of which each file would keep a copy
+  const auto sum = ::crc32_z(0, reinterpret_cast<const Bytef*>(whole.data()), whole.size());
+  return text + std::to_string(whole.size()) + ":" + std::to_string(sum);
 }
 
 // What the statistics rest on, and a diagnosis; of large units or many less, for all of it is to be

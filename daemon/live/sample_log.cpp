@@ -25,8 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "mpm samples 1\n";
 constexpr std::string_view kPrefix = "samples-";
-constexpr std::uint64_t kFilesWithin = 64;       // of what is kept
-constexpr std::size_t kLargestRecord = 1 << 20;  // bytes; no sample of the bus is larger
+constexpr std::uint64_t kFilesWithin = 64;  // of what is kept
 constexpr int kDigits = 12;
 
 // On disk as in memory: nothing is ever carried to another machine.
@@ -100,7 +99,7 @@ std::optional<std::string_view> next_record(std::string_view& bytes) {
   Cursor cursor(bytes);
   const auto size = cursor.take<std::uint32_t>();
   const auto sum = cursor.take<std::uint32_t>();
-  if (!sum || *size > kLargestRecord || cursor.rest().size() < *size) return std::nullopt;
+  if (!sum || cursor.rest().size() < *size) return std::nullopt;
   const std::string_view record = cursor.rest().substr(0, *size);
   if (sum_of(record) != *sum) return std::nullopt;
   bytes = cursor.rest().substr(*size);
