@@ -1,19 +1,14 @@
 #include "daemon/live/monitor_service.hpp"
 
 #include <spdlog/spdlog.h>
-#include <zlib.h>
 
-#include <algorithm>
 #include <map>
-#include <sstream>
 
-#include "config/load_unit.hpp"
-#include "core/monitor/cost.hpp"
-#include "core/text/netstring.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/bus/domain_options.hpp"
 #include "daemon/files/folder_name.hpp"
 #include "daemon/live/report_store.hpp"
+#include "daemon/live/unit_samples.hpp"
 
 namespace mpm::live {
 namespace {
@@ -22,10 +17,6 @@ constexpr std::chrono::milliseconds kLongestWait{200};
 constexpr std::chrono::seconds kStatusPeriod{1};
 // A layout of 8000 tags of the greatest length. Whoever sends more fills the memory.
 constexpr int kLargestSampleKb = 1024;
-// What a CV can start afresh from, and what went before it, from which the rest was learnt.
-constexpr double kTimesRemembered = 2.0;
-// By estimate; three times that is still within the patience of systemd.
-constexpr double kMostSecondsToJudge = 10.0;
 constexpr std::size_t kMostInStatus = 3;  // units whose troubles are told
 
 idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOptions& options) {
@@ -35,43 +26,10 @@ idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOpti
   return settings;
 }
 
-// Of other signals the values mean something else; and predictions are those of a model, by which
-// a repaired one is not to be judged.
-std::string meaning_of(const config::UnitConfig& unit) {
-  std::string text = number_text(unit.sample_time_s);
-  bool predicted = false;
-  for (const auto* signals : {&unit.mv, &unit.dv, &unit.aux, &unit.raw}) {
-    text += ';';
-    for (const config::InputSignal& signal : *signals) append_netstring(text, signal.tag);
-  }
-  text += ';';
-  for (const config::CvSignal& cv : unit.cv) {
-    for (const std::string& tag : {cv.tag, cv.prediction, cv.setpoint}) append_netstring(text, tag);
-    predicted = predicted || !cv.prediction.empty();
-  }
-  if (!predicted) return text;
-  std::ostringstream model;
-  config::print_model_section(unit, model);
-  const std::string whole = model.str();  // may be megabytes, of which each file would keep a copy
-  const auto sum = ::crc32_z(0, reinterpret_cast<const Bytef*>(whole.data()), whole.size());
-  return text + std::to_string(whole.size()) + ":" + std::to_string(sum);
-}
-
-// What the statistics rest on, and a diagnosis; of large units or many less, for all of it is to be
-// taken again before the service is ready.
-std::uint64_t kept_intervals(const config::UnitConfig& unit, std::size_t units) {
-  const double most_seconds = kMostSecondsToJudge / static_cast<double>(units);
-  const MonitorCost cost = monitor_cost(unit.model, unit.monitor);
-  const double wanted = std::max(kTimesRemembered * cost.remembered,
-                                 static_cast<double>(unit.monitor.diagnosis_samples));
-  return static_cast<std::uint64_t>(std::max(1.0, std::min(wanted, most_seconds / cost.seconds)));
-}
-
 void recall(UnitPipeline& pipeline, const config::UnitConfig& unit, std::size_t units,
             const std::string& folder) {
   const auto start = std::chrono::steady_clock::now();
-  const std::string text = pipeline.recall({folder + "/" + files::folder_name(unit.unit),
-                                            meaning_of(unit), kept_intervals(unit, units)});
+  const std::string text = pipeline.recall(samples_of(unit, units, folder));
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   spdlog::info("{}: {} ({:.1f} s)", unit.unit, text, seconds.count());
 }

@@ -25,9 +25,8 @@ struct ServiceOptions {
   std::string samples;  ///< folder of the last samples of each unit, for a restart; empty: none
   std::optional<host::CommandToken> token;  ///< of those who may give commands; none: nobody may
   bool use_environment = false;  ///< CYCLONEDDS_URI instead of the unit files' DDS settings
-  int first_asker =
-      0;  ///< of diagnoses; those of an earlier service on the same worker come before
-  std::string report_problem;  ///< why reports of diagnoses cannot be kept; empty: they can
+  int first_asker = 0;           ///< of diagnoses: above those of a service before on this worker
+  std::string report_problem;    ///< why reports of diagnoses cannot be kept; empty: they can
   /// Who looks on at a unit, null: nobody; may be empty. They must outlive the service.
   std::function<UnitObserver*(const config::UnitConfig&)> observer;
   CommandQueue* commands = nullptr;  ///< to be answered by the loop; may be null

@@ -27,6 +27,9 @@ constexpr std::string_view kMagic = "mpm samples 1\n";
 constexpr std::string_view kPrefix = "samples-";
 constexpr std::uint64_t kFilesWithin = 64;  // of what is kept
 constexpr int kDigits = 12;
+// A record of its own, and not an empty one: that is what a file looks like whose end a power cut
+// has left as zeros.
+constexpr std::string_view kExpiry = "x";
 
 // On disk as in memory: nothing is ever carried to another machine.
 template <class Number>
@@ -99,7 +102,7 @@ std::optional<std::string_view> next_record(std::string_view& bytes) {
   Cursor cursor(bytes);
   const auto size = cursor.take<std::uint32_t>();
   const auto sum = cursor.take<std::uint32_t>();
-  if (!sum || cursor.rest().size() < *size) return std::nullopt;
+  if (!sum || *size == 0 || cursor.rest().size() < *size) return std::nullopt;
   const std::string_view record = cursor.rest().substr(0, *size);
   if (sum_of(record) != *sum) return std::nullopt;
   bytes = cursor.rest().substr(*size);
@@ -165,7 +168,7 @@ bool SampleLog::read(File& file, const Visit& visit, std::string& why) {
   std::array<std::uint64_t, kSignalKindCount> blocks{};
   Block block;
   while (const auto record = next_record(bytes)) {
-    if (record->empty()) {
+    if (*record == kExpiry) {
       visit(nullptr);
     } else if (decode(*record, block)) {
       visit(&block.view);
@@ -207,7 +210,7 @@ void SampleLog::push(const BlockView& block) {
   append(record_);
 }
 
-void SampleLog::push_expiry() { append({}); }
+void SampleLog::push_expiry() { append(kExpiry); }
 
 void SampleLog::append(std::string_view payload) {
   if (descriptor_ < 0) return;
@@ -221,8 +224,10 @@ void SampleLog::append(std::string_view payload) {
 // What did not fit leaves the file torn: what comes goes into the next one.
 void SampleLog::write(std::string_view bytes) {
   if (descriptor_ < 0) return;
-  if (::write(descriptor_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
-    fail("cannot be written");
+  const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+  if (written == static_cast<ssize_t>(bytes.size())) return;
+  if (written >= 0) errno = ENOSPC;  // a part of it fitted
+  fail("cannot be written");
 }
 
 void SampleLog::begin_file() {

@@ -1,8 +1,10 @@
 #include "daemon/live/sample_log.hpp"
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <filesystem>
 #include <limits>
 #include <random>
@@ -162,6 +164,60 @@ TEST_CASE("damage anywhere takes no more than the rest of its file") {
     push(log, SignalKind::kMv, 99, &expected);
     CHECK(recall(place).lines == expected);
   }
+}
+
+// As file systems leave a file that had grown before a power cut and was not written.
+TEST_CASE("zeros at the end of a file are damage, and nothing that happened") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  std::vector<std::string> lines;
+  {
+    SampleLog log(place, "a", 1000);
+    push(log, SignalKind::kMv, 1, &lines);
+  }
+  const std::string file = files_of(place).front().string();
+  test::write_file(file, test::read_file(file) + std::string(4096, '\0'));
+  const Told told = recall(place);
+  CHECK(told.lines == lines);
+  CHECK(told.why == "some of it is damaged");
+}
+
+/// Files of this process end there, as on a disk that is full.
+class FileLimit {
+ public:
+  explicit FileLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    REQUIRE(::getrlimit(RLIMIT_FSIZE, &before_) == 0);
+    const rlimit limit{bytes, before_.rlim_max};
+    REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+  }
+  FileLimit(const FileLimit&) = delete;
+  FileLimit& operator=(const FileLimit&) = delete;
+  ~FileLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST_CASE("a disk that is full is a problem told; what came before and after it is kept") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  SampleLog log(place, "a", 64);  // two blocks of a kind a file
+  std::vector<std::string> lines, none;
+  push(log, SignalKind::kMv, 1, &lines);
+  std::string problem;
+  {
+    const FileLimit full(std::filesystem::file_size(files_of(place).front()) + 10);
+    push(log, SignalKind::kMv, 2, &none);
+    problem = log.problem();
+  }
+  CHECK_THAT(problem, Catch::Matchers::Contains("cannot be written: No space left on device"));
+  push(log, SignalKind::kMv, 3, &lines);
+  CHECK(log.problem().empty());
+  CHECK(recall(place).lines == lines);
 }
 
 TEST_CASE("a folder that cannot be made is a problem told, and no more") {
