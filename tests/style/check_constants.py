@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-ROOMS = ["alarm", "identification", "mismatch", "model", "monitor", "nonlinear", "performance", "regression", "signal", "statistics"]
+ROOMS = ["alarm", "archive", "identification", "mismatch", "model", "monitor", "nonlinear", "performance", "regression", "signal", "statistics"]
 PLAIN = {0.0, 0.5, 1.0, 2.0}
 FIRST_WHOLE = 10
 ALLOWED = {  # file: numbers, why

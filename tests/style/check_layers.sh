@@ -65,20 +65,21 @@ floors() {
 }
 
 floors core <<'TABLE'
+archive
 parallel
 text
-statistics
-signal statistics
-regression
-model
-alarm text
-mismatch text signal regression statistics model
-nonlinear text regression statistics model signal mismatch
+statistics archive
+signal archive statistics
+regression archive
+model archive
+alarm archive text
+mismatch archive text signal regression statistics model
+nonlinear archive text regression statistics model signal mismatch
 record text alarm mismatch nonlinear
-monitor text signal statistics model alarm mismatch nonlinear
+monitor archive text signal statistics model alarm mismatch nonlinear
 identify/fit parallel model
 identify/evidence model mismatch monitor identify/fit
-performance signal model monitor identify/fit
+performance archive signal model monitor identify/fit
 identification parallel statistics model identify/fit identify/evidence
 identify/causes parallel text model identify/fit
 identify/valves

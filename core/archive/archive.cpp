@@ -1,0 +1,62 @@
+#include "core/archive/archive.hpp"
+
+#include <cstring>
+#include <stdexcept>
+
+namespace mpm {
+
+void Archive::refuse(const std::string& what) const {
+  throw std::runtime_error("what was put away does not fit here: " + what + ", " +
+                           std::to_string(left()) + " bytes before its end");
+}
+
+void Archive::bytes(void* memory, std::size_t count) {
+  if (count == 0) return;
+  if (!reads()) {
+    const auto* from = static_cast<const std::byte*>(memory);
+    out_->insert(out_->end(), from, from + count);
+    return;
+  }
+  if (count > in_.size()) refuse("it ends too early");
+  std::memcpy(memory, in_.data(), count);
+  in_ = in_.subspan(count);
+}
+
+void Archive::length(std::size_t fixed) {
+  std::uint64_t there = fixed;
+  item(there);
+  if (there != fixed)
+    refuse(std::to_string(there) + " values where " + std::to_string(fixed) + " belong");
+}
+
+// Nothing is so small that it takes less than a byte.
+std::size_t Archive::varying_length(std::size_t length) {
+  std::uint64_t there = length;
+  item(there);
+  require(there <= left(), "more values than bytes");
+  return static_cast<std::size_t>(there);
+}
+
+void Archive::item(bool& flag) {
+  auto byte = static_cast<unsigned char>(flag ? 1 : 0);
+  bytes(&byte, 1);
+  require(byte <= 1, "neither true nor false");
+  flag = byte == 1;
+}
+
+void Archive::item(std::string& text) {
+  const std::size_t length = varying_length(text.size());
+  if (reads()) text.resize(length);
+  bytes(text.data(), length);
+}
+
+void Archive::item(std::vector<bool>& list) {
+  length(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    bool flag = list[i];
+    item(flag);
+    list[i] = flag;
+  }
+}
+
+}  // namespace mpm
