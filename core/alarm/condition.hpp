@@ -43,6 +43,12 @@ class Condition {
   /// A sample without a verdict.
   void hold() { held_ = 0; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a.within(state_, AlarmState::kCleared, AlarmState::kActive);
+    a(held_);
+  }
+
   [[nodiscard]] AlarmState state() const { return state_; }
 
  private:

@@ -29,6 +29,21 @@ class InputHistory {
     return values_.data() + 2 * input * capacity_ + newest_ + capacity_;
   }
 
+  /// Where the rows lie in their ring makes no difference: they are as if the newest came first.
+  template <class Archive>
+  void archive(Archive& a) {
+    a.length(values_.size());
+    const auto capacity = static_cast<std::size_t>(capacity_);
+    for (std::size_t row = 0; row < values_.size(); row += 2 * capacity) {
+      double* oldest = values_.data() + row + (a.reads() ? 1 : newest_ + 1);
+      a.doubles(oldest, capacity);
+      if (!a.reads()) continue;
+      values_[row] = oldest[capacity - 1];
+      std::copy_n(oldest, capacity - 1, oldest + capacity);
+    }
+    if (a.reads()) newest_ = 0;
+  }
+
  private:
   int capacity_;
   int newest_ = 0;

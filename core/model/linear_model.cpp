@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/archive/archive.hpp"
 #include "core/model/calibration.hpp"
 #include "core/model/disturbance.hpp"
 #include "core/model/input_history.hpp"
@@ -82,6 +83,7 @@ struct LinearModel::State {
       own_elements.emplace_back(own.block, definition->input_origin(own.input));
   }
 
+  void archive(Archive& a);
   void compute_output();
   void add_disturbances();
   void read_feedback();
@@ -112,6 +114,13 @@ struct LinearModel::State {
 };
 
 /// From the states at k+1 and the inputs up to k.
+void LinearModel::State::archive(Archive& a) {
+  // not archived: definition (construction)
+  // not archived: next_states, linear_output (empty between calls)
+  a(elements, own_elements, history, states, last_input, fed_back, fed_back_before, fir_outputs,
+    clock_start_s, elapsed, output);
+}
+
 void LinearModel::State::compute_output() {
   const ModelDefinition& fixed = *definition;
   linear_output.setZero();
@@ -193,6 +202,8 @@ LinearModel& LinearModel::operator=(const LinearModel& other) {
   return *this;
 }
 LinearModel::~LinearModel() = default;
+
+void LinearModel::archive(Archive& a) { state_->archive(a); }
 
 int LinearModel::input_count() const { return state_->definition->spec.input_count; }
 int LinearModel::cv_count() const { return state_->definition->spec.cv_count; }

@@ -7,6 +7,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Free-running simulation of a `ModelSpec` on its sample grid: exact zero-order-hold
 /// discretisation (matrix exponential; a fractional dead time splits the hold in two, Astrom and
 /// Wittenmark 1997, section 2.6), driven by measured inputs, no feedback from measured outputs.
@@ -65,6 +67,9 @@ class LinearModel {
   /// Slowest time constant of any channel in samples (>= 1), and longest dead time in samples.
   [[nodiscard]] double slowest_time_constant_samples() const;
   [[nodiscard]] double longest_dead_time_samples() const;
+
+  /// Where the simulation stands.
+  void archive(Archive& a);
 
  private:
   struct State;

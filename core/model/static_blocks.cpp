@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 namespace {
 
@@ -45,6 +47,12 @@ void InputElement::reset(double input) {
   position_ = input;
   last_input_ = input;
   direction_ = 0;
+}
+
+void InputElement::archive(Archive& a) {
+  // not archived: block_, origin_ (construction)
+  a(position_, last_input_);
+  a.within(direction_, -1, 1);
 }
 
 double InputElement::apply(double input, double time_s) {

@@ -6,6 +6,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// The static (or friction) element in front of one input of the linear part. Takes the input in
 /// its own units and gives the deviation from the origin that the linear part sees.
 ///
@@ -30,6 +32,8 @@ class InputElement {
   void reset(double input);
   /// `time_s`: when the input is given, with whatever rounding may take from it.
   [[nodiscard]] double apply(double input, double time_s);
+
+  void archive(Archive& a);
 
  private:
   [[nodiscard]] double apply_stiction(const Stiction& valve, double input);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/archive/archive.hpp"
 #include "core/regression/calibration.hpp"
 
 namespace mpm {
@@ -196,6 +197,15 @@ void GivensQr::clear() {
   std::fill(magnitudes_.begin(), magnitudes_.end(), 0.0);
   std::fill(squares_.begin(), squares_.end(), 0.0);
   std::fill(products_.begin(), products_.end(), 0.0);
+}
+
+void GivensQr::archive(Archive& a) {
+  // not archived: columns_, responses_, width_, offsets_, factor_size_ (construction)
+  // not archived: own_ (empty between calls)
+  a(weights_, magnitudes_, squares_, products_);
+  for (int i = 0; i < columns_; ++i)
+    a.doubles(factor_.get() + offsets_[static_cast<std::size_t>(i)],
+              static_cast<std::size_t>(columns_ + responses_) - row_begin(i));
 }
 
 double GivensQr::centred_norm(int j) const {

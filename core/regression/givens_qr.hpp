@@ -10,6 +10,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Recursive least squares in orthogonal form: the triangular factor of [X | Y], updated by one
 /// row at a time with exponential forgetting.
 ///
@@ -114,6 +116,9 @@ class GivensQr {
   /// whose diagonal is at most negligible against their largest entry are left out (coefficient 0).
   /// With `leading` < columns(), of the regression on the first `leading` columns only.
   void solve(int response, int leading, Eigen::Ref<Eigen::VectorXd> coefficients) const;
+
+  /// The factor; what nobody reads of its rows is not part of it.
+  void archive(Archive& a);
 
  private:
   /// Row i is stored from the granule that holds column i on.

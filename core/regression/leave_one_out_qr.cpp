@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 namespace {
 
@@ -76,6 +78,22 @@ void LeaveOneOutQr::fold() {
   }
   take(root, 0, waiting_magnitudes_.data());
   waiting_ = 0;
+}
+
+void LeaveOneOutQr::Node::archive(Archive& a) {
+  // not archived: first, last, low, high (construction)
+  a(factor);
+}
+
+void LeaveOneOutQr::archive(Archive& a) {
+  // not archived: lead_in_, block_columns_, responses_, lambda_, leaves_ (construction)
+  // not archived: levels_ (empty between calls)
+  a.within(waiting_, 0, kBatchRows - 1);
+  a(magnitudes_);
+  a.doubles(waiting_magnitudes_.data(), magnitudes_.size() * static_cast<std::size_t>(waiting_));
+  for (int k = 0; k < waiting_; ++k)
+    a.doubles(rows_.row(k), magnitudes_.size() + static_cast<std::size_t>(responses_));
+  a(nodes_);
 }
 
 void LeaveOneOutQr::take(Node& node, std::size_t depth, const double* magnitudes) {

@@ -8,6 +8,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// For each of m blocks of regressors: what the regression on everything but this block leaves of
 /// the block's first column and of the common responses. Rows are
 ///
@@ -44,12 +46,15 @@ class LeaveOneOutQr {
     return leaf(block).residual_products();
   }
 
+  void archive(Archive& a);
+
  private:
   /// Everything but the blocks first..last-1 is eliminated, by this factor and those above it.
   struct Node {
     int first, last;
     GivensQr factor;  // responses: what is left of those blocks, or, of one, its first column
     std::size_t low = 0, high = 0;  // nodes that keep the first and the second half of them
+    void archive(Archive& a);
   };
   /// What the nodes of one depth have in hand: one after the other, so they share it.
   struct Level {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 namespace {
 
@@ -97,6 +99,21 @@ void Aligner::refuse(std::int64_t interval, SignalKind kind) {
   const bool was_there =
       settled.used && settled.interval == interval && (settled.present & bit_of(kind)) != 0;
   ++(was_there ? counters_.repeated : counters_.late);
+}
+
+void Aligner::Slot::archive(Archive& a) { a(frame, interval, present, used); }
+
+// What is between the first that is not settled and the newest has a place each.
+void Aligner::Window::archive(Archive& a) {
+  a(slots, newest_of, seen, next, newest, started);
+  for (std::int64_t& time : time_of) a.time(time);
+  a.require(next - newest <= 1 && newest - next < static_cast<std::int64_t>(slots.size()),
+            "a window that its intervals do not fit");
+}
+
+void Aligner::archive(Archive& a) {
+  // not archived: counts_, settings_, sink_, needed_, welcome_ (construction)
+  a(silent_, current_, candidate_, back_, back_frames_, offset_, last_emitted_, counters_);
 }
 
 void Aligner::expire() {

@@ -12,6 +12,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Values of one kind at one interval, as they come in.
 struct BlockView {
   SignalKind kind = SignalKind::kMv;
@@ -44,6 +46,12 @@ struct AlignerCounters {
   std::uint64_t non_finite = 0;    ///< values; they become bad
   std::uint64_t infinite = 0;      ///< of these: not just without a value
   std::uint64_t restarts = 0;      ///< the interval number went back to a new beginning
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(frames, incomplete, missing, late, repeated, out_of_order, wrong_length, beyond, non_finite,
+      infinite, restarts);
+  }
 };
 
 /// Puts the blocks of one unit, which come in any order across kinds, together into one frame per
@@ -92,12 +100,15 @@ class Aligner {
   }
   [[nodiscard]] const AlignerCounters& counters() const { return counters_; }
 
+  void archive(Archive& a);
+
  private:
   struct Slot {
     Frame frame;
     std::int64_t interval = 0;
     unsigned present = 0;  // bit per kind; kept after settling, to recognise repetitions
     bool used = false;
+    void archive(Archive& a);
   };
   struct Window {
     std::vector<Slot> slots;                                 // ring, by interval
@@ -107,6 +118,7 @@ class Aligner {
     std::int64_t next = 0;                                   // first unsettled interval
     std::int64_t newest = 0;
     bool started = false;
+    void archive(Archive& a);
   };
 
   void start(Window& window, std::int64_t interval);

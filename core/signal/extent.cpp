@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 
 using calibration::extent::kDigits;
@@ -45,6 +47,14 @@ Extent::Verdict Extent::judge_first() {
   }
   if (!is_one) return {};
   return {end != first_.end(), end == first_.end() ? static_cast<int>(end - begin) : 0};
+}
+
+void Extent::archive(Archive& a) {
+  a(low_, high_, first_);
+  a.within(taken_, 0, kFirst);
+  a.require(
+      std::all_of(first_.begin(), first_.end(), [](double each) { return std::isfinite(each); }),
+      "a first value that is none");
 }
 
 double Extent::width() const {

@@ -7,6 +7,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// How far one signal has ever ranged, in plausible values. The first ones are judged together, in
 /// hindsight.
 class Extent {
@@ -30,6 +32,8 @@ class Extent {
   [[nodiscard]] double beyond(double value) const;
   /// Whether a value is back from where the one before it was.
   [[nodiscard]] bool back(double value, double before) const;
+
+  void archive(Archive& a);
 
  private:
   static constexpr std::size_t kFirst = calibration::extent::kFirstValues;

@@ -61,6 +61,12 @@ struct SignalBlock {
     return quality[static_cast<std::size_t>(index)] <= Quality::kUncertain &&
            std::abs(values(index)) <= calibration::extent::kLargest;  // false for NaN
   }
+  template <class Archive>
+  void archive(Archive& a) {
+    a(values);
+    a.length(quality.size());
+    for (Quality& each : quality) a.within(each, Quality::kGood, Quality::kImplausible);
+  }
 };
 
 /// Everything known about one unit at one control interval k. The row convention is that of the
@@ -81,6 +87,11 @@ struct Frame {
   }
   [[nodiscard]] const SignalBlock& operator[](SignalKind kind) const {
     return blocks[static_cast<std::size_t>(kind)];
+  }
+  template <class Archive>
+  void archive(Archive& a) {
+    a(interval, blocks);
+    a.time(source_time_ns);
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -26,7 +27,18 @@ class LagWindow {
   /// window()[l] is the value l samples ago, 0 <= l < length.
   [[nodiscard]] const double* window() const { return values_.data() + position_; }
 
+  /// The window alone: where it lies in its ring makes no difference.
+  template <class Archive>
+  void archive(Archive& a) {
+    a.length(length_);
+    if (a.reads()) position_ = 0;
+    a.doubles(values_.data() + position_, length_);
+    if (a.reads()) std::copy_n(values_.begin(), length_, values_.begin() + length());
+  }
+
  private:
+  [[nodiscard]] std::ptrdiff_t length() const { return static_cast<std::ptrdiff_t>(length_); }
+
   std::size_t length_;
   std::size_t position_ = 0;
   std::vector<double> values_;

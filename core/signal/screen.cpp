@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 
 using calibration::repeats::kEndHits;
@@ -55,6 +57,11 @@ void Screen::Repeats::take(double value) {
 
 void Screen::Repeats::forget_ends() { taken = run = 0; }
 
+void Screen::Repeats::archive(Archive& a) {
+  // not archived: may_be_held (construction)
+  a(last, before_last, run, returns, repeated, counted, low, high, at_low, at_high, taken);
+}
+
 bool Screen::Repeats::frozen() const {
   if (!coarse() && !may_be_held) return run > 0;
   if (may_be_held && run > calibration::repeats::kLongestOfInput) return false;
@@ -89,6 +96,23 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
       repeats.repeated = calibration::repeats::kPriorRepeatedOfInput;
     }
   }
+}
+
+void Screen::Jumps::archive(Archive& a) { a(scale, samples, home, since_home, spikes); }
+
+void Screen::Range::archive(Archive& a) {
+  a(extent, far, former, left, last, taken, rejected);
+  a.within(out, 0, kLongestDelay);
+}
+
+void Screen::archive(Archive& a) {
+  // not archived: counts_, may_predict_, acts_, dead_time_ (construction)
+  // not archived: all_mvs_rest_, longest_out_, anew_ (each frame says it anew)
+  a(predicted_, inputs_matter_, since_rest_, ring_, marked_);
+  a.within(position_, 0, kHeld - 1);
+  a.within(held_, 0, kHeld);
+  a.within(pushed_, 0, kDelay + 1);
+  a(repeats_, ranges_, jumps_, compression_, input_compression_, counters_);
 }
 
 void Screen::push(const Frame& frame) {

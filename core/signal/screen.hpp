@@ -10,11 +10,18 @@
 
 namespace mpm {
 
+class Archive;
+
 /// What the screen found implausible, in values of the frames that have left it.
 struct ScreenCounters {
   std::uint64_t frozen = 0;
   std::uint64_t clipped = 0;
   std::uint64_t spikes = 0;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(frozen, clipped, spikes);
+  }
 };
 
 /// Looks at the values that claim to be good and marks those that no process gives: a signal
@@ -69,6 +76,8 @@ class Screen {
     return jumps_[static_cast<std::size_t>(cv)].spikes;
   }
 
+  void archive(Archive& a);
+
  private:
   /// One signal's repetitions.
   struct Repeats {
@@ -86,6 +95,7 @@ class Screen {
     [[nodiscard]] bool coarse() const { return returns >= calibration::repeats::kReturns; }
     [[nodiscard]] bool frozen() const;
     [[nodiscard]] bool at_end() const;
+    void archive(Archive& a);
   };
   /// One CV's residual (or measurement) for spikes.
   struct Jumps {
@@ -94,6 +104,7 @@ class Screen {
     double home = 0.0;   // last level that left without a mark
     int since_home = 0;  // frames
     std::uint64_t spikes = 0;
+    void archive(Archive& a);
   };
   /// One signal's range.
   struct Range {
@@ -105,6 +116,7 @@ class Screen {
     double last = 0.0;   // value
     bool taken = false;  // some of it has left the screen
     int rejected = 0;    // excursions that came back
+    void archive(Archive& a);
   };
   [[nodiscard]] std::size_t place(int frames) const {
     return static_cast<std::size_t>((position_ + kHeld - frames) % kHeld);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 
 void Compression::take(double value) {
@@ -52,6 +54,19 @@ void Compression::take_change(double change) {
 
 void Compression::conclude() {
   if (batch_.changes >= compression::kFewestChanges) judge();
+}
+
+void Compression::Batch::archive(Archive& a) {
+  a(values, rests, smallest, straight, bends, returns);
+  a.within(changes, 0, compression::kChanges - 1);
+}
+
+void Compression::archive(Archive& a) {
+  a(batch_, sizes_, begun_, rests_, last_, last_change_, was_straight_, smallest_change_);
+  a.within(kind_, Kind::kNone, Kind::kInterpolated);
+  a.require(
+      std::all_of(sizes_.begin(), sizes_.end(), [](double each) { return std::isfinite(each); }),
+      "a change that is none");
 }
 
 void Compression::judge() {

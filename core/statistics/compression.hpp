@@ -6,6 +6,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Recognises in one signal's values what a historian's compression leaves of them: values held
 /// until they have left a deadband, or straight lines between the few that were kept (interpolated
 /// retrieval). A sensor of coarse resolution repeats values and changes as well, but its changes
@@ -28,6 +30,8 @@ class Compression {
   /// Whether two changes in a row are one line.
   [[nodiscard]] static bool straight(double change, double last_change);
 
+  void archive(Archive& a);
+
  private:
   /// Since the batch began.
   struct Batch {
@@ -35,6 +39,7 @@ class Compression {
     int rests = 0;          // runs of one value
     double smallest = 0.0;  // change, or difference between the sizes of two in a row
     int straight = 0, bends = 0, returns = 0;  // changes; back by the same size
+    void archive(Archive& a);
   };
   void take_change(double change);
   void judge();
