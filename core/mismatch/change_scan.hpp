@@ -22,6 +22,12 @@ struct ChangePoint {
   double p_value = 1.0;    ///< of no change in any input, from these rows; kEnded: 1
   double statistic = 0.0;  ///< the F of that input's block; kEnded: 0
   double numerator = 0.0, denominator = 0.0;  ///< its degrees of freedom
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a.within(kind, ChangeKind::kBegan, ChangeKind::kOther);
+    a(samples, resolution, gain, input, p_value, statistic, numerator, denominator);
+  }
 };
 
 /// Looks for the moment at which a CV's mismatch began, ended or became another one, in the rows

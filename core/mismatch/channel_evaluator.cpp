@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
 #include "core/statistics/f_distribution.hpp"
 
@@ -37,6 +38,14 @@ void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
   limits.gain = std::max(limits.gain, limit);
   limits.time_constant = std::max(limits.time_constant, limit);
   limits.gain_alone = true;
+}
+
+void ChannelEvaluator::archive(Archive& a) {
+  // not archived: shape_, signatures_ (construction)
+  // not archived: explained_, estimates_, covariance_, excitation_, usual_, joint_, joint_usual_,
+  // materiality_, sizes_, estimate_, directions_, error_, joint_error_ (each evaluation begins
+  // anew)
+  a(limits_);
 }
 
 void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence) {

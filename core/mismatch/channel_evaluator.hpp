@@ -19,6 +19,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Reads off a CV's factor what the data say about each of its channels.
 ///
 /// Two tests are made and the smaller p counts, doubled: F over an input's whole block, which sees
@@ -48,9 +50,15 @@ class ChannelEvaluator {
     double inputs = 0.0;        ///< by all inputs' blocks
     double usual_errors = 0.0;  ///< by usual errors of all channels alone
     double variance = 0.0;      ///< of the noise
+    template <class Archive>
+    void archive(Archive& a) {
+      a(inputs, usual_errors, variance);
+    }
   };
   /// Of the last `evaluate`.
   [[nodiscard]] const Explained& explained() const { return explained_; }
+
+  void archive(Archive& a);
 
  private:
   [[nodiscard]] std::size_t index(int cv, int input) const {

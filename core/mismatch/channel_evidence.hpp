@@ -14,12 +14,22 @@ struct MaterialityLimits {
   double dead_time_samples = calibration::materiality::kDeadTimeSamples;
   /// Where it is no error of gain, time constant or dead time, only its gain counts.
   bool gain_alone = false;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(gain, time_constant, dead_time_samples, gain_alone);
+  }
 };
 
 /// An estimate with its standard deviation; the s.d. is infinite where nothing is known.
 struct Estimate {
   double value = 0.0;
   double deviation = std::numeric_limits<double>::infinity();
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(value, deviation);
+  }
 };
 
 /// What the data say about one channel (input i to CV j).
@@ -44,6 +54,14 @@ struct ChannelEvidence {
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
   Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
   double dead_time = 0.0;    ///< of the model, samples
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(statistic, p_value, numerator_freedom, tests, block_statistic, directed_statistic,
+      directed_freedom, p_value_material, reference_gain, gain_error_ratio, excitation_index,
+      excitation_index_alone, confounder, usual, harmless, gain_error, log_time_error,
+      dead_time_error, dead_time);
+  }
 };
 
 }  // namespace mpm

@@ -16,8 +16,18 @@ struct Curvature {
   struct Channel {
     double p_value = 1.0;         ///< of none in which this input has a part
     double gain_variation = 0.0;  ///< two s.d. of the local gain over the rows, relative
+    template <class Archive>
+    void archive(Archive& a) {
+      a(p_value, gain_variation);
+    }
   };
   std::vector<Channel> channels;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(explained, p_value);
+    a.varying(channels);
+  }
 };
 
 /// Tests whether `terms` say more of a CV's residual than its past and any linear error of all

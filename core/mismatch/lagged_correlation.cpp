@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
 
 namespace mpm {
@@ -74,6 +75,13 @@ void LaggedCorrelation::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
       out = std::copy_n(residual.window(), lag_count(), out);  // lag last_lag first
     factors_[f].update();
   }
+}
+
+void LaggedCorrelation::archive(Archive& a) {
+  // not archived: shape_, lambda_, block_columns_, window_rows_ (construction)
+  a.within(filled_, 0, window_rows_);
+  a(has_origin_, origin_, input_windows_, residual_windows_, factors_, totals_, correlations_,
+    defined_);
 }
 
 double* LaggedCorrelation::fill_inputs(double* out) const {

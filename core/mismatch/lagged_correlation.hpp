@@ -9,6 +9,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Recursive correlations of all inputs, CVs and lags at once (Carlsson 2010, 3.4 and 3.14-3.17):
 ///
 ///     c_ji(d) = ParCorr(u_i(t), e_j(t+d) | 1, controls of input i),
@@ -51,6 +53,8 @@ class LaggedCorrelation {
   [[nodiscard]] int inputs() const { return shape_.inputs; }
   [[nodiscard]] int cvs() const { return shape_.cvs; }
   [[nodiscard]] int lag_count() const { return shape_.last_lag - shape_.first_lag + 1; }
+
+  void archive(Archive& a);
 
  private:
   [[nodiscard]] bool conventional() const { return shape_.kind == CorrelationKind::kConventional; }

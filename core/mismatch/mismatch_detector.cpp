@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
 
 namespace mpm {
@@ -77,6 +78,20 @@ bool MismatchDetector::take_in_curvature(int cv, double least) {
   curvatures_[at] = std::move(found);
   regression.take_in(std::move(terms), history_, work_);
   return true;
+}
+
+void MismatchDetector::archive(Archive& a) {
+  // not archived: shape_, memory_count_, model_ (construction)
+  // not archived: work_ (empty between calls)
+  a(history_, curvatures_, evaluator_, evidence_, explained_);
+  for (ResidualRegression& regression : regressions_)
+    regression.archive(a, model_, history_, work_);
+  for (const std::optional<Curvature>& found : curvatures_)
+    a.require(!found || found->channels.size() == static_cast<std::size_t>(shape_.inputs),
+              "a curvature of other inputs");
+  for (const ChannelEvidence& evidence : evidence_)
+    a.require(evidence.confounder >= -1 && evidence.confounder < shape_.inputs,
+              "an input that is not there");
 }
 
 void MismatchDetector::start_afresh(int cv, int samples) {

@@ -16,11 +16,18 @@
 
 namespace mpm {
 
+class Archive;
+
 /// A signal that a CV follows, beside errors of the CV's channels as the cause of what is off.
 struct RivalSignal {
   int signal = -1;
   bool wins = false;  ///< it clearly explains more
   bool loses = true;  ///< it clearly explains less
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(signal, wins, loses);
+  }
 };
 
 /// Finds the channels of which the model is wrong. Per CV j the model residual e_j is regressed, in
@@ -89,6 +96,8 @@ class MismatchDetector {
   [[nodiscard]] int memory_count() const { return memory_count_; }
   [[nodiscard]] const RegressionShape& shape() const { return shape_; }
   [[nodiscard]] const RegressionHistory& history() const { return history_; }
+
+  void archive(Archive& a);
 
  private:
   [[nodiscard]] std::size_t first_evidence(int cv, int memory) const {

@@ -37,6 +37,11 @@ class NoiseLevel {
     return lasting_square_ > 0.0 ? recent_square_ / lasting_square_ : 1.0;
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(known_, scale_, scale_rows_, recent_square_, lasting_square_, square_rows_, clipped_share_);
+  }
+
  private:
   double weigh(double error, bool new_direction);
 

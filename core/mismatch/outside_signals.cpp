@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/archive/archive.hpp"
 #include "core/statistics/calibration.hpp"
 #include "core/statistics/readback.hpp"
 
@@ -43,6 +44,12 @@ void OutsideSignals::push(const Eigen::Ref<const Eigen::VectorXd>& values) {
 
 void OutsideSignals::skip(std::int64_t missing) {
   for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, depth_); ++k) push(unknown_);
+}
+
+void OutsideSignals::archive(Archive& a) {
+  // not archived: signals_, depth_, poles_, unknown_ (construction)
+  // not archived: lead_in_, factor_, feed_ (made anew where a CV is followed)
+  a(origin_, last_, readbacks_, windows_);
 }
 
 FollowedSignal OutsideSignals::followed(int cv, const RegressionHistory& history,

@@ -10,6 +10,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// What a CV's residual follows that is no input of the model.
 struct FollowedSignal {
   int signal = -1;         ///< -1: none
@@ -35,6 +37,8 @@ class OutsideSignals {
   [[nodiscard]] FollowedSignal followed(int cv, const RegressionHistory& history,
                                         const ResidualRegression& regression);
 
+  void archive(Archive& a);
+
  private:
   [[nodiscard]] int block() const { return static_cast<int>(poles_.size()) + 1; }
   [[nodiscard]] bool reads_an_input_back(int signal, const RegressionHistory& history, int span);
@@ -50,6 +54,10 @@ class OutsideSignals {
   struct Readback {
     bool is = false;
     int asked_span = 0;
+    template <class Archive>
+    void archive(Archive& a) {
+      a(is, asked_span);
+    }
   };
   std::vector<Readback> readbacks_;
   std::vector<LagWindow> windows_;  // signal-major: value, means

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
 
 namespace mpm {
@@ -128,6 +129,13 @@ void RegressionHistory::skip(std::int64_t missing) {
   // Beyond all memory a gap changes nothing more.
   for (std::int64_t k = 0; k < std::min(missing, static_cast<std::int64_t>(depth_)); ++k)
     push(unknown_.head(shape_.inputs), unknown_.head(shape_.cvs));
+}
+
+void RegressionHistory::archive(Archive& a) {
+  // not archived: shape_, depth_, unknown_ (construction)
+  a.within(settled_, 0, depth_);
+  a(filled_, has_origin_, origin_, last_input_, input_windows_, tail_windows_, residual_windows_,
+    mean_windows_, start_windows_, unknown_run_, since_gap_, has_mean_, usable_);
 }
 
 void RegressionHistory::fill(int cv, int age, double* row) const {

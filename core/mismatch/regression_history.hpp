@@ -8,6 +8,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// What the residual of a CV is regressed on: a constant, the last `residual_order` residuals of
 /// all CVs, beyond them one exponentially weighted mean of its own per residual pole, what a wrong
 /// start may leave behind (a decay per start pole), and per input a block: its last `fir_lags`
@@ -89,6 +91,8 @@ class RegressionHistory {
   [[nodiscard]] double residual(int cv, int age) const {
     return residual_windows_[static_cast<std::size_t>(cv)].window()[age];
   }
+
+  void archive(Archive& a);
 
  private:
   void push_inputs(const Eigen::Ref<const Eigen::VectorXd>& inputs);

@@ -40,6 +40,11 @@ struct RegressionMemory {
     weight_sum = weight_square = 0.0;
     rows = 0;
   }
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: length (construction)
+    a(factor, weight_sum, weight_square, rows, heavy_tails);
+  }
   /// W1^2 / W2: rows that equal weights would need for the same precision.
   [[nodiscard]] double effective_rows() const {
     return weight_square > 0.0 ? weight_sum * weight_sum / weight_square : 0.0;

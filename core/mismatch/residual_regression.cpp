@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 namespace {
 
@@ -42,11 +44,38 @@ ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
 void ResidualRegression::take_in(VolterraTerms terms, const RegressionHistory& history,
                                  RowWorkspace& work) {
   fold(history, work);
-  columns_ += terms.columns() - (terms_ ? terms_->columns() : 0);
+  make_room(terms);
   terms_ = std::move(terms);
+  start_afresh(span_, history, work);
+}
+
+void ResidualRegression::make_room(const VolterraTerms& terms) {
+  columns_ += terms.columns() - (terms_ ? terms_->columns() : 0);
   for (RegressionMemory& memory : memories_) memory = RegressionMemory(columns_, memory.length);
   reserve_first_rows();
-  start_afresh(span_, history, work);
+}
+
+void ResidualRegression::archive(Archive& a, const LinearModel& model,
+                                 const RegressionHistory& history, const RowWorkspace& work) {
+  // not archived: cv_, shape_, remembered_ (construction)
+  // not archived: columns_ (of the terms' inputs)
+  // not archived: left_, sorted_ (empty between calls)
+  bool has_terms = terms_.has_value();
+  a(has_terms);
+  if (has_terms) {
+    std::vector<int> inputs = terms_ ? terms_->inputs() : std::vector<int>{};
+    a.varying(inputs);
+    a.require(VolterraTerms::possible(inputs, model), "terms that no CV has");
+    if (a.reads()) {
+      VolterraTerms terms(model, cv_, std::move(inputs), history.depth());
+      make_room(terms);
+      terms_ = std::move(terms);
+    }
+    a(*terms_);
+  }
+  a.within(span_, 0, remembered_);
+  a.within(waiting_, 0, work.rows.capacity() - 1);
+  a(restarts_, settled_, noise_, weights_, scales_, memories_, slides_);
 }
 
 void ResidualRegression::add_sample(const RegressionHistory& history, RowWorkspace& work) {
@@ -211,6 +240,7 @@ double ResidualRegression::spread(int newest, const RegressionHistory& history,
         std::max(calibration::row_weights::kLeastLeft, 1.0 - work.previews[0].leverage);
     left_.push_back(std::abs(work.previews[0].error) / weight / std::sqrt(share));
   }
+  if (left_.empty()) return 0.0;
   sorted_ = left_;
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());

@@ -15,6 +15,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Room for rows that are taken together; the CVs share one.
 struct RowWorkspace {
   /// `capacity`: rows (>= 1).
@@ -88,7 +90,12 @@ class ResidualRegression {
     return std::min(kLenience * row_weight(age), 1.0 / scales_.window()[age]);
   }
 
+  /// `model`: the one that terms are made of; the history's depth is that of their windows.
+  void archive(Archive& a, const LinearModel& model, const RegressionHistory& history,
+               const RowWorkspace& work);
+
  private:
+  void make_room(const VolterraTerms& terms);
   [[nodiscard]] int patience(const RowWorkspace& work) const;
   void take(int oldest, int newest, const RegressionHistory& history, RowWorkspace& work);
   void gather(int oldest, int newest, const RegressionHistory& history, RowWorkspace& work) const;

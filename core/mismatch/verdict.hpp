@@ -50,6 +50,11 @@ struct AlarmEvidence {
                                      ///< the kind that the settings name
   int lag = 0;                       ///< samples, where that is
   double effect_size = 0.0;          ///< estimated gain error, plant minus model, CV per input unit
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(p_value, statistic, threshold, partial_correlation, lag, effect_size);
+  }
 };
 
 /// What is said of one channel as it stands (core/record/channel_record.hpp).
@@ -68,6 +73,15 @@ struct ChannelVerdict : AlarmEvidence {
   /// Two s.d. of the local gain over where the plant was operated, relative to the model's; NaN
   /// unless the CV's answer is known to depend on that.
   double gain_variation = std::numeric_limits<double>::quiet_NaN();
+
+  template <class Archive>
+  void archive(Archive& a) {
+    AlarmEvidence::archive(a);
+    a.within(verdict, Verdict::kUndetermined, Verdict::kMismatch);
+    a.within(reason, Reason::kNone, Reason::kCoarse);
+    a(excited, p_value_material, material, model_gain, effect_low, effect_high, usual,
+      smallest_error, effective_samples, gain_variation);
+  }
 };
 
 /// Judgement on one channel (one input to one CV) after one sample.
@@ -78,6 +92,12 @@ struct ChannelStatus : ChannelVerdict {
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
   Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
   double dead_time = 0.0;    ///< of the model, samples
+
+  template <class Archive>
+  void archive(Archive& a) {
+    ChannelVerdict::archive(a);
+    a(confounder, log_time_error, dead_time_error, dead_time);
+  }
 };
 
 }  // namespace mpm

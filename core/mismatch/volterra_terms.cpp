@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
 
 namespace mpm {
@@ -70,6 +71,23 @@ VolterraTerms::VolterraTerms(const LinearModel& model, int cv, const RegressionH
     channels_.push_back(std::move(candidates[c].channel));
     windows_.push_back(std::move(candidates[c].window));
   }
+}
+
+VolterraTerms::VolterraTerms(const LinearModel& model, int cv, std::vector<int> inputs, int depth)
+    : inputs_(std::move(inputs)), centres_(inputs_.size()) {
+  for (const int input : inputs_) channels_.push_back(model.channel(cv, input));
+  windows_.assign(inputs_.size(), LagWindow(depth + kLags));
+}
+
+bool VolterraTerms::possible(const std::vector<int>& inputs, const LinearModel& model) {
+  return inputs.size() <= kMostInputs && std::all_of(inputs.begin(), inputs.end(), [&](int input) {
+           return input >= 0 && input < model.input_count();
+         });
+}
+
+void VolterraTerms::archive(Archive& a) {
+  // not archived: inputs_ (construction)
+  a(centres_, channels_, windows_);
 }
 
 int VolterraTerms::most_columns() { return kLags * terms_of(kMostInputs); }

@@ -10,6 +10,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// How a plant's answer may depend on where it is operated: the products and cubes
 ///
 ///     g_a(k) g_b(k), a <= b,  and  g_a(k)^3,   g_i = G_ji (u_i - centre_i),
@@ -30,6 +32,12 @@ class VolterraTerms {
  public:
   /// Of the last `span` samples (> 0) of the history.
   VolterraTerms(const LinearModel& model, int cv, const RegressionHistory& history, int span);
+
+  /// Of these inputs (of the model, as `inputs()` had them), to be read from an archive.
+  VolterraTerms(const LinearModel& model, int cv, std::vector<int> inputs, int depth);
+  void archive(Archive& a);
+  /// Whether `inputs` may be any CV's.
+  [[nodiscard]] static bool possible(const std::vector<int>& inputs, const LinearModel& model);
 
   /// Most columns that any CV has.
   [[nodiscard]] static int most_columns();
