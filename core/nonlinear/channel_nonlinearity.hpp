@@ -51,6 +51,12 @@ struct ChannelNonlinearity {
   static constexpr double kMostVariation = 100.0;
 
   /// See FieldKey.
+  template <class Archive>
+  void archive(Archive& a) {
+    a.within(verdict, NonlinearVerdict::kUndetermined, NonlinearVerdict::kNonlinear);
+    a.within(kind, NonlinearKind::kNone, NonlinearKind::kOutputCurve);
+    a(tested, p_value, statistic, share, material, smallest_variation);
+  }
   template <class Visit, class Record, class... Sample>
   static void fields(Visit&& visit, Record& record, Sample&... sample) {
     visit({"tested", false}, record.tested, sample.tested...);

@@ -1,5 +1,7 @@
 #include "core/nonlinear/channel_path.hpp"
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 
 ChannelPath::ChannelPath(const LinearModel& model, int cv, int input, double pole)
@@ -12,6 +14,13 @@ void ChannelPath::rest(double value) {
   mean_ = value;
   value_(0) = value;
   if (channel_) channel_->reset_steady(value_);
+}
+
+void ChannelPath::archive(Archive& a) {
+  // not archived: pole_ (construction)
+  // not archived: value_ (empty between calls)
+  a(mean_);
+  if (channel_) a(*channel_);  // construction says whether there is one
 }
 
 void ChannelPath::advance(double value) {

@@ -7,6 +7,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// The way from an input to a CV as the model has it, for what is not the input itself but a
 /// function of it. Where the model has no such channel, or one that integrates (and would never
 /// forget), an exponentially weighted mean stands for it. No allocation after construction.
@@ -21,6 +23,8 @@ class ChannelPath {
   [[nodiscard]] double output() const { return channel_ ? channel_->output()(0) : mean_; }
   /// Takes the value of sample k.
   void advance(double value);
+
+  void archive(Archive& a);
 
  private:
   std::optional<LinearModel> channel_;

@@ -4,6 +4,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Nonlinear functions of a point: what a regression takes as columns beside the linear ones.
 class FeatureMap {
  public:
@@ -20,6 +22,8 @@ class FeatureMap {
   virtual void begin(const Eigen::Ref<const Eigen::MatrixXd>& points) = 0;
   /// outputs() values for a point of dimension() values. No allocation. Before `begin` all 0.
   virtual void apply(const double* point, double* features) const = 0;
+  /// What `begin` made of the points.
+  virtual void archive(Archive& a) = 0;
 
  private:
   int dimension_, outputs_;

@@ -16,6 +16,12 @@ struct Kernel {
   KernelKind kind = KernelKind::kGaussian;
   double bandwidth = 1.0;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: kind (construction)
+    a(bandwidth);
+  }
+
   [[nodiscard]] double operator()(const double* x, const double* y, int dimension) const;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
 #include "core/nonlinear/calibration.hpp"
 
@@ -49,6 +50,11 @@ void LinearCompanions::advance(const RegressionHistory& history, int age) {
       ++at;
     }
   }
+}
+
+void LinearCompanions::archive(Archive& a) {
+  // not archived: inputs_, poles_ (construction)
+  a(origins_, means_, windows_);
 }
 
 void LinearCompanions::fill(int age, double* row) const {

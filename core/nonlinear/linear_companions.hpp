@@ -7,6 +7,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// More linear columns than the linear test has: of each input exponentially weighted means of
 /// twice its slowest tail, half of it, a quarter, and so on, down to what its pulse lags show. An
 /// error of a time constant leaves decays that the tail alone follows roughly, which is enough to
@@ -23,6 +25,8 @@ class LinearCompanions {
   void begin(const RegressionHistory& history);
   void advance(const RegressionHistory& history, int age);
   void fill(int age, double* row) const;
+
+  void archive(Archive& a);
 
  private:
   int inputs_;

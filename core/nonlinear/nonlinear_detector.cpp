@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/archive/archive.hpp"
 #include "core/nonlinear/calibration.hpp"
 
 namespace mpm {
@@ -57,6 +58,11 @@ void NonlinearDetector::judge(ChannelNonlinearity& result) const {
   result.verdict = !unlikely && result.smallest_variation <= settings_.variation
                        ? NonlinearVerdict::kLinear
                        : NonlinearVerdict::kUndetermined;
+}
+
+void NonlinearDetector::archive(Archive& a) {
+  // not archived: settings_, inputs_ (construction)
+  a(regressions_, results_);
 }
 
 void NonlinearDetector::silence(int cv) {

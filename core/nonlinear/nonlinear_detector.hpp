@@ -8,6 +8,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// The nonlinear test of all channels of a unit, beside the linear one (`MismatchDetector`), which
 /// it reads and leaves as it is. No allocation but where a CV's regression begins.
 class NonlinearDetector {
@@ -41,6 +43,8 @@ class NonlinearDetector {
   [[nodiscard]] const NonlinearRegression& regression(int cv) const {
     return regressions_[static_cast<std::size_t>(cv)];
   }
+
+  void archive(Archive& a);
 
  private:
   void judge(ChannelNonlinearity& result) const;

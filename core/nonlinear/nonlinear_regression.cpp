@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
 #include "core/nonlinear/calibration.hpp"
 #include "core/statistics/f_distribution.hpp"
@@ -107,6 +108,15 @@ void NonlinearRegression::feed(const RegressionHistory& history,
   row[columns] = history.residual(cv_, age);
   for (int c = 0; c <= columns; ++c) row[c] *= weight;
   if (++batched_ == kTogether) flush();
+}
+
+void NonlinearRegression::archive(Archive& a) {
+  // not archived: shape_, cv_, patience_ (construction)
+  // not archived: batch_, batched_ (empty between calls)
+  // not archived: left_out_, set_, lead_in_, past_factor_, coefficients_, taken_off_, own_past_,
+  // rotated_, own_gain_, error_variance_, freedom_, linear_square_ (each evaluation begins anew)
+  a(companions_, terms_, memory_, begun_, rows_at_begin_, restarts_);
+  a.within(waiting_, 0, patience_ + 1);
 }
 
 void NonlinearRegression::flush() {

@@ -14,6 +14,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// One CV's residual regressed on the rows of the linear test with the CV's nonlinear terms behind
 /// them, weighed as they are there (`ResidualRegression`), and the F test of each input that no
 /// term in which it has a part says anything (Seber and Lee 2003, section 4.3). The linear columns
@@ -44,6 +46,8 @@ class NonlinearRegression {
   void evaluate(double variation, ChannelNonlinearity* results);
   [[nodiscard]] const RegressionMemory& memory() const { return memory_; }
   [[nodiscard]] const NonlinearTerms& terms() const { return terms_; }
+
+  void archive(Archive& a);
 
  private:
   void begin(const RegressionHistory& history, const ResidualRegression& regression);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/archive/archive.hpp"
 #include "core/nonlinear/calibration.hpp"
 #include "core/nonlinear/nystrom_map.hpp"
 #include "core/nonlinear/polynomial_map.hpp"
@@ -30,6 +31,7 @@ class SquareAnd : public FeatureMap {
     *features = *point * *point;
     others_->apply(point, features + 1);
   }
+  void archive(Archive& a) override { a(*others_); }
 
  private:
   std::unique_ptr<FeatureMap> others_;
@@ -307,6 +309,26 @@ void NonlinearTerms::push_terms() {
   const double sum = standardised(sum_of_outputs(), sum_centre_, sum_scale_);
   sum_map_->apply(&sum, at);
   for (std::size_t t = 0; t < windows_.size(); ++t) windows_[t].push(values_[t]);
+}
+
+void NonlinearTerms::Channel::archive(Archive& a) {
+  // not archived: modelled (construction)
+  a(linear, curved, *input_map, *channel_map, play, centre, scale, output_centre, output_scale);
+}
+
+void NonlinearTerms::Pair::archive(Archive& archive) { archive(a, b, *map); }
+
+void NonlinearTerms::Term::archive(Archive& a) {
+  // not archived: kind (construction)
+  a(first, second);
+}
+
+void NonlinearTerms::archive(Archive& a) {
+  // not archived: values_, input_points_, output_points_, sum_points_ (empty between calls)
+  a(channels_, pairs_, *sum_map_, sum_centre_, sum_scale_, terms_, windows_);
+  const auto has = [this](int input) { return input >= 0 && input < inputs(); };
+  for (const Pair& pair : pairs_)
+    a.require(has(pair.a) && has(pair.b), "a pair of inputs that are not there");
 }
 
 void NonlinearTerms::advance(const RegressionHistory& history, int age) {

@@ -14,6 +14,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// The columns by which one CV's residual may depend on the inputs as no linear error makes it: of
 /// each input i, standardised to x_i (and no farther out than four s.d.), with g_i = G_i x_i what
 /// the model's channel makes of it,
@@ -56,6 +58,8 @@ class NonlinearTerms {
   /// Of the row whose response is `age` samples older than the last one taken: columns() values.
   void fill(int age, double* row) const;
 
+  void archive(Archive& a);
+
  private:
   struct Channel {
     ChannelPath linear;
@@ -65,14 +69,17 @@ class NonlinearTerms {
     bool modelled = false;
     double centre = 0.0, scale = 0.0;                // of the input; scale 0: it stands still
     double output_centre = 0.0, output_scale = 0.0;  // of g
+    void archive(Archive& a);
   };
   struct Pair {
     int a = 0, b = 0;
     std::unique_ptr<FeatureMap> map;
+    void archive(Archive& archive);
   };
   struct Term {
     int first = 0, second = 0;  // inputs; all of them where second < first
     NonlinearKind kind = NonlinearKind::kNone;
+    void archive(Archive& a);
   };
 
   [[nodiscard]] int terms() const { return static_cast<int>(terms_.size()); }

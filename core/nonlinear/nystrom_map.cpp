@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/archive/archive.hpp"
 #include "core/nonlinear/calibration.hpp"
 
 namespace mpm {
@@ -49,6 +50,18 @@ void NystromMap::begin(const Eigen::Ref<const Eigen::MatrixXd>& points) {
   }
   held_ = trace > least ? held / trace : 0.0;
   linear_ = factor.solve(whole * weights_.transpose()).transpose();
+}
+
+void NystromMap::archive(Archive& a) {
+  // not archived: most_landmarks_ (construction)
+  auto count = landmarks_.cols();
+  a.within(count, 0, most_landmarks_);
+  if (a.reads()) {
+    landmarks_.resize(count > 0 ? dimension() : 0, count);
+    weights_.resize(count > 0 ? outputs() : 0, count);
+    linear_.resize(count > 0 ? outputs() : 0, count > 0 ? 1 + dimension() : 0);
+  }
+  a(kernel_, landmarks_, weights_, linear_, held_);
 }
 
 void NystromMap::apply(const double* point, double* features) const {

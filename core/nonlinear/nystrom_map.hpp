@@ -22,6 +22,7 @@ class NystromMap : public FeatureMap {
 
   void begin(const Eigen::Ref<const Eigen::MatrixXd>& points) override;
   void apply(const double* point, double* features) const override;
+  void archive(Archive& a) override;
 
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
   /// Of the trace of Q K Q, what the components hold, 0..1.

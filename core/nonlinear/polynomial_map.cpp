@@ -21,6 +21,11 @@ PolynomialMap::PolynomialMap(int dimension, std::vector<Exponents> monomials)
 
 void PolynomialMap::begin(const Eigen::Ref<const Eigen::MatrixXd>& /*points*/) {}
 
+// Its monomials are all that it has.
+void PolynomialMap::archive(Archive& /*a*/) {
+  // not archived: monomials_ (construction)
+}
+
 void PolynomialMap::apply(const double* point, double* features) const {
   for (const Exponents& exponents : monomials_)
     *features++ =

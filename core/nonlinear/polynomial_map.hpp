@@ -16,6 +16,7 @@ class PolynomialMap : public FeatureMap {
 
   void begin(const Eigen::Ref<const Eigen::MatrixXd>& points) override;
   void apply(const double* point, double* features) const override;
+  void archive(Archive& a) override;
 
  private:
   std::vector<Exponents> monomials_;

@@ -5,6 +5,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "core/archive/archive.hpp"
 #include "core/nonlinear/kernel.hpp"
 
 namespace mpm {
@@ -19,6 +20,11 @@ RandomMap::RandomMap(int dimension, int frequencies, std::uint64_t seed)
 
 void RandomMap::begin(const Eigen::Ref<const Eigen::MatrixXd>& points) {
   inverse_width_ = 1.0 / median_bandwidth(points);
+}
+
+void RandomMap::archive(Archive& a) {
+  // not archived: frequencies_ (construction)
+  a(inverse_width_);
 }
 
 void RandomMap::apply(const double* point, double* features) const {

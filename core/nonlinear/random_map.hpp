@@ -18,6 +18,7 @@ class RandomMap : public FeatureMap {
 
   void begin(const Eigen::Ref<const Eigen::MatrixXd>& points) override;
   void apply(const double* point, double* features) const override;
+  void archive(Archive& a) override;
 
  private:
   Eigen::MatrixXd frequencies_;  // dimension x count, for a width of 1

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/archive/archive.hpp"
 #include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
@@ -47,6 +48,14 @@ void RankWindow::replace(int signal, std::size_t slot, double value) {
     own += 2 * below + same;
   }
   doubled[slot] = own + 1;
+}
+
+void RankWindow::archive(Archive& a) {
+  // not archived: signals_, length_ (construction)
+  // not archived: factor_, feed_ (empty between calls)
+  a.within(count_, 0, static_cast<int>(length_));
+  a.within(next_, 0, length_ - 1);
+  a(values_, doubled_);
 }
 
 double RankWindow::rank(int signal, int age) const {

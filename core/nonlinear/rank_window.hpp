@@ -9,6 +9,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Spearman's rank coefficient (1904) of several signals over the last `length` samples, and rank
 /// partial correlations: those of the ranks (Kendall 1942). Ties share their mean rank.
 ///
@@ -37,6 +39,8 @@ class RankWindow {
   /// with count - signals degrees of freedom (Kendall and Gibbons 1990, section 8.11). 1 where
   /// there are none.
   [[nodiscard]] double p_value(double partial_coefficient) const;
+
+  void archive(Archive& a);
 
  private:
   [[nodiscard]] std::size_t first(int signal) const {
