@@ -45,6 +45,13 @@ class ChannelJudge {
   /// Brings the status up to the sample, but for the reported correlation.
   void judge(const JudgedChannel& channel, ChannelStatus& status);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: mvs_, inputs_, gain_error_of_interest_, mean_line_, channel_rate_
+    // (construction)
+    a(thresholds_);
+  }
+
  private:
   [[nodiscard]] bool has_evidence(const JudgedChannel& channel, ChannelStatus& status);
   void read_change(const JudgedChannel& channel, ChannelStatus& status);

@@ -62,6 +62,12 @@ class CvAlarms {
   /// Since which the CV is isolating.
   [[nodiscard]] const ChangePoint& change() const { return change_; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: before_, belief_ (empty between calls)
+    a(conditions_, spoken_, isolating_, change_, since_scan_);
+  }
+
  private:
   void step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
             const Condition::Limits& limits);

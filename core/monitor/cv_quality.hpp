@@ -40,6 +40,10 @@ class CvQuality {
   }
   /// Samples in a row that gave none.
   [[nodiscard]] std::int64_t without_row() const { return without_row_; }
+  template <class Archive>
+  void archive(Archive& a) {
+    a(implausible_share_, spike_share_, unknown_share_, spikes_, without_row_);
+  }
 
  private:
   double implausible_share_ = 0.0, spike_share_ = 0.0, unknown_share_ = 0.0;

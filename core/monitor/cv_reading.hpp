@@ -10,12 +10,22 @@ namespace mpm {
 struct CvReading {
   double measured = std::numeric_limits<double>::quiet_NaN();
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< measured minus predicted
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(measured, residual);
+  }
 };
 
 /// A frame as the monitor judged it.
 struct JudgedFrame {
   std::int64_t interval = 0;
   std::vector<CvReading> readings;  ///< per CV
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(interval, readings);
+  }
 };
 
 }  // namespace mpm

@@ -15,13 +15,22 @@ class FThresholds {
   /// the smaller p counts, multiplied by their number; `level`: of p.
   [[nodiscard]] double at(double numerator, double denominator, int tests, double level);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a.varying(kept_);
+  }
+
  private:
   static constexpr std::size_t kMostKinds = 32;
   struct Kept {
-    double numerator;
-    int tests;
-    double denominator;
-    double value;
+    double numerator = 0.0;
+    int tests = 1;
+    double denominator = 0.0;
+    double value = 0.0;
+    template <class Archive>
+    void archive(Archive& a) {
+      a(numerator, tests, denominator, value);
+    }
   };
   std::vector<Kept> kept_;  // one per kind of test
 };

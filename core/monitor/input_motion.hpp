@@ -37,6 +37,12 @@ class InputMotion {
     return at_end_ > calibration::input_motion::kMostOfTheTime;
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: step_ (construction)
+    a(samples_, run_, still_, at_end_, low_, high_);
+  }
+
  private:
   double step_;
   double samples_ = 0.0;

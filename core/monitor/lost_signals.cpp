@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 namespace {
 
@@ -32,6 +34,17 @@ void LostSignals::take(const Frame& frame, SignalKind kind, int index) {
   }
   loss.usable = usable;
   loss.lost = loss.share > (loss.lost ? bad_data::kFoundShare : bad_data::kMostShare);
+}
+
+void LostSignals::Loss::archive(Archive& a) {
+  a(share, usable, lost);
+  a.within(cause, LossCause::kNoValue, LossCause::kImplausible);
+  a.time(since_ns);
+}
+
+void LostSignals::archive(Archive& a) {
+  // not archived: step_ (construction)
+  a(losses_);
 }
 
 std::vector<LostSignal> LostSignals::list() const {

@@ -9,6 +9,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Why a signal has no value that can be used.
 enum class LossCause {
   kNoValue,      ///< NaN, or not there at all
@@ -36,6 +38,8 @@ class LostSignals {
   /// MVs, DVs, CVs, predictions; within a kind in their order.
   [[nodiscard]] std::vector<LostSignal> list() const;
 
+  void archive(Archive& a);
+
  private:
   struct Loss {
     double share = 0.0;  // of unusable values, exponentially weighted
@@ -43,6 +47,7 @@ class LostSignals {
     bool lost = false;
     LossCause cause = LossCause::kNoValue;
     std::int64_t since_ns = 0;
+    void archive(Archive& a);
   };
 
   double step_;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/archive/archive.hpp"
 #include "core/mismatch/change_scan.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
 #include "core/mismatch/outside_signals.hpp"
@@ -26,6 +27,7 @@ struct Monitor::State {
   State(const LinearModel& unit_model, const SignalCounts& signal_counts,
         const std::vector<bool>& may_predict, const DerivedSettings& derived);
 
+  void archive(Archive& a);
   /// As after construction, but for the alarms, which stay until new samples say something of
   /// them, and for what the data themselves look like.
   void begin_anew();
@@ -41,6 +43,7 @@ struct Monitor::State {
     std::int64_t settled = 0;  // samples
     RivalSignal rival;
     std::int64_t followed_next = 0;  // sample
+    void archive(Archive& a);
   };
 
   [[nodiscard]] std::size_t index(int cv, int input) const {
@@ -171,6 +174,29 @@ void Monitor::State::begin_anew() {
   fresh.last_interval = last_interval;
   fresh.taken_interval = taken_interval;
   *this = std::move(fresh);
+}
+
+void Monitor::State::Cv::archive(Archive& a) {
+  a(alarms, quality, evaluated, judged, compressed, settled, rival, followed_next);
+}
+
+void Monitor::State::archive(Archive& a) {
+  // not archived: model, counts, expected, settings, acts (construction)
+  // not archived: outside_values, scan (each sample and each search begins anew)
+  a(screen, inputs, predictions, residuals, correlation, detector, nonlinear, outside, judge, cvs,
+    status, judged_frames, counters, lost, first, last_interval, taken_interval, samples);
+  a.within(judged_count, 0, judged_frames.size());
+  a.varying(transitions);
+  const int outside_signals = counts.cv + counts.aux;
+  for (const Cv& cv : cvs)
+    a.require(cv.rival.signal >= -1 && cv.rival.signal < outside_signals,
+              "a signal that is not there");
+  for (const ChannelStatus& channel : status)
+    a.require(channel.confounder >= -1 && channel.confounder < counts.inputs() + outside_signals,
+              "a signal that is not there");
+  for (const AlarmTransition& one : transitions)
+    a.require(one.cv >= 0 && one.cv < counts.cv && one.input >= 0 && one.input < counts.inputs(),
+              "an alarm of a channel that is not there");
 }
 
 void Monitor::State::take_frame(const Frame& frame) {
@@ -419,6 +445,8 @@ Monitor::Monitor(const ModelSpec& spec, const SignalCounts& counts,
 Monitor::Monitor(Monitor&&) noexcept = default;
 Monitor& Monitor::operator=(Monitor&&) noexcept = default;
 Monitor::~Monitor() = default;
+
+void Monitor::archive(Archive& a) { state_->archive(a); }
 
 void Monitor::push(const Frame& frame) {
   State& s = *state_;

@@ -18,12 +18,20 @@
 
 namespace mpm {
 
+class Archive;
+
 /// A change of one channel's alarm, caused by the frame just pushed.
 struct AlarmTransition {
   int cv = 0;
   int input = 0;
   AlarmState to = AlarmState::kCleared;
   AlarmEvidence before;  ///< as of the sample before: what a CV that begins anew has forgotten
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(cv, input, before);
+    a.within(to, AlarmState::kCleared, AlarmState::kActive);
+  }
 };
 
 /// What the monitor did with the frames so far.
@@ -37,6 +45,11 @@ struct MonitorCounters {
   ScreenCounters implausible;      ///< of these: good by their quality, but not by their look
   /// Whose they are: per kind and signal, empty where the kind is not needed.
   std::array<std::vector<std::uint64_t>, kSignalKindCount> bad_of;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(frames, used, missing, out_of_order, bad_values, implausible, bad_of);
+  }
 };
 
 /// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
@@ -87,6 +100,9 @@ class Monitor {
   [[nodiscard]] std::vector<LostSignal> lost() const;
   /// How many more samples the CV's verdicts need at least, if all of them serve; 0 = none.
   [[nodiscard]] double samples_needed(int cv) const;
+
+  /// All that the samples have changed.
+  void archive(Archive& a);
 
  private:
   struct State;

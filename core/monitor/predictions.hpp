@@ -48,6 +48,13 @@ class Predictions {
   /// `missing` intervals of which nothing is known.
   void skip(std::int64_t missing, const UnitInputs& inputs);
 
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: may_predict_, acts_, has_model_, starting_samples_, settling_samples_
+    // (construction)
+    a(model_, simulates_, started_, given_, settling_);
+  }
+
  private:
   void distrust(int input);
 

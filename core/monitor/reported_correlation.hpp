@@ -37,6 +37,12 @@ class ReportedCorrelation {
     return correlation_.correlations(cv, input);
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: first_lag_ (construction)
+    a(correlation_, current_);
+  }
+
  private:
   int first_lag_;
   LaggedCorrelation correlation_;

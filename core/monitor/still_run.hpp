@@ -22,6 +22,11 @@ class StillRun {
 
   [[nodiscard]] bool stands() const { return run_ >= calibration::input_motion::kStillSamples; }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(run_, last_, begun_);
+  }
+
  private:
   int run_ = 0;  // repetitions
   double last_ = 0.0;

@@ -35,6 +35,12 @@ class UnitInputs {
   /// No MV moves.
   [[nodiscard]] bool mvs_still() const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: mvs_ (construction)
+    a(values_, held_, unknown_runs_, motions_);
+  }
+
  private:
   int mvs_;
   Eigen::VectorXd values_, held_;

@@ -30,6 +30,11 @@ class UnitResiduals {
   }
   [[nodiscard]] std::int64_t longest_unknown_run() const;
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(values_, held_, largest_, unknown_runs_);
+  }
+
  private:
   Eigen::VectorXd values_, held_;
   Eigen::VectorXd largest_;  // magnitude that each CV has had
