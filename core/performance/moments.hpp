@@ -36,6 +36,11 @@ class Moments {
                       : kUnknown;
   }
 
+  template <class Archive>
+  void archive(Archive& a) {
+    a(count_, mean_, squares_);
+  }
+
  private:
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 

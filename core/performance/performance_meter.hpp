@@ -30,12 +30,24 @@ class PerformanceMeter {
   /// begin anywhere.
   void begin_run();
 
+  /// Of the last frame.
+  [[nodiscard]] std::int64_t interval() const { return interval_; }
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: setup_ (construction)
+    a(predictions_, mvs_, interval_, begun_);
+  }
+
  private:
   /// One MV's last values.
   struct Trace {
     StillRun run;
     double last = 0.0;
     bool known = false;  // in the last interval
+    template <class Archive>
+    void archive(Archive& a) {
+      a(run, last, known);
+    }
   };
 
   void take_cv(const Frame& frame, int cv, CvSums& sums) const;

@@ -23,6 +23,11 @@ struct CvSums {
   Moments error;                            ///< measured minus set-point, where both are known
   std::int64_t outside = 0;                 ///< of the known: beyond a limit
   std::vector<PredictionSums> predictions;  ///< one per horizon
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(known, error, outside, predictions);
+  }
 };
 
 struct MvSums {
@@ -31,6 +36,11 @@ struct MvSums {
   std::int64_t standing = 0;                            ///< of the known: in a stand-still run
   std::int64_t moves = 0;                               ///< pairs of known values, one sample apart
   double travel = 0.0;  ///< sum of the absolute differences of these, MV units
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(known, at_low, at_high, at_limits, standing, moves, travel);
+  }
 };
 
 /// All that indices of control performance are made from: sums over some samples, which add up.
@@ -46,6 +56,11 @@ struct PerformanceSums {
   /// Of the same unit. No allocation.
   void add(const PerformanceSums& other);
   void clear();
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(samples, told, acting, cvs, mvs);
+  }
 };
 
 /// `part` of `all`, 0..1; NaN of nothing.

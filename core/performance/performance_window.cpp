@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm {
 
 using calibration::performance::kBlocks;
@@ -31,6 +33,14 @@ bool PerformanceWindow::push(const Frame& frame, std::span<const JudgedFrame> ju
   for (const JudgedFrame& one : judged) meter_.judge(one, sums);
   open_ = (since + 1) % block_samples_ != 0;
   return ended || !open_;
+}
+
+void PerformanceWindow::archive(Archive& a) {
+  // not archived: block_samples_ (construction)
+  // not archived: total_ (added up whenever it is asked for)
+  a(meter_, blocks_, first_, block_, begun_, open_);
+  a.require(first_ <= meter_.interval() && block_ == (meter_.interval() - first_) / block_samples_,
+            "a window of other intervals");
 }
 
 void PerformanceWindow::slide_to(std::int64_t block) {

@@ -8,6 +8,8 @@
 
 namespace mpm {
 
+class Archive;
+
 /// Sums over the last samples of a unit: a sliding window of `calibration::performance::kBlocks`
 /// equal blocks, counted in control intervals from the first frame on. No allocation after
 /// construction.
@@ -25,6 +27,8 @@ class PerformanceWindow {
   bool push(const Frame& frame, std::span<const JudgedFrame> judged);
   /// Over the window; valid until the next call.
   [[nodiscard]] const PerformanceSums& total();
+
+  void archive(Archive& a);
 
  private:
   void slide_to(std::int64_t block);

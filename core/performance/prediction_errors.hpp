@@ -19,6 +19,11 @@ struct PredictionSums {
   [[nodiscard]] double rmse() const;
   /// Of what the measurement itself did meanwhile: the error of who predicts no change.
   [[nodiscard]] double movement_rms() const;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(pairs, error_square, movement_square);
+  }
 };
 
 /// How well CVs were predicted over some horizons, with the usual output-bias update: the error of
@@ -36,6 +41,13 @@ class PredictionErrors {
   void push(std::int64_t interval, std::span<const CvReading> readings, Sums sums);
   /// As after construction: what follows is another run.
   void forget();
+
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: cvs_, rows_, horizons_ (construction)
+    a.within(place_, 0, rows_ - 1);
+    a(ring_, interval_, begun_);
+  }
 
  private:
   void skip_to(std::int64_t interval);

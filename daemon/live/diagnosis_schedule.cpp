@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/archive/archive.hpp"
 #include "core/signal/saturated.hpp"
 
 namespace mpm::live {
@@ -30,6 +31,15 @@ bool DiagnosisSchedule::due(std::int64_t time_ns, int rows, bool raised, bool ac
   last_start_ns_ = time_ns;
   next_at_ = since_alarm_ + std::clamp<std::int64_t>(since_alarm_, 1, settings_.renewed_rows);
   return true;
+}
+
+void DiagnosisSchedule::archive(Archive& a) {
+  // not archived: settings_ (construction)
+  a(waiting_, since_alarm_, next_at_);
+  bool started = last_start_ns_.has_value();
+  a(started);
+  if (a.reads()) last_start_ns_ = started ? std::optional<std::int64_t>(0) : std::nullopt;
+  if (last_start_ns_) a.time(*last_start_ns_);
 }
 
 int unseen_rows(int rows, std::int64_t rows_since_alarm) {

@@ -3,6 +3,10 @@
 #include <cstdint>
 #include <optional>
 
+namespace mpm {
+class Archive;
+}
+
 namespace mpm::live {
 
 struct ScheduleSettings {
@@ -25,6 +29,8 @@ class DiagnosisSchedule {
 
   /// Frames since the youngest alarm began.
   [[nodiscard]] std::int64_t rows_since_alarm() const { return since_alarm_; }
+
+  void archive(Archive& a);
 
  private:
   ScheduleSettings settings_;

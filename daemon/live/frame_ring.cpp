@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/archive/archive.hpp"
+
 namespace mpm::live {
 namespace {
 
@@ -57,6 +59,17 @@ void FrameRing::push(const Frame& frame) {
     const SignalBlock& block = frame[kind];
     for (int i = 0; i < block.size(); ++i) *value++ = block.usable(i) ? block.values(i) : kUnknown;
   }
+}
+
+void FrameRing::archive(Archive& a) {
+  // not archived: counts_, width_, capacity_ (construction)
+  a.within(rows_, 0, capacity_);
+  a.within(next_, 0, capacity_ - 1);
+  a.require(rows_ == capacity_ || rows_ == next_, "a ring with a hole");
+  a(last_interval_);
+  a.time(last_time_ns_);
+  a.length(static_cast<std::size_t>(width_));
+  a.doubles(values_.data(), static_cast<std::size_t>(width_) * static_cast<std::size_t>(rows_));
 }
 
 RingCopy FrameRing::copy() const {

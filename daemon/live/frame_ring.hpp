@@ -6,6 +6,10 @@
 #include "core/identify/fit/recording.hpp"
 #include "core/signal/frame.hpp"
 
+namespace mpm {
+class Archive;
+}
+
 namespace mpm::live {
 
 /// A copy of the ring's rows, oldest first: MVs, DVs, CVs; NaN where a value is not known.
@@ -33,6 +37,8 @@ class FrameRing {
 
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int capacity() const { return capacity_; }
+
+  void archive(Archive& a);
 
  private:
   [[nodiscard]] double* next_row();

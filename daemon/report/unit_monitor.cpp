@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "core/archive/archive.hpp"
 #include "core/statistics/normal.hpp"
 
 namespace mpm::report {
@@ -91,6 +92,20 @@ void UnitMonitor::push(const Frame& frame) {
   interval_ = frame.interval;
   source_time_ns_ = frame.source_time_ns;
   filled_ = false;
+  tell_alarms();
+}
+
+void UnitMonitor::archive(Archive& a) {
+  // not archived: config_ (construction)
+  // not archived: filled_, channels_, alarms_ (what the monitor says)
+  a(monitor_, interval_);
+  a.time(source_time_ns_);
+  if (!a.reads()) return;
+  filled_ = false;
+  tell_alarms();
+}
+
+void UnitMonitor::tell_alarms() {
   alarms_.clear();
   if (monitor_.transitions().empty()) return;
   const int cvs = config_.counts().cv;

@@ -8,6 +8,10 @@
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
 
+namespace mpm {
+class Archive;
+}
+
 namespace mpm::report {
 
 /// The monitor of one unit, speaking in tags: frames in, records out. The daemon and `mpm detect`
@@ -32,8 +36,11 @@ class UnitMonitor {
   [[nodiscard]] std::int64_t interval() const { return interval_; }
   [[nodiscard]] std::int64_t source_time_ns() const { return source_time_ns_; }
 
+  void archive(Archive& a);
+
  private:
   void fill();
+  void tell_alarms();
 
   config::UnitConfig config_;
   Monitor monitor_;
