@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/archive/archive.hpp"
-
 namespace mpm {
 namespace {
 
@@ -30,20 +28,6 @@ AlarmDesk::AlarmDesk(const AlarmHandling& handling, double sample_time_s,
   delays_.off_delay = samples_of(handling.controller.off_delay_s, sample_time_s);
   occurred_.reserve(4 * (names_.size() + 1));
   fresh_.reserve(4);
-}
-
-void AlarmDesk::Occurrence::archive(Archive& a) {
-  a(alarm, by_command);
-  a.within(what, AlarmOccurrence::kActive, AlarmOccurrence::kReannounced);
-}
-
-void AlarmDesk::archive(Archive& a) {
-  // not archived: handling_, delays_, names_ (construction)
-  // not archived: fresh_ (empty between calls)
-  a(alarms_, senseless_, controller_, trouble_);
-  a.varying(occurred_);
-  for (const Occurrence& each : occurred_)
-    a.require(each.alarm >= kController && each.alarm < channels(), "an alarm that is not there");
 }
 
 void AlarmDesk::note(int alarm, bool by_command) {

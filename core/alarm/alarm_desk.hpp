@@ -10,8 +10,6 @@
 
 namespace mpm {
 
-class Archive;
-
 /// The alarms of one unit as people meet them: one of each channel, and one of the controller,
 /// which stands while that of any channel does that nobody has silenced. An operator gets the
 /// controller's alone.
@@ -32,7 +30,6 @@ class AlarmDesk {
     int alarm = kController;  ///< or the channel
     AlarmOccurrence what{};
     bool by_command = false;
-    void archive(Archive& a);
   };
 
   AlarmDesk(const AlarmHandling& handling, double sample_time_s, std::vector<Channel> channels);
@@ -60,8 +57,6 @@ class AlarmDesk {
   }
   /// kController where both are empty; kNone where there is no such channel.
   [[nodiscard]] int find(const std::string& mv, const std::string& cv) const;
-
-  void archive(Archive& a);
 
  private:
   [[nodiscard]] const ManagedAlarm& of(int alarm) const {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/archive/archive.hpp"
 #include "core/text/number_text.hpp"
 
 namespace mpm {
@@ -13,17 +12,6 @@ using calibration::kNanoseconds;
 CommandReply refused(std::string why) { return {false, std::move(why)}; }
 
 }  // namespace
-
-void AlarmStanding::archive(Archive& a) {
-  a.within(annunciation, Annunciation::kNormal, Annunciation::kReturned);
-  a.within(shelving, Shelving::kUnshelved, Shelving::kTimed);
-  a.time(unshelve_time_ns);
-  a.time(active_time_ns);
-  a.time(ack_time_ns);
-  a(suppressed, suppressed_by_design, out_of_service, user, comment);
-}
-
-void ManagedAlarm::archive(Archive& a) { a(standing_, active_, seen_before_); }
 
 AlarmWord AlarmStanding::word() const {
   if (out_of_service) return AlarmWord::kOutOfService;

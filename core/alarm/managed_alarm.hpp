@@ -12,8 +12,6 @@
 
 namespace mpm {
 
-class Archive;
-
 /// As OPC 10000-9, ShelvedStateMachineType.
 enum class Shelving : unsigned char { kUnshelved, kOneShot, kTimed };
 [[nodiscard]] constexpr auto words_of(Shelving) {
@@ -47,8 +45,6 @@ struct AlarmStanding {
   std::int64_t active_time_ns = 0;  ///< of the plant's data, since when; 0: never was
   std::int64_t ack_time_ns = 0;     ///< UTC, of the last acknowledgement; 0: none
   std::string user, comment;        ///< of the last command
-
-  void archive(Archive& a);
 
   [[nodiscard]] bool is_suppressed() const { return suppressed || suppressed_by_design; }
   [[nodiscard]] bool silenced() const {
@@ -112,8 +108,6 @@ class ManagedAlarm {
   void restore(const AlarmStanding& before, const Settings& settings);
   /// What held before a restart after which the cause is known as it was: all of it holds.
   void resume(const AlarmStanding& before);
-
-  void archive(Archive& a);
 
  private:
   CommandReply shelve(const AlarmCommand& command, const AlarmMoment& now, const Settings& settings,

@@ -19,6 +19,11 @@ namespace mpm {
 struct CauseParameter {
   std::string name;
   double value = 0.0, low = 0.0, high = 0.0;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(name, value, low, high);
+  }
 };
 
 /// The intervals of parameters, for JSON, which has them beside the values.
@@ -32,6 +37,12 @@ struct NamedCause {
   std::string text;                  ///< the same for a person; empty before the first diagnosis
   double confidence = 0.0;
   std::vector<CauseParameter> parameters;
+
+  template <class Archive>
+  void archive(Archive& a) {
+    a(cause, text, confidence);
+    a.varying(parameters);
+  }
 };
 
 enum class AlarmChange : std::uint8_t {
@@ -53,6 +64,16 @@ struct AlarmRecord : AlarmEvidence {
   std::int64_t source_time_ns = 0;
   AlarmChange to = AlarmChange::kCleared;
   NamedCause named;
+
+  /// Of the same channel.
+  template <class Archive>
+  void archive(Archive& a) {
+    // not archived: unit, mv, cv (construction)
+    AlarmEvidence::archive(a);
+    a(interval, named);
+    a.time(source_time_ns);
+    a.within(to, AlarmChange::kCleared, AlarmChange::kDiagnosed);
+  }
 
   /// See FieldKey.
   template <class Visit, class Record, class... Sample>
@@ -98,6 +119,13 @@ struct AlarmStateRecord : AlarmRecord {
   }
 
   ControlRoomView view;
+
+  /// The rest of the view is what people and time have made of the alarm since.
+  template <class Archive>
+  void archive(Archive& a) {
+    AlarmRecord::archive(a);
+    a(view.message);
+  }
 
   /// See FieldKey.
   template <class Visit, class Record, class... Sample>

@@ -27,6 +27,8 @@ class DiagnosisSchedule {
   /// stands; `rows`: in the ring. True: now.
   [[nodiscard]] bool due(std::int64_t time_ns, int rows, bool raised, bool active);
 
+  /// Whether a diagnosis was due before.
+  [[nodiscard]] bool started() const { return last_start_ns_.has_value(); }
   /// Frames since the youngest alarm began.
   [[nodiscard]] std::int64_t rows_since_alarm() const { return since_alarm_; }
 

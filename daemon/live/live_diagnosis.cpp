@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/archive/archive.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 
 namespace mpm::live {
@@ -52,12 +53,37 @@ void LiveDiagnosis::push(const Frame& frame, const std::vector<AlarmRecord>& cha
     raised = raised || change.to == AlarmChange::kActive;
   }
   if (!schedule_.due(frame.source_time_ns, ring_.rows(), raised, !alarms_.empty())) return;
+  ask();
+}
+
+void LiveDiagnosis::ask() {
   pending_.emplace();
   pending_->asker = asker_;
   pending_->unit = unit_;
   pending_->samples = ring_.copy();
   pending_->unseen_rows = unseen_rows(ring_.rows(), schedule_.rows_since_alarm());
   pending_->alarm_time_ns = youngest_alarm_ns_;
+}
+
+void LiveDiagnosis::archive(Archive& a) {
+  // not archived: unit_, worker_, asker_ (construction)
+  // not archived: alarms_, youngest_alarm_ns_ (`resume`)
+  // not archived: pending_, file_problem_, unwritten_, unwritten_alarm_ns_, next_try_ (of a
+  // process)
+  a(ring_, schedule_);
+}
+
+void LiveDiagnosis::resume(const std::vector<AlarmStateRecord>& alarms) {
+  std::int64_t youngest = 0;
+  for (const AlarmStateRecord& alarm : alarms) {
+    note(alarm);
+    if (alarm.to == AlarmChange::kActive) youngest = std::max(youngest, alarm.source_time_ns);
+  }
+  youngest_alarm_ns_ = youngest;
+}
+
+void LiveDiagnosis::repeat() {
+  if (!pending_ && schedule_.started() && !alarms_.empty()) ask();
 }
 
 void LiveDiagnosis::write_again(Clock::time_point now) {

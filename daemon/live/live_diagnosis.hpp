@@ -13,6 +13,10 @@
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/frame_ring.hpp"
 
+namespace mpm {
+class Archive;
+}
+
 namespace mpm::live {
 
 /// The diagnoses of one unit: keeps its last samples, has them diagnosed while an alarm stands, and
@@ -29,6 +33,11 @@ class LiveDiagnosis {
   /// Now and then: starts what could not be started, has written each minute what could not be
   /// written, and hands over what has been found.
   [[nodiscard]] std::optional<DiagnosisOutcome> poll(Clock::time_point now);
+  /// The samples, and when they were diagnosed; then `resume`, with the unit's alarms.
+  void archive(Archive& a);
+  void resume(const std::vector<AlarmStateRecord>& alarms);
+  /// Makes again what a process before this one has found or was at, if an alarm still stands.
+  void repeat();
   /// Why reports cannot be kept; empty: they can, as far as is known.
   void set_file_problem(std::string problem) { file_problem_ = std::move(problem); }
   [[nodiscard]] const std::string& file_problem() const { return file_problem_; }
@@ -42,6 +51,7 @@ class LiveDiagnosis {
   };
 
   void note(const AlarmRecord& change);
+  void ask();
   void write_again(Clock::time_point now);
 
   std::shared_ptr<const config::UnitConfig> unit_;

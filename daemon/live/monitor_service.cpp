@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "core/parallel/parallel.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/bus/domain_options.hpp"
 #include "daemon/files/folder_name.hpp"
@@ -26,12 +27,18 @@ idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOpti
   return settings;
 }
 
-void recall(UnitPipeline& pipeline, const config::UnitConfig& unit, std::size_t units,
-            const std::string& folder) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::string text = pipeline.recall(samples_of(unit, units, folder));
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  spdlog::info("{}: {} ({:.1f} s)", unit.unit, text, seconds.count());
+// Each takes its samples again on a thread of its own, and tells nobody.
+void recall(const std::vector<UnitPipeline*>& pipelines,
+            const std::vector<config::UnitConfig>& units, const std::string& folder) {
+  std::vector<std::string> texts(units.size());
+  const Parallel threads(available_threads());
+  threads.for_each(units.size(), [&](std::size_t i) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::string text = pipelines[i]->recall(samples_of(units[i], units.size(), folder));
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    texts[i] = fmt::format("{}: {} ({:.1f} s)", units[i].unit, text, seconds.count());
+  });
+  for (const std::string& text : texts) spdlog::info(text);
 }
 
 }  // namespace
@@ -54,6 +61,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
     units_of[idl::domain_xml(settings_of(unit, options))].push_back(unit.unit);
   std::map<std::string, Domain*> domain_of;
   int asker = options.first_asker;
+  std::vector<UnitPipeline*> pipelines;
   for (const config::UnitConfig& unit : units) {
     const idl::DomainOptions settings = settings_of(unit, options);
     const std::string xml = idl::domain_xml(settings);
@@ -68,7 +76,12 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       pipeline.keep({unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                  options.journal_keep / units.size())});
     pipeline.diagnose_with(worker, asker++);
-    if (!options.samples.empty()) recall(pipeline, unit, units.size(), options.samples);
+    pipelines.push_back(&pipeline);
+  }
+  if (!options.samples.empty()) recall(pipelines, units, options.samples);
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const config::UnitConfig& unit = units[i];
+    UnitPipeline& pipeline = *pipelines[i];
     if (alarm_journal_) pipeline.keep(*alarm_journal_);
     pipeline.announce();
     if (options.observer) pipeline.show_to(options.observer(unit));

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "mpm samples 1\n";
 constexpr std::string_view kPrefix = "samples-";
-constexpr std::uint64_t kFilesWithin = 64;  // of what is kept
 constexpr int kDigits = 12;
 // A record of its own, and not an empty one: that is what a file looks like whose end a power cut
 // has left as zeros.
@@ -114,16 +113,6 @@ std::optional<std::string_view> next_record(std::string_view& bytes) {
 SampleLog::SampleLog(std::string folder, std::string meaning, std::uint64_t keep)
     : folder_(std::move(folder)), meaning_(std::move(meaning)), keep_(keep) {}
 
-SampleLog::SampleLog(SampleLog&& other) noexcept
-    : folder_(std::move(other.folder_)),
-      meaning_(std::move(other.meaning_)),
-      keep_(other.keep_),
-      files_(std::move(other.files_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      begun_(other.begun_),
-      blocks_(other.blocks_),
-      problem_(std::move(other.problem_)) {}
-
 SampleLog::~SampleLog() { close_file(); }
 
 std::string SampleLog::path_of(std::uint64_t number) const {
@@ -132,8 +121,8 @@ std::string SampleLog::path_of(std::uint64_t number) const {
          std::string(kDigits - std::min<std::size_t>(kDigits, digits.size()), '0') + digits;
 }
 
-void SampleLog::find_files() {
-  files_.clear();
+std::vector<std::uint64_t> SampleLog::files() const {
+  std::vector<std::uint64_t> numbers;
   std::error_code failed;
   for (auto entry = fs::directory_iterator(folder_, failed);
        !failed && entry != fs::directory_iterator(); entry.increment(failed)) {
@@ -143,10 +132,10 @@ void SampleLog::find_files() {
     const char* end = name.data() + name.size();
     const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
     if (error == std::errc() && stop == end && entry->path() == path_of(number))
-      files_.push_back({number, 0});
+      numbers.push_back(number);
   }
-  std::sort(files_.begin(), files_.end(),
-            [](const File& a, const File& b) { return a.number < b.number; });
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
 }
 
 // False where the file is of another meaning.
@@ -181,33 +170,35 @@ bool SampleLog::read(File& file, const Visit& visit, std::string& why) {
   return true;
 }
 
-std::string SampleLog::recall(const Visit& visit) {
-  find_files();
-  std::string why;
-  std::deque<File> fitting;
+std::string SampleLog::recall(const Visit& visit, std::uint64_t from) {
+  std::string why, ignored_why;
+  files_.clear();
+  const Visit ignore = [](const BlockView*) {};
   // Of another meaning is what was before the unit file changed: what follows is a new beginning.
-  for (File& file : files_) {
-    if (read(file, visit, why)) {
-      fitting.push_back(file);
+  for (const std::uint64_t number : files()) {
+    File file{number, 0};
+    if (number < from ? read(file, ignore, ignored_why) : read(file, visit, why)) {
+      files_.push_back(file);
       continue;
     }
     why = "the unit file has changed what it means";
     std::error_code ignored;
-    fs::remove(path_of(file.number), ignored);
+    fs::remove(path_of(number), ignored);
   }
   // A new file is begun for what comes: behind a torn record nothing is found again.
-  files_ = std::move(fitting);
   return why;
 }
 
-void SampleLog::push(const BlockView& block) {
+std::optional<std::uint64_t> SampleLog::push(const BlockView& block) {
   std::uint64_t& blocks = blocks_[static_cast<std::size_t>(block.kind)];
-  if (!begun_ || blocks > keep_ / kFilesWithin) begin_file();
+  const bool begins = !begun_ || blocks > keep_ / kFiles;
+  if (begins) begin_file();
   ++blocks;
   if (descriptor_ >= 0) files_.back().intervals = std::max(files_.back().intervals, blocks);
   record_.clear();
   encode(block, record_);
   append(record_);
+  return begins && descriptor_ >= 0 ? std::optional(files_.back().number) : std::nullopt;
 }
 
 void SampleLog::push_expiry() { append(kExpiry); }

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/signal/aligner.hpp"
 
@@ -20,24 +22,26 @@ class SampleLog {
   /// One of the records: a block, or null where the aligner was told that nothing more will come
   /// (`Aligner::expire`).
   using Visit = std::function<void(const BlockView*)>;
+  /// Within what is kept.
+  static constexpr std::uint64_t kFiles = 64;
 
   /// `meaning`: of the values; what was kept with another one is of no use and goes. `keep`:
   /// intervals, at least. Touches nothing yet.
   SampleLog(std::string folder, std::string meaning, std::uint64_t keep);
-  SampleLog(SampleLog&& other) noexcept;
   SampleLog(const SampleLog&) = delete;
   SampleLog& operator=(const SampleLog&) = delete;
-  SampleLog& operator=(SampleLog&&) = delete;
   ~SampleLog();
 
-  /// To be called once, before anything is added: all that is there, oldest first. Returns why some
-  /// of it is not used, in words; empty: all is.
-  std::string recall(const Visit& visit);
-  /// Never throws for the disk: see `problem`.
-  void push(const BlockView& block);
+  /// The numbers of the files that there are, ascending.
+  [[nodiscard]] std::vector<std::uint64_t> files() const;
+  /// To be called once, before anything is added: all that is there from the beginning of file
+  /// `from` on, oldest first. Returns why some of it is not used, in words; empty: all is.
+  std::string recall(const Visit& visit, std::uint64_t from = 0);
+  /// Never throws for the disk: see `problem`. The number of the file that begins with this block,
+  /// where one does.
+  std::optional<std::uint64_t> push(const BlockView& block);
   void push_expiry();
-  /// Why nothing can be kept now; empty: it can. It is tried again when the next file is due, 64
-  /// times within `keep`.
+  /// Why nothing can be kept now; empty: it can. It is tried again when the next file is due.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
@@ -47,7 +51,6 @@ class SampleLog {
   };
 
   [[nodiscard]] std::string path_of(std::uint64_t number) const;
-  void find_files();
   bool read(File& file, const Visit& visit, std::string& why);
   void append(std::string_view payload);
   void write(std::string_view bytes);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/archive/archive.hpp"
 #include "core/text/number_text.hpp"
 
 namespace mpm::live {
@@ -101,6 +102,15 @@ void UnitAlarms::recall(const std::vector<ChannelRecord>& channels,
   recalled_ = true;
   note(channels, changes, texts);
   fresh_.assign(fresh_.size(), false);  // `announce` tells all
+}
+
+void UnitAlarms::archive(Archive& a) {
+  // not archived: unit_, settings_, outputs_, journal_ (construction)
+  // not archived: desk_, controller_ (`keep` has them from the journal)
+  // not archived: observed_, fresh_ (empty between calls)
+  a(alarms_, interval_);
+  a.time(source_time_ns_);
+  recalled_ = recalled_ || a.reads();
 }
 
 bool UnitAlarms::push(const std::vector<ChannelRecord>& channels,

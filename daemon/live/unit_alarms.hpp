@@ -12,6 +12,10 @@
 #include "daemon/live/alarm_journal.hpp"
 #include "idl/output_writers.hpp"
 
+namespace mpm {
+class Archive;
+}
+
 namespace mpm::live {
 
 /// The alarms of one unit towards people: what stands, on mpm/alarm and mpm/controller_alarm; what
@@ -27,6 +31,8 @@ class UnitAlarms {
   /// for `keep` and for the next frame to say.
   void recall(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& changes,
               const std::vector<std::string>& texts);
+  /// What frames have made of them; instead of `recall` of these frames.
+  void archive(Archive& a);
   /// From now on what happens is kept there. What people did before holds again, and where frames
   /// were recalled so does which alarms stand.
   void keep(AlarmJournal& journal, std::int64_t wall_ns);

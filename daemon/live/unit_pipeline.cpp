@@ -6,8 +6,11 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
+#include <stdexcept>
 
 #include "config/suggest.hpp"
+#include "core/archive/archive.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
@@ -154,7 +157,8 @@ void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
   const AlignerCounters before = aligner_.counters();
   const BlockView block{sample.kind, sample.interval, sample.source_time_ns, sample.values,
                         sample.quality};
-  if (log_ && fits(block, config_.counts())) log_->push(block);
+  if (log_ && fits(block, config_.counts()))
+    if (const auto begun = log_->push(block)) keep_state(*begun);
   aligner_.push(block);
   const AlignerCounters& after = aligner_.counters();
   if (after.wrong_length != before.wrong_length) report_refused(sample);
@@ -247,19 +251,77 @@ void UnitPipeline::recall_frame(const Frame& frame) {
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
 }
 
-std::string UnitPipeline::recall(SampleLog samples) {
-  log_.emplace(std::move(samples));
-  recalling_ = true;
-  const std::string lost = log_->recall([this](const BlockView* block) {
-    block != nullptr ? aligner_.push(*block) : aligner_.expire();
+// All that the samples have made, as far as what is said of them depends on it.
+void UnitPipeline::archive(Archive& a) {
+  // not archived: config_, outputs_, calculator_, patience_, observer_ (construction)
+  // not archived: samples_, journal_, log_, states_, files_between_states_, next_state_ (the disk)
+  // not archived: recalling_, calculated_ (empty between calls)
+  // not archived: health_ (made of the others)
+  // not archived: now_, last_frame_, next_health_, stood_still_, stood_still_for_, incomplete_at_,
+  // refused_limit_, beyond_limit_, output_limit_, restart_limit_, refusal_limit_ (the clock)
+  // not archived: inputs_, trouble_log_, troubles_, trouble_text_, other_monitors_,
+  // other_monitor_spoke_ (what is around this process)
+  a(aligner_, monitor_, performance_, alarms_);
+  if (diagnosis_) a(*diagnosis_);
+}
+
+// Between two samples: what the first file holds that begins with the next one comes behind it.
+void UnitPipeline::keep_state(std::uint64_t file) {
+  if (file < next_state_) return;
+  next_state_ = file + files_between_states_;
+  states_->keep(file, [this](std::vector<std::byte>& bytes) {
+    Archive away(bytes);
+    archive(away);
   });
+}
+
+// The file of the log behind the last state that there is; 0: there is none, and all stays as
+// construction made it.
+std::uint64_t UnitPipeline::take_back_state() {
+  std::vector<std::byte> constructed;
+  Archive away(constructed);
+  archive(away);
+  for (const std::uint64_t file : states_->find(log_->files())) {
+    const std::optional<std::vector<std::byte>> bytes = states_->read(file);
+    if (!bytes) continue;
+    try {
+      Archive back{std::span(*bytes)};
+      archive(back);
+      back.require(back.left() == 0, "more bytes than belong there");
+      health_.interval = monitor_.interval();
+      health_.source_time_ns = monitor_.source_time_ns();
+      if (diagnosis_) diagnosis_->resume(alarms_.channels());
+      return file;
+    } catch (const std::runtime_error& error) {
+      spdlog::warn("{}: state {}: {}", config_.unit, file, error.what());
+      Archive back{std::span(constructed)};
+      archive(back);
+    }
+  }
+  return 0;
+}
+
+std::string UnitPipeline::recall(const UnitSamples& samples) {
+  log_.emplace(samples.folder, samples.meaning, samples.keep);
+  states_.emplace(samples.folder, samples.owner);
+  files_between_states_ = samples.files_between_states;
+  const std::uint64_t from = take_back_state();
+  const std::uint64_t before = aligner_.counters().frames;
+  recalling_ = true;
+  const std::string lost = log_->recall(
+      [this](const BlockView* block) {
+        block != nullptr ? aligner_.push(*block) : aligner_.expire();
+      },
+      from);
   recalling_ = false;
   health_.incomplete = aligner_.counters().incomplete;  // no news
   const std::uint64_t frames = aligner_.counters().frames;
   if (frames > 0) alarms_.recall(monitor_.channels(), {}, {});
+  if (diagnosis_) diagnosis_->repeat();
   count_channels();
   std::string text =
       frames == 0 ? "begins anew" : "goes on behind " + counted(frames, "sample") + " from before";
+  if (before > 0) text += ", of which it judges " + std::to_string(frames - before) + " again";
   if (!lost.empty()) text += "; not all that was kept is used: " + lost;
   return text;
 }
@@ -369,6 +431,7 @@ void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
   if (diagnosis_) publish_diagnosis();
   if (now >= next_health_) {
     next_health_ = now + kHealthPeriod;
+    if (states_) states_->poll();
     if (!alarms_.tick(wall_ns()) && output_limit_.admit(now_))
       spdlog::warn("{}: the alarms could not be published", config_.unit);
     publish_health(unknown_unit, around);
@@ -463,7 +526,10 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
     add("reports", Severity::kMaintenanceRequired,
         "reports of diagnoses cannot be kept: " + diagnosis_->file_problem());
   add_journal("journal of alarms", alarms_.journal_problem());
-  if (log_) add_journal("log of samples for a restart", log_->problem());
+  if (log_) {
+    const std::string& problem = log_->problem();
+    add_journal("log of samples for a restart", problem.empty() ? states_->problem() : problem);
+  }
   sort_by_severity(found);
   return found;
 }

@@ -18,9 +18,11 @@
 #include "daemon/live/live_diagnosis.hpp"
 #include "daemon/live/sample_journal.hpp"
 #include "daemon/live/sample_log.hpp"
+#include "daemon/live/state_files.hpp"
 #include "daemon/live/trouble_log.hpp"
 #include "daemon/live/unit_alarms.hpp"
 #include "daemon/live/unit_observer.hpp"
+#include "daemon/live/unit_samples.hpp"
 #include "daemon/report/unit_monitor.hpp"
 #include "idl/output_writers.hpp"
 #include "idl/sample_view.hpp"
@@ -43,7 +45,7 @@ class UnitPipeline {
   /// Takes again what a process before this one took, and tells nobody: statistics, alarms and
   /// what a diagnosis needs are as they were. From now on what is taken is kept there. After
   /// `diagnose_with`, before anything else is taken. Says what became of it, in words for the log.
-  [[nodiscard]] std::string recall(SampleLog samples);
+  [[nodiscard]] std::string recall(const UnitSamples& samples);
   /// From now on what happens to alarms is kept there, and what people did about them before holds.
   void keep(AlarmJournal& journal) { alarms_.keep(journal, wall_ns()); }
   /// Tells readers how the alarms stand, at the start.
@@ -91,6 +93,9 @@ class UnitPipeline {
  private:
   void on_frame(const Frame& frame);
   void recall_frame(const Frame& frame);
+  void archive(Archive& a);
+  [[nodiscard]] std::uint64_t take_back_state();
+  void keep_state(std::uint64_t file);
   [[nodiscard]] std::vector<std::string> alarm_texts();
   void go_on(Clock::time_point now);
   void publish_alarms_again();
@@ -112,6 +117,8 @@ class UnitPipeline {
   SampleJournal* samples_;
   std::optional<history::Journal> journal_;
   std::optional<SampleLog> log_;
+  std::optional<StateFiles> states_;
+  std::uint64_t files_between_states_ = 1, next_state_ = 0;
   bool recalling_ = false;
   report::UnitMonitor monitor_;
   UnitAlarms alarms_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "config/load_unit.hpp"
@@ -11,6 +13,7 @@
 #include "core/text/netstring.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/folder_name.hpp"
+#include "daemon/live/sample_log.hpp"
 
 namespace mpm::live {
 namespace {
@@ -19,13 +22,18 @@ namespace {
 constexpr double kTimesRemembered = 2.0;
 // By estimate; three times that is still within the patience of systemd.
 constexpr double kMostSecondsToJudge = 10.0;
+constexpr double kMostSecondsBehindState = 0.5;
+// Of the log: the one before the last state is to be of use, too.
+constexpr std::uint64_t kMostFilesBetween = SampleLog::kFiles / 4;
 
-std::uint64_t kept_intervals(const config::UnitConfig& unit, std::size_t units) {
-  const double most_seconds = kMostSecondsToJudge / static_cast<double>(units);
-  const MonitorCost cost = monitor_cost(unit.model, unit.monitor);
-  const double wanted = std::max(kTimesRemembered * cost.remembered,
-                                 static_cast<double>(unit.monitor.diagnosis_samples));
-  return static_cast<std::uint64_t>(std::max(1.0, std::min(wanted, most_seconds / cost.seconds)));
+std::string sum_of(const std::string& text) {
+  const auto sum = ::crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size());
+  return std::to_string(text.size()) + ":" + std::to_string(sum);
+}
+
+std::string sum_of_program() {
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  return sum_of({std::istreambuf_iterator<char>(program), std::istreambuf_iterator<char>()});
 }
 
 }  // namespace
@@ -46,14 +54,27 @@ std::string meaning_of(const config::UnitConfig& unit) {
   if (!predicted) return text;
   std::ostringstream model;
   config::print_model_section(unit, model);
-  const std::string whole = model.str();  // may be megabytes, of which each file would keep a copy
-  const auto sum = ::crc32_z(0, reinterpret_cast<const Bytef*>(whole.data()), whole.size());
-  return text + std::to_string(whole.size()) + ":" + std::to_string(sum);
+  return text + sum_of(model.str());  // which may be megabytes, and each file has a copy
 }
 
-SampleLog samples_of(const config::UnitConfig& unit, std::size_t units, const std::string& folder) {
-  return {folder + "/" + files::folder_name(unit.unit), meaning_of(unit),
-          kept_intervals(unit, units)};
+std::string owner_of_state(const config::UnitConfig& unit) {
+  static const std::string program = sum_of_program();
+  std::ostringstream text;
+  config::print_unit(unit, text);
+  return program + ";" + sum_of(text.str());
+}
+
+UnitSamples samples_of(const config::UnitConfig& unit, std::size_t units,
+                       const std::string& folder) {
+  const MonitorCost cost = monitor_cost(unit.model, unit.monitor);
+  const double seconds = cost.seconds * static_cast<double>(units);
+  const double wanted = std::max(kTimesRemembered * cost.remembered,
+                                 static_cast<double>(unit.monitor.diagnosis_samples));
+  const double kept = std::max(1.0, std::min(wanted, kMostSecondsToJudge / seconds));
+  const double files = kMostSecondsBehindState / seconds * SampleLog::kFiles / kept;
+  return {folder + "/" + files::folder_name(unit.unit), meaning_of(unit), owner_of_state(unit),
+          static_cast<std::uint64_t>(kept),
+          static_cast<std::uint64_t>(std::clamp(files, 1.0, double{kMostFilesBetween}))};
 }
 
 }  // namespace mpm::live

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <filesystem>
 #include <random>
 #include <regex>
 #include <thread>
@@ -22,9 +23,15 @@ std::vector<Frame> frames_of(Plant& plant, int count) {
 
 /// A unit, and a monitor that keeps its state, which may be killed and comes back.
 struct Corner {
-  explicit Corner(const std::string& test)
+  /// `more`: lines of the unit file.
+  explicit Corner(const std::string& test, const std::string& more = "")
       : bench(test, {"--state-dir", folder.file("state")}),
-        publisher(bench.publisher(idl::WriterPace::kLossless)) {}
+        publisher(bench.publisher(idl::WriterPace::kLossless)) {
+    if (more.empty()) return;
+    const std::string file = bench.folder.file("toy.yaml");
+    write_file(file, read_file(file) + more);
+    kill_and_start();
+  }
 
   void publish(const std::vector<Frame>& frames) {
     REQUIRE(publisher.wait_for_readers(std::chrono::seconds(20)));
@@ -92,8 +99,10 @@ struct Corner {
 
 // The expected numbers are those of a monitor that nobody killed. What the killed one had not yet
 // taken is sent once more, as its recording would be. At most `most` frames between two kills.
-void go_on_over_kills(const std::string& name, unsigned most, int least_kills) {
-  Corner whole(name + "-whole"), killed(name + "-killed");
+// Returns the log of the last one.
+std::string go_on_over_kills(const std::string& name, unsigned most, int least_kills,
+                             const std::string& more = "") {
+  Corner whole(name + "-whole", more), killed(name + "-killed", more);
   Plant plant(3.0);
   const std::vector<Frame> frames = frames_of(plant, kFrames);
   whole.publish(frames);
@@ -115,22 +124,69 @@ void go_on_over_kills(const std::string& name, unsigned most, int least_kills) {
     at = end;
   }
   killed.await(frames.back().interval);
-  CAPTURE(kills, read_file(killed.folder.file("err")));
+  const std::string log = read_file(killed.folder.file("err"));
+  CAPTURE(kills, log);
   CHECK(kills >= least_kills);
   CHECK(killed.verdicts(frames.back().interval) == whole.verdicts(frames.back().interval));
   CHECK(whole.alarms().size() == 1);
   CHECK(killed.standing("u1").to == AlarmChange::kActive);
   CHECK(killed.standing("u1").interval == whole.standing("u1").interval);
   CHECK(killed.standing("u1").view.alarm_state == AlarmWord::kUnacknowledged);
+  return log;
 }
 
 TEST_CASE("a monitor that is killed at any moment goes on as if it had not been") {
-  go_on_over_kills("restart", 2000, 2);
+  (void)go_on_over_kills("restart", 2000, 2);
+}
+
+// With so short a memory a few hundred samples are kept, of which the state of a monitor that began
+// at the first one cannot be had again: it must have been kept itself.
+TEST_CASE("a monitor that is killed goes on from its state when the samples behind it have gone") {
+  const std::string log =
+      go_on_over_kills("restart-state", 1500, 3, "monitor: {memory: 200, diagnosis_samples: 0}\n");
+  std::smatch found;
+  REQUIRE(std::regex_search(
+      log, found,
+      std::regex("goes on behind ([0-9]+) samples from before, of which it judges ([0-9]+)")));
+  CHECK(std::stoi(found[1]) > 1500);
+  CHECK(std::stoi(found[2]) < 600);
+}
+
+TEST_CASE("a state that is damaged is replaced by the one before, or by the samples kept") {
+  Corner corner("restart-damaged", "monitor: {memory: 200, diagnosis_samples: 0}\n");
+  Plant plant(3.0);
+  for (int i = 0; i < 4; ++i) corner.play(plant, 1000);
+  const std::string samples = corner.folder.file("state") + "/samples/toy";
+  std::vector<std::filesystem::path> states;
+  for (const auto& entry : std::filesystem::directory_iterator(samples))
+    if (entry.path().filename().string().starts_with("state-")) states.push_back(entry.path());
+  REQUIRE(states.size() == 2);
+  const auto number = [](const std::filesystem::path& path) {
+    return std::stoi(path.filename().string().substr(6));
+  };
+  const std::string newest =
+      std::max_element(states.begin(), states.end(), [&](const auto& a, const auto& b) {
+        return number(a) < number(b);
+      })->string();
+  std::string bytes = read_file(newest);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_file(newest, bytes);
+  CHECK(corner.kill_and_start() == 4000);
+  corner.play(plant, 5);
+  REQUIRE(corner.bench.observe([&] { return corner.standing("u1").to == AlarmChange::kActive; }));
+
+  for (const auto& entry : std::filesystem::directory_iterator(samples))
+    if (entry.path().filename().string().starts_with("state-"))
+      std::filesystem::remove(entry.path());
+  const std::size_t kept = corner.kill_and_start();
+  CHECK(kept > 500);
+  CHECK(kept < 2000);
 }
 
 // Some twelve minutes: a reader that was killed is waited for until its lease has run out.
 TEST_CASE("a monitor that is killed a hundred times goes on as if it had not been", "[.long]") {
-  go_on_over_kills("restart-hundred", 78, 100);
+  (void)go_on_over_kills("restart-hundred", 78, 100,
+                         "monitor: {memory: 200, diagnosis_samples: 0}\n");
 }
 
 TEST_CASE("an alarm that stands over a restart is neither cleared nor raised anew") {

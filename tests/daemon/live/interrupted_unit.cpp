@@ -61,12 +61,6 @@ std::array<bool, kSignalKindCount> needed(const config::UnitConfig& config) {
   return files::needed_kinds(config);
 }
 
-std::vector<AlarmDesk::Channel> names_of(const std::vector<ChannelRecord>& channels) {
-  std::vector<AlarmDesk::Channel> names;
-  for (const ChannelRecord& channel : channels) names.push_back({channel.mv, channel.cv});
-  return names;
-}
-
 }  // namespace
 
 std::vector<Frame> frames_of(const Ordeal& ordeal) {
@@ -134,7 +128,6 @@ OneUnit::OneUnit(const config::UnitConfig& config)
     : config_(config),
       monitor_(config),
       performance_(report::performance_setup(config), 300.0),
-      desk_(config.alarm_handling, config.sample_time_s, names_of(monitor_.channels())),
       ring_(config.counts(), 250),
       schedule_({100, 60, 200, static_cast<std::int64_t>(90e9 * config.sample_time_s)}),
       calculator_(config),
@@ -156,23 +149,16 @@ void OneUnit::on_frame(const Frame& frame) {
   ring_.push(calculated_);
   for (const AlarmRecord& alarm : monitor_.alarms()) said_ += report::json_of(alarm).dump();
   bool active = false;
-  std::vector<AlarmDesk::Observation> observed;
   for (int i = 0; i < config_.counts().inputs(); ++i)
     for (int j = 0; j < config_.counts().cv; ++j) {
       const ChannelStatus& channel = monitor.channel(j, i);
-      const bool stands = monitor.alarm(j, i) == AlarmState::kActive;
-      active = active || stands;
-      observed.push_back({stands, channel.reason != Reason::kBadData});
+      active = active || monitor.alarm(j, i) == AlarmState::kActive;
       for (const double number :
            {channel.p_value, channel.statistic, channel.threshold, channel.effect_size,
             channel.smallest_error, channel.effective_samples, channel.partial_correlation})
         note(said_, number);
       said_ += report::json_of(monitor.nonlinearity(j, i)).dump();
     }
-  const AlarmMoment now{frame.source_time_ns, frame.source_time_ns};
-  desk_.observe(observed, now);
-  for (const AlarmDesk::Occurrence& one : desk_.occurred())
-    said_ += std::to_string(one.alarm) + std::string(to_string(one.what));
   said_ += schedule_.due(frame.source_time_ns, ring_.rows(), !monitor_.alarms().empty(), active)
                ? "due"
                : "";
@@ -212,33 +198,14 @@ void OneUnit::take(const Ordeal& ordeal, const std::vector<Frame>& frames, int s
     if (dice > 0.97) push(kind, sample);
   }
   if (sample % 50 == 49) aligner_.expire();
-  command(sample);
-}
-
-void OneUnit::command(int sample) {
-  if (sample % 90 != 41) return;
-  const AlarmMoment now{sample_->source_time_ns, sample_->source_time_ns};
-  desk_.tick(now);
-  AlarmCommand command;
-  command.unit = config_.unit;
-  if (sample % 4 != 0) {
-    command.mv = desk_.channel(sample % desk_.channels()).mv;
-    command.cv = desk_.channel(sample % desk_.channels()).cv;
-  }
-  command.action = static_cast<AlarmAction>(sample / 90 % 7);
-  command.duration_s = 70.0 * config_.sample_time_s;
-  command.once = sample % 8 == 0;
-  command.user = "shift " + std::to_string(sample / 300);
-  command.comment = "as told";
-  said_ += desk_.apply(command, now).text;
 }
 
 std::vector<std::byte> OneUnit::put_away() const {
-  return mpm::put_away(monitor_, performance_, desk_, ring_, schedule_, aligner_);
+  return mpm::put_away(monitor_, performance_, ring_, schedule_, aligner_);
 }
 
 void OneUnit::take_back(std::span<const std::byte> bytes) {
-  mpm::take_back(bytes, monitor_, performance_, desk_, ring_, schedule_, aligner_);
+  mpm::take_back(bytes, monitor_, performance_, ring_, schedule_, aligner_);
 }
 
 std::string OneUnit::all() {
@@ -272,12 +239,6 @@ std::string OneUnit::all() {
   out += report::json_of(
              report::performance_record(config_, performance_.setup(), performance_.total()))
              .dump();
-  for (int i = AlarmDesk::kController; i < desk_.channels(); ++i) {
-    const AlarmStanding& standing = desk_.standing(i);
-    out += std::string(to_string(standing.word())) + standing.user + standing.comment +
-           std::to_string(standing.unshelve_time_ns) + std::to_string(standing.active_time_ns) +
-           std::to_string(standing.ack_time_ns) + (desk_.active(i) ? "!" : "");
-  }
   const live::RingCopy copy = ring_.copy();
   out += std::to_string(copy.last_interval) + ' ' + std::to_string(copy.last_time_ns);
   for (const double value : copy.values) note(out, value);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
-#include "core/alarm/alarm_desk.hpp"
 #include "core/performance/performance_window.hpp"
 #include "core/signal/aligner.hpp"
 #include "daemon/files/calculator.hpp"
@@ -58,12 +57,10 @@ class OneUnit {
 
  private:
   void on_frame(const Frame& frame);
-  void command(int sample);
 
   config::UnitConfig config_;
   report::UnitMonitor monitor_;
   PerformanceWindow performance_;
-  AlarmDesk desk_;
   live::FrameRing ring_;
   live::DiagnosisSchedule schedule_;
   files::Calculator calculator_;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "config/load_unit.hpp"
+#include "core/archive/archive.hpp"
 #include "tests/daemon/live/live_frames.hpp"
 #include "tests/idl/test_domain.hpp"
 
@@ -95,6 +96,53 @@ std::optional<DiagnosisOutcome> await(LiveDiagnosis& live) {
 }
 
 }  // namespace
+
+// As over a restart: the second one has the first one's state, and the unit's alarms.
+TEST_CASE("a diagnosis that was due before a restart is made again while its alarm stands") {
+  for (const bool stands : {true, false}) {
+    CAPTURE(stands);
+    Gate first_gate, gate;
+    DiagnosisWorker first_worker(first_gate.work()), worker(gate.work());
+    LiveDiagnosis first(toy(), first_worker, 0), second(toy(), worker, 0);
+    feed(first, 1, 700, {change("u1", AlarmChange::kActive, 1)});
+    take_back(put_away(first), second);
+    AlarmStateRecord u1(change("u1", AlarmChange::kActive, 1)),
+        u2(change("u2", AlarmChange::kCleared, 300));
+    second.resume({u1, u2});
+    feed(second, 701, 710,
+         {change("u1", stands ? AlarmChange::kActive : AlarmChange::kCleared, 701)});
+    second.repeat();
+    gate.open = 1;
+    if (!stands) {
+      CHECK_FALSE(second.poll(kNow));
+      CHECK(gate.begun == 0);
+      continue;
+    }
+    const auto outcome = await(second);
+    REQUIRE(outcome);
+    CHECK(outcome->interval == 710);
+    CHECK(gate.job(0).samples.rows() == 710);
+    CHECK(gate.job(0).alarm_time_ns == 701'000'000'000);
+    const std::vector<AlarmRecord> named = second.diagnosed(*outcome);
+    REQUIRE(named.size() == 1);
+    CHECK(named[0].mv == "u1");
+  }
+}
+
+TEST_CASE("what was never due is not made after a restart") {
+  Gate first_gate, gate;
+  DiagnosisWorker first_worker(first_gate.work()), worker(gate.work());
+  LiveDiagnosis first(toy(), first_worker, 0), second(toy(), worker, 0);
+  feed(first, 1, 20, {change("u1", AlarmChange::kActive, 1)});  // too few samples
+  take_back(put_away(first), second);
+  second.resume({AlarmStateRecord(change("u1", AlarmChange::kActive, 1))});
+  second.repeat();
+  CHECK_FALSE(second.poll(kNow));
+  CHECK(gate.begun == 0);
+  feed(second, 21, 700);
+  gate.open = 1;
+  CHECK(await(second));
+}
 
 TEST_CASE("the samples of an alarm that stands are diagnosed, and its channel gets the cause") {
   Gate gate;

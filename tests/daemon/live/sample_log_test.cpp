@@ -60,6 +60,34 @@ std::vector<fs::path> files_of(const std::string& folder) {
   return files;
 }
 
+// A file holds a 64th of what is kept, of 640 intervals ten and the one that is too many.
+TEST_CASE("a file says that it begins, and what it and the later ones hold comes back alone") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  std::vector<std::pair<std::uint64_t, std::size_t>> begun;  // file, lines before it
+  std::vector<std::string> lines;
+  {
+    SampleLog log(place, "a", 640);
+    for (int k = 0; k < 50; ++k) {
+      const std::vector<double> values = {static_cast<double>(k)};
+      const BlockView block{SignalKind::kMv, k, 0, values, {}};
+      if (const auto file = log.push(block)) begun.emplace_back(*file, lines.size());
+      lines.push_back(text_of(block));
+    }
+  }
+  REQUIRE(begun.size() == 5);
+  CHECK(begun[2] == std::pair<std::uint64_t, std::size_t>{3, 22});
+  for (const auto& [file, before] : begun) {
+    SampleLog log(place, "a", 640);
+    CHECK(log.files() == std::vector<std::uint64_t>{1, 2, 3, 4, 5});
+    std::vector<std::string> told;
+    CHECK(
+        log.recall([&](const BlockView* block) { told.push_back(text_of(*block)); }, file).empty());
+    CHECK(told == std::vector<std::string>(lines.begin() + static_cast<std::ptrdiff_t>(before),
+                                           lines.end()));
+  }
+}
+
 TEST_CASE("what was taken comes back as it came, over several lives") {
   const test::TemporaryFolder folder;
   const std::string place = folder.file("samples");

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "config/load_unit.hpp"
+#include "daemon/live/sample_log.hpp"
 
 namespace mpm::live {
 namespace {
@@ -43,6 +44,36 @@ TEST_CASE("samples of other signals, at another pace or of another model mean so
   CHECK(meaning(text) != meaning(unit_text(predicted, "2")));
   CHECK(meaning(unit_text(predicted, "2")) == meaning(unit_text(predicted, "2")));
   CHECK(meaning(unit_text(predicted, "2")) != meaning(unit_text(predicted, "3")));
+}
+
+TEST_CASE("a state belongs to a unit file, whatever in it has changed") {
+  const auto owner = [](const std::string& text) {
+    const config::LoadResult loaded = config::load_unit_text(text, "toy.yaml");
+    REQUIRE(loaded.ok());
+    return owner_of_state(loaded.config);
+  };
+  const std::string text = unit_text("y1", "2");
+  CHECK(owner(text) == owner(text));
+  CHECK(owner(text) != owner(unit_text("y1", "3")));
+  CHECK(owner(text) != owner(text + "monitor: {memory: 8000}\n"));
+  CHECK(owner(text) != owner(text + "alarms: {on_delay: 7}\n"));
+}
+
+TEST_CASE("states come the more often the more there is to judge behind them") {
+  const auto samples = [](const std::string& plant, std::size_t units) {
+    const config::LoadResult loaded =
+        config::load_unit(MPM_SOURCE_DIR "/config/plants/" + plant + ".yaml");
+    REQUIRE(loaded.ok());
+    return samples_of(loaded.config, units, "samples");
+  };
+  const UnitSamples small = samples("shell3x3", 1), large = samples("shell7x5", 1),
+                    many = samples("shell7x5", 50);
+  CHECK(small.folder == "samples/shell");
+  CHECK(small.keep >= large.keep);
+  CHECK(large.keep > many.keep);
+  CHECK(small.files_between_states > large.files_between_states);
+  CHECK(small.files_between_states <= SampleLog::kFiles / 4);
+  CHECK(many.files_between_states >= 1);
 }
 
 }  // namespace

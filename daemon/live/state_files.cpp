@@ -1,0 +1,150 @@
+#include "daemon/live/state_files.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "config/replacement_file.hpp"
+#include "core/text/netstring.hpp"
+#include "daemon/host/low_priority.hpp"
+
+namespace mpm::live {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "mpm state 1\n";
+constexpr std::string_view kPrefix = "state-";
+constexpr std::size_t kKept = 2;
+
+std::string path_of(const std::string& folder, std::uint64_t number) {
+  return folder + "/" + std::string(kPrefix) + std::to_string(number);
+}
+
+void remove(const std::string& folder, std::uint64_t number) {
+  std::error_code ignored;
+  fs::remove(path_of(folder, number), ignored);
+}
+
+/// Of all states there are, descending.
+std::vector<std::uint64_t> numbers_in(const std::string& folder) {
+  std::vector<std::uint64_t> numbers;
+  std::error_code failed;
+  for (auto entry = fs::directory_iterator(folder, failed);
+       !failed && entry != fs::directory_iterator(); entry.increment(failed)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(kPrefix)) continue;
+    std::uint64_t number = 0;
+    const char* end = name.data() + name.size();
+    const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
+    if (error == std::errc() && stop == end && entry->path() == path_of(folder, number))
+      numbers.push_back(number);
+  }
+  std::sort(numbers.rbegin(), numbers.rend());
+  return numbers;
+}
+
+// Of fixed width, before all that it is the sum of.
+std::string sum_of(std::string_view bytes) {
+  const auto sum = ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  return fmt::format("{:08x}\n", sum);
+}
+
+/// What stands before the bytes. The number is in it, so that no file passes for another.
+std::string head_of(std::uint64_t number, std::string_view belongs) {
+  std::string head;
+  append_netstring(head, std::to_string(number));
+  append_netstring(head, belongs);
+  return head;
+}
+
+/// Why it could not be written, or nothing.
+std::string write_state(const std::string& folder, const std::string& belongs,
+                        std::uint64_t number, const std::vector<std::byte>& bytes) {
+  host::take_low_priority("mpmd-state");
+  std::string body = head_of(number, belongs);
+  body.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  try {
+    config::ReplacementFile file(path_of(folder, number));
+    file.write(std::string(kMagic) + sum_of(body));
+    file.write(body);
+    file.commit();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  const std::vector<std::uint64_t> all = numbers_in(folder);
+  for (std::size_t i = kKept; i < all.size(); ++i) remove(folder, all[i]);
+  return "";
+}
+
+std::optional<std::vector<std::byte>> read_state(const std::string& folder,
+                                                 const std::string& belongs,
+                                                 std::uint64_t number) {
+  std::ifstream stream(path_of(folder, number), std::ios::binary);
+  const std::string all((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  std::string_view rest = all;
+  const auto cut = [&rest](std::string_view expected) {
+    if (!rest.starts_with(expected)) return false;
+    rest.remove_prefix(expected.size());
+    return true;
+  };
+  const std::size_t sum_size = sum_of("").size();
+  if (!cut(kMagic) || rest.size() < sum_size) return std::nullopt;
+  const std::string_view sum = rest.substr(0, sum_size);
+  rest.remove_prefix(sum_size);
+  if (sum_of(rest) != sum || !cut(head_of(number, belongs))) return std::nullopt;
+  const auto bytes = std::as_bytes(std::span(rest));
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+}  // namespace
+
+StateFiles::StateFiles(std::string folder, std::string belongs)
+    : folder_(std::move(folder)), belongs_(std::move(belongs)) {}
+
+std::vector<std::uint64_t> StateFiles::find(const std::vector<std::uint64_t>& files) {
+  std::vector<std::uint64_t> found = numbers_in(folder_);
+  std::erase_if(found, [&](std::uint64_t number) {
+    if (std::binary_search(files.begin(), files.end(), number)) return false;
+    remove(folder_, number);
+    return true;
+  });
+  return found;
+}
+
+std::optional<std::vector<std::byte>> StateFiles::read(std::uint64_t file) const {
+  return read_state(folder_, belongs_, file);
+}
+
+bool StateFiles::poll() {
+  if (!writing_.valid()) return true;
+  if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  Written written = writing_.get();
+  problem_ = std::move(written.problem);
+  bytes_ = std::move(written.bytes);
+  return true;
+}
+
+void StateFiles::keep(std::uint64_t file,
+                      const std::function<void(std::vector<std::byte>&)>& fill) {
+  if (!poll()) return;
+  bytes_.clear();
+  fill(bytes_);
+  writing_ = std::async(std::launch::async, [this, file, bytes = std::move(bytes_)]() mutable {
+    std::string problem = write_state(folder_, belongs_, file, bytes);
+    return Written{std::move(problem), std::move(bytes)};
+  });
+}
+
+}  // namespace mpm::live

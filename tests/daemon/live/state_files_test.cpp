@@ -1,0 +1,124 @@
+#include "daemon/live/state_files.hpp"
+
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "tests/system/process.hpp"
+
+namespace mpm::live {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::byte>;
+
+Bytes some_bytes(std::uint64_t seed, std::size_t count = 5000) {
+  std::mt19937_64 random(seed);
+  Bytes bytes(count);
+  for (std::byte& each : bytes) each = static_cast<std::byte>(random());
+  return bytes;
+}
+
+/// Written by a thread; whoever leaves waits for it.
+void keep(const std::string& folder, const std::string& belongs, std::uint64_t file,
+          const Bytes& bytes) {
+  StateFiles(folder, belongs).keep(file, [&](Bytes& to) { to = bytes; });
+}
+
+void await(StateFiles& states) {
+  while (!states.poll()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+std::set<std::string> names_in(const std::string& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+TEST_CASE("the last two states are kept, and come back as they were") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("");
+  const std::vector<std::uint64_t> log = {7, 8, 9, 10, 11};
+  CHECK(StateFiles(place, "a").find(log).empty());
+  for (const std::uint64_t file : {8, 9, 10}) keep(place, "a", file, some_bytes(file));
+  StateFiles states(place, "a");
+  CHECK(states.find(log) == std::vector<std::uint64_t>{10, 9});
+  CHECK(states.read(10) == some_bytes(10));
+  CHECK(states.read(9) == some_bytes(9));
+  CHECK_FALSE(states.read(8));
+  CHECK(names_in(place) == std::set<std::string>{"state-10", "state-9"});
+
+  keep(place, "a", 11, {});
+  REQUIRE(states.read(11));
+  CHECK(states.read(11)->empty());
+}
+
+TEST_CASE("a state whose file of the log has gone goes too") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("");
+  for (const std::uint64_t file : {8, 9}) keep(place, "a", file, some_bytes(file));
+  std::ofstream(folder.file("state-x")) << "somebody's";
+  std::ofstream(folder.file("state-08")) << "somebody's";
+  CHECK(StateFiles(place, "a").find({1, 2, 8}) == std::vector<std::uint64_t>{8});
+  CHECK(names_in(place) == std::set<std::string>{"state-8", "state-x", "state-08"});
+}
+
+TEST_CASE("a state of another program or unit is not used") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("");
+  keep(place, "a", 8, some_bytes(8));
+  CHECK_FALSE(StateFiles(place, "b").read(8));
+  CHECK_FALSE(StateFiles(place, "").read(8));
+  // Nor is one under another's number.
+  fs::rename(folder.file("state-8"), folder.file("state-9"));
+  CHECK_FALSE(StateFiles(place, "a").read(9));
+}
+
+// CRC-32 finds every burst of up to 32 bits.
+TEST_CASE("a damaged state is not used") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("");
+  keep(place, "a", 8, some_bytes(8, 300));
+  const std::string whole = test::read_file(folder.file("state-8"));
+  StateFiles states(place, "a");
+  std::mt19937 random(5);
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1U << (random() % 8)));
+    test::write_file(folder.file("state-8"), damaged);
+    if (states.read(8)) FAIL("byte " << at << " was damaged");
+    test::write_file(folder.file("state-8"), whole.substr(0, at));
+    if (states.read(8)) FAIL("all from byte " << at << " on was lost");
+  }
+  test::write_file(folder.file("state-8"), std::string(whole.size(), '\0'));
+  CHECK_FALSE(states.read(8));
+  test::write_file(folder.file("state-8"), whole);
+  CHECK(states.read(8));
+}
+
+TEST_CASE("what cannot be written is told, and the state before stays") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("states");
+  fs::create_directory(place);
+  keep(place, "a", 8, some_bytes(8));
+  StateFiles states(place, "a");
+  fs::rename(place, folder.file("away"));
+  states.keep(9, [](Bytes& to) { to = some_bytes(9); });
+  await(states);
+  CHECK(states.problem().find(place) != std::string::npos);
+  fs::rename(folder.file("away"), place);
+  CHECK(states.read(8) == some_bytes(8));
+  states.keep(10, [](Bytes& to) { to = some_bytes(10); });
+  await(states);
+  CHECK(states.problem().empty());
+  CHECK(states.read(10) == some_bytes(10));
+}
+
+}  // namespace
+}  // namespace mpm::live
