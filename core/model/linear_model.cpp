@@ -350,9 +350,8 @@ LinearModel LinearModel::channel(int cv, int input) const {
                                      spec.state_space->c.row(cv),
                                      spec.state_space->d.block(cv, input, 1, 1),
                                      {}};
-  for (const ChannelSpec& channel : spec.channels)
-    if (channel.cv == cv && channel.input == input)
-      one.channels.push_back(linear_part(channel, *state_->definition));
+  else if (const ChannelSpec* channel = state_->definition->channel(cv, input))
+    one.channels.push_back(linear_part(*channel, *state_->definition));
   return LinearModel(one);
 }
 

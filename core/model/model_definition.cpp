@@ -51,6 +51,7 @@ ModelDefinition::ModelDefinition(ModelSpec given) : spec(std::move(given)) {
     return;
   }
   facts.resize(cvs * inputs);
+  channels.resize(cvs * inputs);
   for (const ChannelSpec& channel : spec.channels) add_channel(channel);
 }
 
@@ -77,9 +78,9 @@ void ModelDefinition::add_channel(const ChannelSpec& channel) {
   if (channel.cv < 0 || channel.cv >= spec.cv_count || channel.input < 0 ||
       channel.input >= spec.input_count)
     throw std::invalid_argument("channel: no such CV or input");
-  ChannelFacts& slot =
-      facts[static_cast<std::size_t>(channel.cv * spec.input_count + channel.input)];
+  ChannelFacts& slot = facts[place(channel.cv, channel.input)];
   if (slot.exists) throw std::invalid_argument("channel: given twice");
+  channels[place(channel.cv, channel.input)] = &channel;
   const auto term = std::find_if(spec.state_terms.begin(), spec.state_terms.end(),
                                  [&channel](const StateTerm& each) {
                                    return each.cv == channel.cv && each.input == channel.input;

@@ -30,6 +30,8 @@ struct OwnInput {
 struct ModelDefinition {
   /// Throws std::invalid_argument where the specification makes no sense.
   explicit ModelDefinition(ModelSpec given);
+  ModelDefinition(const ModelDefinition&) = delete;  // `channels` point into it
+  ModelDefinition& operator=(const ModelDefinition&) = delete;
 
   ModelSpec spec;
   Eigen::VectorXd input_origin, output_origin;
@@ -39,12 +41,16 @@ struct ModelDefinition {
   std::vector<TankChannel> tanks;
   std::vector<OwnInput> own_inputs;
   std::optional<StateSpaceFacts> state_space;
-  std::vector<ChannelFacts> facts;  ///< cv_count x input_count, row by row
+  std::vector<ChannelFacts> facts;           ///< cv_count x input_count, row by row
+  std::vector<const ChannelSpec*> channels;  ///< of `spec`, likewise; null where there is none
   Eigen::Index state_count = 0;
   int history = 1;  ///< input values that the channels look back on
 
   [[nodiscard]] const ChannelFacts& fact(int cv, int input) const {
-    return facts[static_cast<std::size_t>(cv * spec.input_count + input)];
+    return facts[place(cv, input)];
+  }
+  [[nodiscard]] const ChannelSpec* channel(int cv, int input) const {
+    return channels[place(cv, input)];
   }
   /// Deviation of the CV that the one channel behind `own` makes up; `fir_outputs`: those of
   /// `firs`.
@@ -53,6 +59,9 @@ struct ModelDefinition {
                                  const Eigen::VectorXd& fir_outputs) const;
 
  private:
+  [[nodiscard]] std::size_t place(int cv, int input) const {
+    return static_cast<std::size_t>(cv * spec.input_count + input);
+  }
   void add_channel(const ChannelSpec& channel);
   void check_terms() const;
   ChannelFacts add(const ChannelSpec& channel, int source, const TransferFunction& transfer);
