@@ -242,7 +242,11 @@ void SampleLog::begin_file() {
   append(meaning_);
   std::uint64_t others = 0;
   for (const File& file : files_) others += file.intervals;
-  while (files_.size() > 1 && others - files_.front().intervals >= keep_) {
+  const auto surplus = [&] {
+    const std::uint64_t most = files_.front().number < held_from_ ? keep_ : kMostHeld * keep_;
+    return others - files_.front().intervals >= most;
+  };
+  while (files_.size() > 1 && surplus()) {
     others -= files_.front().intervals;
     fs::remove(path_of(files_.front().number), failed);
     files_.pop_front();

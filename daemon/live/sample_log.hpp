@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,7 @@ class SampleLog {
   using Visit = std::function<void(const BlockView*)>;
   /// Within what is kept.
   static constexpr std::uint64_t kFiles = 64;
+  static constexpr std::uint64_t kMostHeld = 8;
 
   /// `meaning`: of the values; what was kept with another one is of no use and goes. `keep`:
   /// intervals, at least. Touches nothing yet.
@@ -41,6 +43,9 @@ class SampleLog {
   /// where one does.
   std::optional<std::uint64_t> push(const BlockView& block);
   void push_expiry();
+  /// From now on files from this one on stay, whatever the others hold, up to `kMostHeld` times
+  /// `keep`: a state stands before them.
+  void hold_from(std::uint64_t file) { held_from_ = file; }
   /// Why nothing can be kept now; empty: it can. It is tried again when the next file is due.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
@@ -61,6 +66,7 @@ class SampleLog {
   std::string folder_;
   std::string meaning_;
   std::uint64_t keep_;
+  std::uint64_t held_from_ = std::numeric_limits<std::uint64_t>::max();
   std::deque<File> files_;  // the last one is written to, while descriptor_ is open
   int descriptor_ = -1;
   bool begun_ = false;                                    // a file, or it was tried

@@ -70,8 +70,8 @@ std::string head_of(std::uint64_t number, std::string_view belongs) {
 }
 
 /// Why it could not be written, or nothing.
-std::string write_state(const std::string& folder, const std::string& belongs,
-                        std::uint64_t number, const std::vector<std::byte>& bytes) {
+std::string write_state(const std::string& folder, const std::string& belongs, std::uint64_t number,
+                        const std::vector<std::byte>& bytes) {
   host::take_low_priority("mpmd-state");
   std::string body = head_of(number, belongs);
   body.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -89,8 +89,7 @@ std::string write_state(const std::string& folder, const std::string& belongs,
 }
 
 std::optional<std::vector<std::byte>> read_state(const std::string& folder,
-                                                 const std::string& belongs,
-                                                 std::uint64_t number) {
+                                                 const std::string& belongs, std::uint64_t number) {
   std::ifstream stream(path_of(folder, number), std::ios::binary);
   const std::string all((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   std::string_view rest = all;
@@ -123,14 +122,17 @@ std::vector<std::uint64_t> StateFiles::find(const std::vector<std::uint64_t>& fi
   return found;
 }
 
-std::optional<std::vector<std::byte>> StateFiles::read(std::uint64_t file) const {
-  return read_state(folder_, belongs_, file);
+std::optional<std::vector<std::byte>> StateFiles::read(std::uint64_t file) {
+  std::optional<std::vector<std::byte>> bytes = read_state(folder_, belongs_, file);
+  if (bytes) newest_ = std::max(newest_, file);
+  return bytes;
 }
 
 bool StateFiles::poll() {
   if (!writing_.valid()) return true;
   if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   Written written = writing_.get();
+  if (written.problem.empty()) newest_ = written.file;
   problem_ = std::move(written.problem);
   bytes_ = std::move(written.bytes);
   return true;
@@ -143,7 +145,7 @@ void StateFiles::keep(std::uint64_t file,
   fill(bytes_);
   writing_ = std::async(std::launch::async, [this, file, bytes = std::move(bytes_)]() mutable {
     std::string problem = write_state(folder_, belongs_, file, bytes);
-    return Written{std::move(problem), std::move(bytes)};
+    return Written{file, std::move(problem), std::move(bytes)};
   });
 }
 

@@ -12,7 +12,8 @@ namespace mpm::live {
 
 /// Bytes that stand for all that a unit's samples have made of it, as it was when a file of its
 /// `SampleLog` began, beside that file on disk: whoever takes them back has only that file and the
-/// later ones to take again. Written by a thread of its own, whole or not at all; the last two stay.
+/// later ones to take again. Written by a thread of its own, whole or not at all; the last two
+/// stay.
 class StateFiles {
  public:
   /// `belongs`: to which program and which unit; bytes that belong elsewhere are never used.
@@ -24,16 +25,19 @@ class StateFiles {
   /// is kept, newest first. States of other files go.
   [[nodiscard]] std::vector<std::uint64_t> find(const std::vector<std::uint64_t>& files);
   /// Nothing where it is damaged, or does not belong here.
-  [[nodiscard]] std::optional<std::vector<std::byte>> read(std::uint64_t file) const;
+  [[nodiscard]] std::optional<std::vector<std::byte>> read(std::uint64_t file);
   /// Has what `fill` appends written. Where the one before is still being written, that must do.
   void keep(std::uint64_t file, const std::function<void(std::vector<std::byte>&)>& fill);
   /// Looks whether what was to be kept is written, or could not be; true where nothing is at hand.
   bool poll();
+  /// The last one that is on disk, of those that were read or written; 0: none.
+  [[nodiscard]] std::uint64_t newest() const { return newest_; }
   /// Why the last one could not be written; empty: it could, as far as `poll` has seen.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
   struct Written {
+    std::uint64_t file = 0;
     std::string problem;
     std::vector<std::byte> bytes;  // back, for their memory
   };
@@ -41,6 +45,7 @@ class StateFiles {
   std::string folder_, belongs_;
   std::future<Written> writing_;  // is waited for at the end
   std::vector<std::byte> bytes_;
+  std::uint64_t newest_ = 0;
   std::string problem_;
 };
 

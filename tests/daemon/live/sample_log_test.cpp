@@ -108,6 +108,23 @@ TEST_CASE("what was taken comes back as it came, over several lives") {
   CHECK(told.why.empty());
 }
 
+TEST_CASE("the files behind a state stay, within a limit, until there is a later one") {
+  const test::TemporaryFolder folder;
+  SampleLog log(folder.file("samples"), "a", 640);
+  auto push_until = [&log, k = std::int64_t{0}](std::int64_t end) mutable {
+    for (; k < end; ++k) push(log, SignalKind::kMv, k, nullptr);
+  };
+  log.hold_from(3);
+  push_until(3000);
+  CHECK(log.files().front() == 3);
+  push_until(9000);
+  CHECK(log.files().size() * 11 > 8 * 640);  // a file holds 11 intervals
+  CHECK(log.files().size() * 11 < 8 * 640 + 3 * 11);
+  log.hold_from(log.files().back());
+  push_until(9020);
+  CHECK(log.files().size() * 11 < 640 + 3 * 11);
+}
+
 TEST_CASE("the last intervals stay, and not much more") {
   const test::TemporaryFolder folder;
   const std::string place = folder.file("samples");

@@ -49,7 +49,9 @@ TEST_CASE("the last two states are kept, and come back as they were") {
   for (const std::uint64_t file : {8, 9, 10}) keep(place, "a", file, some_bytes(file));
   StateFiles states(place, "a");
   CHECK(states.find(log) == std::vector<std::uint64_t>{10, 9});
+  CHECK(states.newest() == 0);
   CHECK(states.read(10) == some_bytes(10));
+  CHECK(states.newest() == 10);
   CHECK(states.read(9) == some_bytes(9));
   CHECK_FALSE(states.read(8));
   CHECK(names_in(place) == std::set<std::string>{"state-10", "state-9"});
@@ -112,11 +114,13 @@ TEST_CASE("what cannot be written is told, and the state before stays") {
   states.keep(9, [](Bytes& to) { to = some_bytes(9); });
   await(states);
   CHECK(states.problem().find(place) != std::string::npos);
+  CHECK(states.newest() == 0);
   fs::rename(folder.file("away"), place);
   CHECK(states.read(8) == some_bytes(8));
   states.keep(10, [](Bytes& to) { to = some_bytes(10); });
   await(states);
   CHECK(states.problem().empty());
+  CHECK(states.newest() == 10);
   CHECK(states.read(10) == some_bytes(10));
 }
 
