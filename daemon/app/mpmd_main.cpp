@@ -86,11 +86,11 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--journal-every-sample", options.service.sample_journal,
                  "append every sample's records to this file as JSON lines; a gigabyte a day of "
                  "nine channels at 1 s");
-  app.add_option(
-      "--state-dir", options.state_folder,
-      "keep in this folder what a restart must not lose (the last samples of each unit), "
-      "the reports of diagnosed alarms and the journal of alarms (default: "
-      "$STATE_DIRECTORY)");
+  app.add_option("--state-dir", options.state_folder,
+                 "keep in this folder what a restart must not lose (of each unit what its samples "
+                 "have made, and the last of these), the reports of diagnosed alarms and the "
+                 "journal of alarms (default: "
+                 "$STATE_DIRECTORY)");
   app.add_option("--alarm-journal", options.service.alarm_journal,
                  "keep what happens to alarms in this SQLite file, and what people did about them "
                  "over a restart; `mpm journal` reads it (default: alarms.sqlite in the state "
@@ -108,7 +108,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--http-name", options.http_names,
                  "another host name by which the page is reached, as behind a proxy; repeatable")
       ->needs("--http");
-  app.add_option("--log-level", options.log_level, "what to log")
+  app.add_option("--log-level", options.log_level,
+                 "what to log, to standard error; a service's goes to the system's journal: "
+                 "journalctl -u mpmd")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "critical", "off"}));
   app.set_version_flag("--version", idl::version_text("mpmd"));

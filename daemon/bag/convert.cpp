@@ -103,6 +103,10 @@ ConvertReport convert(const std::string& input, const std::string& output,
     report.notices = table.notices;
     report.notices.insert(report.notices.end(), table.frames->notices().begin(),
                           table.frames->notices().end());
+    if (from_mcap)
+      report.notices.emplace_back(
+          "the numbers of the control intervals, times of arrival and engineering units are left "
+          "out: a CSV has no place for them");
   } catch (const std::invalid_argument& error) {  // what the input holds does not fit the output
     refuse(input, error.what());
   }

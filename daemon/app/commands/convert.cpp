@@ -70,7 +70,8 @@ int convert(const Options& options) {
 void add_convert(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
-      "convert", "Turn a recording (MCAP) into CSV, or CSV into a recording, without losing a bit");
+      "convert",
+      "Turn a recording (MCAP) into CSV, or CSV into a recording; values keep their last bit");
   command
       ->add_option("input", options->input,
                    "MCAP recording, a folder of one that was split, or CSV in any historian layout")
