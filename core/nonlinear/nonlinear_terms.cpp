@@ -115,6 +115,7 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
     terms_.push_back({0, -1, NonlinearKind::kOutputCurve});
   values_.resize(terms_.size());
   windows_.assign(terms_.size(), LagWindow(remembered + limits::kLags));
+  // NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks): the channels have what was made
 }
 
 int NonlinearTerms::columns_of(NonlinearTest test, int inputs) {
