@@ -31,6 +31,7 @@ foreach(program mpm mpmd mpmsim)
   install(FILES ${said}/${program}.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endforeach()
 install(FILES idl/mpm.idl DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
+install(FILES daemon/package/prometheus-rules.yml DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
 install(FILES tests/hmi/loopback.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm RENAME cyclonedds.xml)
 install(DIRECTORY config/units config/plants config/scenarios
   DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN *.yaml)

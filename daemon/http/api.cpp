@@ -10,6 +10,7 @@
 #include "core/text/printable.hpp"
 #include "daemon/http/command_json.hpp"
 #include "daemon/http/diagnosis_json.hpp"
+#include "daemon/http/metrics.hpp"
 #include "daemon/http/series_json.hpp"
 #include "daemon/http/system_json.hpp"
 #include "daemon/http/target.hpp"
@@ -101,6 +102,7 @@ Reply Api::answer(const Request& request) const {
 Reply Api::get(const std::vector<std::string>& path, const Query& query) const {
   if (path.size() == 1 && path[0] == "healthz") return json_reply({{"status", "ok"}});
   if (path.size() == 1 && path[0] == "readyz") return ready();
+  if (path.size() == 1 && path[0] == "metrics") return metrics();
   if (!path.empty() && path[0] == "reports") return report(path);
   if (path.size() < 3 || path[0] != "api" || path[1] != "v1")
     return error_reply(404, "there is nothing of this name");
@@ -187,6 +189,13 @@ Reply Api::ready() const {
     return unit.second->store.snapshot()->id > 0;
   });
   return json_reply({{"status", ready ? "ready" : "starting"}}, ready ? 200 : 503);
+}
+
+Reply Api::metrics() const {
+  Reply reply;
+  reply.type = kMetricsType;
+  reply.body = metrics_text(*parts_.board, parts_.version, started_ns_);
+  return reply;
 }
 
 Reply Api::report(const std::vector<std::string>& path) const {

@@ -65,6 +65,7 @@ class Api {
   [[nodiscard]] Reply journal(const Query& query) const;
   [[nodiscard]] Reply system() const;
   [[nodiscard]] Reply ready() const;
+  [[nodiscard]] Reply metrics() const;
   [[nodiscard]] Reply report(const std::vector<std::string>& path) const;
   [[nodiscard]] Reply command(const Request& request) const;
 

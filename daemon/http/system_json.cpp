@@ -1,33 +1,12 @@
 #include "daemon/http/system_json.hpp"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <chrono>
-#include <fstream>
 
+#include "daemon/http/process_load.hpp"
 #include "daemon/report/record_json.hpp"
 
 namespace mpm::http {
 namespace {
-
-/// Bytes in memory; 0 where the kernel does not say.
-std::uint64_t resident_bytes() {
-  std::ifstream file("/proc/self/statm");
-  std::uint64_t all = 0, resident = 0;
-  file >> all >> resident;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
-double processor_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  constexpr double kMicrosecond = 1e-6;
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + kMicrosecond * static_cast<double>(time.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 Json unit_json_of(const UnitStore& store) {
   const std::shared_ptr<const UnitSnapshot> snapshot = store.snapshot();
@@ -52,11 +31,12 @@ Json system_json(const Board& board, const std::string& version, std::int64_t st
   const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(
                        std::chrono::system_clock::now().time_since_epoch())
                        .count();
+  const ProcessLoad load = process_load();
   return {{"version", version},
           {"time_ns", now},
           {"started_ns", started_ns},
-          {"resident_bytes", resident_bytes()},
-          {"processor_seconds", processor_seconds()},
+          {"resident_bytes", load.resident_bytes},
+          {"processor_seconds", load.processor_seconds},
           {"units", units}};
 }
 
