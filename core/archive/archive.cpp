@@ -52,10 +52,10 @@ void Archive::item(std::string& text) {
 
 void Archive::item(std::vector<bool>& list) {
   length(list.size());
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    bool flag = list[i];
+  for (std::vector<bool>::reference each : list) {
+    bool flag = each;
     item(flag);
-    list[i] = flag;
+    each = flag;
   }
 }
 

@@ -55,6 +55,11 @@ std::vector<std::uint64_t> numbers_in(const std::string& folder) {
   return numbers;
 }
 
+std::uint64_t oldest_in(const std::string& folder) {
+  const std::vector<std::uint64_t> numbers = numbers_in(folder);
+  return numbers.empty() ? 0 : numbers.back();
+}
+
 // Of fixed width, before all that it is the sum of.
 std::string sum_of(std::string_view bytes) {
   const auto sum = ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
@@ -119,20 +124,19 @@ std::vector<std::uint64_t> StateFiles::find(const std::vector<std::uint64_t>& fi
     remove(folder_, number);
     return true;
   });
+  oldest_ = found.empty() ? 0 : found.back();
   return found;
 }
 
-std::optional<std::vector<std::byte>> StateFiles::read(std::uint64_t file) {
-  std::optional<std::vector<std::byte>> bytes = read_state(folder_, belongs_, file);
-  if (bytes) newest_ = std::max(newest_, file);
-  return bytes;
+std::optional<std::vector<std::byte>> StateFiles::read(std::uint64_t file) const {
+  return read_state(folder_, belongs_, file);
 }
 
 bool StateFiles::poll() {
   if (!writing_.valid()) return true;
   if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   Written written = writing_.get();
-  if (written.problem.empty()) newest_ = written.file;
+  if (written.problem.empty()) oldest_ = written.oldest;
   problem_ = std::move(written.problem);
   bytes_ = std::move(written.bytes);
   return true;
@@ -145,7 +149,7 @@ void StateFiles::keep(std::uint64_t file,
   fill(bytes_);
   writing_ = std::async(std::launch::async, [this, file, bytes = std::move(bytes_)]() mutable {
     std::string problem = write_state(folder_, belongs_, file, bytes);
-    return Written{file, std::move(problem), std::move(bytes)};
+    return Written{oldest_in(folder_), std::move(problem), std::move(bytes)};
   });
 }
 

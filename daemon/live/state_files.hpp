@@ -25,19 +25,20 @@ class StateFiles {
   /// is kept, newest first. States of other files go.
   [[nodiscard]] std::vector<std::uint64_t> find(const std::vector<std::uint64_t>& files);
   /// Nothing where it is damaged, or does not belong here.
-  [[nodiscard]] std::optional<std::vector<std::byte>> read(std::uint64_t file);
+  [[nodiscard]] std::optional<std::vector<std::byte>> read(std::uint64_t file) const;
   /// Has what `fill` appends written. Where the one before is still being written, that must do.
   void keep(std::uint64_t file, const std::function<void(std::vector<std::byte>&)>& fill);
   /// Looks whether what was to be kept is written, or could not be; true where nothing is at hand.
   bool poll();
-  /// The last one that is on disk, of those that were read or written; 0: none.
-  [[nodiscard]] std::uint64_t newest() const { return newest_; }
+  /// Of those on disk, as `find` and `poll` have seen, the first; 0: none. What is behind it in the
+  /// log may be wanted, where the last one is damaged.
+  [[nodiscard]] std::uint64_t oldest() const { return oldest_; }
   /// Why the last one could not be written; empty: it could, as far as `poll` has seen.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
   struct Written {
-    std::uint64_t file = 0;
+    std::uint64_t oldest = 0;
     std::string problem;
     std::vector<std::byte> bytes;  // back, for their memory
   };
@@ -45,7 +46,7 @@ class StateFiles {
   std::string folder_, belongs_;
   std::future<Written> writing_;  // is waited for at the end
   std::vector<std::byte> bytes_;
-  std::uint64_t newest_ = 0;
+  std::uint64_t oldest_ = 0;
   std::string problem_;
 };
 

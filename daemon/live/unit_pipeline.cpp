@@ -268,7 +268,7 @@ void UnitPipeline::archive(Archive& a) {
 // Between two samples: what the first file holds that begins with the next one comes behind it.
 void UnitPipeline::keep_state(std::uint64_t file) {
   states_->poll();
-  log_->hold_from(states_->newest());
+  log_->hold_from(states_->oldest());
   if (file < next_state_) return;
   next_state_ = file + files_between_states_;
   states_->keep(file, [this](std::vector<std::byte>& bytes) {
@@ -308,7 +308,7 @@ std::string UnitPipeline::recall(const UnitSamples& samples) {
   states_.emplace(samples.folder, samples.owner);
   files_between_states_ = samples.files_between_states;
   const std::uint64_t from = take_back_state();
-  log_->hold_from(from);
+  log_->hold_from(states_->oldest());
   const std::uint64_t before = aligner_.counters().frames;
   recalling_ = true;
   const std::string lost = log_->recall(

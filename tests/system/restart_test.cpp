@@ -124,7 +124,7 @@ std::string go_on_over_kills(const std::string& name, unsigned most, int least_k
     at = end;
   }
   killed.await(frames.back().interval);
-  const std::string log = read_file(killed.folder.file("err"));
+  std::string log = read_file(killed.folder.file("err"));
   CAPTURE(kills, log);
   CHECK(kills >= least_kills);
   CHECK(killed.verdicts(frames.back().interval) == whole.verdicts(frames.back().interval));
