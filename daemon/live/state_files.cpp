@@ -55,6 +55,17 @@ std::vector<std::uint64_t> numbers_in(const std::string& folder) {
   return numbers;
 }
 
+/// What a writer that was killed has left, which nobody would ever replace.
+void remove_unfinished(const std::string& folder) {
+  std::error_code failed;
+  std::vector<fs::path> unfinished;
+  for (auto entry = fs::directory_iterator(folder, failed);
+       !failed && entry != fs::directory_iterator(); entry.increment(failed))
+    if (entry->path().filename().string().starts_with("." + std::string(kPrefix)))
+      unfinished.push_back(entry->path());
+  for (const fs::path& path : unfinished) fs::remove(path, failed);
+}
+
 std::uint64_t oldest_in(const std::string& folder) {
   const std::vector<std::uint64_t> numbers = numbers_in(folder);
   return numbers.empty() ? 0 : numbers.back();
@@ -118,6 +129,7 @@ StateFiles::StateFiles(std::string folder, std::string belongs)
     : folder_(std::move(folder)), belongs_(std::move(belongs)) {}
 
 std::vector<std::uint64_t> StateFiles::find(const std::vector<std::uint64_t>& files) {
+  remove_unfinished(folder_);
   std::vector<std::uint64_t> found = numbers_in(folder_);
   std::erase_if(found, [&](std::uint64_t number) {
     if (std::binary_search(files.begin(), files.end(), number)) return false;

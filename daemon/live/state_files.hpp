@@ -22,7 +22,8 @@ class StateFiles {
   StateFiles& operator=(const StateFiles&) = delete;
 
   /// The files of the log, of those that there are (`files`, ascending), of whose beginning a state
-  /// is kept, newest first. States of other files go.
+  /// is kept, newest first. States of other files go, and what a killed process was writing. To be
+  /// called before anything is kept.
   [[nodiscard]] std::vector<std::uint64_t> find(const std::vector<std::uint64_t>& files);
   /// Nothing where it is damaged, or does not belong here.
   [[nodiscard]] std::optional<std::vector<std::byte>> read(std::uint64_t file) const;

@@ -9,6 +9,7 @@
 #include <set>
 #include <thread>
 
+#include "config/replacement_file.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::live {
@@ -68,6 +69,17 @@ TEST_CASE("a state whose file of the log has gone goes too") {
   std::ofstream(folder.file("state-08")) << "somebody's";
   CHECK(StateFiles(place, "a").find({1, 2, 8}) == std::vector<std::uint64_t>{8});
   CHECK(names_in(place) == std::set<std::string>{"state-8", "state-x", "state-08"});
+}
+
+TEST_CASE("what a killed process was writing does not stay for ever") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("");
+  keep(place, "a", 8, some_bytes(8));
+  config::ReplacementFile unfinished(folder.file("state-9"));
+  unfinished.write("half of it");
+  CHECK(names_in(place).size() == 2);
+  CHECK(StateFiles(place, "a").find({8, 9}) == std::vector<std::uint64_t>{8});
+  CHECK(names_in(place) == std::set<std::string>{"state-8"});
 }
 
 TEST_CASE("a state of another program or unit is not used") {
