@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -18,6 +17,8 @@
 #include <system_error>
 #include <utility>
 
+#include "daemon/live/numbered_files.hpp"
+
 namespace mpm::live {
 namespace {
 
@@ -25,7 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kMagic = "mpm samples 1\n";
 constexpr std::string_view kPrefix = "samples-";
-constexpr int kDigits = 12;
 // A record of its own, and not an empty one: that is what a file looks like whose end a power cut
 // has left as zeros.
 constexpr std::string_view kExpiry = "x";
@@ -116,27 +116,10 @@ SampleLog::SampleLog(std::string folder, std::string meaning, std::uint64_t keep
 SampleLog::~SampleLog() { close_file(); }
 
 std::string SampleLog::path_of(std::uint64_t number) const {
-  const std::string digits = std::to_string(number);
-  return folder_ + "/" + std::string(kPrefix) +
-         std::string(kDigits - std::min<std::size_t>(kDigits, digits.size()), '0') + digits;
+  return numbered_path(folder_, kPrefix, number);
 }
 
-std::vector<std::uint64_t> SampleLog::files() const {
-  std::vector<std::uint64_t> numbers;
-  std::error_code failed;
-  for (auto entry = fs::directory_iterator(folder_, failed);
-       !failed && entry != fs::directory_iterator(); entry.increment(failed)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with(kPrefix)) continue;
-    std::uint64_t number = 0;
-    const char* end = name.data() + name.size();
-    const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
-    if (error == std::errc() && stop == end && entry->path() == path_of(number))
-      numbers.push_back(number);
-  }
-  std::sort(numbers.begin(), numbers.end());
-  return numbers;
-}
+std::vector<std::uint64_t> SampleLog::files() const { return numbers_in(folder_, kPrefix); }
 
 // False where the file is of another meaning.
 bool SampleLog::read(File& file, const Visit& visit, std::string& why) {

@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "config/replacement_file.hpp"
 #include "core/text/netstring.hpp"
 #include "daemon/host/low_priority.hpp"
+#include "daemon/live/numbered_files.hpp"
 
 namespace mpm::live {
 namespace {
@@ -29,30 +29,12 @@ constexpr std::string_view kPrefix = "state-";
 constexpr std::size_t kKept = 2;
 
 std::string path_of(const std::string& folder, std::uint64_t number) {
-  return folder + "/" + std::string(kPrefix) + std::to_string(number);
+  return numbered_path(folder, kPrefix, number);
 }
 
 void remove(const std::string& folder, std::uint64_t number) {
   std::error_code ignored;
   fs::remove(path_of(folder, number), ignored);
-}
-
-/// Of all states there are, descending.
-std::vector<std::uint64_t> numbers_in(const std::string& folder) {
-  std::vector<std::uint64_t> numbers;
-  std::error_code failed;
-  for (auto entry = fs::directory_iterator(folder, failed);
-       !failed && entry != fs::directory_iterator(); entry.increment(failed)) {
-    const std::string name = entry->path().filename().string();
-    if (!name.starts_with(kPrefix)) continue;
-    std::uint64_t number = 0;
-    const char* end = name.data() + name.size();
-    const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, number);
-    if (error == std::errc() && stop == end && entry->path() == path_of(folder, number))
-      numbers.push_back(number);
-  }
-  std::sort(numbers.rbegin(), numbers.rend());
-  return numbers;
 }
 
 /// What a writer that was killed has left, which nobody would ever replace.
@@ -67,8 +49,8 @@ void remove_unfinished(const std::string& folder) {
 }
 
 std::uint64_t oldest_in(const std::string& folder) {
-  const std::vector<std::uint64_t> numbers = numbers_in(folder);
-  return numbers.empty() ? 0 : numbers.back();
+  const std::vector<std::uint64_t> numbers = numbers_in(folder, kPrefix);
+  return numbers.empty() ? 0 : numbers.front();
 }
 
 // Of fixed width, before all that it is the sum of.
@@ -99,8 +81,8 @@ std::string write_state(const std::string& folder, const std::string& belongs, s
   } catch (const std::exception& error) {
     return error.what();
   }
-  const std::vector<std::uint64_t> all = numbers_in(folder);
-  for (std::size_t i = kKept; i < all.size(); ++i) remove(folder, all[i]);
+  const std::vector<std::uint64_t> all = numbers_in(folder, kPrefix);
+  for (std::size_t i = 0; i + kKept < all.size(); ++i) remove(folder, all[i]);
   return "";
 }
 
@@ -130,13 +112,14 @@ StateFiles::StateFiles(std::string folder, std::string belongs)
 
 std::vector<std::uint64_t> StateFiles::find(const std::vector<std::uint64_t>& files) {
   remove_unfinished(folder_);
-  std::vector<std::uint64_t> found = numbers_in(folder_);
+  std::vector<std::uint64_t> found = numbers_in(folder_, kPrefix);
   std::erase_if(found, [&](std::uint64_t number) {
     if (std::binary_search(files.begin(), files.end(), number)) return false;
     remove(folder_, number);
     return true;
   });
-  oldest_ = found.empty() ? 0 : found.back();
+  oldest_ = found.empty() ? 0 : found.front();
+  std::reverse(found.begin(), found.end());
   return found;
 }
 

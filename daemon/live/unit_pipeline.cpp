@@ -265,7 +265,7 @@ void UnitPipeline::archive(Archive& a) {
   if (diagnosis_) a(*diagnosis_);
 }
 
-// Between two samples: what the first file holds that begins with the next one comes behind it.
+// Before the first sample of that file is acted upon: what the file holds comes behind the state.
 void UnitPipeline::keep_state(std::uint64_t file) {
   states_->poll();
   log_->hold_from(states_->oldest());

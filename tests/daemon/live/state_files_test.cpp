@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "config/replacement_file.hpp"
+#include "daemon/live/numbered_files.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::live {
@@ -23,6 +24,10 @@ Bytes some_bytes(std::uint64_t seed, std::size_t count = 5000) {
   Bytes bytes(count);
   for (std::byte& each : bytes) each = static_cast<std::byte>(random());
   return bytes;
+}
+
+std::string path(const test::TemporaryFolder& folder, std::uint64_t file) {
+  return numbered_path(folder.file(""), "state-", file);
 }
 
 /// Written by a thread; whoever leaves waits for it.
@@ -54,7 +59,7 @@ TEST_CASE("the last two states are kept, and come back as they were") {
   CHECK(states.read(10) == some_bytes(10));
   CHECK(states.read(9) == some_bytes(9));
   CHECK_FALSE(states.read(8));
-  CHECK(names_in(place) == std::set<std::string>{"state-10", "state-9"});
+  CHECK(names_in(place) == std::set<std::string>{"state-000000000009", "state-000000000010"});
 
   keep(place, "a", 11, {});
   REQUIRE(states.read(11));
@@ -68,18 +73,18 @@ TEST_CASE("a state whose file of the log has gone goes too") {
   std::ofstream(folder.file("state-x")) << "somebody's";
   std::ofstream(folder.file("state-08")) << "somebody's";
   CHECK(StateFiles(place, "a").find({1, 2, 8}) == std::vector<std::uint64_t>{8});
-  CHECK(names_in(place) == std::set<std::string>{"state-8", "state-x", "state-08"});
+  CHECK(names_in(place) == std::set<std::string>{"state-000000000008", "state-x", "state-08"});
 }
 
 TEST_CASE("what a killed process was writing does not stay for ever") {
   const test::TemporaryFolder folder;
   const std::string place = folder.file("");
   keep(place, "a", 8, some_bytes(8));
-  config::ReplacementFile unfinished(folder.file("state-9"));
+  config::ReplacementFile unfinished(path(folder, 9));
   unfinished.write("half of it");
   CHECK(names_in(place).size() == 2);
   CHECK(StateFiles(place, "a").find({8, 9}) == std::vector<std::uint64_t>{8});
-  CHECK(names_in(place) == std::set<std::string>{"state-8"});
+  CHECK(names_in(place) == std::set<std::string>{"state-000000000008"});
 }
 
 TEST_CASE("a state of another program or unit is not used") {
@@ -89,7 +94,7 @@ TEST_CASE("a state of another program or unit is not used") {
   CHECK_FALSE(StateFiles(place, "b").read(8));
   CHECK_FALSE(StateFiles(place, "").read(8));
   // Nor is one under another's number.
-  fs::rename(folder.file("state-8"), folder.file("state-9"));
+  fs::rename(path(folder, 8), path(folder, 9));
   CHECK_FALSE(StateFiles(place, "a").read(9));
 }
 
@@ -98,21 +103,21 @@ TEST_CASE("a damaged state is not used") {
   const test::TemporaryFolder folder;
   const std::string place = folder.file("");
   keep(place, "a", 8, some_bytes(8, 300));
-  const std::string whole = test::read_file(folder.file("state-8"));
+  const std::string whole = test::read_file(path(folder, 8));
   StateFiles states(place, "a");
   std::mt19937 random(5);
   for (std::size_t at = 0; at < whole.size(); ++at) {
     std::string damaged = whole;
     damaged[at] =
         static_cast<char>(static_cast<unsigned char>(damaged[at]) ^ (1U << (random() % 8)));
-    test::write_file(folder.file("state-8"), damaged);
+    test::write_file(path(folder, 8), damaged);
     if (states.read(8)) FAIL("byte " << at << " was damaged");
-    test::write_file(folder.file("state-8"), whole.substr(0, at));
+    test::write_file(path(folder, 8), whole.substr(0, at));
     if (states.read(8)) FAIL("all from byte " << at << " on was lost");
   }
-  test::write_file(folder.file("state-8"), std::string(whole.size(), '\0'));
+  test::write_file(path(folder, 8), std::string(whole.size(), '\0'));
   CHECK_FALSE(states.read(8));
-  test::write_file(folder.file("state-8"), whole);
+  test::write_file(path(folder, 8), whole);
   CHECK(states.read(8));
 }
 
