@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/model/eigenvalues.hpp"
+#include "core/text/number_text.hpp"
 #include "sim/mpc/linear_gain.hpp"
 
 namespace mpm::sim {
@@ -16,11 +16,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+// Of a moment, so that it can be found in the file.
+constexpr int kMomentDigits = 9;
 
 }  // namespace
 
@@ -60,13 +57,13 @@ std::optional<std::string> why_not_stabilisable(const ModelSpec& controller_mode
         compare_gains(model, operating_gain(stage.model, mv_count), cv_weights);
     if (gains.stabilisable()) continue;
     std::string reason = "no offset-free controller with this model can hold this plant";
-    if (stage.from_s > 0.0) reason += " from " + number(stage.from_s) + " s on";
+    if (stage.from_s > 0.0) reason += " from " + number_text(stage.from_s, kMomentDigits) + " s on";
     if (gains.model_determinant)
-      reason += ": the determinant of the gains is " + number(*gains.model_determinant) +
-                " in the model and " + number(*gains.plant_determinant) + " in the plant";
+      reason += ": the determinant of the gains is " + number_text(*gains.model_determinant) +
+                " in the model and " + number_text(*gains.plant_determinant) + " in the plant";
     reason += gains.model_determinant ? ", and" : ":";
     reason += " the smallest real part of the eigenvalues of K_plant K_model^-1 is " +
-              number(gains.smallest_real_part) +
+              number_text(gains.smallest_real_part) +
               " (must be positive). Take smaller changes, or a controller without integral action.";
     return reason;
   }

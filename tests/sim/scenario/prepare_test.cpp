@@ -210,7 +210,7 @@ TEST_CASE("a plant that no controller can hold is refused at the change that is 
   // det 20.85 -> 21.8 -> 10.7, and with the third -7.1 (by cofactors).
   setup.scenario.changes = {mpm::test::gain_change("y3", "u3", 1.01),
                             mpm::test::gain_change("y1", "u1", 0.75),
-                            mpm::test::gain_change("y2", "u1", 0.75, 500.0)};
+                            mpm::test::gain_change("y2", "u1", 0.75, 4321.0)};
   setup.scenario.changes[2].place = {"s2.yaml", 4, 5, "changes[2]"};
   try {
     hide_changes(setup);
@@ -219,7 +219,7 @@ TEST_CASE("a plant that no controller can hold is refused at the change that is 
     const std::string told = mpm::config::format(error.finding());
     CAPTURE(told);
     CHECK(told.rfind("s2.yaml:4:5: error: changes[2]: no offset-free controller", 0) == 0);
-    CHECK(told.find("from 500 s on: the determinant of the gains is 20.8 in the model and -") !=
+    CHECK(told.find("from 4321 s on: the determinant of the gains is 20.8 in the model and -") !=
           std::string::npos);
   }
   // The first alone turns the determinant's sign (20.85 - 0.7 * 4.05 * 10.69); the row does not.
