@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Free run of an identified model on other data.
 
 validate.py MODEL.json DATA.csv, with what `mpm identify --report` wrote and a wide CSV of the same
@@ -7,7 +7,7 @@ its mean is set to the measured one, as a level is nobody's model. Said are R2 (
 variance), fit (1 - s.d. of the error / s.d. of the CV), and two tests of what is left once an
 autoregression of order 12 has made it white: whiteness (Ljung and Box 1978, 32 lags) and, for each
 input, its correlation with the input's moves of the last 200 samples in 20 sums (chi-square).
-Run: /usr/bin/python3 tests/identify_score/validate.py MODEL.json DATA.csv
+Run: tests/identify_score/validate.py MODEL.json DATA.csv
 """
 import csv
 import json
