@@ -44,6 +44,7 @@ from plants import PLANTS
 GAIN_ERROR, TIME_ERROR = 0.02, 0.03  # of every channel, at most
 MOST_CV, MOST_CLIPPED = 25.0, 0.3  # usual set-point moves; share of samples
 STEP_POINTS = 80
+PAST_LAGS, PAST_MEANS = 8, (24, 80, 250, 800)  # of a CV, samples
 CV_ORIGIN, MV_ORIGIN, AUX_ORIGIN = 50.0, 30.0, 20.0  # values at the operating point
 
 
@@ -90,9 +91,21 @@ def sensitivities(channel, values):
     return columns
 
 
-def left(target, columns, whiten):
-    """Sum of squares of the whitened target that the columns do not explain."""
-    both = whiten(np.column_stack([target] + columns))
+def own_past(values):
+    """The lags and means that an autoregression of the values has."""
+    columns = [np.concatenate([np.zeros(lag), values[:-lag]]) for lag in range(1, PAST_LAGS + 1)]
+    for length in PAST_MEANS:
+        kept, mean = np.exp(-1 / length), np.zeros(len(values))
+        for k in range(1, len(values)):
+            mean[k] = kept * mean[k - 1] + (1 - kept) * values[k - 1]
+        columns.append(mean)
+    return columns
+
+
+def left(target, columns, whiten, white=()):
+    """Sum of squares of the whitened target that the columns, and the white ones, which are not
+    whitened, do not explain."""
+    both = np.column_stack([whiten(np.column_stack([target] + columns)), *white])
     sizes = np.linalg.norm(both[:, 1:], axis=0)
     basis, triangle = np.linalg.qr(both[:, 1:] / np.maximum(sizes, 1e-300))
     basis = basis[:, np.abs(np.diag(triangle)) > 1e-7]
@@ -137,6 +150,25 @@ def noncentrality(plant, healthy, hidden, outside, truth, mvs, positions):
     if cause == "input_scale" and len(changed) > 1:
         return float(per_cv.sum() - per_cv.max())
     return float(per_cv.sum())
+
+
+def learnt_noise(plant, healthy, hidden, outside, truth, mvs):
+    if truth["cause"] not in ("gain", "dead_time", "time_constant"):
+        return None
+    inputs = np.column_stack([mvs, outside.dv])
+    cv = truth["cv"]
+    columns, target = [np.ones(len(mvs))] + list(outside.regressors[cv]), np.zeros(len(mvs))
+    own = {c.input for c in healthy if c.cv == cv}
+    for before, after in zip(healthy, hidden["channels"]):
+        given = inputs[:, before.input]
+        if before is not after:
+            target += respond(after, given) - respond(before, given)
+        elif before.cv == cv:
+            columns += sensitivities(before, given)
+        elif before.input not in own:  # as it acts on another CV, it may act on this one
+            columns.append(respond(before, given))
+    past = own_past(target + outside.noise[:, cv])
+    return left(target, columns, outside.noise_models[cv].whitened, past)
 
 
 def unit_file(plant):
@@ -201,6 +233,7 @@ def make(regime, name, effect, seed, samples, model_error, any_size):
     else:
         raise SystemExit(f"loop.py: no draw of {regime} {name} {effect} {seed} that a loop stands")
     value = noncentrality(plant, healthy, hidden, outside, truth, mvs, positions)
+    learnt = learnt_noise(plant, healthy, hidden, outside, truth, mvs)
     slopes = {}
     for j in range(plant.mv_count):
         spread = mvs[:, j].var()
@@ -226,6 +259,7 @@ def make(regime, name, effect, seed, samples, model_error, any_size):
     truth.update(
         regime=regime, plant=name, effect=effect, seed=seed, samples=samples,
         attempts=attempt + 1, sample_time=plant.sample_time, noncentrality=value,
+        noncentrality_learnt_noise=learnt,
         others=[tags(plant, item) for item in outside.causes], input_gains=slopes,
         stride=stride, channels=steps)
     return plant, outside, cvs, mvs, truth, rng

@@ -3,7 +3,7 @@
 
 Usage: power.py --mpm build/release/bin/mpm --seeds 100001-100004 [--regime R ...] [--plant P ...]
                 [--effect E ...] [--samples 3000] [--model-error 0] [--jobs 1] [--keep DIR]
-                [--json FILE] [--markdown FILE] [--bounds]
+                [--json FILE] [--markdown FILE] [--learnt-noise] [--bounds]
 
 loop.py makes the recordings, and says of each error how much the best possible test would have to
 go by (noncentrality, all that errors of the other channels could do taken out). Each plant runs
@@ -18,6 +18,7 @@ of the test; --model-error 1: they are off by as much as in score.py. Tables, sh
 * coverage: of the 95 % intervals of gain, time constants and dead time that `mpm detect` gives, how
   many hold the truth, by the size of the channel's error: of gain and time constant the larger of
   ratio and inverse, of the dead time by the dead time and one sample.
+--learnt-noise: runs by the noncentrality of a test that has to learn the noise from the data.
 --nonlinear: in place of all others, what the nonlinear test says of linear channels, and of valves
 that stick (those of the MV that does count as nonlinear, to all CVs, and are not among the linear).
 --bounds: exit 1 where a share lies so far beyond what is claimed that a true share there would come
@@ -73,15 +74,16 @@ def intervals(channel, true, sample_time):
             yield key, error, value, *channel[key]
 
 
-def one(mpm, regime, plant, effect, seed, samples, model_error, keep):
+def one(mpm, regime, plant, effect, seed, samples, model_error, learnt_noise, keep):
     began = time.process_time()
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(keep or temporary) / f"{regime}-{plant}-{effect}-{seed}"
         truth = loop.write(regime, plant, effect, seed, samples, folder, model_error, True)
         code, output, seconds = run(mpm, ["detect", "--config", folder / "unit.yaml", "--data",
                                           folder / "data.csv", "--json"])
+    measure = "noncentrality_learnt_noise" if learnt_noise else "noncentrality"
     case = {"regime": regime, "plant": plant, "effect": effect, "seed": seed,
-            "noncentrality": truth["noncentrality"],
+            "noncentrality": truth[measure],
             "seconds": seconds + time.process_time() - began, "failed": code not in (0, 1)}
     if case["failed"]:
         return case
@@ -226,10 +228,12 @@ def main():
     parser.add_argument("--keep")
     parser.add_argument("--json")
     parser.add_argument("--markdown")
+    parser.add_argument("--learnt-noise", action="store_true")
     parser.add_argument("--nonlinear", action="store_true")
     parser.add_argument("--bounds", action="store_true")
     args = parser.parse_args()
-    wanted = [(args.mpm, regime, plant, effect, seed, args.samples, args.model_error, args.keep)
+    wanted = [(args.mpm, regime, plant, effect, seed, args.samples, args.model_error,
+               args.learnt_noise, args.keep)
               for seed in args.seeds for regime in args.regime for plant in args.plant
               for effect in args.effect
               if not (effect == "aux" and regime == "aux_disturbance")]
