@@ -1,13 +1,20 @@
 #include "daemon/http/board.hpp"
 
+#include <utility>
+
+#include "daemon/http/kept_digests.hpp"
+
 namespace mpm::http {
 namespace {
 
 constexpr std::chrono::milliseconds kFetchPeriod{100};
+// A second's reading.
+constexpr std::uint64_t kMostJournalBytes = 64'000'000;
 
 }  // namespace
 
-Board::Board(const std::vector<config::UnitConfig>& units) {
+Board::Board(const std::vector<config::UnitConfig>& units, std::string journal)
+    : journal_(std::move(journal)) {
   for (const config::UnitConfig& unit : units)
     units_[unit.unit] = std::make_unique<Unit>(unit, events_);
 }
@@ -22,6 +29,7 @@ void Board::start() {
 }
 
 void Board::run() {
+  recall_digests();
   Clock::time_point next = Clock::now();
   for (;;) {
     fetch(next);
@@ -30,6 +38,16 @@ void Board::run() {
     while (!closed_ && changed_.wait_until(lock, next)) {
     }
     if (closed_) return;
+  }
+}
+
+// Of all units no more than a page may take of the time in which it shows nothing.
+void Board::recall_digests() {
+  if (journal_.empty()) return;
+  for (const auto& [name, unit] : units_) {
+    if (closed()) return;
+    for_each_kept_digest(journal_, name, kMostJournalBytes / units_.size(),
+                         [&unit](const history::Digest& digest) { unit->store.recall(digest); });
   }
 }
 

@@ -30,7 +30,9 @@ class Board {
     Delivery spare;
   };
 
-  explicit Board(const std::vector<config::UnitConfig>& units);
+  /// `journal`: the folder of the units' journals, whose digests it takes before all else, once
+  /// begun; empty: there is none.
+  explicit Board(const std::vector<config::UnitConfig>& units, std::string journal = "");
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
   ~Board();
@@ -56,7 +58,9 @@ class Board {
 
  private:
   void run();
+  void recall_digests();
 
+  std::string journal_;
   RecentEvents events_;
   std::map<std::string, std::unique_ptr<Unit>> units_;
   Mutex fetching_;  // of all units' `spare`, and what is behind their feeds in its order

@@ -43,8 +43,7 @@ UnitFeed::UnitFeed(const config::UnitConfig& unit)
 
 void UnitFeed::on_frame(const Frame& frame, const report::UnitMonitor& monitor) {
   news_ = true;
-  std::optional<history::Digest> digest = digests_.push(monitor);
-  if (digest) noted_.digests.push_back(std::move(*digest));
+  note_digest(monitor);
   if (noted_.rows.size() >= kMostRows) {
     ++noted_.dropped;
     return;
@@ -53,6 +52,21 @@ void UnitFeed::on_frame(const Frame& frame, const report::UnitMonitor& monitor) 
   note_readings(monitor.monitor());
   noted_.rows.back().judged = noted_.judged.size();
   offer();
+}
+
+void UnitFeed::on_recalled(const Frame& frame, const report::UnitMonitor* monitor) {
+  note_frame(frame);
+  if (monitor != nullptr) {
+    note_digest(*monitor);
+    note_readings(monitor->monitor());
+  }
+  noted_.rows.back().judged = noted_.judged.size();
+  offer();
+}
+
+void UnitFeed::note_digest(const report::UnitMonitor& monitor) {
+  std::optional<history::Digest> digest = digests_.push(monitor);
+  if (digest) noted_.digests.push_back(std::move(*digest));
 }
 
 void UnitFeed::note_frame(const Frame& frame) {

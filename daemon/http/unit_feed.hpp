@@ -53,12 +53,14 @@ class UnitFeed : public live::UnitObserver {
  public:
   /// Between two views, while frames come and while none do. An eye takes no more.
   static constexpr std::chrono::milliseconds kViewPeriod{500}, kIdlePeriod{2000};
-  /// Frames that may lie about: some minutes of a unit at a hundred times its speed.
+  /// Frames that may lie about: some minutes of a unit at a hundred times its speed. Recalled ones
+  /// are as many as are kept, and come before anything waits for the loop.
   static constexpr std::size_t kMostRows = 20'000;
 
   explicit UnitFeed(const config::UnitConfig& unit);
 
   void on_frame(const Frame& frame, const report::UnitMonitor& monitor) override;
+  void on_recalled(const Frame& frame, const report::UnitMonitor* monitor) override;
   void on_alarm(const AlarmRecord& alarm, const std::string& text) override;
   void on_diagnosis(const live::DiagnosisOutcome& outcome) override;
   [[nodiscard]] bool wants_view(Clock::time_point now) override;
@@ -71,6 +73,7 @@ class UnitFeed : public live::UnitObserver {
   void fetch(Delivery& emptied);
 
  private:
+  void note_digest(const report::UnitMonitor& monitor);
   void note_frame(const Frame& frame);
   void note_readings(const Monitor& monitor);
 

@@ -50,10 +50,15 @@ UnitStore::UnitStore(const config::UnitConfig& unit, RecentEvents& events)
       columns_{unit.counts().cv, unit.counts().inputs()},
       events_(events),
       history_(columns_.width() + columns_.cvs, unit.sample_time_s, kSettling),
-      kpi_(kKpiColumns, std::max(60.0, unit.sample_time_s)),
+      kpi_(kKpiColumns, history::DigestMaker(unit).head(0).digest_s),
       row_(static_cast<std::size_t>(columns_.width() + columns_.cvs)),
       bands_(static_cast<std::size_t>(columns_.cvs)),
       snapshot_(std::make_shared<const UnitSnapshot>()) {}
+
+void UnitStore::recall(const history::Digest& digest) {
+  const MutexLock lock(mutex_);
+  take_digest(digest);
+}
 
 bool UnitStore::absorb(Delivery& delivery, Clock::time_point now) {
   const MutexLock lock(mutex_);

@@ -39,6 +39,8 @@ class UnitStore {
   /// `events`: takes the unit's alarm events; must outlive this.
   UnitStore(const config::UnitConfig& unit, RecentEvents& events);
 
+  /// What a journal says of the time before all that is absorbed, oldest first.
+  void recall(const history::Digest& digest);
   /// True where it can be seen: there is another snapshot.
   bool absorb(Delivery& delivery, Clock::time_point now);
 

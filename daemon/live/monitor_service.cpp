@@ -76,6 +76,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       pipeline.keep({unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                  options.journal_keep / units.size())});
     pipeline.diagnose_with(worker, asker++);
+    if (options.observer) pipeline.show_to(options.observer(unit));
     pipelines.push_back(&pipeline);
   }
   if (!options.samples.empty()) recall(pipelines, units, options.samples);
@@ -84,7 +85,6 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
     UnitPipeline& pipeline = *pipelines[i];
     if (alarm_journal_) pipeline.keep(*alarm_journal_);
     pipeline.announce();
-    if (options.observer) pipeline.show_to(options.observer(unit));
     if (unit.monitor.diagnosis_samples > 0) pipeline.set_report_problem(options.report_problem);
     spdlog::info(
         "{}: watching {} on domain {}{}", unit.unit,

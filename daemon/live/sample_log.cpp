@@ -153,14 +153,15 @@ bool SampleLog::read(File& file, const Visit& visit, std::string& why) {
   return true;
 }
 
-std::string SampleLog::recall(const Visit& visit, std::uint64_t from) {
+std::string SampleLog::recall(const Visit& visit, std::uint64_t from, const Visit& earlier) {
   std::string why, ignored_why;
   files_.clear();
   const Visit ignore = [](const BlockView*) {};
+  const Visit& before = earlier ? earlier : ignore;
   // Of another meaning is what was before the unit file changed: what follows is a new beginning.
   for (const std::uint64_t number : files()) {
     File file{number, 0};
-    if (number < from ? read(file, ignore, ignored_why) : read(file, visit, why)) {
+    if (number < from ? read(file, before, ignored_why) : read(file, visit, why)) {
       files_.push_back(file);
       continue;
     }

@@ -39,6 +39,9 @@ class UnitObserver {
 
   /// A frame was judged, and its outputs are written.
   virtual void on_frame(const Frame& frame, const report::UnitMonitor& monitor) = 0;
+  /// Before all others: frames that a process before this one took, and what `monitor` makes of
+  /// them; null where a state stands for that.
+  virtual void on_recalled(const Frame& frame, const report::UnitMonitor* monitor) = 0;
   /// An alarm changed; `text`: what is wrong, in words, where it rose.
   virtual void on_alarm(const AlarmRecord& alarm, const std::string& text) = 0;
   virtual void on_diagnosis(const DiagnosisOutcome& outcome) = 0;

@@ -248,6 +248,7 @@ void UnitPipeline::recall_frame(const Frame& frame) {
   (void)performance_.push(frame, monitor_.monitor().judged());
   if (!monitor_.alarms().empty())
     alarms_.recall(monitor_.channels(), monitor_.alarms(), alarm_texts());
+  if (observer_ != nullptr) observer_->on_recalled(frame, &monitor_);
   if (diagnosis_) diagnosis_->push(frame, monitor_.alarms());
 }
 
@@ -310,12 +311,23 @@ std::string UnitPipeline::recall(const UnitSamples& samples) {
   const std::uint64_t from = take_back_state();
   log_->hold_from(states_->oldest());
   const std::uint64_t before = aligner_.counters().frames;
-  recalling_ = true;
-  const std::string lost = log_->recall(
-      [this](const BlockView* block) {
-        block != nullptr ? aligner_.push(*block) : aligner_.expire();
+  // What the state stands for is nowhere but in the samples, for who wants to see it.
+  Aligner earlier(
+      config_.counts(), files::needed_kinds(config_),
+      [this](const Frame& frame) {
+        calculated_ = frame;
+        calculator_.fill(calculated_);
+        observer_->on_recalled(calculated_, nullptr);
       },
-      from);
+      files::aligner_settings(config_));
+  const auto into = [](Aligner& aligner) -> SampleLog::Visit {
+    return [&aligner](const BlockView* block) {
+      block != nullptr ? aligner.push(*block) : aligner.expire();
+    };
+  };
+  recalling_ = true;
+  const std::string lost =
+      log_->recall(into(aligner_), from, observer_ != nullptr ? into(earlier) : nullptr);
   recalling_ = false;
   health_.incomplete = aligner_.counters().incomplete;  // no news
   const std::uint64_t frames = aligner_.counters().frames;

@@ -1,11 +1,13 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
 #include <thread>
 
 #include "daemon/report/record_json.hpp"
+#include "tests/daemon/http/connection.hpp"
 #include "tests/system/bench.hpp"
 
 namespace mpm::test {
@@ -24,9 +26,12 @@ std::vector<Frame> frames_of(Plant& plant, int count) {
 /// A unit, and a monitor that keeps its state, which may be killed and comes back.
 struct Corner {
   /// `more`: lines of the unit file.
-  explicit Corner(const std::string& test, const std::string& more = "")
+  /// `options`: more arguments of those that come back.
+  explicit Corner(const std::string& test, const std::string& more = "",
+                  std::vector<std::string> options = {})
       : bench(test, {"--state-dir", folder.file("state")}),
-        publisher(bench.publisher(idl::WriterPace::kLossless)) {
+        publisher(bench.publisher(idl::WriterPace::kLossless)),
+        more_options(std::move(options)) {
     if (more.empty()) return;
     const std::string file = bench.folder.file("toy.yaml");
     write_file(file, read_file(file) + more);
@@ -54,11 +59,11 @@ struct Corner {
     running.send(SIGKILL);
     REQUIRE(running.wait(std::chrono::seconds(10)));
     again.reset();
-    again.emplace(
-        std::vector<std::string>{"mpmd", "--config", bench.folder.file("toy.yaml"), "--domain",
-                                 std::to_string(bench.options.domain), "--partition",
-                                 bench.options.partition, "--state-dir", folder.file("state")},
-        folder.file("out"), folder.file("err"));
+    std::vector<std::string> command{"mpmd", "--config", bench.folder.file("toy.yaml"), "--domain",
+                                     std::to_string(bench.options.domain), "--partition",
+                                     bench.options.partition, "--state-dir", folder.file("state")};
+    command.insert(command.end(), more_options.begin(), more_options.end());
+    again.emplace(command, folder.file("out"), folder.file("err"));
     std::smatch taken;
     std::string log;
     REQUIRE(idl::eventually(
@@ -94,6 +99,7 @@ struct Corner {
   TemporaryFolder folder;
   Bench bench;
   idl::UnitPublisher publisher;
+  std::vector<std::string> more_options;
   std::optional<Process> again;
 };
 
@@ -209,6 +215,40 @@ TEST_CASE("an alarm that stands over a restart is neither cleared nor raised ane
     CHECK(alarm.state == AlarmState::kActive);
   CHECK(raised == 1);
   CHECK(corner.alarms().empty());
+}
+
+// Both what is judged again and what a state stands for.
+TEST_CASE("the page shows what a monitor before it took") {
+  Corner corner("restart-page", "", {"--http", "0"});
+  Plant plant(3.0);
+  const std::vector<Frame> frames = frames_of(plant, kFrames);
+  const auto seconds = [](const Frame& frame) {
+    return static_cast<double>(frame.source_time_ns) / 1e9;
+  };
+  const double first_s = seconds(frames.front()), last_s = seconds(frames.back());
+  corner.publish(frames);
+  corner.await(frames.back().interval);
+  REQUIRE(corner.kill_and_start() == kFrames);
+  const std::string log = read_file(corner.folder.file("err"));
+  std::smatch found;
+  REQUIRE(std::regex_search(log, found, std::regex("http://127.0.0.1:([0-9]+)")));
+  nlohmann::json series;
+  REQUIRE(idl::eventually(
+      [&] {
+        const Connection connection(std::stoi(found[1]));
+        connection.say(
+            "GET /api/v1/units/toy/cvs/y1/series?span=1e6 HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+            "Connection: close\r\n\r\n");
+        const std::string answer = connection.hear();
+        const std::size_t body = answer.find("\r\n\r\n");
+        if (!answer.starts_with("HTTP/1.1 200") || body == std::string::npos) return false;
+        series = nlohmann::json::parse(answer.substr(body));
+        return series["last"] == last_s;
+      },
+      std::chrono::seconds(20)));
+  CHECK(series["first"] == first_s);
+  CHECK(series["measured"]["mean"].front().is_number());
+  CHECK(series["residual"]["mean"].back().is_number());
 }
 
 // What 4005 samples told is not to be had again from five.

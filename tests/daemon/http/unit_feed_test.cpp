@@ -68,5 +68,27 @@ TEST_CASE("what nobody fetches is dropped and counted") {
   CHECK(delivery.dropped == 5);
 }
 
+TEST_CASE("frames from before are all noted, and judged where a monitor judges them again") {
+  test::SampleBoard sample;
+  UnitFeed feed(sample.unit);
+  for (std::size_t k = 0; k < UnitFeed::kMostRows + 5; ++k)
+    feed.on_recalled(test::frame_at(static_cast<int>(k), sample.unit.counts()), nullptr);
+  const int next = static_cast<int>(UnitFeed::kMostRows) + 5;
+  for (int k = 0; k < 100; ++k) {
+    const Frame frame = test::frame_at(next + k, sample.unit.counts());
+    sample.monitor.push(frame);
+    feed.on_recalled(frame, &sample.monitor);
+  }
+  Delivery first, rest;
+  feed.fetch(first);
+  feed.offer();
+  feed.fetch(rest);
+  CHECK(first.rows.size() + rest.rows.size() == UnitFeed::kMostRows + 105);
+  CHECK(rest.dropped == 0);
+  CHECK(rest.rows[UnitFeed::kMostRows].judged == 0);
+  CHECK(rest.judged.size() > 80);
+  CHECK(rest.rows.back().judged == rest.judged.size());
+}
+
 }  // namespace
 }  // namespace mpm::http

@@ -80,11 +80,14 @@ TEST_CASE("a file says that it begins, and what it and the later ones hold comes
   for (const auto& [file, before] : begun) {
     SampleLog log(place, "a", 640);
     CHECK(log.files() == std::vector<std::uint64_t>{1, 2, 3, 4, 5});
-    std::vector<std::string> told;
-    CHECK(
-        log.recall([&](const BlockView* block) { told.push_back(text_of(*block)); }, file).empty());
-    CHECK(told == std::vector<std::string>(lines.begin() + static_cast<std::ptrdiff_t>(before),
-                                           lines.end()));
+    std::vector<std::string> told, earlier;
+    const auto into = [](std::vector<std::string>& texts) {
+      return [&texts](const BlockView* block) { texts.push_back(text_of(*block)); };
+    };
+    CHECK(log.recall(into(told), file, into(earlier)).empty());
+    const auto parted = lines.begin() + static_cast<std::ptrdiff_t>(before);
+    CHECK(told == std::vector<std::string>(parted, lines.end()));
+    CHECK(earlier == std::vector<std::string>(lines.begin(), parted));
   }
 }
 
