@@ -48,10 +48,13 @@ PAST_LAGS, PAST_MEANS = 8, (24, 80, 250, 800)  # of a CV, samples
 CV_ORIGIN, MV_ORIGIN, AUX_ORIGIN = 50.0, 30.0, 20.0  # values at the operating point
 
 
-def simulate(plant, outside, hidden, samples):
-    """CVs as measured, MVs as applied, valve positions."""
+def simulate(plant, outside, hidden, samples, present=None, healthy=None):
+    """CVs as measured, MVs as applied, valve positions. `present`: of each sample, whether the
+    channels are the hidden ones; where not, what it reads is what `healthy` channels would give."""
     controller = Dmc(plant)
     simulator = Simulator(hidden["channels"], plant.cv_count, plant.mv_count + 1)
+    other = (Simulator(healthy, plant.cv_count, plant.mv_count + 1) if present is not None else
+             None)
     added = outside.noise + hidden["added"]
     if hidden["aux"] is not None:
         added[:, hidden["aux"].cv] += respond(hidden["aux"], outside.aux)
@@ -72,6 +75,9 @@ def simulate(plant, outside, hidden, samples):
             positions[k, mv] = valve(k, mvs[k, mv])
         inputs[:-1] = positions[k]
         clean = simulator.step(inputs)
+        if other is not None:
+            sound = other.step(inputs)
+            clean = clean if present[k] else sound
     return cvs, mvs, positions
 
 
@@ -209,7 +215,7 @@ def tags(plant, item):
     return named
 
 
-def make(regime, name, effect, seed, samples, model_error, any_size):
+def make(regime, name, effect, seed, samples, model_error, any_size, present=None):
     plant = PLANTS[name]()
     key = [seed, regimes.REGIMES.index(regime), list(PLANTS).index(name),
            effects.EFFECTS.index(effect)]
@@ -227,7 +233,7 @@ def make(regime, name, effect, seed, samples, model_error, any_size):
         hidden, truth = effects.draw(effect, plant, healthy, pilot[1].std(axis=0), noise,
                                      samples, rng, any_size)
         cvs, mvs, positions = (pilot if effect == "none" else
-                               simulate(plant, outside, hidden, samples))
+                               simulate(plant, outside, hidden, samples, present, healthy))
         if stays_put(plant, cvs, mvs, truth["mv"] if hidden["valve"] else None):
             break
     else:
@@ -265,11 +271,13 @@ def make(regime, name, effect, seed, samples, model_error, any_size):
     return plant, outside, cvs, mvs, truth, rng
 
 
-def write(regime, name, effect, seed, samples, out, model_error=1.0, any_size=False):
+def write(regime, name, effect, seed, samples, out, model_error=1.0, any_size=False,
+          present=None):
     """Writes the three files and returns the truth. `model_error` scales what every model is off
-    by; `any_size`: effects.draw."""
+    by; `any_size`: effects.draw; `present`: simulate(). The noncentralities are those of an error
+    that is always there."""
     plant, outside, cvs, mvs, truth, rng = make(regime, name, effect, seed, samples, model_error,
-                                                any_size)
+                                                any_size, present)
     cvs, mvs = regimes.logged(regime, plant, outside.noise_models, cvs, mvs, rng)
     header = (["time"] + [f"u{j + 1}" for j in range(plant.mv_count)] + ["d1"] +
               [f"y{i + 1}" for i in range(plant.cv_count)] +

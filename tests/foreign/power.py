@@ -3,7 +3,7 @@
 
 Usage: power.py --mpm build/release/bin/mpm --seeds 100001-100004 [--regime R ...] [--plant P ...]
                 [--effect E ...] [--samples 3000] [--model-error 0] [--jobs 1] [--keep DIR]
-                [--json FILE] [--markdown FILE] [--learnt-noise] [--bounds]
+                [--json FILE] [--markdown FILE] [--bounds]
 
 loop.py makes the recordings, and says of each error how much the best possible test would have to
 go by (noncentrality, all that errors of the other channels could do taken out). Each plant runs
@@ -14,11 +14,12 @@ of the test; --model-error 1: they are off by as much as in score.py. Tables, sh
 95 % interval (1927), rewritten in the file given as --markdown:
 * power: per plant and noncentrality the runs with a wrong channel; found = it is called a mismatch;
   undetermined = not found, and undetermined; missed = it is called a match.
+* learnt_noise: the same by the noncentrality of a test that, as ours, has to learn the noise and
+  which inputs without a channel act from the same data.
 * regimes: the same per regime, in place of the others where there are several.
 * coverage: of the 95 % intervals of gain, time constants and dead time that `mpm detect` gives, how
   many hold the truth, by the size of the channel's error: of gain and time constant the larger of
   ratio and inverse, of the dead time by the dead time and one sample.
---learnt-noise: runs by the noncentrality of a test that has to learn the noise from the data.
 --nonlinear: in place of all others, what the nonlinear test says of linear channels, and of valves
 that stick (those of the MV that does count as nonlinear, to all CVs, and are not among the linear).
 --bounds: exit 1 where a share lies so far beyond what is claimed that a true share there would come
@@ -39,9 +40,11 @@ from judge import judge
 from plants import PLANTS
 from regimes import REGIMES
 from score import run, seed_list
-from tables import most, wilson
+from tables import most, replace_part, wilson
 
 BANDS = ((0, 20), (20, 40), (40, 100), (100, float("inf")))
+# Of a test that is told what the noise is, of one that has to learn it.
+MEASURES = "noncentrality", "noncentrality_learnt_noise"
 SIZES = ((0, 0.05), (0.05, 0.1), (0.1, 0.2), (0.2, 0.5), (0.5, 1.0))
 QUANTITIES = {"gain": "gain_error_percent_interval",
               "time constant": "time_constant_ratio_interval",
@@ -74,16 +77,15 @@ def intervals(channel, true, sample_time):
             yield key, error, value, *channel[key]
 
 
-def one(mpm, regime, plant, effect, seed, samples, model_error, learnt_noise, keep):
+def one(mpm, regime, plant, effect, seed, samples, model_error, keep):
     began = time.process_time()
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(keep or temporary) / f"{regime}-{plant}-{effect}-{seed}"
         truth = loop.write(regime, plant, effect, seed, samples, folder, model_error, True)
         code, output, seconds = run(mpm, ["detect", "--config", folder / "unit.yaml", "--data",
                                           folder / "data.csv", "--json"])
-    measure = "noncentrality_learnt_noise" if learnt_noise else "noncentrality"
     case = {"regime": regime, "plant": plant, "effect": effect, "seed": seed,
-            "noncentrality": truth[measure],
+            **{measure: truth[measure] for measure in MEASURES},
             "seconds": seconds + time.process_time() - began, "failed": code not in (0, 1)}
     if case["failed"]:
         return case
@@ -123,8 +125,9 @@ def verdicts(cases):
     return len(wrong), found, open_, len(wrong) - found - open_
 
 
-def within(cases, low, high):
-    return [c for c in cases if c["effect"] != "none" and low <= c["noncentrality"] < high]
+def within(cases, low, high, measure=MEASURES[0]):
+    return [c for c in cases if c["effect"] != "none" and c[measure] is not None and
+            low <= c[measure] < high]
 
 
 def groups(cases, key):
@@ -135,13 +138,13 @@ def groups(cases, key):
         yield "all", cases
 
 
-def power_rows(cases, key):
+def power_rows(cases, key, measure=MEASURES[0]):
     yield (f"| {key} | noncentrality | found | undetermined | missed | in an alarm | "
            "healthy channels called a mismatch | false alarms |")
     yield "|---|---|---|---|---|---|---|---|"
     for name, of_name in groups(cases, key):
         bands = [(f"below {high:g}" if low == 0 else f"above {low:g}" if high == float("inf") else
-                  f"{low:g} to {high:g}", within(of_name, low, high)) for low, high in BANDS]
+                  f"{low:g} to {high:g}", within(of_name, low, high, measure)) for low, high in BANDS]
         bands.insert(0, ("nothing wrong", [c for c in of_name if c["effect"] == "none"]))
         for band, chosen in bands:
             if not chosen:
@@ -204,15 +207,6 @@ def beyond(cases):
                      f"at most {100 * bound:g} %")
 
 
-def replace_part(text, name, lines):
-    """What stands between the markers `study:begin NAME` and `study:end NAME`."""
-    begin, end = f"<!-- study:begin {name} -->", f"<!-- study:end {name} -->"
-    if begin not in text or end not in text:
-        sys.exit(f"power.py: no markers for the table {name}")
-    before, rest = text.split(begin)
-    return before + begin + "\n\n" + "\n".join(lines) + "\n\n" + end + rest.split(end)[1]
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -228,12 +222,10 @@ def main():
     parser.add_argument("--keep")
     parser.add_argument("--json")
     parser.add_argument("--markdown")
-    parser.add_argument("--learnt-noise", action="store_true")
     parser.add_argument("--nonlinear", action="store_true")
     parser.add_argument("--bounds", action="store_true")
     args = parser.parse_args()
-    wanted = [(args.mpm, regime, plant, effect, seed, args.samples, args.model_error,
-               args.learnt_noise, args.keep)
+    wanted = [(args.mpm, regime, plant, effect, seed, args.samples, args.model_error, args.keep)
               for seed in args.seeds for regime in args.regime for plant in args.plant
               for effect in args.effect
               if not (effect == "aux" and regime == "aux_disturbance")]
@@ -252,7 +244,9 @@ def main():
     elif len(args.regime) > 1:
         tables = {"regimes": list(power_rows(good, "regime"))}
     else:
-        tables = {"power": list(power_rows(good, "plant")), "coverage": list(coverage_rows(good))}
+        tables = {"power": list(power_rows(good, "plant")),
+                  "learnt_noise": list(power_rows(good, "plant", MEASURES[1])),
+                  "coverage": list(coverage_rows(good))}
     print("\n\n".join("\n".join(rows) for rows in tables.values()))
     print(f"\n{sum(c['seconds'] for c in cases):.0f} s of CPU time")
     if args.markdown:

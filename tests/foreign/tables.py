@@ -24,6 +24,15 @@ def wilson(hits, runs):
     return max(0.0, middle - half), min(1.0, middle + half)
 
 
+def replace_part(text, name, lines):
+    """What stands between the markers `study:begin NAME` and `study:end NAME`."""
+    begin, end = f"<!-- study:begin {name} -->", f"<!-- study:end {name} -->"
+    if begin not in text or end not in text:
+        raise SystemExit(f"no markers for the table {name}")
+    before, rest = text.split(begin)
+    return before + begin + "\n\n" + "\n".join(lines) + "\n\n" + end + rest.split(end)[1]
+
+
 def outcome(result):
     """Which columns a faulty run counts in."""
     is_ = [finding["is"] for finding in result["findings"]]
