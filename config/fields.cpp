@@ -86,7 +86,7 @@ const std::vector<Field<ControllerAlarmSettings>>& controller_alarm_fields() {
   return fields;
 }
 
-const std::vector<Field<DdsSettings>>& dds_fields() {
+const std::vector<Field<DdsSettings>>& bus_fields() {
   using S = DdsSettings;
   static const std::vector<Field<S>> fields = {
       {"domain", &S::domain, {.low = 0, .high = 100}, ""},

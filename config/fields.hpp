@@ -26,7 +26,7 @@ struct Field {
 [[nodiscard]] const std::vector<Field<AlarmSettings>>& alarm_fields();
 [[nodiscard]] const std::vector<Field<ManagedAlarm::Settings>>& managed_alarm_fields();
 [[nodiscard]] const std::vector<Field<ControllerAlarmSettings>>& controller_alarm_fields();
-[[nodiscard]] const std::vector<Field<DdsSettings>>& dds_fields();
+[[nodiscard]] const std::vector<Field<DdsSettings>>& bus_fields();
 [[nodiscard]] const std::vector<Field<SimulationSettings>>& simulation_fields();
 [[nodiscard]] const std::vector<Field<NoiseSettings>>& noise_fields();
 [[nodiscard]] const std::vector<Field<SetpointSettings>>& setpoint_fields();

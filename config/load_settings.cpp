@@ -78,10 +78,10 @@ void load_alarms(const Value* section, UnitConfig& config) {
 
 void load_dds(const Value* section, UnitConfig& config) {
   if (section == nullptr) return;
-  std::vector<std::string> known = keys(dds_fields());
+  std::vector<std::string> known = keys(bus_fields());
   known.emplace_back("peers");
   const Map map = section->map(known);
-  read_fields(map, dds_fields(), config.dds);
+  read_fields(map, bus_fields(), config.dds);
   if (const Value* peers = map.find("peers")) {
     if (peers->is_null()) return;
     config.dds.peers.clear();

@@ -189,7 +189,7 @@ void print_unit(const UnitConfig& config, std::ostream& out) {
   out << "  controller: "
       << inline_fields(controller_alarm_fields(), config.alarm_handling.controller) << '\n';
   out << "dds:\n";
-  print_fields(dds_fields(), config.dds, out);
+  print_fields(bus_fields(), config.dds, out);
   out << "  peers: " << yaml_text(config.dds.peers) << '\n';
   print_simulation(config, out);
   print_identify(config, out);
