@@ -3,26 +3,16 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "config/finding.hpp"
 #include "daemon/bag/info_text.hpp"
 #include "daemon/mcap/read/ordered_reader.hpp"
 #include "daemon/mcap/read/reader.hpp"
 #include "daemon/mcap/recover.hpp"
+#include "tests/fuzz/tolerate.hpp"
 
 namespace mpm::test {
 namespace {
 
-template <class Work>
-bool tolerate(Work&& work) {
-  try {
-    work();
-    return true;
-  } catch (const config::InputError& error) {
-    if (std::string(error.what()).find('\n') != std::string::npos)
-      throw std::logic_error("an error of more than one line");
-    return false;
-  }
-}
+using fuzz::tolerate;
 
 std::uint64_t drain(mcap::MessageSource& source) {
   mcap::Message message;
