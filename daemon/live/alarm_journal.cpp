@@ -2,7 +2,10 @@
 
 #include <chrono>
 #include <exception>
+#include <set>
 #include <utility>
+
+#include "daemon/live/sample_log.hpp"
 
 namespace mpm::live {
 namespace {
@@ -30,6 +33,11 @@ AlarmJournal::~AlarmJournal() {
   thread_.join();
 }
 
+void AlarmJournal::rest_on(const std::string& unit, const std::string& folder) {
+  const MutexLock lock(mutex_);
+  samples_[unit] = folder;
+}
+
 void AlarmJournal::push(history::AlarmEntry entry) {
   {
     const MutexLock lock(mutex_);
@@ -55,6 +63,17 @@ std::string AlarmJournal::problem() const {
   return (problem_.empty() ? "" : problem_ + "; ") + std::to_string(lost_) + " entries are lost";
 }
 
+void AlarmJournal::sync_samples(const std::vector<history::AlarmEntry>& entries) const {
+  std::set<std::string> folders;
+  {
+    const MutexLock lock(mutex_);
+    for (const history::AlarmEntry& entry : entries)
+      if (const auto found = samples_.find(entry.unit); found != samples_.end())
+        folders.insert(found->second);
+  }
+  for (const std::string& folder : folders) SampleLog::sync(folder);
+}
+
 void AlarmJournal::run() {
   MutexLock lock(mutex_);
   while (true) {
@@ -65,6 +84,7 @@ void AlarmJournal::run() {
     std::string problem;
     try {
       if (!store_) store_.emplace(path_, history::AlarmStore::Access::kAppend);
+      sync_samples(batch);
       store_->append(batch);
     } catch (const std::exception& error) {
       problem = error.what();

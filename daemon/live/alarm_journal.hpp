@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <thread>
@@ -23,6 +24,10 @@ class AlarmJournal {
   AlarmJournal(const AlarmJournal&) = delete;
   AlarmJournal& operator=(const AlarmJournal&) = delete;
 
+  /// From now on the samples of `unit`, which a SampleLog keeps in `folder`, come to the disk
+  /// before what they tell of its alarms: after a power cut the alarms stand as the samples have
+  /// it.
+  void rest_on(const std::string& unit, const std::string& folder);
   void push(history::AlarmEntry entry);
   /// How the alarms of a unit stood when they were last written of; nothing where nobody can tell.
   [[nodiscard]] std::vector<history::AlarmEntry> before(const std::string& unit) const;
@@ -32,11 +37,13 @@ class AlarmJournal {
 
  private:
   void run();
+  void sync_samples(const std::vector<history::AlarmEntry>& entries) const;
 
   std::string path_;
   std::optional<history::AlarmStore> store_;  // of the thread alone, once it runs
   mutable Mutex mutex_;
   ConditionVariable changed_;
+  std::map<std::string, std::string> samples_ MPM_GUARDED_BY(mutex_);  // folder, by unit
   std::vector<history::AlarmEntry> waiting_ MPM_GUARDED_BY(mutex_);
   std::uint64_t lost_ MPM_GUARDED_BY(mutex_) = 0;
   std::string problem_ MPM_GUARDED_BY(mutex_);

@@ -108,6 +108,14 @@ std::optional<std::string_view> next_record(std::string_view& bytes) {
   return record;
 }
 
+// A file, or the names in a folder. Where it fails nobody could do better.
+void sync_path(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  static_cast<void>(::fsync(descriptor));
+  ::close(descriptor);
+}
+
 }  // namespace
 
 SampleLog::SampleLog(std::string folder, std::string meaning, std::uint64_t keep)
@@ -117,6 +125,12 @@ SampleLog::~SampleLog() { close_file(); }
 
 std::string SampleLog::path_of(std::uint64_t number) const {
   return numbered_path(folder_, kPrefix, number);
+}
+
+void SampleLog::sync(const std::string& folder) {
+  for (const std::uint64_t number : numbers_in(folder, kPrefix))
+    sync_path(numbered_path(folder, kPrefix, number));
+  sync_path(folder);
 }
 
 std::vector<std::uint64_t> SampleLog::files() const { return numbers_in(folder_, kPrefix); }
@@ -215,6 +229,11 @@ void SampleLog::begin_file() {
     if (!failed)
       fs::permissions(folder_, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec,
                       failed);
+    // Its name, and that of the folder of all units: whatever will be synced in there rests on
+    // them.
+    const fs::path all_units = fs::path(folder_).parent_path();
+    sync_path(all_units);
+    sync_path(all_units.parent_path());
   }
   const std::uint64_t number = files_.empty() ? 1 : files_.back().number + 1;
   descriptor_ = ::open(path_of(number).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_APPEND,

@@ -16,8 +16,9 @@ namespace mpm::live {
 
 /// What a unit took from its topics last, on disk in the order in which it came, so that a process
 /// that begins where another one ended can take it again. A record is handed to the system before
-/// it is acted upon: `kill -9` loses none; a power cut may, those of the last half minute, and what
-/// it tore is left out. Numbered files, of which the oldest goes when the others hold enough.
+/// it is acted upon: `kill -9` loses none; a power cut may, those since `sync` or of the last half
+/// minute, and what it tore is left out. Numbered files, of which the oldest goes when the others
+/// hold enough.
 class SampleLog {
  public:
   /// One of the records: a block, or null where the aligner was told that nothing more will come
@@ -47,6 +48,9 @@ class SampleLog {
   /// From now on files from this one on stay, whatever the others hold, up to `kMostHeld` times
   /// `keep`: a state stands before them.
   void hold_from(std::uint64_t file) { held_from_ = file; }
+  /// Brings what stands in `folder` to the disk, which may take long: from any thread.
+  static void sync(const std::string& folder);
+  [[nodiscard]] const std::string& folder() const { return folder_; }
   /// Why nothing can be kept now; empty: it can. It is tried again when the next file is due.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 

@@ -47,7 +47,10 @@ class UnitPipeline {
   /// `diagnose_with`, before anything else is taken. Says what became of it, in words for the log.
   [[nodiscard]] std::string recall(const UnitSamples& samples);
   /// From now on what happens to alarms is kept there, and what people did about them before holds.
-  void keep(AlarmJournal& journal) { alarms_.keep(journal, wall_ns()); }
+  void keep(AlarmJournal& journal) {
+    if (log_) journal.rest_on(config_.unit, log_->folder());
+    alarms_.keep(journal, wall_ns());
+  }
   /// Tells readers how the alarms stand, at the start.
   void announce();
   /// A person's command to this unit: `admitted`, or why not.
