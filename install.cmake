@@ -20,6 +20,7 @@ foreach(program mpmd mpmsim)
   says(${program} _${program} --completion zsh)
   says(${program} ${program}.fish --completion fish)
 endforeach()
+says(mpm unit.schema.json schema)
 get_property(said_files GLOBAL PROPERTY said_files)
 add_custom_target(mpm_said ALL DEPENDS ${said_files})
 
@@ -31,7 +32,8 @@ foreach(program mpm mpmd mpmsim)
   install(FILES ${said}/${program}.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endforeach()
 install(FILES idl/mpm.idl DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
-install(FILES daemon/package/prometheus-rules.yml DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
+install(FILES ${said}/unit.schema.json daemon/package/prometheus-rules.yml
+  daemon/package/grafana-dashboard.json DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
 install(FILES tests/hmi/loopback.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm RENAME cyclonedds.xml)
 install(DIRECTORY config/units config/plants config/scenarios
   DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN *.yaml)

@@ -9,8 +9,13 @@ execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/package/changelog COMMAN
 install(FILES ${here}/mpmd.service DESTINATION lib/systemd/system)
 install(FILES ${here}/sysusers.conf DESTINATION lib/sysusers.d RENAME mpm.conf)
 install(FILES ${here}/tmpfiles.conf DESTINATION lib/tmpfiles.d RENAME mpm.conf)
+# What the package is made of; of the commit at hand, so made anew each time.
+add_custom_target(mpm_sbom ALL
+  COMMAND ${here}/sbom.sh ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR} ${PROJECT_VERSION}
+    > ${PROJECT_BINARY_DIR}/package/mpm.spdx
+  DEPENDS mpm mpmd mpmsim VERBATIM)
 install(FILES ${here}/copyright ${PROJECT_BINARY_DIR}/package/changelog.gz
-  DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  ${PROJECT_BINARY_DIR}/package/mpm.spdx DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
