@@ -17,7 +17,7 @@ namespace mpm {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-Material material(const Recording& recording) {
+Material material(const Recording& recording, bool open_loop) {
   const Index rows = fitted_rows(recording, 1.0 - kValidationShare);
   Material result{recording,
                   identification_data(recording),
@@ -35,8 +35,8 @@ Material material(const Recording& recording) {
   }
   result.outside = outside_shares(recording, recording.cvs);
   result.test_signals = test_signals(all);
-  result.feedback_p_value = feedback_p_value(all, 0);
-  result.open_loop = feedback_p_value(all, 1) > kFeedback;
+  result.feedback_p_value = open_loop ? 1.0 : feedback_p_value(all, 0);
+  result.open_loop = open_loop || feedback_p_value(all, 1) > kFeedback;
   return result;
 }
 
@@ -78,25 +78,32 @@ Choice best_unseen(const Material& material, int cv, const std::vector<Predictio
   }
   const PredictionErrorFit nothing = fit_prediction_error(material.unseen, cv, {}, noise, 0);
   choice.confirmed = least < nothing.cost - kLeastGainOfPrediction * nothing.rows;
-  choice.unseen_square =
-      fit_prediction_error(material.unseen, cv, choice.channels, output_error(), 0).variance;
-  if (material.open_loop) {
-    const double spread = fit_prediction_error(material.unseen, cv, {}, output_error(), 0).variance;
-    choice.confirmed = choice.confirmed && choice.unseen_square < spread;
-  }
+  choice.unseen_square = carried_square(material, cv, choice.channels);
+  if (material.open_loop)
+    choice.confirmed = choice.confirmed && choice.unseen_square < carried_square(material, cv, {});
   return choice;
 }
 
-/// Without a noise model, from a regression without the CV's own past.
+/// Without a noise model: from a regression without the CV's own past, or from the channels that
+/// were found with a noise model, which sees slower ones than that regression has lags.
 std::optional<Choice> by_output_error(const Material& material,
-                                      const std::vector<ChannelHint>& hints, int cv) {
+                                      const std::vector<ChannelHint>& hints,
+                                      const std::vector<ChannelShape>& found, int cv) {
   const HighOrderModel model = high_order_model(material.first, cv, 0);
   if (!model.sound) return std::nullopt;
   const StartSearch search(model, hints, material.all.sample_time_s);
-  const NoiseAssumption noise = output_error(fit_prediction_error(
-      material.first, cv, search.best_sets().front(), output_error(), kMostSteps));
+  std::vector<std::vector<ChannelShape>> starts = search.best_sets();
+  starts.push_back(found);
+  std::optional<PredictionErrorFit> best;  // of them: what it leaves says how much is known
+  for (const std::vector<ChannelShape>& start : starts) {
+    PredictionErrorFit fit =
+        fit_prediction_error(material.first, cv, start, output_error(), kMostSteps);
+    if (!best || fit.variance < best->variance) best = std::move(fit);
+  }
+  const NoiseAssumption noise = output_error(*best);
   const std::vector<PredictionErrorFit> grown = grown_structures(
-      material.first, cv, simplest_structure(material.first, cv, search, noise), noise);
+      material.first, cv, simplest_structure(material.first, cv, search, std::move(starts), noise),
+      noise);
   Choice choice = best_unseen(material, cv, grown, noise);
   choice.output_error = true;
   return choice;
@@ -109,7 +116,8 @@ Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
   const StartSearch search(all, hints, material.all.sample_time_s);
   const NoiseAssumption usual = noise_model(material.all, cv),
                         noise = noise_model(material.first, cv);
-  PredictionErrorFit simplest = simplest_structure(material.all, cv, search, usual);
+  PredictionErrorFit simplest =
+      simplest_structure(material.all, cv, search, search.best_sets(), usual);
   const std::vector<PredictionErrorFit> grown = grown_structures(
       material.first, cv,
       fit_prediction_error(material.first, cv, std::move(simplest.channels), noise, kMostSteps),
@@ -117,7 +125,7 @@ Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
   Choice choice = best_unseen(material, cv, grown, noise);
   if (!material.open_loop) return choice;
   // What the noise model takes for noise may be what a poor form leaves.
-  std::optional<Choice> other = by_output_error(material, hints, cv);
+  std::optional<Choice> other = by_output_error(material, hints, grown.front().channels, cv);
   if (other && other->confirmed &&
       (!choice.confirmed || other->unseen_square < kClearlyBetter * choice.unseen_square))
     return std::move(*other);

@@ -22,7 +22,8 @@ struct Material {
   bool open_loop = false;  ///< as far as anything shows
 };
 
-[[nodiscard]] Material material(const Recording& recording);
+/// `open_loop`: the user says so; else the data do.
+[[nodiscard]] Material material(const Recording& recording, bool open_loop);
 
 /// An autoregression of an order that the rows of a mean run bear.
 [[nodiscard]] NoiseAssumption noise_model(const IdentificationData& data, int cv);

@@ -97,7 +97,9 @@ void correct_for_many(std::vector<ChannelAnswer>& channels) {
     ChannelAnswer& answer = channels[order[n]];
     rejected = rejected && answer.p_value < kSure &&
                answer.p_value * static_cast<double>(order.size() - n) < kFamilyError;
-    if (!rejected && answer.left_out == LeftOut::kIdentified) answer.left_out = LeftOut::kHidden;
+    if (!rejected &&
+        (answer.left_out == LeftOut::kIdentified || answer.left_out == LeftOut::kVague))
+      answer.left_out = LeftOut::kHidden;
   }
 }
 
@@ -270,7 +272,7 @@ Identification identify(const Recording& recording, const IdentificationSettings
   if (recording.samples() < kFewestRows) return nothing_of(recording);
   std::vector<Index> read_every;
   const Recording measured = without_seldom_read(recording, read_every);
-  const Material given = material(measured);
+  const Material given = material(measured, settings.open_loop);
   std::vector<CvOutcome> outcomes(static_cast<std::size_t>(recording.cvs.cols()));
   const Parallel parallel(settings.threads);
   parallel.for_each(outcomes.size(), [&](std::size_t cv) {

@@ -14,6 +14,7 @@ namespace mpm {
 
 struct IdentificationSettings {
   std::vector<ChannelHint> hints;  ///< what the user knows beforehand; at most one per channel
+  bool open_loop = false;          ///< the user says that no controller moved the inputs
   int threads = 1;
 };
 
@@ -87,7 +88,8 @@ struct Identification {
   std::vector<CvAnswer> cvs;
   std::vector<std::optional<double>> outside_shares;  ///< of each input's movement
   std::vector<double> input_spread;                   ///< s.d. of each input; 0: it stands still
-  double feedback_p_value = 1.0;                      ///< of no input depending on the CVs' past
+  /// Of no input depending on the CVs' past; 1 where the user says that none does.
+  double feedback_p_value = 1.0;
   /// A CV goes with a test signal of its own row: it answers within the row.
   bool within_row = false;
   double longest_lag_s = 0.0;  ///< that was looked at

@@ -182,9 +182,11 @@ std::vector<double> worth_of_channels(const IdentificationData& data, int cv,
 }
 
 PredictionErrorFit simplest_structure(const IdentificationData& data, int cv,
-                                      const StartSearch& search, const NoiseAssumption& noise) {
+                                      const StartSearch& search,
+                                      std::vector<std::vector<ChannelShape>> starts,
+                                      const NoiseAssumption& noise) {
   std::optional<PredictionErrorFit> best;
-  for (std::vector<ChannelShape>& start : search.best_sets()) {
+  for (std::vector<ChannelShape>& start : starts) {
     PredictionErrorFit fit = pruned(
         data, cv, fit_prediction_error(data, cv, std::move(start), noise, kMostSteps), noise);
     while (std::optional<std::vector<ChannelShape>> more = search.enlarged(fit.channels)) {

@@ -8,10 +8,11 @@
 
 namespace mpm {
 
-/// First-order channels of one CV: from each set of the search, what the data do not need goes,
-/// what is missing comes; the better outcome (BIC).
+/// First-order channels of one CV: from each of `starts` (at least one), what the data do not need
+/// goes, what is missing comes by the search; the better outcome (BIC).
 [[nodiscard]] PredictionErrorFit simplest_structure(const IdentificationData& data, int cv,
                                                     const StartSearch& search,
+                                                    std::vector<std::vector<ChannelShape>> starts,
                                                     const NoiseAssumption& noise);
 
 /// Forms that become richer where that pays (BIC), one at a time: the first entry is `simplest`,

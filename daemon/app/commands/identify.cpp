@@ -35,6 +35,7 @@ struct IdentifyOptions {
   std::string out;
   std::string report;
   int threads = available_threads();
+  bool open_loop = false;
   bool plan = false;
   bool json = false;
   bool quiet = false;
@@ -86,6 +87,7 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   if (!options.quiet) tell_notices(run.notices);
   IdentificationSettings settings;
   settings.hints = run.unit.identify;
+  settings.open_loop = options.open_loop;
   settings.threads = options.threads;
   run.identification = identify(run.recording, settings);
   if (options.plan)
@@ -145,6 +147,9 @@ void add_identify(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 1024));
   command->add_flag("--plan", options->plan,
                     "say which MVs have moved too little, and how to move them");
+  command->add_flag("--open-loop", options->open_loop,
+                    "no controller moved the inputs in these data, whatever it looks like: a CV "
+                    "that answers within its own sample looks like a controller");
   add_time_choice(*command, options->time);
   add_times(*command, options->times);
   command->add_flag("--json", options->json, "print model.json instead of the table");
