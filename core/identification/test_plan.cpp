@@ -23,6 +23,23 @@ bool wants_movement(LeftOut left_out) {
   }
 }
 
+/// A move within the MV's limits; nothing where they are not known.
+std::optional<double> move_by_limits(const TestLimits& limits, int input) {
+  const TestLimits::Range& range = limits.inputs[static_cast<std::size_t>(input)];
+  if (!range.low || !range.high) return std::nullopt;
+  return 0.5 * kShareOfRange * (*range.high - *range.low);
+}
+
+/// Nothing was seen, for the input moved so little beside what its limits allow that a move of a
+/// test may yet do what matters.
+bool hidden_within_limits(const Identification& identification, const TestLimits& limits,
+                          const ChannelAnswer& answer) {
+  const std::optional<double> move = move_by_limits(limits, answer.input);
+  return answer.left_out == LeftOut::kNoRelation && move &&
+         answer.visible_gain * *move >
+             kMatters * identification.cvs[static_cast<std::size_t>(answer.cv)].spread;
+}
+
 double settling_of(const ChannelAnswer& answer, double sample_time_s) {
   const TransferFunction& tf = *answer.dynamics;
   const double times =
@@ -48,10 +65,8 @@ double settling_s(const Identification& identification, int cv) {
 std::optional<double> amplitude_of(const Identification& identification, const TestLimits& limits,
                                    int input) {
   const auto i = static_cast<std::size_t>(input);
-  std::optional<double> amplitude;
-  if (limits.inputs[i].low && limits.inputs[i].high)
-    amplitude = 0.5 * kShareOfRange * (*limits.inputs[i].high - *limits.inputs[i].low);
-  else if (identification.input_spread[i] > 0.0)
+  std::optional<double> amplitude = move_by_limits(limits, input);
+  if (!amplitude && identification.input_spread[i] > 0.0)
     amplitude = kMoreThanBefore * identification.input_spread[i];
   if (!amplitude) return amplitude;
   for (const ChannelAnswer& answer : identification.channels) {
@@ -75,7 +90,9 @@ std::vector<PlannedTest> test_plan(const Identification& identification, const T
     test.input = input;
     double noise_rows = 0.0;  // until an effect that matters is far from what noise makes
     for (const ChannelAnswer& answer : identification.channels) {
-      if (answer.input != input || !wants_movement(answer.left_out)) continue;
+      if (answer.input != input || (!wants_movement(answer.left_out) &&
+                                    !hidden_within_limits(identification, limits, answer)))
+        continue;
       test.cvs.push_back(answer.cv);
       const CvAnswer& cv = identification.cvs[static_cast<std::size_t>(answer.cv)];
       test.settling_s = std::max(test.settling_s, settling_s(identification, answer.cv));

@@ -34,8 +34,9 @@ struct PlannedTest {
 };
 
 /// For the MVs alone (`mv_count` first inputs) whose channels were left out because they moved too
-/// little, or only by feedback. Amplitude from limits and from what did not suffice; duration from
-/// the noise: an effect of a tenth of what the CV does is then five s.d. of its estimate.
+/// little, also beside what their limits allow, or only by feedback. Amplitude from limits and from
+/// what did not suffice; duration from the noise: an effect of a tenth of what the CV does is then
+/// five s.d. of its estimate.
 [[nodiscard]] std::vector<PlannedTest> test_plan(const Identification& identification,
                                                  const TestLimits& limits, int mv_count);
 

@@ -32,4 +32,24 @@ TEST_CASE("an input that stands still is planned a test of its size and length")
   CHECK(test->duration_s >= 4.0 * test->settling_s);
 }
 
+TEST_CASE(
+    "an input that moved little beside its limits is planned a test though nothing was seen") {
+  // Input 1 does nothing to CV 0. That is known well enough for moves of its size, not for moves of
+  // hundred times that.
+  const Identification found = identify(open_loop(2000, 840), {});
+  REQUIRE(answer_of(found, 0, 1).left_out == LeftOut::kNoRelation);
+  TestLimits limits;
+  limits.inputs.resize(3);
+  limits.cvs.resize(2);
+  const auto planned = [&](double high) {
+    limits.inputs[1] = {0.0, high};
+    const std::vector<PlannedTest> plan = test_plan(found, limits, 3);
+    return std::any_of(plan.begin(), plan.end(), [](const PlannedTest& each) {
+      return each.input == 1 && each.cvs == std::vector<int>{0};
+    });
+  };
+  CHECK_FALSE(planned(20.0));
+  CHECK(planned(2000.0));
+}
+
 }  // namespace mpm::test
