@@ -95,6 +95,11 @@ inline constexpr std::size_t kTestLevels = 4;
 inline constexpr double kMostWorse = 1.3;
 inline constexpr double kClearlyBetter = 0.9;  ///< of the unseen squared error
 
+// Long recordings (identify_long.hpp).
+inline constexpr std::ptrdiff_t kMostIdentified = 20'000;  ///< rows that a model is made from
+inline constexpr std::ptrdiff_t kScoutRows = 5'000;        ///< that tell how fast the plant is
+inline constexpr std::ptrdiff_t kFiner = 8;                ///< times, where these show nothing
+
 // What is said (identification.hpp).
 inline constexpr double kValidationShare = 0.25;  ///< of the rows, left out of the choice of forms
 inline constexpr double kOnlyFeedback = 0.3;      ///< share of an input's movement from outside

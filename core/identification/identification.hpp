@@ -14,8 +14,8 @@ namespace mpm {
 
 struct IdentificationSettings {
   std::vector<ChannelHint> hints;  ///< what the user knows beforehand; at most one per channel
-  bool open_loop = false;          ///< the user says that no controller moved the inputs
   int threads = 1;
+  bool open_loop = false;  ///< the user says that no controller moved the inputs
 };
 
 /// Why a channel is not in the model.

@@ -1,6 +1,8 @@
 #include "daemon/files/read_recording.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <vector>
 
@@ -12,13 +14,14 @@
 namespace mpm::files {
 namespace {
 
-// 160 MB as doubles; at 50 tags more than half a year of minutes.
-constexpr std::int64_t kMostValues = 20'000'000;
+// 640 MB as doubles: three months of seconds at 10 tags.
+constexpr std::int64_t kMostValues = 80'000'000;
 
 // Less movement than this share of its level is rounding, not a move.
 constexpr double kStill = 1e-9;
 
-/// Rows one after the other; frames do not tell how many will come.
+/// Rows one after the other; frames do not tell how many will come, so they are kept in blocks,
+/// none of which ever has to be moved.
 class Table {
  public:
   explicit Table(const SignalCounts& counts)
@@ -28,20 +31,19 @@ class Table {
   }
 
   [[nodiscard]] int width() const { return width_; }
-  [[nodiscard]] std::int64_t rows() const {
-    return static_cast<std::int64_t>(values_.size()) / width_;
-  }
+  [[nodiscard]] std::int64_t rows() const { return rows_; }
   void skip_to(std::int64_t row) {
-    values_.resize(static_cast<std::size_t>(row) * static_cast<std::size_t>(width_),
-                   std::numeric_limits<double>::quiet_NaN());
+    while (rows_ < row) next_row().setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   void add(const Frame& frame) {
+    Block::RowXpr row = next_row();
+    Eigen::Index column = 0;
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
                                   SignalKind::kAux, SignalKind::kSetpoint}) {
       const SignalBlock& block = frame[kind];
       for (int i = 0; i < block.size(); ++i) {
         const bool usable = block.usable(i);
-        values_.push_back(usable ? block.values(i) : std::numeric_limits<double>::quiet_NaN());
+        row(column++) = usable ? block.values(i) : std::numeric_limits<double>::quiet_NaN();
         const bool needed = kind != SignalKind::kAux && kind != SignalKind::kSetpoint;
         if (!usable && needed)
           ++unusable_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
@@ -50,20 +52,38 @@ class Table {
   }
   /// Values of inputs and CVs.
   [[nodiscard]] const config::SignalTally& unusable() const { return unusable_; }
-  void copy_to(Recording& recording) const {
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const Eigen::Map<const RowMajor> all(values_.data(), rows(), width_);
-    recording.inputs = all.leftCols(counts_.inputs());
-    recording.cvs = all.middleCols(counts_.inputs(), counts_.cv);
-    recording.aux = all.middleCols(counts_.inputs() + counts_.cv, counts_.aux);
-    recording.setpoints = all.rightCols(counts_.cv);
+  /// Block by block, each of which is given back then: the table is empty afterwards.
+  void move_to(Recording& recording) {
+    recording.inputs.resize(rows_, counts_.inputs());
+    recording.cvs.resize(rows_, counts_.cv);
+    recording.aux.resize(rows_, counts_.aux);
+    recording.setpoints.resize(rows_, counts_.cv);
+    for (std::int64_t first = 0; first < rows_; first += kBlockRows, blocks_.pop_front()) {
+      const std::int64_t count = std::min(kBlockRows, rows_ - first);
+      Eigen::Index column = 0;
+      for (Eigen::MatrixXd* part :
+           {&recording.inputs, &recording.cvs, &recording.aux, &recording.setpoints}) {
+        part->middleRows(first, count) = blocks_.front().block(0, column, count, part->cols());
+        column += part->cols();
+      }
+    }
+    rows_ = 0;
   }
 
  private:
+  using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  static constexpr std::int64_t kBlockRows = 4096;
+
+  Block::RowXpr next_row() {
+    if (rows_ % kBlockRows == 0) blocks_.emplace_back(kBlockRows, width_);
+    return blocks_.back().row(rows_++ % kBlockRows);
+  }
+
   SignalCounts counts_;
   config::SignalTally unusable_;
   int width_;
-  std::vector<double> values_;
+  std::int64_t rows_ = 0;
+  std::deque<Block> blocks_;
 };
 
 std::string seconds_text(double seconds) {
@@ -141,9 +161,9 @@ RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit
   if (table.rows() == 0 && left_out > 0) refuse(nothing_chosen(first_ns, last_ns));
   file.bad_tags = config::by_tag(unit, table.unusable());
   for (const auto& [tag, bad] : file.bad_tags) file.bad_values += static_cast<std::int64_t>(bad);
-  table.copy_to(recording);
+  table.move_to(recording);
   const Eigen::Index rows = recording.samples();
-  recording = without_scraps(recording);
+  if (!recording.borders.empty()) recording = without_scraps(recording);
   file.scraps = rows - recording.samples();
   return file;
 }

@@ -21,6 +21,9 @@ inline constexpr int kComparedQuarter = 4;
 inline constexpr double kClearlyLess = 0.3;
 inline constexpr double kSomewhatLess = 0.1;
 
+/// Rows of a recording; beyond, a diagnosis takes minutes for what it knows as well from these.
+inline constexpr Eigen::Index kMostDiagnosed = 40'000;
+
 /// s.d. of a relative gain error beyond which the data cannot tell a good model from a bad one.
 inline constexpr double kBlindGainSd = 0.25;
 /// 2 ln odds of a finding that leaves the verdict open even if it does not carry over.

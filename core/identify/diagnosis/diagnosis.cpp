@@ -316,6 +316,8 @@ Index needed_samples(const ModelSpec& model) {
   return 3 * kRowsPerNumber * (most + kFreeNoise.order + kOtherNumbers) / 2;
 }
 
+Index most_samples() { return kMostDiagnosed; }
+
 Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Recording* validation,
                    const DiagnosisSettings& asked) {
   DiagnosisSettings settings = asked;

@@ -68,6 +68,13 @@ inline constexpr Eigen::Index kShortestRun = 40;  ///< rows
 /// A model has settled after so many slowest time constants: 5 % are left to come (horizons.hpp).
 inline constexpr double kSettlingTimeConstants = 3.0;
 
+// Long recordings (condense.hpp).
+inline constexpr Eigen::Index kStretches = 8;  ///< that are chosen, where not all rows are taken
+inline constexpr double kRowsOfFastest = 8.0;  ///< in the fastest time constant, at least
+inline constexpr double kSlowestSpanned =
+    200.0;  ///< slowest time constants in all rows that are left
+inline constexpr Eigen::Index kFewestMoves = 20;  ///< that show how long an input is held
+
 /// Of a sample: two moments are the same.
 inline constexpr double kSameMoment = 1e-6;
 

@@ -73,20 +73,24 @@ Given read_all(const std::vector<std::string>& files, const config::UnitConfig& 
   return all;
 }
 
-report::DiagnosisRun prepare(const DiagnoseOptions& options, config::UnitConfig unit) {
+report::DiagnosisRun prepare(const DiagnoseOptions& options, const config::UnitConfig& given) {
   report::DiagnosisRun run;
-  run.unit = std::move(unit);
+  run.unit = given;
   const files::TimeStyle times = times_of(options.times);
   const files::TimeChoice choice(options.time, times);
   run.time_chosen = !choice.all();
   report::PerformanceTally performance(run.unit);
   Given data = read_all(options.data, run.unit, times, choice, run.notices, &performance);
   run.performance = performance.record();
+  const Eigen::Index every = rows_to_average(data.recording, run.unit.model, most_samples());
+  run.condensing = condense(data, every, run.notices);
+  run.unit.model.sample_time_s = data.recording.sample_time_s;
   run.recording = std::move(data.recording);
   run.run_files = std::move(data.files);
   run.data_file = std::move(data.name);
   if (!options.validate.empty()) {
-    Given unseen = read_all(options.validate, run.unit, times, {}, run.notices);
+    Given unseen = read_all(options.validate, given, times, {}, run.notices);
+    condense(unseen, every, run.notices);
     run.validation = std::move(unseen.recording);
     run.validation_run_files = std::move(unseen.files);
     run.validation_file = std::move(unseen.name);
@@ -136,11 +140,11 @@ std::optional<report::LoopPlan> plan(const DiagnoseOptions& options, const confi
 }
 
 /// Empty, or why there is no comparison: a reason to fail, but not to lose the diagnosis.
-std::string add_closed_loop(const report::LoopPlan& loops, host::StopSignal& stop,
-                            report::DiagnosisRun& run) {
+std::string add_closed_loop(const report::LoopPlan& loops, const config::UnitConfig& unit,
+                            host::StopSignal& stop, report::DiagnosisRun& run) {
   try {
     run.closed_loop =
-        report::compare_loops(loops, run.unit, run.diagnosis, [&stop] { return stop.received(); });
+        report::compare_loops(loops, unit, run.diagnosis, [&stop] { return stop.received(); });
     return {};
   } catch (const report::SimulatorError& error) {
     return error.what();
@@ -160,12 +164,12 @@ void print(const DiagnoseOptions& options, const report::DiagnosisRun& run,
 }
 
 // 0, 1 if something was found and that was to fail, 2 if it was stopped or the simulator failed.
-int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
+int diagnose_unit(const DiagnoseOptions& options, const config::UnitConfig& unit) {
   files::OutputFolder folder(options.out);
   bool fit = false;
   const std::optional<report::LoopPlan> loops = plan(options, unit, fit);
   if (!fit) return 3;
-  report::DiagnosisRun run = prepare(options, std::move(unit));
+  report::DiagnosisRun run = prepare(options, unit);
   if (!options.quiet) tell_notices(run.notices);
   host::StopSignal stop;
   if (!diagnose_run(options, stop, run)) {
@@ -174,7 +178,7 @@ int diagnose_unit(const DiagnoseOptions& options, config::UnitConfig unit) {
   }
   const bool repaired = !run.diagnosis.findings.empty();
   const std::string failure =
-      loops && repaired ? add_closed_loop(*loops, stop, run) : std::string();
+      loops && repaired ? add_closed_loop(*loops, unit, stop, run) : std::string();
   const std::string json = report::write_reports(run, folder);
   folder.commit();
   print(options, run, json);
@@ -197,7 +201,7 @@ int print_settings(const DiagnoseOptions& options) {
 int diagnose_file(const DiagnoseOptions& options) {
   try {
     std::optional<config::UnitConfig> unit = load(options.config);
-    return unit ? diagnose_unit(options, std::move(*unit)) : 3;
+    return unit ? diagnose_unit(options, *unit) : 3;
   } catch (const config::InputError& error) {
     std::cerr << error.what() << '\n';
     return 3;

@@ -6,14 +6,27 @@
 #include <optional>
 #include <utility>
 
+#include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/read_recording.hpp"
+#include "daemon/report/condensing_report.hpp"
 #include "daemon/report/unit_monitor.hpp"
 #include "daemon/report/worst_tags.hpp"
 
 namespace mpm::app {
 namespace {
+
+/// Whose monitor reads every CV and prediction as that of `unit` does, but regresses as little as
+/// can be: no index of performance comes of a regression, which takes ten times as long.
+config::UnitConfig that_only_reads(config::UnitConfig unit) {
+  MonitorSettings& monitor = unit.monitor;
+  monitor.nonlinear = NonlinearTest::kOff;
+  monitor.fir_lags = monitor.residual_order = monitor.controlling_lags = 1;
+  monitor.first_lag = monitor.last_lag = 1;
+  monitor.tail_s = unit.sample_time_s;
+  return unit;
+}
 
 /// The frames of another source; on their way those that `choice` takes are tallied, with a monitor
 /// of their own.
@@ -21,7 +34,10 @@ class TalliedFrames : public files::FrameSource {
  public:
   TalliedFrames(files::FrameSource& frames, const config::UnitConfig& unit,
                 const files::TimeChoice& choice, report::PerformanceTally& performance)
-      : frames_(frames), choice_(choice), monitor_(unit), performance_(performance) {
+      : frames_(frames),
+        choice_(choice),
+        monitor_(that_only_reads(unit)),
+        performance_(performance) {
     performance_.begin_run();
   }
 
@@ -83,6 +99,18 @@ Given read_given(const std::vector<std::string>& files, const config::UnitConfig
   }
   all.recording = joined(recordings);
   return all;
+}
+
+Condensing condense(Given& given, Eigen::Index every, std::vector<std::string>& notices) {
+  Condensed some = condensed(given.recording, every, most_samples());
+  std::vector<std::string> files;
+  for (const std::size_t run : some.run_of) files.push_back(given.files.at(run));
+  given.recording = std::move(some.recording);
+  given.files = std::move(files);
+  if (some.how.any())
+    notices.push_back(given.name + ": " +
+                      report::condensing_text(some.how, given.recording.samples()));
+  return some.how;
 }
 
 std::string command_line() {

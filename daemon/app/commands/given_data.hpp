@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
+#include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "daemon/files/times/time_choice.hpp"
 #include "daemon/files/times/time_style.hpp"
@@ -25,6 +26,10 @@ struct Given {
                                const config::UnitConfig& unit, const files::TimeStyle& times,
                                const files::TimeChoice& choice, std::vector<std::string>& notices,
                                report::PerformanceTally* performance = nullptr);
+
+/// Leaves of a long recording what a diagnosis can bear, `every` rows averaged into one
+/// (condensed()), and tells that in `notices`.
+Condensing condense(Given& given, Eigen::Index every, std::vector<std::string>& notices);
 
 /// The command line of this process as it was typed, quoted where a shell would need it.
 [[nodiscard]] std::string command_line();

@@ -9,7 +9,7 @@
 
 #include "config/load_unit.hpp"
 #include "config/replacement_file.hpp"
-#include "core/identification/identification.hpp"
+#include "core/identification/identify_long.hpp"
 #include "core/parallel/parallel.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/given_data.hpp"
@@ -17,6 +17,7 @@
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/files/output_folder.hpp"
+#include "daemon/report/condensing_report.hpp"
 #include "daemon/report/identification/identification_report.hpp"
 #include "daemon/report/identification/new_unit.hpp"
 #include "daemon/report/identification/plan_report.hpp"
@@ -89,7 +90,15 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   settings.hints = run.unit.identify;
   settings.open_loop = options.open_loop;
   settings.threads = options.threads;
-  run.identification = identify(run.recording, settings);
+  LongIdentification answer = identify_long(run.recording, settings);
+  run.recording = std::move(answer.data.recording);
+  run.condensing = answer.data.how;
+  run.identification = std::move(answer.identification);
+  if (run.condensing.any()) {
+    run.notices.push_back(run.data_file + ": " +
+                          report::condensing_text(run.condensing, run.recording.samples()));
+    if (!options.quiet) tell_notices({run.notices.back()});
+  }
   if (options.plan)
     run.plan = test_plan(run.identification, report::test_limits(run.unit), run.unit.counts().mv);
   const bool found = report::found_any(run);

@@ -4,6 +4,7 @@
 
 #include "core/identify/causes/cause.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/report/condensing_report.hpp"
 #include "daemon/report/diagnosis/data_notes.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
 #include "daemon/report/diagnosis/names_of.hpp"
@@ -92,10 +93,11 @@ Json findings_json(const DiagnosisRun& run, const std::vector<Finding>& findings
   return json;
 }
 
-Json horizons_json(const CvScore& score) {
+/// In samples of the unit.
+Json horizons_json(const CvScore& score, Eigen::Index every) {
   Json json = Json::array();
   for (const Horizon& horizon : score.horizons)
-    json.push_back({{"samples", horizon.samples},
+    json.push_back({{"samples", horizon.samples * every},
                     {"rmse_before", horizon.rmse_before},
                     {"rmse_after", horizon.rmse_after}});
   return json;
@@ -134,7 +136,7 @@ Json scores_json(const DiagnosisRun& run) {
                     {"gain_interval", {score.gain_low, score.gain_high}},
                     {"refused", score.refused},
                     {"unit", run.unit.cv[cv].unit},
-                    {"horizons", horizons_json(score)}});
+                    {"horizons", horizons_json(score, run.condensing.every)}});
   }
   return json;
 }
@@ -287,6 +289,7 @@ nlohmann::ordered_json to_json(const DiagnosisRun& run) {
             {"inputs", inputs_json(run)},
             {"channels", channels_json(run)},
             {"closed_loop", closed_loop_json(run)}};
+  if (run.condensing.any()) json["condensed"] = condensing_json(run.condensing);
   if (run.time_chosen || !run.recording.borders.empty()) json["used"] = used_json(run.recording);
   if (const Json notes = data_notes(run); !notes.empty()) json["data"] = notes;
   json["made_by"] = {{"program", run.program},

@@ -8,6 +8,7 @@
 
 #include "config/unit_config.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/record/performance_record.hpp"
 #include "daemon/files/times/time_zone.hpp"
@@ -36,7 +37,8 @@ struct ClosedLoop {
 };
 
 struct DiagnosisRun {
-  config::UnitConfig unit;  ///< as its file says it
+  /// As its file says it; the model at the recording's sample time.
+  config::UnitConfig unit;
   Recording recording;
   std::optional<Recording> validation;
   Diagnosis diagnosis;
@@ -54,6 +56,7 @@ struct DiagnosisRun {
   std::uint64_t seed = 0;
   std::vector<std::string> notices;                  ///< on the data
   std::shared_ptr<const files::TimeZone> zone = {};  ///< of the data's times; null = UTC
+  Condensing condensing = {};                        ///< of the data files' recording
 };
 
 }  // namespace mpm::report

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/text/number_text.hpp"
+#include "daemon/report/condensing_report.hpp"
 #include "daemon/report/identification/plan_report.hpp"
 #include "daemon/report/identification/reasons.hpp"
 #include "daemon/report/terminal/terminal_text.hpp"
@@ -177,6 +178,7 @@ nlohmann::ordered_json to_json(const IdentificationRun& run) {
     json["inputs"].push_back({{"mv", run.unit.input_tag(static_cast<int>(i))},
                               {"outside_share", share ? Json(*share) : Json(nullptr)}});
   }
+  if (run.condensing.any()) json["condensed"] = condensing_json(run.condensing);
   if (run.plan) json["plan"] = plan_json(run);
   json["made_by"] = {{"program", run.program},
                      {"command", run.command_line},

@@ -8,6 +8,7 @@
 #include "config/unit_config.hpp"
 #include "core/identification/identification.hpp"
 #include "core/identification/test_plan.hpp"
+#include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "daemon/files/times/time_zone.hpp"
 
@@ -25,6 +26,7 @@ struct IdentificationRun {
   std::optional<std::vector<PlannedTest>> plan;      ///< where one was asked for
   std::vector<std::string> notices;                  ///< on the data
   std::shared_ptr<const files::TimeZone> zone = {};  ///< of the data's times; null = UTC
+  Condensing condensing = {};                        ///< of the data files' recording
 };
 
 }  // namespace mpm::report

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "config/load_unit.hpp"
+#include "core/identification/identify_long.hpp"
 #include "core/text/printable.hpp"
 
 namespace mpm::report {
@@ -53,7 +54,7 @@ bool loads(const std::string& text, const IdentificationRun& run) {
 
 std::string new_unit_yaml(const IdentificationRun& run, const std::string& text) {
   config::UnitConfig unit = run.unit;
-  unit.model = run.identification.model;
+  unit.model = model_at(run.identification, unit.sample_time_s);
   std::ostringstream model, all;
   config::print_model_section(unit, model);
   std::size_t at = 0;

@@ -54,7 +54,7 @@ std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answe
       const auto every = run.identification.cvs.at(static_cast<std::size_t>(answer.cv)).read_every;
       return cv + " is read every " + std::to_string(every) +
              " samples: give it a unit of its own with a sample_time of " +
-             number_text(static_cast<double>(every) * run.unit.sample_time_s, 6) + " s";
+             number_text(static_cast<double>(every) * run.recording.sample_time_s, 6) + " s";
     }
     case LeftOut::kTooFewRows:
       return "too few samples for so many inputs";

@@ -399,12 +399,13 @@ Json made_by(const DiagnosisRun& run, const Clock& clock) {
   if (kept.empty() && diagnosis.validation_samples > 0)
     kept =
         "the last " + counted(static_cast<std::uint64_t>(diagnosis.validation_samples), "sample");
-  Json json = facts({{"Command", run.command_line},
-                     {"Program", run.program},
-                     {"Unit file", run.config_file},
-                     {"Data", run.data_file + ": " + span_text(run.recording, clock)},
-                     {"Kept unseen", kept},
-                     {"Seed of the resampling", std::to_string(run.seed)}});
+  Json json =
+      facts({{"Command", run.command_line},
+             {"Program", run.program},
+             {"Unit file", run.config_file},
+             {"Data", run.data_file + ": " + span_text(run.recording, run.condensing, clock)},
+             {"Kept unseen", kept},
+             {"Seed of the resampling", std::to_string(run.seed)}});
   for (const std::string& notice : run.notices) json.push_back({"Of the data", notice});
   return json;
 }
@@ -422,7 +423,7 @@ nlohmann::ordered_json page_data(const DiagnosisRun& run) {
             {"verdict", name_of(diagnosis.verdict)},
             {"sentence", sentence(run)},
             {"details", verdict_details(run)},
-            {"data", run.data_file + ": " + span_text(run.recording, clock)},
+            {"data", run.data_file + ": " + span_text(run.recording, run.condensing, clock)},
             {"warnings", warnings(run)},
             {"matrix", matrix_json(run)},
             {"numbers", numbers_table(run, channels)},
@@ -434,8 +435,7 @@ nlohmann::ordered_json page_data(const DiagnosisRun& run) {
   for (const Unexplained& left : diagnosis.unexplained)
     json["unexplained"].push_back(unexplained_text(run, left));
   json["refused"] = refused_json(run);
-  if (run.performance)
-    json["control"] = control_section(*run.performance, run.recording.sample_time_s);
+  if (run.performance) json["control"] = control_section(*run.performance, run.unit.sample_time_s);
   json["errors"] = errors_json(run);
   json["closed_loop"] = closed_loop_json(run);
   json["cvs"] = cvs_json(run, all);

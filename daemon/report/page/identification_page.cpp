@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "config/load_unit.hpp"
+#include "core/identification/identify_long.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/report/identification/identification_report.hpp"
@@ -238,7 +239,7 @@ Json left_out(const IdentificationRun& run) {
 Json numbers_table(const IdentificationRun& run, const std::vector<ChannelNumbers>& channels) {
   Json json = numbers_json(channels, run.unit);
   config::UnitConfig unit = run.unit;
-  unit.model = run.identification.model;
+  unit.model = model_at(run.identification, unit.sample_time_s);
   std::ostringstream yaml;
   if (found_any(run)) config::print_model_section(unit, yaml);
   json["yaml"] = yaml.str();
@@ -289,7 +290,7 @@ nlohmann::ordered_json page_data(const IdentificationRun& run) {
             {"verdict", found_any(run) ? "identified" : "undetermined"},
             {"sentence", sentence(run)},
             {"details", details(run)},
-            {"data", run.data_file + ": " + span_text(run.recording, clock)},
+            {"data", run.data_file + ": " + span_text(run.recording, run.condensing, clock)},
             {"warnings", warnings(run)},
             {"matrix", matrix_json(run)},
             {"numbers", numbers_table(run, channels)},

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/text/number_text.hpp"
+#include "daemon/report/condensing_report.hpp"
 
 namespace mpm::report {
 namespace {
@@ -21,7 +22,7 @@ bool stands_still(const Eigen::Ref<const Eigen::VectorXd>& values) {
 
 }  // namespace
 
-std::string span_text(const Recording& recording, const Clock& clock) {
+std::string span_text(const Recording& recording, const Condensing& how, const Clock& clock) {
   const std::vector<Run> runs = runs_of(recording);
   const auto at = [&](Eigen::Index row) {
     return on_clock(recording,
@@ -29,6 +30,7 @@ std::string span_text(const Recording& recording, const Clock& clock) {
   };
   std::string text = counted(static_cast<std::uint64_t>(recording.samples()), "sample") + ", " +
                      duration(recording.sample_time_s) + " apart";
+  if (how.any()) text += " (" + condensing_text(how, recording.samples()) + ")";
   if (runs.size() > 1) return text + ", in " + counted(runs.size(), "run");
   return text + ": " + clock.between(at(0), at(recording.samples() - 1));
 }

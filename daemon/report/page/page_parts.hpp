@@ -4,14 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "daemon/report/page/wording.hpp"
 
 /// What a diagnosis's page and an identification's have in common.
 namespace mpm::report {
 
-/// "3000 samples, 1 min apart: 3 May 2024 14:20 to 5 May 2024 03:10 (UTC)"
-[[nodiscard]] std::string span_text(const Recording& recording, const Clock& clock);
+/// "3000 samples, 1 min apart: 3 May 2024 14:20 to 5 May 2024 03:10 (UTC)"; of a long recording
+/// also what of it they are.
+[[nodiscard]] std::string span_text(const Recording& recording, const Condensing& how,
+                                    const Clock& clock);
 
 /// Set-points that never move, and records that are short beside what the model takes to settle.
 /// `tags`: of each CV's set-point, empty where it has none.
