@@ -45,9 +45,10 @@ inline constexpr double kSame = 0.2;
 /// When a channel counts as nonlinear.
 namespace nonlinear_test {
 /// S.d. that a nonlinearity must be worth to be seen: root of the noncentrality at which a
-/// chi-square test of 12 degrees of freedom (an input's polynomial columns among three) at level
-/// 0.01 / 9 has 94 % power. Derived (tests/core/nonlinear/nonlinear_regression_test.cpp).
-inline constexpr double kSeenDeviations = 6.4;
+/// chi-square test of 4 degrees of freedom (an input's curve by polynomials, one of the six groups
+/// of an input among three) at level 0.01 / 9 / 6 has 94 % power. Derived
+/// (tests/core/nonlinear/nonlinear_regression_test.cpp).
+inline constexpr double kSeenDeviations = 6.0;
 /// Less than this share of the one-step errors' variance does not matter. Chosen: what the linear
 /// columns' truncation leaves of errors of 50 % stays below it.
 inline constexpr double kMaterialShare = 0.003;
@@ -55,12 +56,11 @@ inline constexpr double kMaterialShare = 0.003;
 /// healthy channels, with eight in 1.4 %.
 inline constexpr double kRowsPerColumn = 8.0;
 /// Of what the linear columns explain, what passes for nonlinear because no finite number of them
-/// follows a linear error for good; and of what the most nonlinear input of a CV explains, what
-/// passes for another one's because no few terms follow a bend. Chosen on seeds from 100001 on
-/// (tests/nonlinear): time constants that are half the model's leave 0.5 % at most, and a valve
-/// that saturates makes 23 % of its own appear in other inputs.
+/// follows a linear error for good; and of what the terms of the inputs to blame explain, what
+/// passes for another input's because no few terms follow a bend. Chosen on seeds from 100001 on
+/// (tests/nonlinear): time constants that are half the model's leave 0.5 % at most.
 inline constexpr double kLeak = 0.01;
-inline constexpr double kShareOfMost = 0.25;
+inline constexpr double kShareOfBend = 0.25;
 /// How much longer it remembers than the linear test's long memory. Chosen: a bend is there for
 /// good, and forgetting makes slow columns seem less certain than they are.
 inline constexpr double kLongerMemory = 2.5;
@@ -70,9 +70,13 @@ inline constexpr double kSurelySomething = 0.001;
 /// F is this much too large on healthy loops of Shell after 3000 samples, over all regimes of its
 /// disturbances. Fitted on seeds 100101 to 100120 (tests/nonlinear).
 inline constexpr double kInflation = 1.06;
-/// What kind it is is asked below this p-value. Chosen: to spare the work.
-inline constexpr double kKindPValue = 0.01;
 }  // namespace nonlinear_test
+
+/// The curve of an input that is told, s.d. of the input to either side and points of it. Chosen.
+namespace nonlinear_curve {
+inline constexpr double kReach = 2.0;
+inline constexpr int kPoints = 21;
+}  // namespace nonlinear_curve
 
 /// Ridges that generalised cross-validation chooses among, per mean eigenvalue of the kernel:
 /// so many, from the first to the last in equal ratios. Chosen: from as good as none to one that
@@ -87,6 +91,8 @@ inline constexpr double kLast = 1e3;
 namespace nonlinear_rounding {
 /// A column of which the ones before it leave less than this share takes no part.
 inline constexpr double kOwnShare = 1e-6;
+/// Of a rank coefficient's square: what is left of a signal's ranks by others.
+inline constexpr double kLeftOfRanks = 1e-12;
 /// An eigenvalue below this share of the largest is none.
 inline constexpr double kEigenvalue = 1e-10;
 }  // namespace nonlinear_rounding

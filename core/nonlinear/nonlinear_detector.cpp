@@ -44,7 +44,7 @@ void NonlinearDetector::evaluate(int cv, const MismatchDetector& linear) {
   NonlinearRegression& regression = regressions_[static_cast<std::size_t>(cv)];
   if (!regression.ready()) return silence(cv);
   ChannelNonlinearity* results = &results_[static_cast<std::size_t>(cv * inputs_)];
-  regression.evaluate(settings_.variation, results);
+  regression.evaluate(settings_.channel_rate, settings_.variation, results);
   for (int i = 0; i < inputs_; ++i) judge(results[i]);
 }
 

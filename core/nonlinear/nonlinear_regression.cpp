@@ -1,5 +1,6 @@
 #include "core/nonlinear/nonlinear_regression.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -27,15 +28,15 @@ NonlinearRegression::NonlinearRegression(const RegressionShape& shape, int cv,
       memory_(past_at() + past(), memory),
       batch_(memory_.factor.columns() + 1, kTogether),
       patience_(patience),
-      left_out_(linear_columns(), terms_.columns()),
+      selection_(linear_columns(), terms_.columns()),
+      taken_(static_cast<std::size_t>(terms_.groups())),
+      blamed_(static_cast<std::size_t>(shape.inputs)),
       lead_in_(static_cast<std::size_t>(shape.lead_in())),
       past_factor_(past(), 1),
       coefficients_(Eigen::VectorXd::Zero(memory_.factor.columns())),
       taken_off_(Eigen::VectorXd::Zero(past())),
       own_past_(Eigen::VectorXd::Zero(shape.past())),
-      rotated_(Eigen::VectorXd::Zero(terms_.columns())) {
-  set_.reserve(static_cast<std::size_t>(terms_.columns()));
-}
+      rotated_(Eigen::VectorXd::Zero(terms_.columns())) {}
 
 void NonlinearRegression::add_sample(const RegressionHistory& history) {
   if (!begun_) return;
@@ -113,8 +114,9 @@ void NonlinearRegression::feed(const RegressionHistory& history,
 void NonlinearRegression::archive(Archive& a) {
   // not archived: shape_, cv_, patience_ (construction)
   // not archived: batch_, batched_ (empty between calls)
-  // not archived: left_out_, set_, lead_in_, past_factor_, coefficients_, taken_off_, own_past_,
-  // rotated_, own_gain_, error_variance_, freedom_, linear_square_ (each evaluation begins anew)
+  // not archived: selection_, taken_, blamed_, bend_square_, lead_in_, past_factor_, coefficients_,
+  // taken_off_, own_past_, rotated_, own_gain_, error_variance_, freedom_, linear_square_ (each
+  // evaluation begins anew)
   a(companions_, terms_, memory_, begun_, rows_at_begin_, restarts_);
   a.within(waiting_, 0, patience_ + 1);
 }
@@ -140,7 +142,7 @@ void NonlinearRegression::read(Past which) {
     for (int l = 0; l < past(); ++l)
       rotated_(r) -= taken_off_(l) * factor.r(linear_columns() + r, past_at() + l);
   }
-  left_out_.read(factor, rotated_);
+  selection_.read(factor, rotated_);
   linear_square_ = 0.0;
   for (int r = shape_.lead_in() - past(); r < linear_columns(); ++r) {
     double rotated = factor.z(r, 0);
@@ -162,9 +164,9 @@ void NonlinearRegression::read(Past which) {
                     memory_.weight_square / memory_.weight_sum * limits::kInflation;
 }
 
-double NonlinearRegression::chance(const LeftOut::Loss& loss) const {
-  if (loss.columns == 0 || !(error_variance_ > 0.0)) return 1.0;
-  return f_upper_tail(loss.square / error_variance_ / loss.columns, loss.columns, freedom_);
+double NonlinearRegression::chance(const TermSelection::Gain& gain) const {
+  if (gain.columns == 0 || !(error_variance_ > 0.0)) return 1.0;
+  return f_upper_tail(gain.square / error_variance_ / gain.columns, gain.columns, freedom_);
 }
 
 // The past's coefficients where the terms are left out: their rows of the factor are then rows of
@@ -181,70 +183,155 @@ void NonlinearRegression::without_terms() {
   past_factor_.solve(0, past(), taken_off_);
 }
 
-// Of all terms together.
-double NonlinearRegression::any() const {
-  LeftOut::Loss all{left_out_.explained(), 0};
-  for (int c = 0; c < terms_.columns(); ++c) all.columns += left_out_.live(c) ? 1 : 0;
-  return chance(all);
-}
-
 // The noise's own past is what is found without the terms, unless the terms surely say something:
 // each slow column beside it makes the noise seem to forget faster than it does (Kendall 1954), and
 // what it has left then passes for theirs. Where they do say something, without them it seems to
 // forget slower.
-void NonlinearRegression::evaluate(double variation, ChannelNonlinearity* results) {
+void NonlinearRegression::evaluate(double rate, double variation, ChannelNonlinearity* results) {
   read(Past::kWithoutTerms);
-  if (any() < limits::kSurelySomething) read(Past::kBesideTerms);
-  judge(variation, results);
+  if (chance(selection_.all()) < limits::kSurelySomething) read(Past::kBesideTerms);
+  for (int i = 0; i < shape_.inputs; ++i) results[i] = {.tested = true};
+  std::fill(taken_.begin(), taken_.end(), false);
+  std::fill(blamed_.begin(), blamed_.end(), false);
+  bend_square_ = 0.0;
+  if (!(error_variance_ > 0.0)) return;
+  for (;;) {
+    see(variation, results);
+    const Explanation best = best_explanation(rate, results);
+    if (best.group < 0) return;
+    blame(best, results);
+  }
 }
 
-void NonlinearRegression::judge(double variation, ChannelNonlinearity* results) {
-  double most = 0.0;
+// The weakest square of each input not blamed that would be seen beside what is taken in.
+void NonlinearRegression::see(double variation, ChannelNonlinearity* results) const {
   for (int i = 0; i < shape_.inputs; ++i) {
-    ChannelNonlinearity& result = results[i];
-    result = {.tested = true};
-    set_.clear();
-    for (int c = 0; c < terms_.columns(); ++c)
-      if (terms_.has(c, i)) set_.push_back(c);
-    const LeftOut::Loss loss = left_out_.loss(set_);
-    if (loss.columns == 0 || !(error_variance_ > 0.0)) continue;
-    const double beyond = loss.square / error_variance_;
-    result.p_value = chance(loss);
-    result.statistic = beyond / loss.columns;
-    result.share = std::max(0.0, beyond - loss.columns) / memory_.effective_rows();
-    const double reference = terms_.coefficient_of(i, variation) * own_gain_;
-    const double seen = left_out_.loss_of(set_, terms_.square_of(i), reference) / error_variance_;
+    if (blamed_[static_cast<std::size_t>(i)]) continue;
+    const double seen = terms_.coefficient_of(i, variation) * own_gain_ *
+                        selection_.norm_left(terms_.square_of(i)) / std::sqrt(error_variance_);
+    results[i].smallest_variation = ChannelNonlinearity::kMostVariation;
     if (seen > 0.0)
-      result.smallest_variation = std::min(variation * limits::kSeenDeviations / std::sqrt(seen),
-                                           ChannelNonlinearity::kMostVariation);
-    if (result.p_value < limits::kKindPValue) result.kind = kind_of(i);
-    result.material = loss.square > limits::kLeak * linear_square_;
-    most = std::max(most, result.share);
+      results[i].smallest_variation =
+          std::min(variation * limits::kSeenDeviations / seen, ChannelNonlinearity::kMostVariation);
   }
-  for (int i = 0; i < shape_.inputs; ++i)
-    results[i].material = results[i].material && results[i].share > limits::kMaterialShare &&
-                          results[i].share > limits::kShareOfMost * most;
 }
 
-// Of the columns with the input in them the kind whose loss is the least likely by chance.
-NonlinearKind NonlinearRegression::kind_of(int input) {
-  NonlinearKind likeliest = NonlinearKind::kNone;
-  double least = 2.0;
-  for (const NonlinearKind kind :
-       {NonlinearKind::kInputCurve, NonlinearKind::kHysteresis, NonlinearKind::kChannelCurve,
-        NonlinearKind::kInteraction, NonlinearKind::kOutputCurve}) {
-    set_.clear();
-    for (int c = 0; c < terms_.columns(); ++c)
-      if (terms_.has(c, input) && terms_.kind(c) == kind) set_.push_back(c);
-    const LeftOut::Loss loss = left_out_.loss(set_);
-    if (loss.columns == 0) continue;
-    const double p_value = chance(loss);
-    if (p_value < least) {
-      least = p_value;
-      likeliest = kind;
-    }
+// Of those by which an input that is not blamed yet would be.
+NonlinearRegression::Explanation NonlinearRegression::best_explanation(
+    double rate, ChannelNonlinearity* results) {
+  for (int i = 0; i < shape_.inputs; ++i)
+    if (!blamed_[static_cast<std::size_t>(i)])
+      results[i] = {.tested = true, .smallest_variation = results[i].smallest_variation};
+  Explanation best;
+  double most = 0.0;
+  for (int g = 0; g < terms_.groups(); ++g) {
+    if (taken_[static_cast<std::size_t>(g)] || all_blamed(g)) continue;
+    const TermSelection::Gain gain = selection_.gain(terms_.columns_of_group(g));
+    if (gain.columns == 0) continue;
+    look_at(g, gain, results);
+    double p_value = 1.0;
+    for (int i = 0; i < shape_.inputs; ++i)
+      if (!blamed_[static_cast<std::size_t>(i)] && terms_.has(g, i))
+        p_value = std::min(p_value, groups_with(i) * chance(gain));
+    if (!(p_value < rate) || !matters(gain)) continue;
+    const double worth =
+        gain.square / error_variance_ - gain.columns * std::log(memory_.effective_rows());
+    if (best.group >= 0 && worth <= most) continue;
+    most = worth;
+    best = {g, gain};
   }
-  return likeliest;
+  return best;
+}
+
+// As many groups are asked about an input, and the best one counts (Bonferroni).
+void NonlinearRegression::look_at(int group, const TermSelection::Gain& gain,
+                                  ChannelNonlinearity* results) const {
+  const double chance_of = chance(gain);
+  for (int i = 0; i < shape_.inputs; ++i) {
+    if (blamed_[static_cast<std::size_t>(i)] || !terms_.has(group, i)) continue;
+    const double p_value = std::min(1.0, groups_with(i) * chance_of);
+    if (results[i].statistic > 0.0 && p_value >= results[i].p_value) continue;
+    results[i].p_value = p_value;
+    results[i].statistic = gain.square / error_variance_ / gain.columns;
+    results[i].share =
+        std::max(0.0, gain.square / error_variance_ - gain.columns) / memory_.effective_rows();
+  }
+}
+
+int NonlinearRegression::groups_with(int input) const {
+  int count = 0;
+  for (int g = 0; g < terms_.groups(); ++g) count += terms_.has(g, input) ? 1 : 0;
+  return count;
+}
+
+bool NonlinearRegression::matters(const TermSelection::Gain& gain) const {
+  const double share = (gain.square / error_variance_ - gain.columns) / memory_.effective_rows();
+  return share > limits::kMaterialShare && gain.square > limits::kLeak * linear_square_ &&
+         gain.square > limits::kShareOfBend * bend_square_;
+}
+
+bool NonlinearRegression::all_blamed(int group) const {
+  for (int i = 0; i < shape_.inputs; ++i)
+    if (terms_.has(group, i) && !blamed_[static_cast<std::size_t>(i)]) return false;
+  return true;
+}
+
+void NonlinearRegression::blame(const Explanation& best, ChannelNonlinearity* results) {
+  const double p_chance = chance(best.gain);
+  for (int i = 0; i < shape_.inputs; ++i) {
+    if (!terms_.has(best.group, i) || blamed_[static_cast<std::size_t>(i)]) continue;
+    blamed_[static_cast<std::size_t>(i)] = true;
+    ChannelNonlinearity& result = results[i];
+    result.p_value = std::min(1.0, groups_with(i) * p_chance);
+    result.statistic = best.gain.square / error_variance_ / best.gain.columns;
+    result.share = 0.0;
+    result.kind = terms_.kind(best.group);
+    result.material = true;
+  }
+  take(best.group, results);
+  for (int g = 0; g < terms_.groups(); ++g)
+    if (!taken_[static_cast<std::size_t>(g)] && all_blamed(g)) take(g, results);
+}
+
+void NonlinearRegression::take(int group, ChannelNonlinearity* results) {
+  taken_[static_cast<std::size_t>(group)] = true;
+  const TermSelection::Gain gain = selection_.take(terms_.columns_of_group(group));
+  bend_square_ += gain.square;
+  const double share =
+      std::max(0.0, gain.square / error_variance_ - gain.columns) / memory_.effective_rows();
+  for (int i = 0; i < shape_.inputs; ++i)
+    if (terms_.has(group, i)) results[i].share += share;
+}
+
+// The coefficient of a function is the sum of its columns' over the lags, by what the residual's
+// own past leaves of a constant.
+std::vector<CurvePoint> NonlinearRegression::input_curve(int input) const {
+  using calibration::nonlinear_curve::kPoints;
+  using calibration::nonlinear_curve::kReach;
+  int group = 0;
+  while (!(terms_.kind(group) == NonlinearKind::kInputCurve && terms_.has(group, input))) ++group;
+  const std::vector<int>& columns = terms_.columns_of_group(group);
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd triangle(terms_.columns(), count);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const int column = columns[static_cast<std::size_t>(c)];
+    for (int r = 0; r < terms_.columns(); ++r)
+      triangle(r, c) =
+          r <= column ? memory_.factor.r(linear_columns() + r, linear_columns() + column) : 0.0;
+  }
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(triangle);
+  const Eigen::MatrixXd inverse = factor.pseudoInverse();
+  const Eigen::VectorXd coefficients = inverse * rotated_;
+  std::vector<double> functions(columns.size());
+  std::vector<CurvePoint> curve;
+  for (int p = 0; p < kPoints; ++p) {
+    const double x = kReach * (2.0 * p / (kPoints - 1) - 1.0);
+    terms_.input_functions(input, x, functions.data());
+    const Eigen::Map<const Eigen::VectorXd> at(functions.data(), count);
+    curve.push_back({terms_.input_at(input, x), at.dot(coefficients) / own_gain_,
+                     std::sqrt(error_variance_) * (inverse.transpose() * at).norm() / own_gain_});
+  }
+  return curve;
 }
 
 }  // namespace mpm

@@ -7,21 +7,35 @@
 #include "core/mismatch/regression_history.hpp"
 #include "core/mismatch/regression_memory.hpp"
 #include "core/mismatch/residual_regression.hpp"
-#include "core/nonlinear/left_out.hpp"
 #include "core/nonlinear/linear_companions.hpp"
 #include "core/nonlinear/nonlinear_terms.hpp"
+#include "core/nonlinear/term_selection.hpp"
 #include "core/regression/row_feed.hpp"
 
 namespace mpm {
 
 class Archive;
 
+/// A static curve in front of a channel, beside the straight line that a linear channel makes of
+/// it.
+struct CurvePoint {
+  double input = 0.0;  ///< MV units
+  double bend = 0.0;   ///< what the channel's dynamics see beyond it, MV units
+  double sd = 0.0;     ///< of the bend
+};
+
 /// One CV's residual regressed on the rows of the linear test with the CV's nonlinear terms behind
-/// them, weighed as they are there (`ResidualRegression`), and the F test of each input that no
-/// term in which it has a part says anything (Seber and Lee 2003, section 4.3). The linear columns
-/// come first and stay: what they explain, rightly or by chance, is never called nonlinear. The
-/// residual's own past among them takes coloured noise off, so the test holds in closed loop as the
-/// linear one does.
+/// them, weighed as they are there (`ResidualRegression`), and F tests of the groups of terms
+/// (Seber and Lee 2003, section 4.3). The linear columns come first and stay: what they explain,
+/// rightly or by chance, is never called nonlinear. The residual's own past among them takes
+/// coloured noise off, so the test holds in closed loop as the linear one does.
+///
+/// One explanation comes after the other (forward selection, Miller 2002, section 3.3): of the
+/// groups that are significant and matter, the one that explains most for its columns (Schwarz
+/// 1978) is taken in, its inputs are to blame, and so that what it leaves over is not blamed on
+/// others, all that these inputs could do by themselves and together is taken in with it. Another
+/// input is to blame only for what is left then, and only where that is no small part of what was
+/// explained: few terms follow a bend to the end.
 ///
 /// It begins, with all that is remembered, once the linear regression has rows enough, and anew
 /// where that one does or has twice as many rows, until the memory is full: the inputs are then
@@ -41,9 +55,13 @@ class NonlinearRegression {
 
   /// Whether there are rows enough for p-values to mean anything.
   [[nodiscard]] bool ready() const;
-  /// Reads the factor; it is ready. `results`: one per input, but for the verdict.
-  /// `variation`: two s.d. of the local gain that would be of interest, relative to the model's.
-  void evaluate(double variation, ChannelNonlinearity* results);
+  /// Reads the factor; it is ready. `results`: one per input, but for the verdict; `material` says
+  /// that the input is to blame. `rate`: p-value of a channel below which it may be. `variation`:
+  /// two s.d. of the local gain that would be of interest, relative to the model's.
+  void evaluate(double rate, double variation, ChannelNonlinearity* results);
+  /// Of the last `evaluate`: the group of the input's curve alone beside what is linear, from two
+  /// s.d. below the input's mean to two above it. Allocates.
+  [[nodiscard]] std::vector<CurvePoint> input_curve(int input) const;
   [[nodiscard]] const RegressionMemory& memory() const { return memory_; }
   [[nodiscard]] const NonlinearTerms& terms() const { return terms_; }
 
@@ -65,11 +83,21 @@ class NonlinearRegression {
   enum class Past { kWithoutTerms, kBesideTerms };
   void read(Past past);
   void without_terms();
-  void judge(double variation, ChannelNonlinearity* results);
-  [[nodiscard]] double any() const;
+  /// What a group of terms says beside those taken in.
+  struct Explanation {
+    int group = -1;
+    TermSelection::Gain gain;
+  };
+  [[nodiscard]] Explanation best_explanation(double rate, ChannelNonlinearity* results);
+  void look_at(int group, const TermSelection::Gain& gain, ChannelNonlinearity* results) const;
+  void blame(const Explanation& best, ChannelNonlinearity* results);
+  void take(int group, ChannelNonlinearity* results);
+  [[nodiscard]] bool all_blamed(int group) const;
+  [[nodiscard]] bool matters(const TermSelection::Gain& gain) const;
+  [[nodiscard]] int groups_with(int input) const;
+  void see(double variation, ChannelNonlinearity* results) const;
   [[nodiscard]] int past_at() const { return linear_columns() + terms_.columns(); }
-  [[nodiscard]] double chance(const LeftOut::Loss& loss) const;
-  [[nodiscard]] NonlinearKind kind_of(int input);
+  [[nodiscard]] double chance(const TermSelection::Gain& gain) const;
 
   RegressionShape shape_;
   int cv_;
@@ -83,8 +111,10 @@ class NonlinearRegression {
   bool begun_ = false;
   int rows_at_begin_ = 0;
   std::uint64_t restarts_ = 0;  // of the linear regression when this one began
-  LeftOut left_out_;
-  std::vector<int> set_;
+  TermSelection selection_;
+  std::vector<bool> taken_;   // per group
+  std::vector<bool> blamed_;  // per input
+  double bend_square_ = 0.0;  // what the groups taken in explain
   std::vector<double> lead_in_;
   GivensQr past_factor_;
   Eigen::VectorXd coefficients_;

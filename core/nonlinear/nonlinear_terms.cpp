@@ -82,7 +82,8 @@ struct Moments {
 }  // namespace
 
 NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, NonlinearTest test,
-                               int remembered) {
+                               int remembered)
+    : cv_(cv) {
   if (test == NonlinearTest::kOff) throw std::invalid_argument("no nonlinear terms");
   const auto integrating = model.integrating();
   const Eigen::MatrixXd gain = model.steady_gain();
@@ -94,11 +95,11 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
                     curve(test, {{2, 0}}),
                     InputElement(InputBlock(Deadband{limits::kPlayWidth}), 0.0),
                     gain(cv, i) != 0.0 && !integrating(cv, i)};
-    channel.curved.assign(static_cast<std::size_t>(channel.input_map->outputs()) + 1, path);
+    channel.curved.assign(static_cast<std::size_t>(channel.input_map->outputs()) + 2, path);
     for (int f = 0; f < channel.input_map->outputs(); ++f)
       terms_.push_back({i, i, NonlinearKind::kInputCurve});
     terms_.push_back({i, i, NonlinearKind::kHysteresis});
-    for (int f = 0; f < channel.channel_map->outputs(); ++f)
+    for (int f = 0; f < 1 + channel.channel_map->outputs(); ++f)
       terms_.push_back({i, i, NonlinearKind::kChannelCurve});
     channels_.push_back(std::move(channel));
   }
@@ -113,6 +114,12 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
   sum_map_ = test == NonlinearTest::kPolynomial ? curve(test, {{3, 0}}) : kernel_map(test, 1);
   for (int f = 0; f < sum_map_->outputs(); ++f)
     terms_.push_back({0, -1, NonlinearKind::kOutputCurve});
+  for (int t = 0; t < terms(); ++t) {
+    const Term& term = terms_[static_cast<std::size_t>(t)];
+    const bool goes_on = t > 0 && term.goes_with(terms_[static_cast<std::size_t>(t) - 1]);
+    if (!goes_on) groups_.emplace_back();
+    for (int lag = 0; lag < limits::kLags; ++lag) groups_.back().push_back(lag * terms() + t);
+  }
   values_.resize(terms_.size());
   windows_.assign(terms_.size(), LagWindow(remembered + limits::kLags));
   // NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks): the channels have what was made
@@ -137,20 +144,22 @@ int NonlinearTerms::columns_of(NonlinearTest test, int inputs) {
   }
   const int crossed = std::min(limits::kMostCrossed, inputs);
   return limits::kLags *
-         (inputs * (input + 1 + channel) + crossed * (crossed - 1) / 2 * pair + sum);
+         (inputs * (input + 2 + channel) + crossed * (crossed - 1) / 2 * pair + sum);
 }
 
 int NonlinearTerms::columns() const { return limits::kLags * terms(); }
 
-bool NonlinearTerms::has(int column, int input) const {
-  const Term& term = terms_[static_cast<std::size_t>(column % terms())];
+const NonlinearTerms::Term& NonlinearTerms::term_of(int group) const {
+  return terms_[static_cast<std::size_t>(columns_of_group(group).front())];
+}
+
+bool NonlinearTerms::has(int group, int input) const {
+  const Term& term = term_of(group);
   return term.second < term.first ? channels_[static_cast<std::size_t>(input)].modelled
                                   : term.first == input || term.second == input;
 }
 
-NonlinearKind NonlinearTerms::kind(int column) const {
-  return terms_[static_cast<std::size_t>(column % terms())].kind;
-}
+NonlinearKind NonlinearTerms::kind(int group) const { return term_of(group).kind; }
 
 int NonlinearTerms::square_of(int input) const {
   const Channel& channel = channels_.front();
@@ -161,6 +170,14 @@ int NonlinearTerms::square_of(int input) const {
 double NonlinearTerms::coefficient_of(int input, double variation) const {
   const Channel& channel = channels_[static_cast<std::size_t>(input)];
   return channel.modelled ? variation / 4 * channel.scale : 0.0;
+}
+
+void NonlinearTerms::input_functions(int input, double x, double* functions) const {
+  const FeatureMap& map = *channels_[static_cast<std::size_t>(input)].input_map;
+  std::vector<double> values(static_cast<std::size_t>(map.outputs()));
+  map.apply(&x, values.data());
+  for (const double value : values)  // columns go lag by lag within each function
+    functions = std::fill_n(functions, limits::kLags, value);
 }
 
 double NonlinearTerms::standardised(double value, double centre, double scale) {
@@ -176,6 +193,16 @@ double NonlinearTerms::input_of(std::size_t channel, const RegressionHistory& hi
 
 double NonlinearTerms::output_of(const Channel& channel) const {
   return standardised(channel.linear.output(), channel.output_centre, channel.output_scale);
+}
+
+// The input is standardised, the residual is not.
+double NonlinearTerms::state_of(const Channel& channel, double residual) const {
+  return channel.modelled ? channel.scale * channel.linear.output() + residual : 0.0;
+}
+
+double NonlinearTerms::residual_of(const RegressionHistory& history, int age) const {
+  const double residual = history.residual(cv_, age);
+  return std::isfinite(residual) ? residual : residual_;
 }
 
 double NonlinearTerms::sum_of_outputs() const {
@@ -219,7 +246,7 @@ void NonlinearTerms::measure_inputs(const RegressionHistory& history, int span) 
 
 // What the channels give over the span, and points of it, evenly in time.
 void NonlinearTerms::measure_outputs(const RegressionHistory& history, int span) {
-  std::vector<Moments> moments(channels_.size());
+  std::vector<Moments> moments(channels_.size()), states(channels_.size());
   Moments sums;
   input_points_.clear();
   output_points_.clear();
@@ -227,8 +254,11 @@ void NonlinearTerms::measure_outputs(const RegressionHistory& history, int span)
   const int stride = std::max(1, span / limits::kLandmarks);
   for (int age = history.depth() - 1; age >= 0; --age) {
     if (age < span) {
-      for (std::size_t i = 0; i < channels_.size(); ++i)
+      residual_ = residual_of(history, age);
+      for (std::size_t i = 0; i < channels_.size(); ++i) {
         moments[i].take(channels_[i].linear.output());
+        states[i].take(state_of(channels_[i], residual_));
+      }
       sums.take(sum_of_outputs());
       if (age % stride == 0) {
         for (std::size_t i = 0; i < channels_.size(); ++i) {
@@ -247,6 +277,8 @@ void NonlinearTerms::measure_outputs(const RegressionHistory& history, int span)
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     channels_[i].output_centre = moments[i].mean();
     channels_[i].output_scale = moments[i].deviation();
+    channels_[i].state_centre = states[i].mean();
+    channels_[i].state_scale = states[i].deviation();
   }
   for (std::size_t p = 0; p < output_points_.size(); ++p) {
     const Channel& channel = channels_[p % channels_.size()];
@@ -280,15 +312,26 @@ void NonlinearTerms::choose_pairs() {
     }
 }
 
+// What goes through the channel of a sample, into `values_`; `linear` is as of the same sample.
+void NonlinearTerms::bend(Channel& channel, double x, double residual) {
+  channel.input_map->apply(&x, values_.data());
+  double* const behind = values_.data() + channel.input_map->outputs();
+  behind[0] = x - channel.play.apply(x, 0.0);
+  const double state =
+      standardised(state_of(channel, residual), channel.state_centre, channel.state_scale);
+  behind[1] = state * state;
+}
+
 // As of the oldest sample.
 void NonlinearTerms::rest(const RegressionHistory& history) {
+  residual_ = 0.0;
+  residual_ = residual_of(history, history.depth() - 1);
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
     const double x = input_of(i, history, history.depth() - 1);
     channel.linear.rest(x);
     channel.play.reset(x);
-    channel.input_map->apply(&x, values_.data());
-    values_[channel.curved.size() - 1] = 0.0;
+    bend(channel, x, residual_);
     for (std::size_t f = 0; f < channel.curved.size(); ++f) channel.curved[f].rest(values_[f]);
   }
 }
@@ -314,7 +357,8 @@ void NonlinearTerms::push_terms() {
 
 void NonlinearTerms::Channel::archive(Archive& a) {
   // not archived: modelled (construction)
-  a(linear, curved, *input_map, *channel_map, play, centre, scale, output_centre, output_scale);
+  a(linear, curved, *input_map, *channel_map, play, centre, scale, output_centre, output_scale,
+    state_centre, state_scale);
 }
 
 void NonlinearTerms::Pair::archive(Archive& archive) { archive(a, b, *map); }
@@ -326,7 +370,8 @@ void NonlinearTerms::Term::archive(Archive& a) {
 
 void NonlinearTerms::archive(Archive& a) {
   // not archived: values_, input_points_, output_points_, sum_points_ (empty between calls)
-  a(channels_, pairs_, *sum_map_, sum_centre_, sum_scale_, terms_, windows_);
+  // not archived: cv_, groups_ (construction)
+  a(channels_, pairs_, *sum_map_, sum_centre_, sum_scale_, terms_, windows_, residual_);
   const auto has = [this](int input) { return input >= 0 && input < inputs(); };
   for (const Pair& pair : pairs_)
     a.require(has(pair.a) && has(pair.b), "a pair of inputs that are not there");
@@ -334,12 +379,12 @@ void NonlinearTerms::archive(Archive& a) {
 
 void NonlinearTerms::advance(const RegressionHistory& history, int age) {
   push_terms();
+  residual_ = residual_of(history, age);
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     Channel& channel = channels_[i];
     const double x = input_of(i, history, age);
+    bend(channel, x, residual_);
     channel.linear.advance(x);
-    channel.input_map->apply(&x, values_.data());
-    values_[channel.curved.size() - 1] = x - channel.play.apply(x, 0.0);
     for (std::size_t f = 0; f < channel.curved.size(); ++f) channel.curved[f].advance(values_[f]);
   }
 }

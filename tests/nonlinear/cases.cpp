@@ -58,6 +58,7 @@ std::vector<Case> all_cases() {
   cases.push_back(bent("gain_and_saturation", {0, 1, 2}));
   cases.push_back(bent("operating_point_gain", {4}));
   cases.push_back(bent("output_clipping", {0, 3, 6}));
+  cases.push_back(bent("square_root_flow", {8}));
   return cases;
 }
 

@@ -10,11 +10,12 @@
 namespace mpm {
 
 TEST_CASE("a nonlinearity that is just seen has the power that is said") {
-  // Twelve columns of an input among three, level 0.01 / 9.
-  const boost::math::chi_squared null(12.0);
-  const double threshold = boost::math::quantile(boost::math::complement(null, 0.01 / 9.0));
+  // The four columns of an input's curve, one of six groups, of an input among three: level 0.01 /
+  // 9 / 6.
+  const boost::math::chi_squared null(4.0);
+  const double threshold = boost::math::quantile(boost::math::complement(null, 0.01 / 54.0));
   const double seen = calibration::nonlinear_test::kSeenDeviations;
-  const boost::math::non_central_chi_squared there(12.0, seen * seen);
+  const boost::math::non_central_chi_squared there(4.0, seen * seen);
   const double power = boost::math::cdf(boost::math::complement(there, threshold));
   CHECK(power > 0.94);
   CHECK(power < 0.95);

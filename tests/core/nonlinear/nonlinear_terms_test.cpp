@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "tests/allocation_counter.hpp"
@@ -31,8 +32,9 @@ Eigen::VectorXd moves(int k) {
 struct Run {
   RegressionHistory history{kShape, kDepth};
   NonlinearTerms terms;
-  explicit Run(NonlinearTest test) : terms(model(), 0, 0.9, test, 10) {
-    for (int k = 0; k < kDepth; ++k) history.push(moves(k), Eigen::VectorXd::Zero(1));
+  explicit Run(NonlinearTest kind, double noise = 0.0) : terms(model(), 0, 0.9, kind, 10) {
+    for (int k = 0; k < kDepth; ++k)
+      history.push(moves(k), Eigen::VectorXd::Constant(1, noise * test::uniform(9, k)));
     terms.begin(history, kDepth);
     for (int age = kDepth - 1; age >= 0; --age) terms.advance(history, age);
   }
@@ -46,8 +48,9 @@ struct Run {
 
 TEST_CASE("a column of the square is the channel's answer to the square") {
   Run run(NonlinearTest::kPolynomial);
-  // Per input square, cube, play and the channel's square; three products; the sum's cube; twice.
-  REQUIRE(run.terms.columns() == 2 * (3 * 4 + 3 + 1));
+  // Per input square, cube, play, where the channel stands and its square; three products; the
+  // sum's cube; twice.
+  REQUIRE(run.terms.columns() == 2 * (3 * 5 + 3 + 1));
   // By hand: standardised by the mean and s.d. of the history, through the same channel, at rest at
   // the oldest sample.
   double sum = 0.0, square = 0.0;
@@ -78,28 +81,63 @@ TEST_CASE("a column of the square is the channel's answer to the square") {
 }
 
 TEST_CASE("how many columns there are is known beforehand") {
-  // Counted from the list in the header, two lags each: of three inputs 3 x 4 and 3 pairs and the
-  // sum's cube; a kernel has 5 + 1 + 5 of an input, 6 of a pair and 4 of the sum.
+  // Counted from the list in the header, two lags each: of three inputs 3 x 5 and 3 pairs and the
+  // sum's cube; a kernel has 5 + 1 + 1 + 5 of an input, 6 of a pair and 4 of the sum.
   CHECK(NonlinearTerms::columns_of(NonlinearTest::kOff, 3) == 0);
-  CHECK(NonlinearTerms::columns_of(NonlinearTest::kPolynomial, 3) == 2 * (3 * 4 + 3 + 1));
-  CHECK(NonlinearTerms::columns_of(NonlinearTest::kKernel, 3) == 2 * (3 * 11 + 3 * 6 + 4));
+  CHECK(NonlinearTerms::columns_of(NonlinearTest::kPolynomial, 3) == 2 * (3 * 5 + 3 + 1));
+  CHECK(NonlinearTerms::columns_of(NonlinearTest::kKernel, 3) == 2 * (3 * 12 + 3 * 6 + 4));
   for (const NonlinearTest test :
        {NonlinearTest::kPolynomial, NonlinearTest::kKernel, NonlinearTest::kRandomFeatures})
     CHECK(Run(test).terms.columns() == NonlinearTerms::columns_of(test, 3));
 }
 
-TEST_CASE("each column says which inputs are in it") {
-  Run run(NonlinearTest::kPolynomial);
-  int of_both = 0, of_unknown = 0, of_all = 0;
-  for (int c = 0; c < run.terms.columns(); ++c) {
-    const bool first = run.terms.has(c, 0), second = run.terms.has(c, 1);
-    of_both += first && second ? 1 : 0;
-    of_unknown += run.terms.has(c, 2) ? 1 : 0;
-    of_all += run.terms.kind(c) == NonlinearKind::kOutputCurve ? 1 : 0;
+TEST_CASE("where a channel stands is what the model gives of it and the residual") {
+  Run run(NonlinearTest::kPolynomial, 2.0);
+  // By hand, as above: what the standardised input gives, in the CV's units, and the residual; of
+  // that, standardised, the square through the same channel.
+  const auto moments = [](const std::vector<double>& values) {
+    double sum = 0.0, square = 0.0;
+    for (const double value : values) sum += value;
+    for (const double value : values) square += std::pow(value - sum / kDepth, 2);
+    return std::pair(sum / kDepth, std::sqrt(square / kDepth));
+  };
+  std::vector<double> inputs, stands;
+  for (int k = 0; k < kDepth; ++k) inputs.push_back(moves(k)(1));
+  const auto [mean, deviation] = moments(inputs);
+  const auto given = [](double value) { return Eigen::VectorXd::Constant(1, value); };
+  LinearModel channel = model().channel(0, 1), behind = model().channel(0, 1);
+  channel.reset_steady(given((inputs.front() - mean) / deviation));
+  for (int k = 0; k < kDepth; ++k) {
+    stands.push_back(deviation * channel.output()(0) + 2.0 * test::uniform(9, k));
+    channel.advance(given((inputs[static_cast<std::size_t>(k)] - mean) / deviation));
   }
-  CHECK(of_both == 2 * 2);           // the product and the sum
-  CHECK(of_unknown == 2 * (4 + 2));  // its own and its products; the model gives nothing of it
-  CHECK(of_all == 2);
+  const auto [centre, scale] = moments(stands);
+  const auto square = [&, c = centre, s = scale](std::size_t k) {
+    return given(std::pow((stands[k] - c) / s, 2));
+  };
+  behind.reset_steady(square(0));
+  for (std::size_t k = 0; k + 1 < kDepth; ++k) behind.advance(square(k));
+  Eigen::VectorXd row(run.terms.columns());
+  run.terms.fill(0, row.data());
+  CHECK(row(run.terms.square_of(1) + 3) == Approx(behind.output()(0)).epsilon(1e-9));
+}
+
+TEST_CASE("each group has columns of one kind, and says which inputs are in them") {
+  Run run(NonlinearTest::kPolynomial);
+  // Of each input its curve, the play, the channel's curve; three products; the sum.
+  REQUIRE(run.terms.groups() == 3 * 3 + 3 + 1);
+  int columns = 0, of_both = 0, of_unknown = 0;
+  for (int g = 0; g < run.terms.groups(); ++g) {
+    columns += static_cast<int>(run.terms.columns_of_group(g).size());
+    of_both += run.terms.has(g, 0) && run.terms.has(g, 1) ? 1 : 0;
+    of_unknown += run.terms.has(g, 2) ? 1 : 0;
+  }
+  CHECK(columns == run.terms.columns());
+  CHECK(of_both == 2);         // the product and the sum
+  CHECK(of_unknown == 3 + 2);  // its own and its products; the model gives nothing of it
+  CHECK(run.terms.kind(12) == NonlinearKind::kOutputCurve);
+  CHECK(run.terms.columns_of_group(12).size() == 2);
+  CHECK(run.terms.kind(1) == NonlinearKind::kHysteresis);
 }
 
 TEST_CASE("new samples allocate nothing, whatever the functions") {
