@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/archive/archive.hpp"
+#include "core/nonlinear/calibration.hpp"
 #include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
@@ -12,11 +13,11 @@ namespace mpm {
 RankWindow::RankWindow(int signals, int length)
     : signals_(signals),
       length_(static_cast<std::size_t>(length)),
-      factor_(std::max(signals - 1, 1), 2),
-      feed_(std::max(signals, 2) + 1) {
+      factor_(std::max(signals, 2), std::max(signals, 2)) {
   if (signals < 2 || length < 3) throw std::invalid_argument("impossible window of ranks");
   values_.resize(length_ * static_cast<std::size_t>(signals));
   doubled_.resize(values_.size());
+  order_.reserve(static_cast<std::size_t>(signals));
 }
 
 void RankWindow::push(const Eigen::Ref<const Eigen::VectorXd>& values) {
@@ -52,7 +53,7 @@ void RankWindow::replace(int signal, std::size_t slot, double value) {
 
 void RankWindow::archive(Archive& a) {
   // not archived: signals_, length_ (construction)
-  // not archived: factor_, feed_ (empty between calls)
+  // not archived: factor_, order_ (empty between calls)
   a.within(count_, 0, static_cast<int>(length_));
   a.within(next_, 0, length_ - 1);
   a(values_, doubled_);
@@ -78,25 +79,32 @@ double RankWindow::coefficient(int a, int b) const {
          (std::sqrt(static_cast<double>(x_square)) * std::sqrt(static_cast<double>(y_square)));
 }
 
-double RankWindow::partial_coefficient() {
-  factor_.clear();
-  const double mean = count_ + 1;
-  for (std::size_t l = 0; l < static_cast<std::size_t>(count_); ++l) {
-    double* row = feed_.next_row(factor_);
-    const auto centred = [&](int signal) { return doubled_[first(signal) + l] - mean; };
-    *row++ = 1.0;
-    for (int s = 2; s < signals_; ++s) *row++ = centred(s);
-    *row++ = centred(0);
-    *row = centred(1);
+// The two signals come last in the factor L of the coefficients: what is left of them is L(a, a)
+// and (L(b, a), L(b, b)).
+double RankWindow::partial_coefficient(int a, int b, std::span<const int> held) {
+  order_.assign(held.begin(), held.end());
+  order_.push_back(a);
+  order_.push_back(b);
+  const auto count = static_cast<Eigen::Index>(order_.size());
+  for (Eigen::Index row = 0; row < count; ++row) {
+    for (Eigen::Index column = 0; column <= row; ++column) {
+      const int first = order_[static_cast<std::size_t>(row)];
+      const int second = order_[static_cast<std::size_t>(column)];
+      double left = first == second ? 1.0 : coefficient(first, second);
+      for (Eigen::Index l = 0; l < column; ++l) left -= factor_(row, l) * factor_(column, l);
+      const double pivot = column < row ? factor_(column, column) : 1.0;
+      if (column == row)
+        left = left > calibration::nonlinear_rounding::kLeftOfRanks ? std::sqrt(left) : 0.0;
+      factor_(row, column) = pivot > 0.0 ? left / pivot : 0.0;
+    }
   }
-  feed_.flush(factor_);
-  const double squares = factor_.residual_square(0) * factor_.residual_square(1);
-  return squares > 0.0 ? std::clamp(factor_.residual_product(1) / std::sqrt(squares), -1.0, 1.0)
-                       : 0.0;
+  const double product = factor_(count - 1, count - 2);
+  const double square = std::hypot(product, factor_(count - 1, count - 1));
+  return square > 0.0 ? std::clamp(product / square, -1.0, 1.0) : 0.0;
 }
 
-double RankWindow::p_value(double partial_coefficient) const {
-  const double freedom = count_ - signals_;
+double RankWindow::p_value(double partial_coefficient, int held) const {
+  const double freedom = count_ - held - 2;
   const double square = partial_coefficient * partial_coefficient;
   if (!(freedom > 0.0)) return 1.0;
   return square < 1.0 ? f_upper_tail(square * freedom / (1.0 - square), 1.0, freedom) : 0.0;

@@ -3,9 +3,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
-
-#include "core/regression/row_feed.hpp"
 
 namespace mpm {
 
@@ -32,13 +31,13 @@ class RankWindow {
   [[nodiscard]] double rank(int signal, int age) const;
   /// -1..1; 0 where either signal has one value only.
   [[nodiscard]] double coefficient(int a, int b) const;
-  /// Of signals 0 and 1, the others' ranks held, by orthogonal regression on these: -1..1, 0 where
-  /// they leave nothing.
-  [[nodiscard]] double partial_coefficient();
-  /// Two-sided p-value of the last of these were it 0, samples being independent of each other: t
-  /// with count - signals degrees of freedom (Kendall and Gibbons 1990, section 8.11). 1 where
-  /// there are none.
-  [[nodiscard]] double p_value(double partial_coefficient) const;
+  /// Of two signals, the ranks of the `held` ones (all different, none of the two) held: -1..1, 0
+  /// where they leave nothing. By Cholesky's factor of the coefficients.
+  [[nodiscard]] double partial_coefficient(int a, int b, std::span<const int> held);
+  /// Two-sided p-value of one of these were it 0, `held` signals being held and samples independent
+  /// of each other: t with count - held - 2 degrees of freedom (Kendall and Gibbons 1990, section
+  /// 8.11). 1 where there are none.
+  [[nodiscard]] double p_value(double partial_coefficient, int held) const;
 
   void archive(Archive& a);
 
@@ -54,8 +53,8 @@ class RankWindow {
   std::size_t next_ = 0;  // slot
   std::vector<double> values_;
   std::vector<std::int32_t> doubled_;  // 2 rank, per slot
-  GivensQr factor_;
-  RowFeed feed_;
+  Eigen::MatrixXd factor_;
+  std::vector<int> order_;
 };
 
 }  // namespace mpm

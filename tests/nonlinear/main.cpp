@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "config/choice.hpp"
+#include "tests/nonlinear/compare.hpp"
 #include "tests/nonlinear/one_run.hpp"
 #include "tests/study/interval.hpp"
 #include "tests/study/report.hpp"
@@ -25,6 +26,7 @@ struct Options {
   std::string only = "*", test = "polynomial", markdown, table;
   std::uint64_t first = 100001;
   int runs = 20, samples = 3000, threads = 2;
+  bool methods = false;
 };
 
 std::string percent(const study::Share& share) {
@@ -88,6 +90,15 @@ std::vector<RunReadings> run_all(const study::Prepared& prepared, const Options&
   return runs;
 }
 
+void write(const Options& options, const std::string& part, const std::string& table) {
+  if (options.markdown.empty()) return;
+  std::ifstream in(options.markdown, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  std::ofstream out(options.markdown, std::ios::binary);
+  out << study::replace_part(text, part, "\n" + table + "\n");
+  if (!out) throw std::runtime_error("cannot write " + options.markdown);
+}
+
 void run(const Options& options) {
   NonlinearTest test = NonlinearTest::kPolynomial;
   for (const auto& choice : config::choices(NonlinearTest{}))
@@ -112,13 +123,16 @@ void run(const Options& options) {
     std::cout << row << std::flush;
     table += row;
   }
-  if (options.markdown.empty()) return;
-  std::ifstream in(options.markdown, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  std::ofstream out(options.markdown, std::ios::binary);
-  out << study::replace_part(text, options.table.empty() ? options.test : options.table,
-                             "\n" + table + "\n");
-  if (!out) throw std::runtime_error("cannot write " + options.markdown);
+  write(options, options.table.empty() ? options.test : options.table, table);
+}
+
+void run_methods(const Options& options) {
+  CompareOptions compared;
+  compared.only = options.only;
+  compared.first = options.first;
+  compared.runs = options.runs;
+  compared.threads = options.threads;
+  write(options, "methods", compare_methods(compared));
 }
 
 }  // namespace
@@ -135,10 +149,12 @@ int main(int argc, char** argv) {
   app.add_option("--samples", options.samples, "of each run");
   app.add_option("--threads", options.threads);
   app.add_option("--markdown", options.markdown, "rewrite a table of FILE between its markers");
+  app.add_flag("--methods", options.methods,
+               "all methods of the thesis beside each other on the nonlinear cases");
   app.add_option("--table", options.table, "its name, instead of the test's");
   CLI11_PARSE(app, argc, argv);
   try {
-    mpm::nonlinear::run(options);
+    options.methods ? mpm::nonlinear::run_methods(options) : mpm::nonlinear::run(options);
   } catch (const std::exception& error) {
     std::cerr << "mpm_nonlinear: " << error.what() << '\n';
     return 1;
