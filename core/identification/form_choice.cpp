@@ -78,9 +78,12 @@ Choice best_unseen(const Material& material, int cv, const std::vector<Predictio
   }
   const PredictionErrorFit nothing = fit_prediction_error(material.unseen, cv, {}, noise, 0);
   choice.confirmed = least < nothing.cost - kLeastGainOfPrediction * nothing.rows;
-  choice.unseen_square = carried_square(material, cv, choice.channels);
-  if (material.open_loop)
-    choice.confirmed = choice.confirmed && choice.unseen_square < carried_square(material, cv, {});
+  choice.unseen_square =
+      fit_prediction_error(material.unseen, cv, choice.channels, output_error(), 0).variance;
+  if (material.open_loop) {
+    const double spread = fit_prediction_error(material.unseen, cv, {}, output_error(), 0).variance;
+    choice.confirmed = choice.confirmed && choice.unseen_square < spread;
+  }
   return choice;
 }
 
@@ -109,6 +112,21 @@ std::optional<Choice> by_output_error(const Material& material,
   return choice;
 }
 
+/// Whether a choice's free run of the unseen rows is clearly better than another's: carried on from
+/// the rows before, for a stretch in which little moves fits any model at a level of its own; but
+/// at that where the unseen rows are another run, or something integrates.
+bool clearly_better(const Material& material, int cv, const Choice& choice, const Choice& other) {
+  const std::vector<Border>& borders = material.all.borders;
+  const Index first = material.first.samples();
+  bool carried = std::none_of(borders.begin(), borders.end(),
+                              [&](const Border& border) { return border.row == first; });
+  for (const Choice* each : {&choice, &other})
+    for (const ChannelShape& shape : each->channels) carried = carried && !integrates(shape.form);
+  if (!carried) return choice.unseen_square < kClearlyBetter * other.unseen_square;
+  return carried_square(material, cv, choice.channels) <
+         kClearlyBetter * carried_square(material, cv, other.channels);
+}
+
 /// The inputs that act are picked on all rows; their forms are to carry over from the first rows to
 /// the unseen.
 Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
@@ -127,7 +145,7 @@ Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
   // What the noise model takes for noise may be what a poor form leaves.
   std::optional<Choice> other = by_output_error(material, hints, grown.front().channels, cv);
   if (other && other->confirmed &&
-      (!choice.confirmed || other->unseen_square < kClearlyBetter * choice.unseen_square))
+      (!choice.confirmed || clearly_better(material, cv, *other, choice)))
     return std::move(*other);
   return choice;
 }
