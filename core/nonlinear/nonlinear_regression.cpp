@@ -289,8 +289,11 @@ void NonlinearRegression::blame(const Explanation& best, ChannelNonlinearity* re
     result.material = true;
   }
   take(best.group, results);
+  // Beside a bend that is known a curve of all inputs together is what its terms leave over.
   for (int g = 0; g < terms_.groups(); ++g)
-    if (!taken_[static_cast<std::size_t>(g)] && all_blamed(g)) take(g, results);
+    if (!taken_[static_cast<std::size_t>(g)] &&
+        (all_blamed(g) || terms_.kind(g) == NonlinearKind::kOutputCurve))
+      take(g, results);
 }
 
 void NonlinearRegression::take(int group, ChannelNonlinearity* results) {
@@ -300,7 +303,7 @@ void NonlinearRegression::take(int group, ChannelNonlinearity* results) {
   const double share =
       std::max(0.0, gain.square / error_variance_ - gain.columns) / memory_.effective_rows();
   for (int i = 0; i < shape_.inputs; ++i)
-    if (terms_.has(group, i)) results[i].share += share;
+    if (terms_.has(group, i) && blamed_[static_cast<std::size_t>(i)]) results[i].share += share;
 }
 
 // The coefficient of a function is the sum of its columns' over the lags, by what the residual's

@@ -33,7 +33,8 @@ struct CurvePoint {
 /// One explanation comes after the other (forward selection, Miller 2002, section 3.3): of the
 /// groups that are significant and matter, the one that explains most for its columns (Schwarz
 /// 1978) is taken in, its inputs are to blame, and so that what it leaves over is not blamed on
-/// others, all that these inputs could do by themselves and together is taken in with it. Another
+/// others, all that these inputs could do by themselves and together is taken in with it, and so is
+/// a curve of all inputs together, which blames a CV only where it is the first to. Another
 /// input is to blame only for what is left then, and only where that is no small part of what was
 /// explained: few terms follow a bend to the end.
 ///
