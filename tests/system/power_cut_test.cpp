@@ -174,7 +174,7 @@ class Machine {
     fs::remove_all(file("disk"));
     for (const char* part : {"disk", "disk/synced", "disk/names", "disk/held"})
       fs::create_directory(file(part));
-    readers_.take();
+    static_cast<void>(readers_.take());
     outputs_.clear();
     const char* told = std::getenv("ASAN_OPTIONS");  // it wants to be loaded first
     const auto begin = std::chrono::steady_clock::now();
