@@ -137,7 +137,8 @@ std::string cost_text(const config::UnitConfig& unit) {
 class Page {
  public:
   Page(const Options& options, const std::vector<config::UnitConfig>& units)
-      : board_(units, options.service.journal), server_(*http::parse_address(options.http), board_, parts(options)) {
+      : board_(units, options.service.journal),
+        server_(*http::parse_address(options.http), board_, parts(options)) {
     board_.start();
     server_.start();
     spdlog::info("operator page at {}", server_.address().url());

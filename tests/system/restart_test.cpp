@@ -59,9 +59,15 @@ struct Corner {
     running.send(SIGKILL);
     REQUIRE(running.wait(std::chrono::seconds(10)));
     again.reset();
-    std::vector<std::string> command{"mpmd", "--config", bench.folder.file("toy.yaml"), "--domain",
-                                     std::to_string(bench.options.domain), "--partition",
-                                     bench.options.partition, "--state-dir", folder.file("state")};
+    std::vector<std::string> command{"mpmd",
+                                     "--config",
+                                     bench.folder.file("toy.yaml"),
+                                     "--domain",
+                                     std::to_string(bench.options.domain),
+                                     "--partition",
+                                     bench.options.partition,
+                                     "--state-dir",
+                                     folder.file("state")};
     command.insert(command.end(), more_options.begin(), more_options.end());
     again.emplace(command, folder.file("out"), folder.file("err"));
     std::smatch taken;

@@ -14,8 +14,8 @@ namespace mpm::http {
 namespace {
 
 using namespace std::chrono_literals;
-using test::Connection;
 using Catch::Matchers::Contains;
+using test::Connection;
 
 struct Bench {
   Bench() : server(Address{}, sample.board, parts()) {
