@@ -87,19 +87,21 @@ class Decoded {
 
 }  // namespace
 
-RawReader::RawReader(const Participant& participant, const KnownTopic& topic)
-    : RawReader(participant, topic.name, *topic.type, topic.reader_qos()) {}
+RawReader::RawReader(const Participant& participant, const KnownTopic& topic, UnitChoice* units)
+    : RawReader(participant, topic.name, *topic.type, topic.reader_qos(), topic.type->m_nkeys,
+                units) {}
 
 RawReader::RawReader(const Participant& participant, const std::string& topic,
                      const DiscoveredType& type)
-    : RawReader(participant, topic, *type, foreign_reader_qos()) {}
+    : RawReader(participant, topic, *type, foreign_reader_qos(), 0, nullptr) {}
 
 RawReader::RawReader(const Participant& participant, const std::string& topic,
-                     const dds_topic_descriptor_t& type, const Qos& qos)
+                     const dds_topic_descriptor_t& type, const Qos& qos, std::size_t names,
+                     UnitChoice* units)
     : name_(topic),
       type_name_(type.m_typename),
-      topic_(dds_create_topic(participant.get(), &type, topic.c_str(), nullptr, nullptr),
-             "topic " + topic),
+      keys_(std::make_unique<KeyLimit>(names, units)),
+      topic_(topic_with(*keys_, participant, type, topic)),
       reader_(dds_create_reader(participant.get(), topic_.get(), qos.get(), nullptr),
               "reader of " + topic),
       readable_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition") {}
@@ -112,6 +114,8 @@ int RawReader::take(const std::function<void(RawSample&)>& on_sample) {
   for (std::size_t i = 0; static_cast<dds_return_t>(i) < count; ++i) {
     const SampleInfo info = info_of(infos[i]);
     const auto pass_on = [&](const ddsi_serdata* bytes, bool valid) {
+      // Of an end nobody is asked whether it is to be taken.
+      if (!valid && ddsi_serdata_size(bytes) > keys_->longest_key()) return;
       copy(bytes, sample_.cdr);
       sample_.source_time_ns = info.source_time_ns;
       sample_.state = valid ? InstanceState::kAlive : info.state;
@@ -130,6 +134,7 @@ int RawReader::take(const std::function<void(RawSample&)>& on_sample) {
     }
     ddsi_serdata_unref(data[i]);
   }
+  keys_->make_room(reader_.get());
   return std::max(count, 0);
 }
 

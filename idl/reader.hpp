@@ -1,11 +1,10 @@
 #pragma once
 
-#include <cstring>
 #include <string>
 #include <vector>
 
-#include "core/text/printable.hpp"
 #include "idl/entity.hpp"
+#include "idl/key_limit.hpp"
 #include "idl/participant.hpp"
 #include "idl/qos.hpp"
 #include "idl/sample_info.hpp"
@@ -22,7 +21,8 @@ class Reader {
   /// `units`: of which samples are taken, and must outlive the reader; null: of all.
   Reader(const Participant& participant, const char* topic, const Qos& qos, int batch = 64,
          UnitChoice* units = nullptr)
-      : topic_(filtered_topic(participant, topic, units)),
+      : keys_(TopicType<T>::descriptor()->m_nkeys, units),
+        topic_(topic_with(keys_, participant, *TopicType<T>::descriptor(), topic)),
         reader_(dds_create_reader(participant.get(), topic_.get(), qos.get(), nullptr),
                 std::string("reader of ") + topic),
         readable_(dds_create_readcondition(reader_.get(), DDS_ANY_STATE), "read condition"),
@@ -40,6 +40,7 @@ class Reader {
                  static_cast<std::uint32_t>(samples_.size()));
     if (count <= 0) return 0;
     const Loan loan{reader_.get(), samples_.data(), count};
+    keys_.make_room(reader_.get());
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
       on_sample(*static_cast<const T*>(samples_[i]), info_of(infos_[i]));
     return count;
@@ -64,41 +65,6 @@ class Reader {
   [[nodiscard]] dds_entity_t get() const { return reader_.get(); }
 
  private:
-  /// Cyclone keeps the key of every instance that anybody writes. No unit file gives a name that
-  /// long, so whose it is nobody asks, and it does not fill the memory.
-  static bool has_possible_name(const void* sample) {
-    if constexpr (requires(const T& any) { any.unit; }) {
-      const char* unit = static_cast<const T*>(sample)->unit;
-      return unit == nullptr || strnlen(unit, kLongestName + 1) <= kLongestName;
-    }
-    return true;
-  }
-  static bool is_chosen(const void* sample, void* units) {
-    if constexpr (requires(const T& any) { any.unit; }) {
-      const char* unit = static_cast<const T*>(sample)->unit;
-      return unit == nullptr ||
-             static_cast<UnitChoice*>(units)->takes({unit, strnlen(unit, kLongestName + 1)});
-    }
-    return true;
-  }
-  static Entity filtered_topic(const Participant& participant, const char* name,
-                               UnitChoice* units) {
-    Entity topic(
-        dds_create_topic(participant.get(), TopicType<T>::descriptor(), name, nullptr, nullptr),
-        std::string("topic ") + name);
-    dds_topic_filter filter{};
-    if (units == nullptr) {
-      filter.mode = DDS_TOPIC_FILTER_SAMPLE;
-      filter.f.sample = &has_possible_name;
-    } else {
-      filter.mode = DDS_TOPIC_FILTER_SAMPLE_ARG;
-      filter.f.sample_arg = &is_chosen;
-      filter.arg = units;
-    }
-    check(dds_set_topic_filter_extended(topic.get(), &filter), "filter of a topic");
-    return topic;
-  }
-
   struct Loan {
     dds_entity_t reader;
     void** samples;
@@ -106,6 +72,7 @@ class Reader {
     ~Loan() { dds_return_loan(reader, samples, count); }
   };
 
+  KeyLimit keys_;
   Entity topic_;
   Entity reader_;
   Entity readable_;

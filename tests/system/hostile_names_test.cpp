@@ -71,4 +71,39 @@ TEST_CASE("long names of units that stay on the bus do not fill the memory") {
   CHECK(bench.daemon.resident_kb() < before_kb + 50'000);
 }
 
+TEST_CASE("what strangers write does not fill the memory of a recorder, and that is said") {
+  Bench bench("hostile_recorded");
+  const Frame frame(SignalCounts{1, 0, 1, 0});
+  const std::string recording = bench.folder.file("run.mcap");
+  Process recorder(
+      {"mpm", "record", "--output", recording, "--max-size", "10MB", "--quota", "40MB", "--domain",
+       std::to_string(bench.options.domain), "--partition", bench.options.partition},
+      bench.folder.file("record.out"), bench.folder.file("record.err"));
+  const idl::UnitPublisher known = bench.publisher(idl::WriterPace::kLossless);
+  REQUIRE(known.wait_for_readers(std::chrono::seconds(20), 2));
+  Plant plant(2.0);
+  bench.publish(known, plant, 50);
+  const long before_kb = recorder.resident_kb();
+  std::vector<idl::UnitPublisher> strangers;
+  for (int i = 0; i < 60; ++i) {  // names that no unit file gives, and layouts that none needs
+    strangers.push_back(stranger(bench, std::to_string(i) + std::string(9 * kMegabyte / 10, 'n')));
+    static_cast<void>(strangers.back().publish(frame));
+    UnitLayout layout;
+    layout.unit = "stranger" + std::to_string(i);
+    layout[SignalKind::kMv].tags = {std::string(2 * kMegabyte, 't')};
+    layout[SignalKind::kCv].tags = {"y"};
+    strangers.emplace_back(bench.participant, layout, idl::WriterPace::kRealTime);
+  }
+  bench.publish(known, plant, 50);
+  REQUIRE(known.flush(std::chrono::seconds(20)));
+  CHECK(recorder.resident_kb() < before_kb + 100'000);
+  recorder.send(SIGTERM);
+  CHECK(recorder.wait(std::chrono::seconds(20)) == 0);
+  const std::string said = read_file(bench.folder.file("record.err"));
+  INFO(said.substr(0, 5000));
+  CHECK(said.find("not recorded: samples of mpm/mv such as those of '0nnn") != std::string::npos);
+  CHECK(said.find("is in one file only") != std::string::npos);
+  CHECK(said.size() < 5000);
+}
+
 }  // namespace mpm::test

@@ -89,6 +89,7 @@ class Rates {
     text += "  " + counted(totals.samples, "sample") + "  " +
             bytes_text(static_cast<double>(totals.bytes)) + "  " + std::to_string(state.dropped) +
             " dropped";
+    if (state.refused > 0) text += "  " + std::to_string(state.refused) + " refused";
     if (state.lost > 0) text += "  " + std::to_string(state.lost) + " lost by DDS";
     if (totals.missing_intervals > 0)
       text += "  " + counted(totals.missing_intervals, "interval") + " missing";
@@ -124,7 +125,7 @@ int record(const RecordOptions& options, host::StopSignal& stop, host::AwaitedSi
     const Clock::time_point now = Clock::now();
     if (options.duration_s > 0.0 && now >= end) break;
     if (now >= next_search) {
-      recorder.look_for_topics();
+      recorder.look_around();
       problem = recorder.state().problem;
       next_search = now + kSearchPeriod;
     }

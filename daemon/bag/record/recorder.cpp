@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 
 #include "core/signal/saturated.hpp"
+#include "core/text/printable.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/topics.hpp"
 
@@ -24,6 +26,7 @@ Recorder::Recorder(const idl::Participant& participant, const RecorderOptions& o
     : participant_(participant),
       discovery_(participant),
       unit_(options.unit),
+      chosen_({options.unit}),
       queue_(options.queue_bytes),
       recording_(options.recording, clock_.now_ns()) {
   for (const idl::KnownTopic& topic : idl::known_topics())
@@ -43,7 +46,7 @@ Recorder::~Recorder() {
 }
 
 void Recorder::add_known(const idl::KnownTopic& topic) {
-  idl::RawReader reader(participant_, topic);
+  idl::RawReader reader(participant_, topic, unit_.empty() ? nullptr : &chosen_);
   const RecordedTopic description = description_of(topic, reader.type_name());
   add_reader(std::move(reader), description);
 }
@@ -53,6 +56,22 @@ void Recorder::add_reader(idl::RawReader reader, const RecordedTopic& descriptio
   wait_set_.attach(readers_.back().readable());
   const MutexLock lock(mutex_);
   recording_.add_topic(description);
+}
+
+void Recorder::look_around() {
+  look_for_topics();
+  look_for_refused();
+}
+
+void Recorder::look_for_refused() {
+  for (idl::RawReader& reader : readers_) {
+    const idl::KeyLimit::Refused refused = reader.refused();
+    refused_ += refused.samples;
+    if (refused.samples == 0 || !refused_on_.insert(reader.topic()).second) continue;
+    news_.push_back("not recorded: samples of " + reader.topic() + " such as those of '" +
+                    refused.unit + "', for a name is longer than " + std::to_string(kLongestName) +
+                    " bytes, or there are more units or channels than any plant has");
+  }
 }
 
 void Recorder::look_for_topics() {
@@ -124,18 +143,22 @@ void Recorder::write_all() {
 void Recorder::finish() {
   while (take() > 0) {
   }
+  look_for_refused();
   queue_.close();
   if (writer_.joinable()) writer_.join();
 }
 
 std::vector<std::string> Recorder::take_news() {
+  std::vector<std::string> news = std::exchange(news_, {});
   const MutexLock lock(mutex_);
-  return recording_.take_news();
+  for (std::string& line : recording_.take_news()) news.push_back(std::move(line));
+  return news;
 }
 
 RecorderState Recorder::state() const {
   RecorderState state;
   for (const idl::RawReader& reader : readers_) state.lost += reader.lost();
+  state.refused = refused_;
   state.dropped = queue_.dropped();
   const MutexLock lock(mutex_);
   state.totals = recording_.totals();

@@ -11,6 +11,7 @@
 #include "daemon/host/clock.hpp"
 #include "idl/discovery.hpp"
 #include "idl/raw_reader.hpp"
+#include "idl/unit_choice.hpp"
 #include "idl/wait_set.hpp"
 
 namespace mpm::bag {
@@ -26,6 +27,7 @@ struct RecorderState {
   RecordingTotals totals;
   std::uint64_t dropped = 0;  ///< taken but not in the file: the disk did not follow, or is full
   std::uint64_t lost = 0;     ///< DDS says so
+  std::uint64_t refused = 0;  ///< of instances too many, or with names too long
   std::string path;           ///< of the open file
   std::string problem;        ///< why the disk takes nothing any more; empty = it does
 };
@@ -42,15 +44,16 @@ class Recorder {
 
   /// Waits for samples at most `longest` and takes what is there.
   void poll(std::chrono::milliseconds longest);
-  /// Looks for chosen topics whose type only their writers know. About once a second is enough.
-  void look_for_topics();
+  /// Looks for chosen topics whose type only their writers know, and for what was refused. About
+  /// once a second is enough.
+  void look_around();
   /// Saves a snapshot of all that was taken so far.
   void save() { save_asked_ = true; }
   /// Takes what is there, writes all and closes the file.
   void finish();
 
   [[nodiscard]] RecorderState state() const;
-  /// What there is to tell of snapshots since the last call.
+  /// What there is to tell, in whole sentences, since the last call.
   [[nodiscard]] std::vector<std::string> take_news();
   /// Chosen topics that nobody writes yet, or not with a type that could be asked for.
   [[nodiscard]] const std::set<std::string>& not_found() const { return not_found_; }
@@ -58,6 +61,8 @@ class Recorder {
  private:
   void add_known(const idl::KnownTopic& topic);
   void add_reader(idl::RawReader reader, const RecordedTopic& description);
+  void look_for_topics();
+  void look_for_refused();
   /// Returns how many samples there were.
   int take();
   void write_all();
@@ -65,7 +70,11 @@ class Recorder {
   const idl::Participant& participant_;
   idl::Discovery discovery_;
   std::string unit_;
+  idl::UnitChoice chosen_;  // that one alone
   std::set<std::string> not_found_;
+  std::uint64_t refused_ = 0;
+  std::set<std::string> refused_on_;  // topics, told once
+  std::vector<std::string> news_;
   host::ArrivalClock clock_;  // log times are its
 
   // Of the thread that takes; topic i of the recording is read by reader i.

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "core/signal/saturated.hpp"
+#include "core/text/printable.hpp"
+#include "daemon/bag/info_text.hpp"
 #include "daemon/bag/lifecycle.hpp"
 #include "idl/topics.hpp"
 
@@ -20,6 +22,13 @@ constexpr std::uint64_t kSmallestChunk = 4096;
 
 // With snapshots: so many files span the time before an alarm, and the oldest can go.
 constexpr std::int64_t kFilesPerSnapshot = 8;
+
+// Layouts of all units together, with what keeping one takes beside its bytes. A hundred units of a
+// hundred tags each take half a megabyte.
+constexpr std::size_t kMostRepeatedBytes = 16'000'000, kBytesPerRepeated = 500;
+
+// Whose gaps are counted: more than a plant has, so that names made up fill no memory.
+constexpr std::size_t kMostUnits = 16'384;
 
 RecordingOptions with_limits(RecordingOptions options) {
   options.file.must_be_new = true;
@@ -98,13 +107,28 @@ void RecordingWriter::write(const RecordedSample& sample) {
   if (!sample.sample.valid) return put_lifecycle(sample);
   look_for_gap(sample);
   if (const std::size_t keys = topics_[sample.topic].repeat_last_by; keys > 0)
-    last_[{sample.topic, idl::leading_texts(sample.sample.cdr, keys)}] = sample;
+    keep_to_repeat(sample, keys);
   put(sample);
   ++totals_.samples;
   look_for_alarm(sample);
   if (writer_->chunks() == chunks_seen_) return;
   chunks_seen_ = writer_->chunks();
   saved_ = totals_.samples - (writer_->has_open_chunk() ? 1 : 0);
+}
+
+void RecordingWriter::keep_to_repeat(const RecordedSample& sample, std::size_t keys) {
+  const auto [entry, is_new] =
+      last_.try_emplace({sample.topic, idl::leading_texts(sample.sample.cdr, keys)});
+  last_bytes_ += sample.sample.cdr.size() + (is_new ? kBytesPerRepeated : 0);
+  last_bytes_ -= entry->second.sample.cdr.size();
+  entry->second = sample;
+  if (last_bytes_ <= kMostRepeatedBytes) return;
+  last_bytes_ -= sample.sample.cdr.size() + kBytesPerRepeated;
+  last_.erase(entry);
+  if (std::exchange(too_much_to_repeat_, true)) return;
+  news_.push_back("the layout of " + printable(idl::unit_of(sample.sample.cdr)) +
+                  " and others is in one file only, for those of all units take more than " +
+                  bytes_text(kMostRepeatedBytes));
 }
 
 void RecordingWriter::put(const RecordedSample& sample) {
@@ -143,7 +167,9 @@ void RecordingWriter::look_for_gap(const RecordedSample& sample) {
   if (!topics_[sample.topic].counts_intervals) return;
   const std::optional<idl::SampleStamp> stamp = idl::stamp_of(sample.sample.cdr);
   if (!stamp) return;
-  UnitIntervals& unit = units_[idl::unit_of(sample.sample.cdr)];
+  const std::string name = idl::unit_of(sample.sample.cdr);
+  if (units_.size() >= kMostUnits && units_.count(name) == 0) return;
+  UnitIntervals& unit = units_[name];
   const auto [entry, is_new] = unit.topics.try_emplace(sample.topic);
   TopicIntervals& topic = entry->second;
   if (!is_new && stamp->interval > topic.last)  // else the controller restarted
@@ -186,6 +212,12 @@ void RecordingWriter::give_up() noexcept {
     snapshots_.finish();
   } catch (const std::exception&) {  // the caller has told already; `mpm recover` mends it
   }
+}
+
+std::vector<std::string> RecordingWriter::take_news() {
+  std::vector<std::string> news = std::exchange(news_, {});
+  for (std::string& line : snapshots_.take_news()) news.push_back(std::move(line));
+  return news;
 }
 
 RecordingTotals RecordingWriter::totals() const {

@@ -44,7 +44,7 @@ struct RecordingTotals {
 };
 
 /// Samples into MCAP files, one after the other. Each file is whole by itself: types, and the
-/// layout of every unit seen so far.
+/// layout of every unit seen so far, as far as they take 16 MB.
 ///
 /// A sample goes to the channel of its topic as the CDR that it was; log time is when it was
 /// received, publish time its DDS source time. That an instance ended goes to `<topic>/_lifecycle`
@@ -70,8 +70,8 @@ class RecordingWriter {
   void give_up() noexcept;
 
   [[nodiscard]] RecordingTotals totals() const;
-  /// Of snapshots, since the last call.
-  [[nodiscard]] std::vector<std::string> take_news() { return snapshots_.take_news(); }
+  /// What there is to tell, in whole sentences, since the last call.
+  [[nodiscard]] std::vector<std::string> take_news();
   /// Of the samples, those that were given up.
   [[nodiscard]] std::uint64_t unsaved() const { return unsaved_; }
   /// The file that is being written.
@@ -100,6 +100,7 @@ class RecordingWriter {
   [[nodiscard]] mcap::ChannelId channel_of(std::size_t topic);
   [[nodiscard]] mcap::ChannelId lifecycle_channel_of(std::size_t topic);
   void look_for_gap(const RecordedSample& sample);
+  void keep_to_repeat(const RecordedSample& sample, std::size_t keys);
 
   RecordingOptions options_;
   RecordingFiles files_;
@@ -112,6 +113,9 @@ class RecordingWriter {
   std::map<std::size_t, Channels> channels_;  // of the open file
   std::map<std::string, mcap::SchemaId> schemas_;
   std::map<std::pair<std::size_t, std::vector<std::string>>, RecordedSample> last_;  // to repeat
+  std::size_t last_bytes_ = 0;                                                       // of these
+  std::vector<std::string> news_;
+  bool too_much_to_repeat_ = false;
   std::map<std::string, UnitIntervals> units_;
   RecordingTotals totals_;
   std::uint64_t chunks_seen_ = 0;  // of the open file
