@@ -203,6 +203,37 @@ TEST_CASE("a gateway that leaves under the doctor's eyes is missed at once") {
   CHECK(any_text(said["troubles"], "nobody writes mpm/cv"));
 }
 
+TEST_CASE("a clock that is off is told once for its process, not for each topic") {
+  TemporaryFolder folder;
+  Bench bench("doctor-clock");
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(2.0);
+  const auto offset_ns =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(
+          (std::chrono::system_clock::now() + std::chrono::hours(1)).time_since_epoch())
+          .count();
+  Process doctor(mpm("doctor", bench.options,
+                     {"--config", bench.folder.file("toy.yaml"), "--seconds", "2", "--json"}),
+                 folder.file("out"), folder.file("err"));
+  std::optional<int> code;
+  REQUIRE(idl::eventually(
+      [&] {
+        Frame frame = plant.next();
+        frame.source_time_ns += offset_ns;
+        (void)publisher.publish(frame);
+        code = doctor.wait(std::chrono::milliseconds(20));
+        return code.has_value();
+      },
+      std::chrono::seconds(20)));
+  CHECK(code == 1);
+  const Json said = Json::parse(read_file(folder.file("out")));
+  INFO(said.dump(1));
+  CHECK(std::count_if(said["troubles"].begin(), said["troubles"].end(), [](const Json& trouble) {
+          const auto text = trouble["text"].get<std::string>();
+          return text.find("ahead of this machine's clock") != std::string::npos;
+        }) == 1);
+}
+
 TEST_CASE("doctor tells what ails a monitor beside its alarms") {
   TemporaryFolder folder;
   Bench bench("doctor-alarms", {"--journal-every-sample", "/dev/full"});

@@ -132,7 +132,7 @@ int detect(const DetectOptions& options) {
     const files::TimeChoice choice(options.time, times);
     Journals journals(options, loaded.config);
     const report::DetectReport report = run(loaded.config, *frames, choice, journals);
-    tell_notices(frames->notices());
+    tell_notices(frames->notices(), options.data.size() == 1 ? options.data.front() : "");
     if (report.samples == 0)
       throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",
                                 "holds no control interval of unit '" + loaded.config.unit + "'" +

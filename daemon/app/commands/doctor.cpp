@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/load_unit.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
@@ -49,6 +50,9 @@ bus::Findings examine(const Place& place, double seconds, host::StopSignal& stop
     for (const bus::ExpectedInputs& unit : place.units)
       seconds = std::max(seconds, kSampleTimes * unit.sample_time_s);
     seconds = std::min(seconds, kLongestS);
+    if (seconds > kShortestS)
+      std::cerr << "mpm doctor: listening for " << number_text(seconds)
+                << " s, for so slow a unit; --seconds makes it shorter\n";
   }
   const idl::Participant participant(place.domain);
   bus::Examination examination(participant, bus::place_text(place.domain), place.units,

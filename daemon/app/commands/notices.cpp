@@ -13,7 +13,8 @@ void tell_notices(const std::vector<std::string>& notices, const std::string& ab
   const bool terminal = host::is_terminal(STDERR_FILENO);
   const std::size_t width = host::terminal_width(STDERR_FILENO);
   for (const std::string& notice : notices) {
-    const std::string text = about.empty() ? notice : about + ": " + notice;
+    const bool told = about.empty() || notice.starts_with(about + ": ");
+    const std::string text = told ? notice : about + ": " + notice;
     std::cerr << (terminal ? report::wrapped(text, 0, width) : text + '\n');
   }
 }

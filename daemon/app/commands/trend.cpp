@@ -66,7 +66,7 @@ void take_data(const TrendOptions& options, const config::UnitConfig& unit,
       trend.add({alarm.mv, alarm.cv, alarm.to == AlarmChange::kActive, alarm.source_time_ns});
   }
   if (const auto digest = digests.finish()) trend.add(*digest);
-  tell_notices(frames->notices());
+  tell_notices(frames->notices(), options.data.size() == 1 ? options.data.front() : "");
 }
 
 void take_journal(const TrendOptions& options, const files::TimeChoice& choice,

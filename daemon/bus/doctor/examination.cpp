@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "config/suggest.hpp"
 #include "core/text/printable.hpp"
@@ -192,6 +194,27 @@ TopicFindings Examination::topic_of(const Unit& unit, SignalKind kind, const Sur
   return topic;
 }
 
+namespace {
+
+/// Once for each process, whatever it writes: of its topics the one that is off most.
+void add_clock_offsets(UnitFindings& findings) {
+  std::map<std::string, double> offsets_s;  // by process
+  for (const TopicFindings& topic : findings.topics)
+    for (const WriterFindings& writer : topic.writers) {
+      if (writer.samples == 0) continue;
+      double& off_s = offsets_s[idl::name_of(writer.process)];
+      if (std::abs(writer.clock_offset_s) > std::abs(off_s)) off_s = writer.clock_offset_s;
+    }
+  for (const auto& [process, off_s] : offsets_s)
+    if (std::abs(off_s) > kClockOffS && std::abs(off_s) < kOtherTimeS)
+      findings.troubles.push_back(
+          {"clock offset", Severity::kOutOfSpecification,
+           fmt::format("the source times of {} are {:.0f} s {} this machine's clock", process,
+                       std::abs(off_s), off_s > 0.0 ? "behind" : "ahead of")});
+}
+
+}  // namespace
+
 UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& around,
                                       Clock::time_point now) const {
   UnitFindings findings;
@@ -200,13 +223,6 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
     if (kind == SignalKind::kRaw && unit.inputs.expected().counts.raw == 0) continue;
     findings.topics.push_back(topic_of(unit, kind, around, now));
     for (const WriterFindings& writer : findings.topics.back().writers) {
-      const double off_s = std::abs(writer.clock_offset_s);
-      if (writer.samples > 0 && off_s > kClockOffS && off_s < kOtherTimeS)
-        findings.troubles.push_back(
-            {"clock offset", Severity::kOutOfSpecification,
-             fmt::format("the source times of {} are {:.0f} s {} this machine's clock",
-                         findings.topics.back().topic, off_s,
-                         writer.clock_offset_s > 0.0 ? "behind" : "ahead of")});
       if (writer.repeated >= kFewestRepeated &&
           kRepeatedInverseShare * writer.repeated >= writer.samples)
         findings.troubles.push_back(
@@ -216,6 +232,7 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
                          idl::name_of(writer.process))});
     }
   }
+  add_clock_offsets(findings);
   if (unit.described) {
     const std::vector<Trouble> troubles = unit.inputs.troubles(around, now);
     findings.troubles.insert(findings.troubles.end(), troubles.begin(), troubles.end());

@@ -52,12 +52,12 @@ void ReadTally::tell(std::vector<std::string>& notices) const {
   if (decimal_commas > 0)
     notices.emplace_back("the comma is read as a decimal point, for it does not part the columns");
   if (decimal_commas > 0 && decimal_points > 0)
-    notices.push_back(std::to_string(decimal_points) +
-                      " numbers beside those have a point; it is read as a decimal point too, so "
+    notices.push_back(counted(decimal_points, "number") +
+                      " beside those with a point; it is read as a decimal point too, so "
                       "there may be no thousands separators");
   if (!states.empty())
-    notices.push_back(std::to_string(sum(states)) +
-                      " values taken as missing, since they are words: " + listed(states));
+    notices.push_back(counted(sum(states), "value") +
+                      " taken as missing, since they are words: " + listed(states));
   if (!qualities.empty())
     notices.push_back(
         std::to_string(sum(qualities)) +

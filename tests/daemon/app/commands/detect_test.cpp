@@ -102,6 +102,8 @@ TEST_CASE("Exports in local times are read by every command that reads data") {
   const auto json = nlohmann::json::parse(bench.text("out"));
   CHECK(json["samples"] == 2);
   CHECK(json["missing_samples"] == 0);
+  CHECK(bench.text("err").find("l.csv: times without a zone are read as those of Europe/Berlin") !=
+        std::string::npos);
   CHECK(detect(bench, "l.csv", {"--time-zone", "Mars/Base"}) == 3);
 
   CHECK(mpm(bench, {"info", bench.folder.file("l.csv")}) == 3);

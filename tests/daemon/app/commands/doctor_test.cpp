@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <nlohmann/json.hpp>
 
+#include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
 namespace mpm::test {
@@ -37,6 +39,20 @@ TEST_CASE("mpm doctor tells trouble from wrong use by its exit code") {
   CHECK(text.find("nobody else is on " + place) != std::string::npos);
   CHECK(text.find("one: no data has come (mpm/mv ...: nobody writes it on " + place + ")") !=
         std::string::npos);
+}
+
+TEST_CASE("mpm doctor says how long it listens where a slow unit has it wait") {
+  const TemporaryFolder folder;
+  const std::string err = folder.file("err");
+  std::string yaml = unit_yaml("slow", 11);
+  yaml.replace(yaml.find("1.0"), 3, "60");
+  write_file(folder.file("slow.yaml"), yaml);
+  Process doctor({"mpm", "doctor", "--config", folder.file("slow.yaml")}, folder.file("out"), err);
+  CHECK(idl::eventually(
+      [&] { return read_file(err).find("listening for 180 s") != std::string::npos; },
+      std::chrono::seconds(20)));
+  doctor.send(SIGTERM);
+  CHECK(doctor.wait(std::chrono::seconds(20)) == 1);  // what it heard until then
 }
 
 TEST_CASE("mpm doctor looks at every unit where its file says") {
