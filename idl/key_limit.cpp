@@ -18,7 +18,8 @@ constexpr std::size_t kMostUnits = 4096, kKindsPerUnit = 8, kMostChannels = 100'
 /// The name, as far as it may be long and one byte more.
 std::string_view name_at(const void* sample, std::size_t place) {
   const char* name = static_cast<const char* const*>(sample)[place];
-  return name == nullptr ? std::string_view() : std::string_view(name, strnlen(name, kLongestName + 1));
+  return name == nullptr ? std::string_view()
+                         : std::string_view(name, strnlen(name, kLongestName + 1));
 }
 
 }  // namespace

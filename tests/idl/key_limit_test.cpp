@@ -54,7 +54,8 @@ TEST_CASE("of more instances than any plant has the keys are not kept, until the
     std::size_t taken = 0;
     for (std::size_t i = 0; i < most + 1000; ++i) {
       REQUIRE(write(stranger, "stranger" + std::to_string(i)));
-      if (i % 100 == 0) reader.take([&](const RawSample& sample) { taken += sample.valid ? 1 : 0; });
+      if (i % 100 == 0)
+        reader.take([&](const RawSample& sample) { taken += sample.valid ? 1 : 0; });
     }
     std::uint64_t refused = 0;
     REQUIRE(eventually([&] {
@@ -66,7 +67,8 @@ TEST_CASE("of more instances than any plant has the keys are not kept, until the
     CHECK(refused == 1001);
     REQUIRE(write(known, "new unit"));
     REQUIRE(write(known, "toy"));
-    CHECK(units_until(reader, "toy") == std::vector<std::string>{"toy"});  // known, and nothing else
+    CHECK(units_until(reader, "toy") ==
+          std::vector<std::string>{"toy"});  // known, and nothing else
     CHECK(reader.refused().unit == "new unit");
   }
   REQUIRE(eventually([&] { return reader.matched_writers() == 1; }));
