@@ -234,9 +234,10 @@ Outcome run_over_cuts(const std::string& test, int cuts, Cut kind, std::uint64_t
   const std::vector<Frame> frames = frames_with_alarms();
   std::mt19937_64 random(seed);
   std::size_t at = 0;
-  for (int left = cuts; left > 0 && at < frames.size(); --left) {
+  const std::size_t last = frames.size() - 100;  // some come behind the last cut
+  for (int left = cuts; left > 0; --left) {
     const std::size_t step = 1 + random() % (2 * frames.size() / static_cast<std::size_t>(cuts));
-    const std::size_t until = std::min(at + step, frames.size());
+    const std::size_t until = std::min(at + step, last);
     machine.publish(frames, at, until);
     if (random() % 3 == 0) machine.acknowledge();
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 40'000));
@@ -285,11 +286,19 @@ TEST_CASE("an alarm that has just risen stands after a power cut") {
   CHECK(machine.rises_and_falls({"active", "none"}) == risen);
 }
 
-// Pages, lengths and names that were not synced are there or not, as it comes: samples may be
-// missing in between, as in any gap.
+/// As an alarm does: it rises, clears, rises ..., and stands in the end.
+bool alternates(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (words[i] != (i % 2 == 0 ? "active" : "cleared")) return false;
+  return words.size() % 2 == 1;
+}
+
+// Pages, lengths and names that were not synced are there or not, as it comes. What was lost may be
+// all of an alarm's time; what is left must be whole.
 TEST_CASE("what a power cut tears is left out") {
   const Outcome torn = run_over_cuts("power-torn", 8, Cut::kTorn, 2);
-  CHECK(torn.rises_and_falls == kAlarms);
+  CAPTURE(torn.rises_and_falls);
+  CHECK(alternates(torn.rises_and_falls));
 }
 
 TEST_CASE("a hundred power cuts take no alarm", "[.long]") {
@@ -298,7 +307,7 @@ TEST_CASE("a hundred power cuts take no alarm", "[.long]") {
     const Outcome cut = run_over_cuts("power-cut-long", 10, Cut::kNothingMore, 100 + seed);
     CHECK(cut.verdicts == whole.verdicts);
     CHECK(cut.rises_and_falls == kAlarms);
-    CHECK(run_over_cuts("power-torn-long", 10, Cut::kTorn, 200 + seed).rises_and_falls == kAlarms);
+    CHECK(alternates(run_over_cuts("power-torn-long", 10, Cut::kTorn, 200 + seed).rises_and_falls));
   }
 }
 
