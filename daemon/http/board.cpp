@@ -46,8 +46,9 @@ void Board::recall_digests() {
   if (journal_.empty()) return;
   for (const auto& [name, unit] : units_) {
     if (closed()) return;
+    UnitStore& store = unit->store;
     for_each_kept_digest(journal_, name, kMostJournalBytes / units_.size(),
-                         [&unit](const history::Digest& digest) { unit->store.recall(digest); });
+                         [&store](const history::Digest& digest) { store.recall(digest); });
   }
 }
 

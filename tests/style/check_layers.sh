@@ -97,11 +97,12 @@ mcap/read mcap/format
 mcap/write mcap/format
 mcap mcap/format mcap/read mcap/write
 report/terminal
-report/diagnosis files/times
-report/identification files/times report/terminal
-report/page files/times report/diagnosis report/identification
+report/condensing
+report/diagnosis files/times report/condensing
+report/identification files/times report/terminal report/condensing
+report/page files/times report/condensing report/diagnosis report/identification
 report/closed_loop files/csv report/diagnosis
-report files/times files report/terminal report/diagnosis report/identification report/page
+report files/times files report/terminal report/condensing report/diagnosis report/identification report/page
 history files/times files/csv report
 history/trend files/times report/terminal report history
 bus
@@ -113,7 +114,7 @@ bag/record host files/times files mcap/read mcap/write mcap bag
 bag/replay host files/times mcap/read bag
 live host files/times files report/diagnosis report history bus
 http host files report history bus live
-app/commands host files/times files files/csv mcap/read mcap report/terminal report/diagnosis report/closed_loop report/identification report history history/trend bus bus/alarms bus/watch bus/doctor bag bag/record bag/replay live
+app/commands host files/times files files/csv mcap/read mcap report/terminal report/condensing report/diagnosis report/closed_loop report/identification report history history/trend bus bus/alarms bus/watch bus/doctor bag bag/record bag/replay live
 app host live http app/commands
 TABLE
 exit $status

@@ -3,7 +3,7 @@
 # core/model/filter_channel.cpp. Lists the sources without one; there may only come to be fewer.
 set -eu
 cd "$(dirname "$0")/../.."
-most=191
+most=190
 
 status=0
 for test in $(git ls-files 'tests/core/*_test.cpp' 'tests/config/*_test.cpp' 'tests/idl/*_test.cpp' \

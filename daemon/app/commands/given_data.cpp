@@ -10,7 +10,7 @@
 #include "core/text/number_text.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/read_recording.hpp"
-#include "daemon/report/condensing_report.hpp"
+#include "daemon/report/condensing/condensing_report.hpp"
 #include "daemon/report/unit_monitor.hpp"
 #include "daemon/report/worst_tags.hpp"
 

@@ -17,7 +17,7 @@
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/files/output_folder.hpp"
-#include "daemon/report/condensing_report.hpp"
+#include "daemon/report/condensing/condensing_report.hpp"
 #include "daemon/report/identification/identification_report.hpp"
 #include "daemon/report/identification/new_unit.hpp"
 #include "daemon/report/identification/plan_report.hpp"

@@ -4,7 +4,7 @@
 
 #include "core/identify/causes/cause.hpp"
 #include "core/text/number_text.hpp"
-#include "daemon/report/condensing_report.hpp"
+#include "daemon/report/condensing/condensing_report.hpp"
 #include "daemon/report/diagnosis/data_notes.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
 #include "daemon/report/diagnosis/names_of.hpp"

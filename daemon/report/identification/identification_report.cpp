@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/text/number_text.hpp"
-#include "daemon/report/condensing_report.hpp"
+#include "daemon/report/condensing/condensing_report.hpp"
 #include "daemon/report/identification/plan_report.hpp"
 #include "daemon/report/identification/reasons.hpp"
 #include "daemon/report/terminal/terminal_text.hpp"

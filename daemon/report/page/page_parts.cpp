@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/text/number_text.hpp"
-#include "daemon/report/condensing_report.hpp"
+#include "daemon/report/condensing/condensing_report.hpp"
 
 namespace mpm::report {
 namespace {

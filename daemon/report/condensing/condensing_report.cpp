@@ -1,4 +1,4 @@
-#include "daemon/report/condensing_report.hpp"
+#include "daemon/report/condensing/condensing_report.hpp"
 
 #include "core/text/number_text.hpp"
 
