@@ -94,8 +94,10 @@ Recording averaged_run(const Recording& run, Index offset, Index every) {
   return result;
 }
 
-/// Of each row: sum over all signals of (value - mean)^2 / variance, means those of short pieces,
-/// so that what counts is how a signal moves, and not where it was.
+/// Of each row: sum of (value - mean)^2 / variance over the set-points or, where none moves, the
+/// inputs; means those of short pieces, so that what counts is how a signal moves, and not where it
+/// was. What a loop does by itself must not choose: stretches in which disturbances are large, and
+/// the inputs that answer them, make gains look smaller by several s.d.
 VectorXd movement(const Recording& recording, Index piece) {
   VectorXd result = VectorXd::Zero(recording.samples());
   const auto add = [&](const MatrixXd& signals) {
@@ -116,9 +118,8 @@ VectorXd movement(const Recording& recording, Index piece) {
       if (all > 0.0) result += squares / all;
     }
   };
-  add(recording.inputs);
   add(recording.setpoints);
-  add(recording.cvs);
+  if (result.isZero(0.0)) add(recording.inputs);
   return result;
 }
 

@@ -52,9 +52,9 @@ struct Condensed {
 /// aux are means over what acts from there to the next one, CVs and set-points what was read at
 /// t(K), so that no answer comes late and no input acts before its time. Rows begin where inputs
 /// that are held for several rows move. Then, if more than `most_rows` are left, of each of some
-/// equal spans the stretch in which inputs, set-points and CVs move most, as a run of its own: at
-/// its own level and from its own first state. Nothing is done to a recording that is short enough
-/// where `every` is 1.
+/// equal spans the stretch in which set-points move most, or inputs where no set-point moves, as a
+/// run of its own: at its own level and from its own first state. Nothing is done to a recording
+/// that is short enough where `every` is 1.
 [[nodiscard]] Condensed condensed(const Recording& recording, Eigen::Index every,
                                   Eigen::Index most_rows);
 

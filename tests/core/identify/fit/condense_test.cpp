@@ -130,6 +130,20 @@ TEST_CASE("of what is still too long the stretches are taken in which most moves
   }
 }
 
+TEST_CASE("set-points choose the stretches, and not what disturbances and feedback do") {
+  const Index rows = 8 * kMostRows, span = rows / kStretches;
+  VectorXd setpoint = VectorXd::Zero(rows), disturbed = VectorXd::Zero(rows);
+  for (Index s = 0; s < kStretches; ++s) {
+    setpoint.segment(s * span + 10'000, 5'000) = test::telegraph(5, 5'020, 20).tail(5'000);
+    disturbed.segment(s * span + 20'000, 5'000) = 100.0 * test::white(6, 5'000);
+  }
+  Recording given = test::recording_of(disturbed, disturbed);
+  given.setpoints = setpoint;
+  const Condensed some = condensed(given, 1, kMostRows);
+  for (const Run& run : runs_of(some.recording))
+    CHECK(some.recording.setpoints.middleRows(run.first, run.count).cwiseAbs().mean() > 0.9);
+}
+
 TEST_CASE("each run of a long recording keeps its share, and says which it is of") {
   const Index rows = 3 * kMostRows;
   const auto run = [&](Index count, double start_s) {
