@@ -31,17 +31,20 @@ TEST_CASE("the indices of before are those of the journal, of whole files and da
     journal.finish();
   }
   const std::string file = place + "/minute-000001.jsonl";
-  const auto drawn = [&] {
-    Board board({unit}, place);
-    board.start();
-    const UnitStore& store = *board.find("minute");
-    const auto until = Board::Clock::now() + 10s;
-    while (store.draw_kpi(1000).times_s.empty() && Board::Clock::now() < until)
-      std::this_thread::sleep_for(1ms);
-    board.close();
-    return store.draw_kpi(1000);
+  const auto digests = [&] {
+    int count = 0;
+    for_each_kept_digest(place, "minute", 1'000'000'000,
+                         [&count](const history::Digest&) { ++count; });
+    return count;
   };
-  const Drawing whole = drawn();
+  CHECK(digests() == 40);
+  Board board({unit}, place);
+  board.start();
+  const UnitStore& store = *board.find("minute");
+  const auto until = Board::Clock::now() + 10s;
+  while (store.draw_kpi(1000).times_s.size() < 40 && Board::Clock::now() < until)
+    std::this_thread::sleep_for(1ms);
+  const Drawing whole = store.draw_kpi(1000);
   CHECK(whole.times_s.size() == 40);
   CHECK(whole.times_s.front() ==
         Approx(static_cast<double>(test::kMonday + kQuarter - 60 * test::kSecond) * 1e-9));
@@ -52,9 +55,8 @@ TEST_CASE("the indices of before are those of the journal, of whole files and da
   const std::string text = test::read_file(file);
   const std::size_t middle = text.find('\n', text.size() / 2) + 1;
   test::write_file(file, text.substr(0, middle) + "{torn\n" + text.substr(middle));
-  const Drawing damaged = drawn();
-  CHECK(damaged.times_s.size() > 10);
-  CHECK(damaged.times_s.size() < 30);
+  CHECK(digests() > 10);
+  CHECK(digests() < 30);
 }
 
 }  // namespace
