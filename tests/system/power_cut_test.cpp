@@ -286,11 +286,12 @@ TEST_CASE("an alarm that has just risen stands after a power cut") {
   CHECK(machine.rises_and_falls({"active", "none"}) == risen);
 }
 
-/// As an alarm does: it rises, clears, rises ..., and stands in the end.
+/// As an alarm does: it rises, clears, rises ... Whether it stands in the end depends on what the
+/// last cut left of the samples that it would have risen by.
 bool alternates(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i)
     if (words[i] != (i % 2 == 0 ? "active" : "cleared")) return false;
-  return words.size() % 2 == 1;
+  return true;
 }
 
 // Pages, lengths and names that were not synced are there or not, as it comes. What was lost may be
