@@ -33,7 +33,7 @@ TEST_CASE("a wrong time without its alarm is missed, an alarm without one has no
                                         {"u2", "y", 900 * kSecond, 900 * kSecond}};
   store.append({entry(150, "u1", "active"), entry(160, "u1", "acknowledged"),
                 entry(220, "u1", "cleared"),   // the one of u2 at 300 is missed
-                entry(450, "u2", "active"),    // too late: without a cause
+                entry(470, "u2", "active"),    // too late: without a cause
                 entry(650, "u1", "active"),    // the memory still held the third, which has it so
                 entry(250, "u1", "active")});  // a late one of the first
   const AlarmScore result = score(path, wrong, 50.0, 60.0);
@@ -41,7 +41,7 @@ TEST_CASE("a wrong time without its alarm is missed, an alarm without one has no
   CHECK(result.raised == 4);
   // u2 at 300. The fourth began while the alarm of u1 stood.
   CHECK(result.missed == 1);
-  CHECK(result.wrong == std::vector<std::string>{"u2 -> y at 450 s"});
+  CHECK(result.wrong == std::vector<std::string>{"u2 -> y at 470 s"});
   CHECK(result.longest_delay_s == 150.0);
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
@@ -254,7 +255,10 @@ TEST_CASE("the page shows what a monitor before it took") {
       std::chrono::seconds(20)));
   CHECK(series["first"] == first_s);
   CHECK(series["measured"]["mean"].front().is_number());
-  CHECK(series["residual"]["mean"].back().is_number());
+  // Of those judged again; the last ones are not judged yet.
+  const nlohmann::json& residuals = series["residual"]["mean"];
+  CHECK(std::any_of(residuals.begin(), residuals.end(),
+                    [](const nlohmann::json& value) { return value.is_number(); }));
 }
 
 // What 4005 samples told is not to be had again from five.
