@@ -43,7 +43,7 @@ PackageName: $1
 SPDXID: SPDXRef-$(name_of "$1")
 PackageVersion: $of
 PackageSupplier: Organization: Debian
-PackageDownloadLocation: http://deb.debian.org/debian
+PackageDownloadLocation: NOASSERTION
 FilesAnalyzed: false
 PackageLicenseConcluded: NOASSERTION
 PackageLicenseDeclared: NOASSERTION
@@ -66,7 +66,7 @@ PackageName: $2
 SPDXID: SPDXRef-npm-$(name_of "$2")
 PackageVersion: $(field version)
 PackageSupplier: NOASSERTION
-PackageDownloadLocation: https://registry.npmjs.org/$2/-/$2-$(field version).tgz
+PackageDownloadLocation: NOASSERTION
 FilesAnalyzed: false
 PackageChecksum: SHA512: $(printf %s "${sum#sha512-}" | base64 -d | od -An -tx1 | tr -d ' \n')
 PackageLicenseConcluded: $(field license)
