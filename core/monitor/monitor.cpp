@@ -15,10 +15,8 @@
 #include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/cv_quality.hpp"
 #include "core/monitor/derived_settings.hpp"
-#include "core/monitor/predictions.hpp"
 #include "core/monitor/reported_correlation.hpp"
-#include "core/monitor/unit_inputs.hpp"
-#include "core/monitor/unit_residuals.hpp"
+#include "core/monitor/unit_reader.hpp"
 #include "core/nonlinear/nonlinear_detector.hpp"
 
 namespace mpm {
@@ -73,11 +71,7 @@ struct Monitor::State {
   SignalCounts counts;
   std::vector<bool> expected;  // per CV: a prediction may come
   DerivedSettings settings;
-  std::vector<bool> acts;  // per channel, input-major: the model has it
-  Screen screen;
-  UnitInputs inputs;
-  Predictions predictions;
-  UnitResiduals residuals;
+  UnitReader reader;
   ReportedCorrelation correlation;
   MismatchDetector detector;
   NonlinearDetector nonlinear;
@@ -93,26 +87,8 @@ struct Monitor::State {
   MonitorCounters counters;
   LostSignals lost;
   bool first = true;
-  std::int64_t last_interval = 0;   // pushed
-  std::int64_t taken_interval = 0;  // left the screen
-  std::int64_t samples = 0;
+  std::int64_t last_interval = 0;  // pushed
 };
-
-namespace {
-
-// In which every channel begins to answer: however slow, it does so behind its dead time.
-int answering_samples(const LinearModel& model, const DerivedSettings& derived) {
-  const double dead_time = std::ceil(model.longest_dead_time_samples());
-  return static_cast<int>(std::min(static_cast<double>(derived.settling_samples) + derived.fir_lags,
-                                   dead_time + calibration::simulation::kBeginsToAnswer));
-}
-
-// Some CV, from the first sample on and for good.
-bool simulates(const std::vector<bool>& may_predict) {
-  return std::find(may_predict.begin(), may_predict.end(), false) != may_predict.end();
-}
-
-}  // namespace
 
 Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_counts,
                       const std::vector<bool>& may_predict, const DerivedSettings& derived)
@@ -120,18 +96,11 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
       counts(signal_counts),
       expected(may_predict),
       settings(derived),
-      acts(channels_of(model, answering_samples(model, derived))),
-      screen(counts, may_predict, acts,
-             static_cast<int>(std::ceil(model.longest_dead_time_samples()))),
-      inputs(counts, settings.remembered * calibration::input_motion::kMemoryShare),
-      predictions(model, may_predict, acts,
-                  simulates(may_predict) ? settings.starting_samples : settings.settling_samples,
-                  settings.settling_samples),
-      residuals(counts.cv),
+      reader(model, counts, may_predict, settings),
       correlation(counts, settings),
       detector({counts.inputs(), counts.cv, settings.fir_lags, settings.residual_order,
                 settings.tail_poles,
-                simulates(may_predict) ? settings.start_poles : std::vector<double>{}, 0,
+                simulates_some(may_predict) ? settings.start_poles : std::vector<double>{}, 0,
                 settings.residual_poles},
                settings.memories, settings.remembered, settings.evaluation_stride, model,
                settings.materiality),
@@ -159,7 +128,7 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
 
 void Monitor::State::begin_anew() {
   State fresh(model, counts, expected, settings);
-  fresh.screen = std::move(screen);
+  fresh.reader.begin_with(reader.give_screen());
   fresh.cvs = std::move(cvs);
   for (Cv& cv : fresh.cvs) {
     cv.judged = false;
@@ -172,7 +141,6 @@ void Monitor::State::begin_anew() {
   fresh.lost = std::move(lost);
   fresh.first = first;
   fresh.last_interval = last_interval;
-  fresh.taken_interval = taken_interval;
   *this = std::move(fresh);
 }
 
@@ -181,10 +149,10 @@ void Monitor::State::Cv::archive(Archive& a) {
 }
 
 void Monitor::State::archive(Archive& a) {
-  // not archived: model, counts, expected, settings, acts (construction)
+  // not archived: model, counts, expected, settings (construction)
   // not archived: outside_values, scan (each sample and each search begins anew)
-  a(screen, inputs, predictions, residuals, correlation, detector, nonlinear, outside, judge, cvs,
-    status, judged_frames, counters, lost, first, last_interval, taken_interval, samples);
+  a(reader, correlation, detector, nonlinear, outside, judge, cvs, status, judged_frames, counters,
+    lost, first, last_interval);
   a.within(judged_count, 0, judged_frames.size());
   a.varying(transitions);
   const int outside_signals = counts.cv + counts.aux;
@@ -200,31 +168,17 @@ void Monitor::State::archive(Archive& a) {
 }
 
 void Monitor::State::take_frame(const Frame& frame) {
-  const std::int64_t missing = samples == 0 ? 0 : frame.interval - taken_interval - 1;
-  taken_interval = frame.interval;
-  if (missing > 0) pass_gap(missing);
-  if (predictions.simulates())
-    predictions.follow(screen, [&](int cv) {
-      if (samples > 0) detector.start_afresh(cv, 0);
-    });
+  if (reader.missing() > 0) pass_gap(reader.missing());
+  for (const int cv : reader.begun())
+    if (reader.samples() > 1) detector.start_afresh(cv, 0);
   follow_compression();
-  inputs.read(frame);
-  predictions.begin(frame, inputs);
-  residuals.read(frame, predictions);
   count_bad(frame);
-  predictions.advance(inputs);
   take_sample(frame);
   take_outside(frame);
   evaluate();
   move_alarms();
   judge_channels();
-  JudgedFrame& as_judged = judged_frames[judged_count++];
-  as_judged.interval = frame.interval;
-  const SignalBlock& measured = frame[SignalKind::kCv];
-  for (int j = 0; j < counts.cv; ++j)
-    as_judged.readings[static_cast<std::size_t>(j)] = {
-        measured.usable(j) ? measured.values(j) : std::numeric_limits<double>::quiet_NaN(),
-        residuals.values()(j)};
+  reader.tell(frame, judged_frames[judged_count++]);
 }
 
 void Monitor::State::count_bad(const Frame& frame) {
@@ -233,7 +187,8 @@ void Monitor::State::count_bad(const Frame& frame) {
     for (int i = 0; i < counts.of(kind); ++i) {
       if (kind != SignalKind::kPrediction || expected[static_cast<std::size_t>(i)])
         lost.take(frame, kind, i);
-      if (frame[kind].usable(i) || (kind == SignalKind::kPrediction && !predictions.given(i)))
+      if (frame[kind].usable(i) ||
+          (kind == SignalKind::kPrediction && !reader.predictions().given(i)))
         continue;
       ++counters.bad_values;
       ++counters.bad_of[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
@@ -243,8 +198,8 @@ void Monitor::State::count_bad(const Frame& frame) {
 // What was learnt of held values and drawn lines says nothing once all is measured again.
 void Monitor::State::follow_compression() {
   for (int j = 0; j < counts.cv; ++j) {
-    const bool was =
-        std::exchange(of(j).compressed, screen.compressed(j) || screen.compressed_input(j) >= 0);
+    const bool was = std::exchange(of(j).compressed, reader.screen().compressed(j) ||
+                                                         reader.screen().compressed_input(j) >= 0);
     if (!was || of(j).compressed) continue;
     detector.start_afresh(j, 0);
     of(j).settled = 0;
@@ -261,30 +216,27 @@ void Monitor::State::pass_gap(std::int64_t missing) {
   detector.skip(missing);
   nonlinear.skip(missing, detector);
   outside.skip(missing);
-  residuals.skip(missing);
-  predictions.skip(missing, inputs);
 }
 
 void Monitor::State::take_sample(const Frame& frame) {
-  ++samples;
-  detector.update(inputs.values(), residuals.values());
+  detector.update(reader.inputs().values(), reader.residuals().values());
   nonlinear.add_sample(detector);
   bool used = false;
   for (int j = 0; j < counts.cv; ++j) {
     const auto at = static_cast<std::size_t>(j);
     const bool took_row = detector.took_row(j);
     const bool implausible = frame[SignalKind::kCv].quality[at] == Quality::kImplausible ||
-                             (predictions.given(j) &&
+                             (reader.predictions().given(j) &&
                               frame[SignalKind::kPrediction].quality[at] == Quality::kImplausible);
-    const bool settling = predictions.settling(j);
+    const bool settling = reader.predictions().settling(j);
     of(j).settled += settling ? 0 : 1;
-    of(j).quality.take(
-        {settling || std::isfinite(residuals.values()(j)), implausible, took_row, screen.spikes(j)},
-        samples);
+    of(j).quality.take({settling || std::isfinite(reader.residuals().values()(j)), implausible,
+                        took_row, reader.screen().spikes(j)},
+                       reader.samples());
     used = used || took_row;
   }
   if (used) ++counters.used;
-  correlation.take(inputs, residuals);
+  correlation.take(reader.inputs(), reader.residuals());
 }
 
 void Monitor::State::take_outside(const Frame& frame) {
@@ -301,7 +253,7 @@ void Monitor::State::evaluate() {
   const std::int64_t stride = settings.evaluation_stride;
   for (int j = 0; j < counts.cv; ++j) {
     Cv& cv = of(j);
-    const bool due = (samples + j * stride / counts.cv) % stride == 0;
+    const bool due = (reader.samples() + j * stride / counts.cv) % stride == 0;
     if (due) {
       detector.fold(j);
       judge_nonlinear(j);
@@ -337,8 +289,8 @@ void Monitor::State::follow(int j) {
     for (int i = 0; i < counts.inputs() && detector.memory(j, m).ready(); ++i)
       off = off || judge.unlikely(detector.evidence(j, i, m));
   if (!off) cv.rival = {};
-  if (!off || samples < cv.followed_next) return;
-  cv.followed_next = samples + calibration::confounding::kBetween;
+  if (!off || reader.samples() < cv.followed_next) return;
+  cv.followed_next = reader.samples() + calibration::confounding::kBetween;
   cv.rival = detector.rival(j, outside.followed(j, detector.history(), detector.regression(j)));
 }
 
@@ -361,7 +313,7 @@ void Monitor::State::judge_channels() {
   const bool against_line = settings.threshold == ThresholdKind::kMeanLine;
   if (against_line) correlation.evaluate();
   const double line = against_line ? correlation.mean_line() : 0.0;
-  const bool mvs_still = inputs.mvs_still();
+  const bool mvs_still = reader.inputs().mvs_still();
   for (int i = 0; i < counts.inputs(); ++i) {
     for (int j = 0; j < counts.cv; ++j) {
       const RegressionMemory& memory = detector.memory(j);
@@ -375,7 +327,7 @@ void Monitor::State::judge_channels() {
                    .evidence = detector.evidence(j, i),
                    .alarms = of(j).alarms,
                    .mvs_still = mvs_still,
-                   .at_limit = inputs.at_limit(i),
+                   .at_limit = reader.inputs().at_limit(i),
                    .confounder = of(j).rival.wins ? counts.inputs() + of(j).rival.signal : -1,
                    .peak = against_line ? correlation.peak(j, i) : CorrelationPeak{},
                    .mean_line = line,
@@ -388,7 +340,7 @@ void Monitor::State::judge_channels() {
 }
 
 Belief Monitor::State::belief(int cv) const {
-  return belief_in(screen.repeated_share(cv), settings.gain_error_of_interest);
+  return belief_in(reader.screen().repeated_share(cv), settings.gain_error_of_interest);
 }
 
 double Monitor::State::gain_variation(int cv, int input) const {
@@ -412,8 +364,9 @@ Reason Monitor::State::bad_data(int cv, int input) const {
   if (judged.compressed) return Reason::kCompressed;
   const CvQuality& quality = judged.quality;
   const bool cv_lost = quality.without_row() > settings.fir_lags &&
-                       residuals.unknown_run(cv) > settings.fir_lags && !predictions.settling(cv);
-  const bool input_lost = inputs.unknown_run(input) > settings.fir_lags;
+                       reader.residuals().unknown_run(cv) > settings.fir_lags &&
+                       !reader.predictions().settling(cv);
+  const bool input_lost = reader.inputs().unknown_run(input) > settings.fir_lags;
   return cv_lost || input_lost || missing_input(cv, input) >= 0 || quality.mostly_unknown() ||
                  quality.implausible()
              ? Reason::kBadData
@@ -423,7 +376,7 @@ Reason Monitor::State::bad_data(int cv, int input) const {
 // The input that is to blame for bad data; -1: the CV itself, or this one.
 int Monitor::State::spoilt_input(int cv, int input) const {
   if (!cvs[static_cast<std::size_t>(cv)].compressed) return missing_input(cv, input);
-  return screen.compressed(cv) ? -1 : screen.compressed_input(cv);
+  return reader.screen().compressed(cv) ? -1 : reader.screen().compressed_input(cv);
 }
 
 // Another input that is lost, where the CV has no rows for so long: simulated or not, no row goes
@@ -431,7 +384,7 @@ int Monitor::State::spoilt_input(int cv, int input) const {
 int Monitor::State::missing_input(int cv, int input) const {
   if (cvs[static_cast<std::size_t>(cv)].quality.without_row() <= settings.fir_lags) return -1;
   for (int i = 0; i < counts.inputs(); ++i)
-    if (i != input && inputs.unknown_run(i) > settings.fir_lags) return i;
+    if (i != input && reader.inputs().unknown_run(i) > settings.fir_lags) return i;
   return -1;
 }
 
@@ -459,10 +412,10 @@ void Monitor::push(const Frame& frame) {
   }
   s.first = false;
   s.last_interval = frame.interval;
-  s.screen.push(frame);
-  if (s.screen.anew()) s.begin_anew();  // the screen keeps its frames
-  while (const Frame* screened = s.screen.next()) s.take_frame(*screened);
-  s.counters.implausible = s.screen.counters();
+  s.reader.push(frame);
+  if (s.reader.anew()) s.begin_anew();  // the screen keeps its frames
+  while (const Frame* screened = s.reader.next()) s.take_frame(*screened);
+  s.counters.implausible = s.reader.screen().counters();
 }
 
 void Monitor::correlate() {

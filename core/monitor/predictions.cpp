@@ -17,6 +17,10 @@ std::vector<bool> channels_of(const LinearModel& model, int length) {
   return acts;
 }
 
+bool simulates_some(const std::vector<bool>& may_predict) {
+  return std::find(may_predict.begin(), may_predict.end(), false) != may_predict.end();
+}
+
 Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_predict,
                          const std::vector<bool>& acts, int starting_samples, int settling_samples)
     : model_(model),

@@ -16,6 +16,9 @@ namespace mpm {
 /// `length` samples.
 [[nodiscard]] std::vector<bool> channels_of(const LinearModel& model, int length);
 
+/// Whether some CV's prediction is simulated from the first sample on and for good.
+[[nodiscard]] bool simulates_some(const std::vector<bool>& may_predict);
+
 /// Each CV's prediction: what comes with the frames or, as long as none came, what the model makes
 /// of the inputs. Where the control system says what its model predicts, no simulation is asked.
 /// No allocation after construction.

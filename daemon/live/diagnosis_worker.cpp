@@ -8,6 +8,7 @@
 
 #include "core/parallel/mutex.hpp"
 #include "daemon/host/low_priority.hpp"
+#include "daemon/host/memory.hpp"
 #include "idl/condition_variable.hpp"
 
 namespace mpm::live {
@@ -102,6 +103,7 @@ void DiagnosisWorker::run(State& state) {
       outcome.emplace();
       outcome->problem = error.what();
     }
+    host::give_memory_back();  // a diagnosis takes a hundred times what a unit does
     if (outcome) {
       outcome->asker = job.asker;
       outcome->only_wrote = job.only_writes;

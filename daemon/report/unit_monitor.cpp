@@ -11,12 +11,6 @@
 namespace mpm::report {
 namespace {
 
-std::vector<bool> predictions_of(const config::UnitConfig& config) {
-  std::vector<bool> given;
-  for (const config::CvSignal& cv : config.cv) given.push_back(!cv.prediction.empty());
-  return given;
-}
-
 // Beyond these the data do not resolve a number, or the errors are no longer those of small steps
 // that are estimated: a factor of 10 of the time constants, an interval of a factor of 5 either
 // way, one of the dead time that is wider than it and a few samples.
@@ -67,6 +61,12 @@ AlarmRecord alarm_of(const ChannelRecord& channel, const AlarmTransition& transi
 }
 
 }  // namespace
+
+std::vector<bool> predictions_of(const config::UnitConfig& config) {
+  std::vector<bool> given;
+  for (const config::CvSignal& cv : config.cv) given.push_back(!cv.prediction.empty());
+  return given;
+}
 
 UnitMonitor::UnitMonitor(const config::UnitConfig& config)
     : config_(config),

@@ -14,6 +14,9 @@ class Archive;
 
 namespace mpm::report {
 
+/// Per CV, whether its prediction may come with the frames.
+[[nodiscard]] std::vector<bool> predictions_of(const config::UnitConfig& config);
+
 /// The monitor of one unit, speaking in tags: frames in, records out. The daemon and `mpm detect`
 /// both go through here, so that the same frames give the same records.
 class UnitMonitor {

@@ -76,10 +76,10 @@ nlohmann::ordered_json performance_json(const PerformanceRecord& record) {
 PerformanceTally::PerformanceTally(const config::UnitConfig& unit)
     : unit_(unit), meter_(performance_setup(unit)), sums_(meter_.setup()) {}
 
-void PerformanceTally::push(const Frame& frame, const Monitor& monitor) {
+void PerformanceTally::push(const Frame& frame, std::span<const JudgedFrame> judged) {
   if (!meter_.takes(frame)) return;
   meter_.take(frame, sums_);
-  for (const JudgedFrame& judged : monitor.judged()) meter_.judge(judged, sums_);
+  for (const JudgedFrame& one : judged) meter_.judge(one, sums_);
 }
 
 PerformanceRecord PerformanceTally::record() const {

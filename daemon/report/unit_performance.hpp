@@ -1,9 +1,10 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "config/unit_config.hpp"
-#include "core/monitor/monitor.hpp"
+#include "core/monitor/cv_reading.hpp"
 #include "core/performance/performance_meter.hpp"
 #include "core/record/performance_record.hpp"
 
@@ -27,8 +28,8 @@ class PerformanceTally {
  public:
   explicit PerformanceTally(const config::UnitConfig& unit);
 
-  /// After `monitor` has taken the frame.
-  void push(const Frame& frame, const Monitor& monitor);
+  /// A frame, and what came to be read of it and of those before (`Monitor::judged`).
+  void push(const Frame& frame, std::span<const JudgedFrame> judged);
   /// What follows comes with another monitor.
   void begin_run() { meter_.begin_run(); }
   [[nodiscard]] PerformanceRecord record() const;

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <memory>
@@ -34,7 +35,7 @@ constexpr double kGrace = 8000.0;                // s: twice the memory
 constexpr std::size_t kViewers = 20;
 constexpr double kBetweenEvents = 12.0;  // s, mean
 constexpr double kBetweenMeasures = 1.0;
-constexpr double kGrown = 30.0;      // s: what a process has by then it has
+constexpr int kGrown = 60'000;       // samples: what a process keeps of them it then has
 constexpr double kQuietShare = 0.3;  // at the end nothing ends it: how one process fares for long
 constexpr int kFloodRate = 20'000;
 constexpr double kSecondsPerDay = 86'400.0;
@@ -43,6 +44,7 @@ struct Options {
   double minutes = 5.0;
   double rate = 1500.0;
   std::uint64_t seed = 100'001;
+  std::string trace;
 };
 
 int free_port() {
@@ -149,6 +151,7 @@ class Soak {
   std::map<Event, int> events_;
   int ended_badly_ = 0;
   std::int64_t flooded_ = 0;
+  std::ofstream trace_;
   Slope memory_, disk_;
   double most_memory_ = 0.0, most_disk_ = 0.0, processor_s_ = 0.0, flood_rate_ = 0.0;
 };
@@ -273,7 +276,10 @@ void Soak::measure() {
   const double memory = monitor_->resident_mb(), disk = monitor_->disk_mb();
   most_memory_ = std::max(most_memory_, memory);
   most_disk_ = std::max(most_disk_, disk);
-  if (monitor_->age_s() > kGrown) memory_.add(monitor_->lives(), days, memory);
+  if (trace_.is_open())
+    trace_ << seconds_since(start_) << ',' << days << ',' << monitor_->lives() << ',' << memory
+           << ',' << disk << '\n';
+  if (monitor_->age_s() * options_.rate > kGrown) memory_.add(monitor_->lives(), days, memory);
   if (seconds_since(start_) > 30.0 * options_.minutes) disk_.add(0, days, disk);
 }
 
@@ -286,6 +292,10 @@ int Soak::run() {
     throw std::runtime_error("no monitor: " + test::read_file(folder_.file("mpmd-0.log")));
   viewers_ = std::make_unique<Viewers>(port_, kViewers);
   start_ = Clock::now();
+  if (!options_.trace.empty()) {
+    trace_.open(options_.trace);
+    trace_ << "seconds,days,process,memory_mb,disk_mb\n" << std::unitbuf;
+  }
   const double end_s = 60.0 * options_.minutes;
   double next_event = kBetweenEvents;
   start_stopped_watcher();
@@ -362,6 +372,7 @@ int main(int argc, char** argv) {
   app.add_option("--rate", options.rate, "samples a second, of a plant that has one a second")
       ->capture_default_str();
   app.add_option("--seed", options.seed, "of the plant and of what happens")->capture_default_str();
+  app.add_option("--trace", options.trace, "memory and disk each second, as CSV into this file");
   CLI11_PARSE(app, argc, argv);
   try {
     return mpm::soak::Soak(options).run();

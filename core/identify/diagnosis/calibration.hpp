@@ -21,8 +21,8 @@ inline constexpr int kComparedQuarter = 4;
 inline constexpr double kClearlyLess = 0.3;
 inline constexpr double kSomewhatLess = 0.1;
 
-/// Rows of a recording; beyond, a diagnosis takes minutes for what it knows as well from these.
-inline constexpr Eigen::Index kMostDiagnosed = 50'000;
+/// Rows of a recording; beyond, a diagnosis takes minutes for what it knows as well from fewer.
+inline constexpr Eigen::Index kMostDiagnosed = 50'000, kCondensed = 20'000;
 
 /// s.d. of a relative gain error beyond which the data cannot tell a good model from a bad one.
 inline constexpr double kBlindGainSd = 0.25;

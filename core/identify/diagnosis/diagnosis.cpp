@@ -316,7 +316,7 @@ Index needed_samples(const ModelSpec& model) {
   return 3 * kRowsPerNumber * (most + kFreeNoise.order + kOtherNumbers) / 2;
 }
 
-Index most_samples() { return kMostDiagnosed; }
+Index rows_to_diagnose(Index samples) { return samples > kMostDiagnosed ? kCondensed : samples; }
 
 Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Recording* validation,
                    const DiagnosisSettings& asked) {

@@ -63,8 +63,9 @@ struct Diagnosis {
 /// Too few rows for a diagnosis of this model are no diagnosis; so many are needed.
 [[nodiscard]] Eigen::Index needed_samples(const ModelSpec& model);
 
-/// More rows are no use: a longer recording is to be condensed (fit/condense.hpp).
-[[nodiscard]] Eigen::Index most_samples();
+/// The rows of a recording of so many that are worth a diagnosis: all of one of usual length, fewer
+/// of a longer one, which is to be condensed to them (fit/condense.hpp).
+[[nodiscard]] Eigen::Index rows_to_diagnose(Eigen::Index samples);
 
 /// Simulates `model` freely on `recording`, names what it gets wrong, extends it and measures the
 /// gain on samples that the fit has not seen: the end of `recording`, or all of `validation`.

@@ -1,6 +1,5 @@
 #include "core/identify/fit/problem.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +14,10 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+
+constexpr Index kRowsAtOnce = 256;
 
 double spread(const VectorXd& values, const VectorXd& known) {
   const double count = std::max(1.0, known.sum());
@@ -26,10 +28,33 @@ double spread(const VectorXd& values, const VectorXd& known) {
 
 }  // namespace
 
+// Rows come in blocks that stay in the cache, each reflected into the triangle of those before
+// (Householder; Golub and Van Loan 2013, 5.2). A column that is zero in a block costs nothing
+// there: a level or first state of a run has nothing to say of the others' rows.
 MatrixXd triangle(const MatrixXd& matrix) {
   const Index columns = matrix.cols();
-  const Eigen::HouseholderQR<MatrixXd> qr(matrix);
-  return qr.matrixQR().topRows(std::min(columns, matrix.rows())).triangularView<Eigen::Upper>();
+  MatrixXd result = MatrixXd::Zero(columns, columns);
+  MatrixXd block;
+  RowVectorXd shared(columns);
+  for (Index first = 0; first < matrix.rows(); first += kRowsAtOnce) {
+    block = matrix.middleRows(first, std::min(kRowsAtOnce, matrix.rows() - first));
+    for (Index j = 0; j < columns; ++j) {
+      const double below = block.col(j).squaredNorm();
+      if (below == 0.0) continue;  // not where it is no number
+      const double top = result(j, j);
+      const double diagonal = std::copysign(std::sqrt(top * top + below), -top);
+      block.col(j) /= top - diagonal;
+      result(j, j) = diagonal;
+      const Index right = columns - j - 1;
+      auto row = shared.head(right);
+      row = result.row(j).tail(right);
+      row.noalias() += block.col(j).transpose() * block.rightCols(right);
+      row *= (diagonal - top) / diagonal;
+      result.row(j).tail(right) -= row;
+      block.rightCols(right).noalias() -= block.col(j) * row;
+    }
+  }
+  return result.topRows(std::min(columns, matrix.rows()));
 }
 
 double mean_level(const CvData& data, const CvFit& fit) {
@@ -107,25 +132,7 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
     level.segment(first, count).setConstant(off);
     add({}, level);
   }
-  for (std::size_t c = 0; c < model.channels.size(); ++c) {
-    const ChannelSpec& channel = model.channels[c];
-    if (channel.cv != cv) continue;
-    const auto difference = [&](const ChannelError& error, double step) -> VectorXd {
-      ModelSpec changed = model;
-      changed.channels[c] = edited(channel, error, model.sample_time_s);
-      return (simulator_.cv(changed, cv) - base) / step;
-    };
-    const auto small = [&](const Quantity& what, double sd, const VectorXd& derivative) {
-      add({channel.input, &what, sd}, sd * derivative);
-    };
-    small(kGainRatio, tolerances_.gain,
-          difference({1.0 + kSmallRatioStep, 1.0, 0.0}, kSmallRatioStep));
-    small(kTimeConstantRatio, tolerances_.log_time_constant,
-          difference({1.0, std::exp(kSmallRatioStep), 0.0}, kSmallRatioStep));
-    if (std::holds_alternative<TransferFunction>(channel.dynamics))
-      small(kDeadTimeError, tolerances_.dead_time_samples,
-            difference({1.0, 1.0, kSmallDeadTimeStep * model.sample_time_s}, kSmallDeadTimeStep));
-  }
+  // What is of one run stands before what is of all (`triangle`).
   // A first state that is off by more than it shows would explain whatever one wants.
   // Noise alone is off by a few times what it moves by in a row.
   double moved = 0.0;
@@ -145,6 +152,25 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
         column(first + k) = size * std::exp(-static_cast<double>(k) / decay);
       add({}, column);
     }
+  }
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    const ChannelSpec& channel = model.channels[c];
+    if (channel.cv != cv) continue;
+    const auto difference = [&](const ChannelError& error, double step) -> VectorXd {
+      ModelSpec changed = model;
+      changed.channels[c] = edited(channel, error, model.sample_time_s);
+      return (simulator_.cv(changed, cv) - base) / step;
+    };
+    const auto small = [&](const Quantity& what, double sd, const VectorXd& derivative) {
+      add({channel.input, &what, sd}, sd * derivative);
+    };
+    small(kGainRatio, tolerances_.gain,
+          difference({1.0 + kSmallRatioStep, 1.0, 0.0}, kSmallRatioStep));
+    small(kTimeConstantRatio, tolerances_.log_time_constant,
+          difference({1.0, std::exp(kSmallRatioStep), 0.0}, kSmallRatioStep));
+    if (std::holds_alternative<TransferFunction>(channel.dynamics))
+      small(kDeadTimeError, tolerances_.dead_time_samples,
+            difference({1.0, 1.0, kSmallDeadTimeStep * model.sample_time_s}, kSmallDeadTimeStep));
   }
   data.nuisances.resize(samples, static_cast<Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i)

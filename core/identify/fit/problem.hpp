@@ -49,7 +49,8 @@ struct CvFit {
   double variance = 1.0;        ///< of the innovations, weighted
 };
 
-/// Upper triangle of a QR without Q; the last column is a right-hand side.
+/// Upper triangle of a QR without Q; the last column is a right-hand side. Columns that are zero in
+/// most rows cost least in front.
 [[nodiscard]] Eigen::MatrixXd triangle(const Eigen::MatrixXd& matrix);
 
 /// How far the CV is off by itself, CV units: the mean over its known rows of the levels that a fit

@@ -97,7 +97,7 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
     if (monitor.counters().frames == 0) report.first_ns = frame.source_time_ns;
     report.last_ns = frame.source_time_ns;
     monitor.push(frame);
-    performance.push(frame, monitor.monitor());
+    performance.push(frame, monitor.monitor().judged());
     report.alarms.insert(report.alarms.end(), monitor.alarms().begin(), monitor.alarms().end());
     journals.push(monitor);
   }

@@ -82,7 +82,8 @@ report::DiagnosisRun prepare(const DiagnoseOptions& options, const config::UnitC
   report::PerformanceTally performance(run.unit);
   Given data = read_all(options.data, run.unit, times, choice, run.notices, &performance);
   run.performance = performance.record();
-  const Eigen::Index every = rows_to_average(data.recording, run.unit.model, most_samples());
+  const Eigen::Index every =
+      rows_to_average(data.recording, run.unit.model, rows_to_diagnose(data.recording.samples()));
   run.condensing = condense(data, every, run.notices);
   run.unit.model.sample_time_s = data.recording.sample_time_s;
   run.recording = std::move(data.recording);

@@ -11,42 +11,24 @@
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/report/condensing/condensing_report.hpp"
-#include "daemon/report/unit_monitor.hpp"
+#include "daemon/report/unit_reading.hpp"
 #include "daemon/report/worst_tags.hpp"
 
 namespace mpm::app {
 namespace {
 
-/// Whose monitor reads every CV and prediction as that of `unit` does, but regresses as little as
-/// can be: no index of performance comes of a regression, which takes ten times as long.
-config::UnitConfig that_only_reads(config::UnitConfig unit) {
-  MonitorSettings& monitor = unit.monitor;
-  monitor.nonlinear = NonlinearTest::kOff;
-  monitor.fir_lags = monitor.residual_order = monitor.controlling_lags = 1;
-  monitor.first_lag = monitor.last_lag = 1;
-  monitor.tail_s = unit.sample_time_s;
-  return unit;
-}
-
-/// The frames of another source; on their way those that `choice` takes are tallied, with a monitor
-/// of their own.
+/// The frames of another source; on their way those that `choice` takes are tallied.
 class TalliedFrames : public files::FrameSource {
  public:
   TalliedFrames(files::FrameSource& frames, const config::UnitConfig& unit,
                 const files::TimeChoice& choice, report::PerformanceTally& performance)
-      : frames_(frames),
-        choice_(choice),
-        monitor_(that_only_reads(unit)),
-        performance_(performance) {
+      : frames_(frames), choice_(choice), reading_(unit), performance_(performance) {
     performance_.begin_run();
   }
 
   [[nodiscard]] bool next(Frame& frame) override {
     if (!frames_.next(frame)) return false;
-    if (choice_.takes(frame.source_time_ns)) {
-      monitor_.push(frame);
-      performance_.push(frame, monitor_.monitor());
-    }
+    if (choice_.takes(frame.source_time_ns)) performance_.push(frame, reading_.push(frame));
     return true;
   }
   [[nodiscard]] const std::vector<std::string>& notices() const override {
@@ -56,7 +38,7 @@ class TalliedFrames : public files::FrameSource {
  private:
   files::FrameSource& frames_;
   const files::TimeChoice& choice_;
-  report::UnitMonitor monitor_;
+  report::UnitReading reading_;
   report::PerformanceTally& performance_;
 };
 
@@ -102,7 +84,8 @@ Given read_given(const std::vector<std::string>& files, const config::UnitConfig
 }
 
 Condensing condense(Given& given, Eigen::Index every, std::vector<std::string>& notices) {
-  Condensed some = condensed(given.recording, every, most_samples());
+  const Recording& all = given.recording;
+  Condensed some = condensed(all, every, rows_to_diagnose(all.samples()));
   std::vector<std::string> files;
   for (const std::size_t run : some.run_of) files.push_back(given.files.at(run));
   given.recording = std::move(some.recording);

@@ -66,8 +66,8 @@ TEST_CASE("before any sample nothing is told, and shares of one limit are of tha
   for (SignalBlock& block : frame.blocks)
     std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
   monitor.push(frame);
-  tally.push(frame, monitor.monitor());
-  tally.push(frame, monitor.monitor());  // not newer
+  tally.push(frame, monitor.monitor().judged());
+  tally.push(frame, monitor.monitor().judged());  // not newer
   const PerformanceRecord one = tally.record();
   CHECK(one.samples == 1);
   CHECK(one.mvs[0].at_low == 1.0);  // it is 0

@@ -332,5 +332,28 @@ TEST_CASE("rows are whitened, weighted and in s.d.") {
             .isApprox(Eigen::Vector4d(0.0, 1.5, -2.0, 2.0), 1e-14));
 }
 
+// R'R = A'A of any matrix, however its zeros lie (Golub and Van Loan 2013, 5.2).
+TEST_CASE("a triangle is that of its rows, zeros or not") {
+  constexpr Index kColumns = 9, kLong = 1000;
+  MatrixXd matrix(kLong, kColumns);
+  for (Index c = 0; c < kColumns; ++c)
+    matrix.col(c) = test::white(static_cast<std::uint64_t>(c), kLong);
+  matrix.col(0).tail(kLong - 300).setZero();
+  matrix.col(1).head(300).setZero();
+  matrix.col(4).setZero();
+  matrix.col(6) = 1e8 * matrix.col(2);
+  const MatrixXd r = triangle(matrix);
+  REQUIRE(r.rows() == kColumns);
+  CHECK(r.isUpperTriangular(0.0));
+  const VectorXd scale = matrix.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  const MatrixXd as_given = scale.asDiagonal() * (matrix.transpose() * matrix) * scale.asDiagonal();
+  const MatrixXd as_made = scale.asDiagonal() * (r.transpose() * r) * scale.asDiagonal();
+  CHECK((as_made - as_given).cwiseAbs().maxCoeff() < 1e-13);
+  CHECK(triangle(matrix.topRows(4)).rows() == 4);
+
+  matrix(500, 3) = std::numeric_limits<double>::quiet_NaN();
+  CHECK(std::isnan(triangle(matrix)(3, 3)));
+}
+
 }  // namespace
 }  // namespace mpm

@@ -1,0 +1,76 @@
+#include "core/monitor/unit_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/archive/archive.hpp"
+#include "core/monitor/calibration.hpp"
+
+namespace mpm {
+namespace {
+
+// In which every channel begins to answer: however slow, it does so behind its dead time.
+int answering_samples(const LinearModel& model, const DerivedSettings& derived) {
+  const double dead_time = std::ceil(model.longest_dead_time_samples());
+  return static_cast<int>(std::min(static_cast<double>(derived.settling_samples) + derived.fir_lags,
+                                   dead_time + calibration::simulation::kBeginsToAnswer));
+}
+
+}  // namespace
+
+UnitReader::UnitReader(const LinearModel& model, const SignalCounts& counts,
+                       const std::vector<bool>& may_predict, const DerivedSettings& settings)
+    : UnitReader(model, counts, may_predict, settings,
+                 channels_of(model, answering_samples(model, settings))) {}
+
+UnitReader::UnitReader(const LinearModel& model, const SignalCounts& counts,
+                       const std::vector<bool>& may_predict, const DerivedSettings& settings,
+                       const std::vector<bool>& acts)
+    : screen_(counts, may_predict, acts,
+              static_cast<int>(std::ceil(model.longest_dead_time_samples()))),
+      inputs_(counts, settings.remembered * calibration::input_motion::kMemoryShare),
+      predictions_(
+          model, may_predict, acts,
+          simulates_some(may_predict) ? settings.starting_samples : settings.settling_samples,
+          settings.settling_samples),
+      residuals_(counts.cv) {
+  begun_.reserve(static_cast<std::size_t>(counts.cv));
+}
+
+const Frame* UnitReader::next() {
+  const Frame* frame = screen_.next();
+  if (frame == nullptr) return nullptr;
+  missing_ = samples_ == 0 ? 0 : frame->interval - interval_ - 1;
+  interval_ = frame->interval;
+  if (missing_ > 0) {
+    residuals_.skip(missing_);
+    predictions_.skip(missing_, inputs_);
+  }
+  begun_.clear();
+  if (predictions_.simulates()) predictions_.follow(screen_, [&](int cv) { begun_.push_back(cv); });
+  inputs_.read(*frame);
+  predictions_.begin(*frame, inputs_);
+  residuals_.read(*frame, predictions_);
+  predictions_.advance(inputs_);
+  ++samples_;
+  return frame;
+}
+
+void UnitReader::tell(const Frame& frame, JudgedFrame& judged) const {
+  judged.interval = frame.interval;
+  const SignalBlock& measured = frame[SignalKind::kCv];
+  for (std::size_t j = 0; j < judged.readings.size(); ++j) {
+    const int cv = static_cast<int>(j);
+    judged.readings[j] = {
+        measured.usable(cv) ? measured.values(cv) : std::numeric_limits<double>::quiet_NaN(),
+        residuals_.values()(cv)};
+  }
+}
+
+void UnitReader::archive(Archive& a) {
+  // not archived: missing_, begun_ (of each frame anew)
+  a(screen_, inputs_, predictions_, residuals_, samples_, interval_);
+}
+
+}  // namespace mpm
