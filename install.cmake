@@ -35,6 +35,8 @@ install(FILES idl/mpm.idl DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
 install(FILES ${said}/unit.schema.json daemon/package/prometheus-rules.yml
   daemon/package/grafana-dashboard.json DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm)
 install(FILES tests/hmi/loopback.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm RENAME cyclonedds.xml)
+install(FILES tests/hmi/secure.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm
+  RENAME cyclonedds-secure.xml)
 install(DIRECTORY config/units config/plants config/scenarios
   DESTINATION ${CMAKE_INSTALL_DATADIR}/mpm FILES_MATCHING PATTERN *.yaml)
 # The documentation, and all that it links to at the place where it links to it.

@@ -13,7 +13,7 @@ foreach(library mpm_config mpm_idl mpm_sim)
 endforeach()
 
 target_precompile_headers(mpm_files PRIVATE ${program_headers})
-foreach(library mpm_host mpm_mcap mpm_report mpm_history mpm_bus mpm_bag mpm_live mpm_http)
+foreach(library mpm_host mpm_keys mpm_mcap mpm_report mpm_history mpm_bus mpm_bag mpm_live mpm_http)
   target_precompile_headers(${library} REUSE_FROM mpm_files)
 endforeach()
 

@@ -97,6 +97,7 @@ const std::vector<Field<DdsSettings>>& bus_fields() {
        &S::max_participants,
        {.low = 1, .high = 1000},
        "processes of a domain on one host, without multicast"},
+      {"security", &S::security, kAny, "folder of keys (mpm keys); empty = whoever is there"},
   };
   return fields;
 }

@@ -55,7 +55,7 @@ void load_change(const Value& item, const ScenarioContext& context, ScenarioConf
   const Map map = item.map(
       {"cv", "mv", "gain_ratio", "time_constant_ratio", "dead_time_error", "from", "until"});
   Change change;
-  change.place = place_of(item);
+  change.place = item.where();
   if (const Value* ratio = map.find("gain_ratio"))
     change.gain_ratio = ratio->number().value_or(1.0);
   if (const Value* ratio = map.find("time_constant_ratio"))
@@ -81,7 +81,7 @@ void load_draw(const Value& value, const ScenarioContext& context, ScenarioConfi
   const Map map =
       value.map({"gain_ratio", "time_constant_ratio", "dead_time_error", "from", "until", "count"});
   RandomDraw draw;
-  draw.place = place_of(value);
+  draw.place = value.where();
   if (const Value* list = map.find("gain_ratio")) draw.gain_ratios = list->numbers();
   if (const Value* list = map.find("time_constant_ratio"))
     draw.time_constant_ratios = list->numbers(kPositive);

@@ -197,8 +197,6 @@ void load_disturbance(const Value& item, const ScenarioContext& context, Scenari
   }
 }
 
-Place place_of(const Value& item) { return {item.file(), item.line(), item.column(), item.path()}; }
-
 void load_test(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario) {
   const Map map = item.map({"mv", "size", "hold", "random", "from", "until"});
   TestSignal test;
@@ -218,7 +216,7 @@ void load_process_change(const Value& item, const ScenarioContext& context,
                          ScenarioConfig& scenario) {
   const Map map = item.map({"quantity", "value", "from", "until"});
   ProcessChange change;
-  change.place = place_of(item);
+  change.place = item.where();
   if (context.unit.simulation.process.empty())
     item.error("the unit file names no `simulation: process:` whose numbers could change");
   if (const Value* quantity = map.require("quantity"))

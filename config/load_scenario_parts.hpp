@@ -44,7 +44,6 @@ void load_disturbance(const Value& item, const ScenarioContext& context, Scenari
 void load_bad_data(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario);
 void load_scenario_setpoints(const Value& section, const ScenarioContext& context,
                              ScenarioConfig& scenario);
-[[nodiscard]] Place place_of(const Value& item);
 void load_test(const Value& item, const ScenarioContext& context, ScenarioConfig& scenario);
 void load_process_change(const Value& item, const ScenarioContext& context,
                          ScenarioConfig& scenario);

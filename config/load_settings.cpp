@@ -82,6 +82,12 @@ void load_dds(const Value* section, UnitConfig& config) {
   known.emplace_back("peers");
   const Map map = section->map(known);
   read_fields(map, bus_fields(), config.dds);
+  if (const Value* security = map.find("security");
+      security != nullptr && !config.dds.security.empty()) {
+    config.dds.security_at = security->where();
+    if (config.dds.security.front() != '/')
+      security->error("must be an absolute path: programs start in different folders");
+  }
   if (const Value* peers = map.find("peers")) {
     if (peers->is_null()) return;
     config.dds.peers.clear();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/finding.hpp"
+#include "config/place.hpp"
 #include "config/unit_config.hpp"
 
 /// What a simulated plant hides from its controller, as plain structs. "Plant against model".
@@ -14,14 +15,6 @@
 namespace mpm::config {
 
 inline constexpr double kForEver = std::numeric_limits<double>::infinity();
-
-/// Where in the scenario file something stands; line 0 = nowhere.
-struct Place {
-  std::string file;
-  int line = 0;
-  int column = 0;
-  std::string key;  ///< such as `changes[1]`
-};
 
 /// One deliberate difference between plant and model.
 struct Change {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/place.hpp"
 #include "core/alarm/alarm_settings.hpp"
 #include "core/identification/channel_hint.hpp"
 #include "core/model/model_spec.hpp"
@@ -47,6 +48,8 @@ struct DdsSettings {
   bool multicast = false;
   std::string partition;      ///< discovery tag that keeps plants apart; may be empty
   int max_participants = 60;  ///< processes of one domain on one host without multicast
+  std::string security;       ///< folder of keys, absolute; empty = no DDS Security
+  Place security_at;          ///< who says so
 };
 
 /// Noise on one CV: w(k) white with `sigma`, v(k) = w(k) / prod(1 - pole z^-1).

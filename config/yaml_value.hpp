@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/finding.hpp"
+#include "config/place.hpp"
 #include "config/range.hpp"
 
 /// Reading YAML with places: every value knows where it stands, whoever reads it writes what is
@@ -57,6 +58,7 @@ class Value {
   /// Line and column of the file, from 1.
   [[nodiscard]] int line() const { return mark_.line + 1; }
   [[nodiscard]] int column() const { return mark_.column + 1; }
+  [[nodiscard]] Place where() const { return {file(), line(), column(), path_}; }
   [[nodiscard]] bool is_null() const { return node_.IsNull(); }
   [[nodiscard]] bool is_scalar() const { return node_.IsScalar(); }
   [[nodiscard]] bool is_map() const { return node_.IsMap(); }

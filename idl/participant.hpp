@@ -21,6 +21,10 @@ struct DomainOptions {
   /// Larger samples are dropped, whether read or written; 0 = no limit of ours.
   int max_sample_kb = 0;
   bool use_environment = false;  ///< CYCLONEDDS_URI, where set, overrides all but the domain
+  /// Folder of keys (`mpm keys`), with one folder for each role; empty: whoever is there takes
+  /// part.
+  std::string security;
+  std::string role = "viewer";  ///< whose keys this participant has
 };
 
 /// CYCLONEDDS_URI is set, and a participant with these options does not look at it.

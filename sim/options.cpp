@@ -48,6 +48,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--domain", options.domain, "DDS domain, instead of the unit file's")
       ->check(CLI::Range(0, 230));
   app.add_option("--partition", options.partition, "discovery tag, instead of the unit file's");
+  app.add_option("--security", options.security,
+                 "folder of keys, as `mpm keys` makes, instead of the unit file's; taken are those "
+                 "of the gateway");
   app.footer(
       "Examples:\n"
       "  mpmsim --config shell3x3.yaml --scenario hidden_gain --seed 7 --csv run.csv\n"

@@ -28,6 +28,7 @@ struct Options {
   int readers = 1;
   std::optional<int> domain;
   std::optional<std::string> partition;
+  std::optional<std::string> security;
 };
 
 void declare(CLI::App& app, Options& options);

@@ -51,6 +51,8 @@ idl::DomainOptions domain_options(const config::DdsSettings& settings, const Opt
   domain.multicast = settings.multicast;
   domain.partition = options.partition.value_or(settings.partition);
   domain.max_participants = settings.max_participants;
+  domain.security = options.security.value_or(settings.security);
+  domain.role = "gateway";
   return domain;
 }
 

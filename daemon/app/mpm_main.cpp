@@ -43,6 +43,7 @@ int run(int argc, char** argv) {
   add_alarm_actions(app, exit_code);
   add_journal(app, exit_code);
   add_schema(app, exit_code);
+  add_keys(app, exit_code);
   add_completion(app, exit_code);
   add_man(app, exit_code);
   app.footer(

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +27,7 @@
 #include "daemon/host/standard_output.hpp"
 #include "daemon/http/server.hpp"
 #include "daemon/http/stored_events.hpp"
+#include "daemon/keys/check_keys.hpp"
 #include "daemon/live/command_queue.hpp"
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/make_diagnosis.hpp"
@@ -53,6 +56,7 @@ struct Options {
   bool print_config = false;
   std::optional<int> domain;
   std::optional<std::string> partition;
+  std::optional<std::string> security;
   live::ServiceOptions service;
   std::string state_folder = default_state_folder();
   std::string token_file;
@@ -76,6 +80,9 @@ void declare(CLI::App& app, Options& options) {
       ->check(CLI::Range(0, 230));
   app.add_option("--partition", options.partition,
                  "discovery tag of all units, instead of the unit files'");
+  app.add_option("--security", options.security,
+                 "folder of keys, as `mpm keys` makes, of all units, instead of the unit files'; "
+                 "taken are those of the monitor");
   app.add_option("--journal", options.service.journal,
                  "keep what is to be known later in this folder, as JSON lines that `mpm trend` "
                  "reads: changes at once, digests each minute");
@@ -173,12 +180,26 @@ class Page {
   http::Server server_;
 };
 
+/// Adds what is wrong with the monitor's keys, once where all units have those of an option.
+void check_keys(config::LoadUnitsResult& loaded) {
+  std::set<std::string> told;
+  for (const config::UnitConfig& unit : loaded.units)
+    for (const config::Finding& finding :
+         keys::check_keys(unit.dds, keys::Role::kMonitor, std::time(nullptr)))
+      if (told.insert(config::format(finding)).second) loaded.findings.push_back(finding);
+}
+
 config::LoadUnitsResult load(const Options& options) {
   config::LoadUnitsResult loaded = config::load_units(options.config);
   for (config::UnitConfig& unit : loaded.units) {
     if (options.domain) unit.dds.domain = *options.domain;
     if (options.partition) unit.dds.partition = *options.partition;
+    if (options.security) {
+      unit.dds.security = *options.security;
+      unit.dds.security_at = {"--security", 0, 0, ""};
+    }
   }
+  if (loaded.ok() && !options.print_config) check_keys(loaded);
   return loaded;
 }
 

@@ -8,6 +8,7 @@
 #include "core/text/number_text.hpp"
 #include "daemon/bus/domain_options.hpp"
 #include "daemon/files/folder_name.hpp"
+#include "daemon/keys/key_folder.hpp"
 #include "daemon/live/report_store.hpp"
 #include "daemon/live/unit_samples.hpp"
 
@@ -21,7 +22,7 @@ constexpr int kLargestSampleKb = 1024;
 constexpr std::size_t kMostInStatus = 3;  // units whose troubles are told
 
 idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOptions& options) {
-  idl::DomainOptions settings = bus::domain_options(unit.dds);
+  idl::DomainOptions settings = bus::domain_options(unit.dds, "monitor");
   settings.use_environment = options.use_environment;
   settings.max_sample_kb = kLargestSampleKb;
   return settings;
@@ -72,6 +73,8 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
       domain->attach_to(wait_set_);
     }
     UnitPipeline& pipeline = domain->add_unit(unit, samples_ ? &*samples_ : nullptr, now);
+    if (!settings.security.empty())
+      pipeline.set_keys_until(keys::valid_until(settings.security + "/" + settings.role));
     if (!options.journal.empty())
       pipeline.keep({unit, history::JournalFiles(options.journal, files::folder_name(unit.unit),
                                                  options.journal_keep / units.size())});

@@ -15,6 +15,8 @@
 #include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/files/aligning.hpp"
+#include "daemon/files/times/time_text.hpp"
+#include "daemon/keys/check_keys.hpp"
 #include "daemon/live/lost_troubles.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/unit_performance.hpp"
@@ -32,6 +34,7 @@ constexpr std::chrono::seconds kTold{60};
 // Another monitor says something each second.
 constexpr std::chrono::seconds kOtherMonitorGone{10};
 constexpr std::size_t kMostInDetail = 3;
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 // Of those without the token, to be kept: enough to see who tries, too few to fill a journal.
 constexpr int kMostRefusals = 60;
 constexpr std::chrono::minutes kRefusalPeriod{1};
@@ -261,7 +264,7 @@ void UnitPipeline::archive(Archive& a) {
   // not archived: now_, last_frame_, next_health_, stood_still_, stood_still_for_, incomplete_at_,
   // refused_limit_, beyond_limit_, output_limit_, restart_limit_, refusal_limit_ (the clock)
   // not archived: inputs_, trouble_log_, troubles_, trouble_text_, other_monitors_,
-  // other_monitor_spoke_ (what is around this process)
+  // other_monitor_spoke_, keys_until_ (what is around this process)
   a(aligner_, monitor_, performance_, alarms_);
   if (diagnosis_) a(*diagnosis_);
 }
@@ -479,7 +482,6 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   troubles_ = troubles(around);
   const std::vector<bus::Trouble>& found = troubles_;
   trouble_text_ = bus::joined_text(found, kMostInDetail);
-  constexpr std::int64_t kSecond = 1'000'000'000;
   for (const TroubleLog::Line& line : trouble_log_.update(found, now_, wall_ns() / kSecond))
     spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", config_.unit,
                 line.text);
@@ -530,6 +532,11 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   }
   if (other_monitor_speaks())
     add("other monitor", Severity::kMaintenanceRequired, monitors_text(around.self));
+  if (keys_until_ &&
+      wall_ns() / kSecond > *keys_until_ - std::chrono::seconds(keys::kNotice).count())
+    add("keys", Severity::kMaintenanceRequired,
+        "the keys of this monitor expire " +
+            files::formatted_utc(*keys_until_, "%Y-%m-%dT%H:%M:%SZ"));
   const auto add_journal = [&](const std::string& which, const std::string& problem) {
     if (!problem.empty())
       add(which.c_str(), Severity::kMaintenanceRequired,

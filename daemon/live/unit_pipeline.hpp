@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 #include <map>
 #include <optional>
 #include <string>
@@ -82,6 +83,8 @@ class UnitPipeline {
   void set_report_problem(std::string problem) {
     if (diagnosis_) diagnosis_->set_file_problem(std::move(problem));
   }
+  /// Until when this process may take part on the bus, UTC; told a month ahead.
+  void set_keys_until(std::time_t until) { keys_until_ = until; }
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
   void tick(Clock::time_point now, std::uint64_t unknown_unit, const bus::Surroundings& around);
   /// True while the list of endpoints in the surroundings is of use.
@@ -149,6 +152,7 @@ class UnitPipeline {
   std::map<std::uint64_t, OtherMonitor> other_monitors_;  // by writer
   bool other_monitor_spoke_ = false;                      // at the last health
   HealthRecord health_;
+  std::optional<std::time_t> keys_until_;
   std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
   host::RateLimiter refused_limit_, beyond_limit_, output_limit_, restart_limit_;
   host::RateLimiter refusal_limit_;

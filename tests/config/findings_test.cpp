@@ -182,6 +182,9 @@ TEST_CASE("Every mistake in a section is told at its place") {
        "u.yaml:8:15: error: dds.domain: must be >= 0 and <= 100, not 101"},
       {kModel + "dds: {multicast: 1}\n",
        "u.yaml:8:18: error: dds.multicast: must be true or false, not '1'"},
+      {kModel + "dds: {security: keys}\n",
+       "u.yaml:8:17: error: dds.security: must be an absolute path: programs start in different "
+       "folders"},
       {kModel + "dds: {peers: [a, [b]]}\n",
        "u.yaml:8:18: error: dds.peers[1]: must be a text, not a list"},
       // Simulation

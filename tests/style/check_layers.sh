@@ -90,6 +90,7 @@ TABLE
 floors daemon <<'TABLE'
 host
 files/times
+keys files/times
 files files/times
 files/csv files/times files
 mcap/format
@@ -112,9 +113,9 @@ bus/doctor bus
 bag files/times files files/csv mcap/format mcap/read mcap/write
 bag/record host files/times files mcap/read mcap/write mcap bag
 bag/replay host files/times mcap/read bag
-live host files/times files report/diagnosis report history bus
+live host keys files/times files report/diagnosis report history bus
 http host files report history bus live
-app/commands host files/times files files/csv mcap/read mcap report/terminal report/condensing report/diagnosis report/closed_loop report/identification report history history/trend bus bus/alarms bus/watch bus/doctor bag bag/record bag/replay live
-app host live http app/commands
+app/commands host keys files/times files files/csv mcap/read mcap report/terminal report/condensing report/diagnosis report/closed_loop report/identification report history history/trend bus bus/alarms bus/watch bus/doctor bag bag/record bag/replay live
+app host keys live http app/commands
 TABLE
 exit $status

@@ -145,6 +145,7 @@ CLI::App* add_action(CLI::App& app, int& exit_code, const char* name, AlarmActio
                      const char* description, const std::shared_ptr<ActionOptions>& options) {
   CLI::App* command = app.add_subcommand(name, description);
   options->action = action;
+  options->domain.role = "operator";
   add_domain_flags(*command, options->domain,
                    [options](const config::UnitConfig& unit) { options->unit = unit.unit; });
   command->add_option("--unit", options->unit, "whose alarm (default: that of --config)");

@@ -51,6 +51,8 @@ void add_alarm_actions(CLI::App& app, int& exit_code);
 void add_journal(CLI::App& app, int& exit_code);
 /// `mpm schema`: JSON Schema of unit files.
 void add_schema(CLI::App& app, int& exit_code);
+/// `mpm keys`: who may take part on a secured bus.
+void add_keys(CLI::App& app, int& exit_code);
 /// `mpm completion`: what a shell needs to complete command lines. `mpm man`: the manual page. Both
 /// tell of the commands that there are when they run.
 void add_completion(CLI::App& app, int& exit_code);

@@ -96,8 +96,8 @@ int doctor(const DoctorOptions& options) {
     places.clear();
     std::map<std::string, std::size_t> known;  // by network settings
     for (const config::UnitConfig& unit : loaded.units) {
-      const idl::DomainOptions domain =
-          with_flags(*options.command, bus::domain_options(unit.dds), options.domain);
+      const idl::DomainOptions domain = with_flags(
+          *options.command, bus::domain_options(unit.dds, options.domain.role), options.domain);
       const auto [place, is_new] = known.try_emplace(idl::domain_xml(domain), places.size());
       if (is_new) places.push_back({domain, {}});
       places[place->second].units.push_back(bus::expected_inputs(unit, files::needed_kinds(unit)));

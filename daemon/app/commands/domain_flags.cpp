@@ -16,7 +16,7 @@ CLI::Option* add_domain_flags(CLI::App& command, idl::DomainOptions& domain, OnU
     for (const config::Finding& finding : loaded.findings)
       std::cerr << config::format(finding) << '\n';
     if (!loaded.ok()) throw CLI::ValidationError("--config", file + " is no good unit file");
-    domain = bus::domain_options(loaded.config.dds);
+    domain = bus::domain_options(loaded.config.dds, domain.role);
     if (on_unit) on_unit(loaded.config);
   };
   CLI::Option* config = command.add_option_function<std::string>(
@@ -41,6 +41,8 @@ void add_bus_flags(CLI::App& command, idl::DomainOptions& domain) {
   command.add_option("--peer", domain.peers, "host to look for others on; repeatable")
       ->allow_extra_args(false);  // what follows may be a file or a topic
   command.add_flag("--multicast", domain.multicast, "look for others by multicast");
+  command.add_option("--security", domain.security,
+                     "folder of keys, as `mpm keys` makes; taken are those of the " + domain.role);
   command.add_flag("--dds-from-environment", domain.use_environment,
                    "take the DDS settings from CYCLONEDDS_URI");
 }
@@ -53,6 +55,7 @@ idl::DomainOptions with_flags(const CLI::App& command, idl::DomainOptions settin
   if (given("--interface")) settings.interface = flags.interface;
   if (given("--peer")) settings.peers = flags.peers;
   if (given("--multicast")) settings.multicast = flags.multicast;
+  if (given("--security")) settings.security = flags.security;
   settings.use_environment = flags.use_environment;
   return settings;
 }

@@ -34,6 +34,7 @@ struct PublishOptions {
   TimesText times;
   std::optional<int> domain;
   std::optional<std::string> partition;
+  std::optional<std::string> security;
   double wait_readers_s = 5.0;
   int readers = 1;
   bool real_time = false;
@@ -82,9 +83,10 @@ int publish_lines(const PublishOptions& options, const config::UnitConfig& unit,
     return 0;
   }
   files::LineFrames& lines = *first;
-  idl::DomainOptions domain = bus::domain_options(unit.dds);
+  idl::DomainOptions domain = bus::domain_options(unit.dds, "gateway");
   domain.domain = options.domain.value_or(domain.domain);
   domain.partition = options.partition.value_or(domain.partition);
+  domain.security = options.security.value_or(domain.security);
   domain.use_environment = options.use_environment;
   warn_of_environment(domain);
   const idl::Participant participant(domain);
@@ -164,6 +166,9 @@ void add_publish(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0, 230));
   command->add_option("--partition", options->partition,
                       "discovery tag, instead of the unit file's");
+  command->add_option("--security", options->security,
+                      "folder of keys, as `mpm keys` makes, instead of the unit file's; taken are "
+                      "those of the gateway");
   command->add_flag("--dds-from-environment", options->use_environment,
                     "take the DDS settings from CYCLONEDDS_URI");
   command->footer(

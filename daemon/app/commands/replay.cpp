@@ -260,6 +260,7 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--readers", options->readers, "how many readers of every topic to wait for")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  options->domain.role = "gateway";
   add_domain_flags(*command, options->domain);
   command->footer(
       "Keys: space pause, s or right arrow step, + and - or up and down speed, q quit\n"

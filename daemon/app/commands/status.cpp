@@ -129,8 +129,8 @@ std::vector<Place> places_of(const std::vector<config::UnitConfig>& units,
   std::map<std::string, std::size_t> known;  // by network settings
   std::vector<Place> places;
   for (const config::UnitConfig& unit : units) {
-    const idl::DomainOptions domain =
-        with_flags(*options.command, bus::domain_options(unit.dds), options.domain);
+    const idl::DomainOptions domain = with_flags(
+        *options.command, bus::domain_options(unit.dds, options.domain.role), options.domain);
     const bool wanted = options.units.empty() || std::erase(without, unit.unit) > 0;
     if (!wanted && !places.empty()) continue;
     const auto [place, is_new] = known.try_emplace(idl::domain_xml(domain), places.size());
