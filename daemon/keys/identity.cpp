@@ -16,7 +16,8 @@ namespace {
 constexpr int kSerialBits = 127;  // positive, and as good as unique
 
 [[noreturn]] void fail(const std::string& what) {
-  const char* reason = ERR_reason_error_string(ERR_get_error());
+  const char* reason = ERR_reason_error_string(ERR_peek_last_error());
+  ERR_clear_error();
   throw std::runtime_error(what + ": " + (reason != nullptr ? reason : "cannot be read"));
 }
 
@@ -193,7 +194,9 @@ void verify_certificate(const std::string& certificate, const std::string& autho
   const StoreContext context(required(X509_STORE_CTX_new(), "memory"));
   require(X509_STORE_CTX_init(context.get(), store.get(), checked.get(), nullptr) == 1, "memory");
   X509_STORE_CTX_set_time(context.get(), 0, at);
-  if (X509_verify_cert(context.get()) != 1)
+  const bool verified = X509_verify_cert(context.get()) == 1;
+  ERR_clear_error();  // the reason is in the context
+  if (!verified)
     throw std::runtime_error(
         X509_verify_cert_error_string(X509_STORE_CTX_get_error(context.get())));
 }

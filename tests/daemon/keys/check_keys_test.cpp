@@ -61,9 +61,13 @@ TEST_CASE(
       Identity::authority("mpm bus authority", {checked.now - kDay, checked.now + kDay});
   const auto said_with = [&](const char* file, const std::string& text) {
     const std::string before = read_file(checked.at(file));
-    write_file(checked.at(file), text);
+    const auto put = [&](const std::string& content) {
+      write_file(checked.at(file), content);
+      fs::permissions(checked.at(file), fs::perms::owner_read | fs::perms::owner_write);
+    };
+    put(text);
     std::vector<std::string> lines = checked.said(checked.now);
-    write_file(checked.at(file), before);
+    put(before);
     for (std::string& line : lines) CHECK_THAT(line, Catch::StartsWith(kHead));
     REQUIRE(!lines.empty());
     return lines.front().substr(kHead.size());
