@@ -7,6 +7,7 @@
 
 #include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
+#include "core/mismatch/slow_noise.hpp"
 #include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
@@ -43,8 +44,8 @@ void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
 void ChannelEvaluator::archive(Archive& a) {
   // not archived: shape_, signatures_ (construction)
   // not archived: explained_, estimates_, covariance_, excitation_, usual_, joint_, joint_usual_,
-  // materiality_, sizes_, estimate_, directions_, error_, joint_error_ (each evaluation begins
-  // anew)
+  // materiality_, sizes_, estimate_, directions_, error_, joint_error_, slow_noise_ (each
+  // evaluation begins anew)
   a(limits_);
 }
 
@@ -55,6 +56,8 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
     noise.variance = std::pow(rounding_of(cv), 2) / memory.weight_sum;
     noise.block_variance = noise.variance;
   }
+  slow_noise_ =
+      slow_noise_ratio(1.0 - estimates_.own_past().sum(), slow_columns(), memory.effective_rows());
   joint_.read(cv, memory.factor, signatures_, noise, estimates_);
   const double all = estimates_.rotated().squaredNorm();
   explained_ = {all, all - joint_.left_square(), noise.variance};
@@ -69,6 +72,14 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
     if (evidence[i].excitation_index >
         calibration::confounding::kMasked * evidence[i].excitation_index_alone)
       evidence[i].confounder = excitation_.confounder(i, estimates_);
+}
+
+// The constant, what a wrong start leaves, and of each input that moves its level and its means.
+double ChannelEvaluator::slow_columns() const {
+  std::size_t columns = 1 + shape_.start_poles.size();
+  for (int i = 0; i < shape_.inputs; ++i)
+    if (estimates_.moved(i)) columns += 1 + shape_.tail_poles.size();
+  return static_cast<double>(columns);
 }
 
 // Of what the model makes the inputs do, over all rows.
@@ -97,6 +108,8 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
     judge_jointly(cv, input, noise, evidence);
   else if (channel.gain != 0.0)  // of a channel that the model lacks no error is usual
     judge_alone(cv, input, noise, evidence);
+  evidence.gain_error.deviation *= slow_noise_;
+  evidence.log_time_error.deviation *= slow_noise_;
   const MaterialityLimits& limits = limits_[index(cv, input)];
   if (limits.gain_alone && !evidence.usual)
     evidence.p_value_material =

@@ -79,6 +79,7 @@ class ChannelEvaluator {
   void scaled_error(const Signature& error, int input, Eigen::Ref<Eigen::VectorXd> out) const;
   [[nodiscard]] double reference_gain(int cv, int input) const;
   [[nodiscard]] double rounding_of(int cv) const;
+  [[nodiscard]] double slow_columns() const;
 
   Explained explained_;
   RegressionShape shape_;
@@ -97,6 +98,7 @@ class ChannelEvaluator {
   Eigen::MatrixXd directions_;  // block x error_column::kCount, whitened
   Eigen::VectorXd error_;
   Eigen::VectorXd joint_error_;  // kUsualErrors
+  double slow_noise_ = 1.0;      // by so much s.d. of gains and time constants are too small
 };
 
 }  // namespace mpm
