@@ -56,8 +56,9 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
     noise.variance = std::pow(rounding_of(cv), 2) / memory.weight_sum;
     noise.block_variance = noise.variance;
   }
+  const double own = 1.0 - estimates_.own_past().sum();
   slow_noise_ =
-      slow_noise_ratio(1.0 - estimates_.own_past().sum(), slow_columns(), memory.effective_rows());
+      integrates(cv) ? 1.0 : slow_noise_ratio(own, slow_columns(own), memory.effective_rows());
   joint_.read(cv, memory.factor, signatures_, noise, estimates_);
   const double all = estimates_.rotated().squaredNorm();
   explained_ = {all, all - joint_.left_square(), noise.variance};
@@ -74,12 +75,25 @@ void ChannelEvaluator::evaluate(int cv, const RegressionMemory& memory, ChannelE
       evidence[i].confounder = excitation_.confounder(i, estimates_);
 }
 
-// The constant, what a wrong start leaves, and of each input that moves its level and its means.
-double ChannelEvaluator::slow_columns() const {
-  std::size_t columns = 1 + shape_.start_poles.size();
+// Of such a CV's wrong channels, too, the residual goes on by itself.
+bool ChannelEvaluator::integrates(int cv) const {
   for (int i = 0; i < shape_.inputs; ++i)
-    if (estimates_.moved(i)) columns += 1 + shape_.tail_poles.size();
-  return static_cast<double>(columns);
+    if (sizes_.integrates(cv, i)) return true;
+  return false;
+}
+
+// The constant, what a wrong start leaves, and of each input that moves its level and its means, as
+// far as they move more slowly than the noise.
+double ChannelEvaluator::slow_columns(double own) const {
+  const auto share = [own](double rows) { return rows / (rows + 1.0 / own); };
+  double columns = 1.0 + static_cast<double>(shape_.start_poles.size());
+  for (int i = 0; i < shape_.inputs && own > 0.0; ++i) {
+    if (!estimates_.moved(i)) continue;
+    const double rows = estimates_.memory(i);
+    columns += share(rows);
+    for (const double pole : shape_.tail_poles) columns += share(rows + 1.0 / (1.0 - pole));
+  }
+  return columns;
 }
 
 // Of what the model makes the inputs do, over all rows.

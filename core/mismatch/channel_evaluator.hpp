@@ -79,7 +79,8 @@ class ChannelEvaluator {
   void scaled_error(const Signature& error, int input, Eigen::Ref<Eigen::VectorXd> out) const;
   [[nodiscard]] double reference_gain(int cv, int input) const;
   [[nodiscard]] double rounding_of(int cv) const;
-  [[nodiscard]] double slow_columns() const;
+  [[nodiscard]] bool integrates(int cv) const;
+  [[nodiscard]] double slow_columns(double own) const;
 
   Explained explained_;
   RegressionShape shape_;

@@ -22,6 +22,8 @@ class ErrorSizes {
 
   /// Samples by which a channel could answer earlier; 0 where the model has none.
   [[nodiscard]] double dead_time(int cv, int input) const { return response(cv, input).dead_time; }
+  /// Whether the model's channel has no gain but a slope.
+  [[nodiscard]] bool integrates(int cv, int input) const { return response(cv, input).integrating; }
 
   /// A channel of the CV that `estimates` was read for.
   struct Channel {

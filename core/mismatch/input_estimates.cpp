@@ -1,5 +1,6 @@
 #include "core/mismatch/input_estimates.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "core/mismatch/calibration.hpp"
@@ -52,6 +53,15 @@ void InputEstimates::read_own_past(int cv, const GivensQr& factor) {
   factor.solve(0, separable ? factor.columns() : lead_in_, coefficients_);
   shape_.own_past(cv, coefficients_, own_past_);
   residual_norm_ = factor.centred_norm(shape_.lags_of(cv));
+}
+
+double InputEstimates::memory(int input) const {
+  const int at = input * block_;
+  if (shape_.fir_lags < 2) return 1.0;
+  const auto last = triangle_.col(at).head(at + 2), before = triangle_.col(at + 1).head(at + 2);
+  const double norms = last.norm() * before.norm();
+  const double correlation = norms > 0.0 ? std::max(0.0, last.dot(before) / norms) : 0.0;
+  return 1.0 / std::max(1.0 - correlation, calibration::rounding::kSeparableShare);
 }
 
 void InputEstimates::move(int input, const Eigen::VectorXd& x,

@@ -54,6 +54,10 @@ class InputEstimates {
   /// values.
   [[nodiscard]] double movement(int input, const Eigen::VectorXd& x, Eigen::VectorXd& work) const;
 
+  /// For how many rows an input remembers where it was: 1 / (1 - the correlation of its last two
+  /// values), all but the inputs taken out. 1: not at all.
+  [[nodiscard]] double memory(int input) const;
+
   /// a_1..a_p and those of the means, of the CV's own residual, of the regression on everything
   /// where everything can be told apart, otherwise of the one on the residual lags alone: a loop
   /// without excitation makes inputs a function of residuals.

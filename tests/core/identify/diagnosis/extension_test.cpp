@@ -80,7 +80,7 @@ TEST_CASE("small errors and levels go into the model beside what was found") {
   fit.cv = 1;
   const CvData& data = bench.problem.data(1);
   fit.beta = VectorXd::Zero(data.nuisances.cols());
-  fit.beta.head(4) << 0.25, 1.5, -2.0, 0.5;
+  fit.beta.head(5) << 0.25, 0.0, 1.5, -2.0, 0.5;  // level, first state, the channel
   found.fit.cvs = {fit};
   const double level = 0.25 * data.nuisances(0, 0);
   const ModelSpec extended = extend(bench.problem, found, {true}, {true, true});

@@ -246,20 +246,21 @@ TEST_CASE("small errors are scaled by their tolerances") {
   const Recording recording = measured(1.0);
   const Problem problem(two_cvs(), 2, recording, Tolerances{}, NoiseModel{});
   const CvData& data = problem.data(1);
-  REQUIRE(data.meaning.size() == 5);  // level, three of the channel, first state
+  REQUIRE(data.meaning.size() == 5);  // level, first state, three of the channel
   const VectorXd u = two_inputs().col(0);
   CHECK(data.meaning[0].input == -1);
   CHECK(data.nuisances.col(0).isApproxToConstant(data.nuisances(0, 0), 0.0));
-  CHECK(data.meaning[1].input == 0);
-  CHECK(data.nuisances.col(1).isApprox(0.02 * test::first_order(u, 1.5, 20.0, 3), 1e-9));
+  CHECK(data.meaning[1].input == -1);
+  CHECK(data.meaning[2].input == 0);
+  CHECK(data.nuisances.col(2).isApprox(0.02 * test::first_order(u, 1.5, 20.0, 3), 1e-9));
   const VectorXd slower =
       test::first_order(u, 1.5, 20.0 * std::exp(1e-4), 3) - test::first_order(u, 1.5, 20.0, 3);
-  CHECK(data.nuisances.col(2).isApprox(0.03 * slower / 1e-4, 0.02));
+  CHECK(data.nuisances.col(3).isApprox(0.03 * slower / 1e-4, 0.02));
   const VectorXd base = test::first_order(u, 1.5, 20.0, 3),
                  later = test::first_order(u, 1.5, 20.0, 4);
-  CHECK(data.nuisances.col(3).isApprox(0.1 * (later - base), 0.1));
+  CHECK(data.nuisances.col(4).isApprox(0.1 * (later - base), 0.1));
   for (Index k = 0; k + 1 < kRows; ++k)
-    CHECK(data.nuisances(k + 1, 4) == Approx(data.nuisances(k, 4) * std::exp(-1.0 / 20.0)));
+    CHECK(data.nuisances(k + 1, 1) == Approx(data.nuisances(k, 1) * std::exp(-1.0 / 20.0)));
 }
 
 TEST_CASE("settling with a fit weighs its rows, with a step's own shock in them") {
