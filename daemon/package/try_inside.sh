@@ -52,19 +52,6 @@ alarmed || fail "the upgrade lost the journal"
 wait_for 10 "samples from before the upgrade" goes_on 3
 echo "upgraded: journal and statistics were kept"
 
-# As docs/security.md says.
-unit=/etc/mpm/units/shell3x3.yaml
-mpm keys --out /etc/mpm/keys >/try/keys.log 2>&1 || fail "mpm keys: $(tail -n 1 /try/keys.log)"
-chown -R mpm: /etc/mpm/keys/monitor
-sed -i 's|^dds: {}|dds: {security: /etc/mpm/keys}|' "$unit"
-mpmd --check --config /etc/mpm/units >/try/check.log 2>&1 || fail "keys: $(head -n 1 /try/check.log)"
-systemctl restart mpmd || fail "does not start with keys"
-mpm status --config "$unit" >/try/status.log 2>&1 || [ $? = 1 ] || fail "keys: $(tail -n 1 /try/status.log)"
-! mpm status --config /usr/share/mpm/plants/shell3x3.yaml >/try/stranger.log 2>&1 || fail "a stranger reads"
-grep -q shell /try/status.log || fail "no status with keys"
-rm -r /etc/mpm/keys
-echo "secured: $(status)"
-
 systemctl stop mpmd
 [ "$(systemctl show -p Result --value mpmd)" = success ] || fail "a stop is a failure"
 echo nonsense >/etc/mpm/units/shell3x3.yaml

@@ -19,7 +19,7 @@ using keys::Role;
 using keys::Validity;
 
 constexpr std::time_t kDay = 86400;
-constexpr std::chrono::seconds kPatience{20};
+constexpr std::chrono::seconds kPatience{60};
 constexpr std::chrono::milliseconds kMoment{100};
 
 /// A monitor on a secured bus, and whoever wants to take part.
