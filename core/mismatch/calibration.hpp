@@ -31,7 +31,6 @@ inline constexpr double kDirected = 1.35;  ///< of the test for the usual errors
 inline constexpr double kDirectedSquare = 6.0;
 inline constexpr double kBlock = 0.26;  ///< of the test of the whole block, 1
 inline constexpr double kBlockSquare = 1.0;
-inline constexpr double kMostSlowNoise = 3.0;  ///< ratio; beyond, nobody knows how slow it is
 }  // namespace few_rows
 
 /// Rows that a memory must hold before anything is said. With four per column p < 1e-4 still comes
