@@ -122,13 +122,14 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
     judge_jointly(cv, input, noise, evidence);
   else if (channel.gain != 0.0)  // of a channel that the model lacks no error is usual
     judge_alone(cv, input, noise, evidence);
-  evidence.gain_error.deviation *= slow_noise_;
-  evidence.log_time_error.deviation *= slow_noise_;
   const MaterialityLimits& limits = limits_[index(cv, input)];
   if (limits.gain_alone && !evidence.usual)
     evidence.p_value_material =
         std::max(evidence.p_value_material,
                  Materiality::beyond(evidence.gain_error, limits.gain, noise.freedom));
+  // What matters was calibrated without; how well a number is known is said with it.
+  evidence.gain_error.deviation *= slow_noise_;
+  evidence.log_time_error.deviation *= slow_noise_;
 }
 
 void ChannelEvaluator::judge_alone(int cv, int input, const EstimateNoise& noise,

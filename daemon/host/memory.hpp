@@ -2,7 +2,8 @@
 
 namespace mpm::host {
 
-/// What the process has freed, to the system, which the C library would keep for later.
+/// Gives the system what the process has freed and the C library would keep: after work that takes
+/// far more than what goes on all the time.
 void give_memory_back();
 
 }  // namespace mpm::host

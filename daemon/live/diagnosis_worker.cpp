@@ -103,7 +103,7 @@ void DiagnosisWorker::run(State& state) {
       outcome.emplace();
       outcome->problem = error.what();
     }
-    host::give_memory_back();  // a diagnosis takes a hundred times what a unit does
+    host::give_memory_back();
     if (outcome) {
       outcome->asker = job.asker;
       outcome->only_wrote = job.only_writes;

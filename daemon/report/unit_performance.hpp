@@ -30,7 +30,7 @@ class PerformanceTally {
 
   /// A frame, and what came to be read of it and of those before (`Monitor::judged`).
   void push(const Frame& frame, std::span<const JudgedFrame> judged);
-  /// What follows comes with another monitor.
+  /// What follows is another run.
   void begin_run() { meter_.begin_run(); }
   [[nodiscard]] PerformanceRecord record() const;
 

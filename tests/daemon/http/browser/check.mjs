@@ -244,8 +244,7 @@ try {
   await crowd.goto(running.url);
   await crowd.waitForSelector(".card");
   const painted = [];
-  // Until it was quick once: the machine has others to serve.
-  while (painted.length < 20 && !(Math.min(...painted) < kSlowest)) {
+  for (let runs = 0; runs < 3; ++runs) { // the best of three: the machine has others to serve
     await crowd.goto("about:blank");
     await crowd.goto(running.url);
     await crowd.waitForSelector(".card");
