@@ -56,10 +56,16 @@ struct Corner {
   }
   /// Kills whatever runs, and starts the next one; how many samples that one has from before.
   std::size_t kill_and_start() {
+    kill();
+    return start();
+  }
+  void kill() {
     Process& running = again ? *again : bench.daemon;
     running.send(SIGKILL);
     REQUIRE(running.wait(std::chrono::seconds(10)));
     again.reset();
+  }
+  std::size_t start() {
     std::vector<std::string> command{"mpmd",
                                      "--config",
                                      bench.folder.file("toy.yaml"),
@@ -169,14 +175,13 @@ TEST_CASE("a state that is damaged is replaced by the one before, or by the samp
   Plant plant(3.0);
   for (int i = 0; i < 4; ++i) corner.play(plant, 1000);
   const std::string samples = corner.folder.file("state") + "/samples/toy";
+  // While nobody writes. One more than is kept, where the kill came before the first had gone.
+  corner.kill();
   std::vector<std::filesystem::path> states;
-  // A third is there until the thread that has written it has removed the first.
-  REQUIRE(idl::eventually([&] {
-    states.clear();
-    for (const auto& entry : std::filesystem::directory_iterator(samples))
-      if (entry.path().filename().string().starts_with("state-")) states.push_back(entry.path());
-    return states.size() == 2;
-  }));
+  for (const auto& entry : std::filesystem::directory_iterator(samples))
+    if (entry.path().filename().string().starts_with("state-")) states.push_back(entry.path());
+  REQUIRE(states.size() >= 2);
+  REQUIRE(states.size() <= 3);
   const auto number = [](const std::filesystem::path& path) {
     return std::stoi(path.filename().string().substr(6));
   };
@@ -187,14 +192,15 @@ TEST_CASE("a state that is damaged is replaced by the one before, or by the samp
   std::string bytes = read_file(newest);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
   write_file(newest, bytes);
-  CHECK(corner.kill_and_start() == 4000);
+  CHECK(corner.start() == 4000);
   corner.play(plant, 5);
   REQUIRE(corner.bench.observe([&] { return corner.standing("u1").to == AlarmChange::kActive; }));
 
+  corner.kill();
   for (const auto& entry : std::filesystem::directory_iterator(samples))
     if (entry.path().filename().string().starts_with("state-"))
       std::filesystem::remove(entry.path());
-  const std::size_t kept = corner.kill_and_start();
+  const std::size_t kept = corner.start();
   CHECK(kept > 500);
   CHECK(kept < 2000);
 }
