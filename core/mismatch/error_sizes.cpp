@@ -61,7 +61,7 @@ double ErrorSizes::refine(const Channel& channel, double left, double enough,
   return best.left;
 }
 
-ErrorSizes::Errors ErrorSizes::descend(const Channel& channel, Eigen::Vector3d start) {
+ErrorSizes::Errors ErrorSizes::descend(const Channel& channel, const Eigen::Vector3d& start) {
   Errors now;
   now.value = within(channel, start);
   now.left = leave(channel, now.value, left_);

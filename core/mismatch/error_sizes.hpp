@@ -53,7 +53,7 @@ class ErrorSizes {
   [[nodiscard]] const Response& response(int cv, int input) const {
     return responses_[static_cast<std::size_t>(input * cvs_ + cv)];
   }
-  [[nodiscard]] Errors descend(const Channel& channel, Eigen::Vector3d start);
+  [[nodiscard]] Errors descend(const Channel& channel, const Eigen::Vector3d& start);
   [[nodiscard]] Eigen::Vector3d within(const Channel& channel, const Eigen::Vector3d& value) const;
   /// What the errors leave of the target.
   double leave(const Channel& channel, const Eigen::Vector3d& value,
