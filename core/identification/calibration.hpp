@@ -60,6 +60,11 @@ inline constexpr double kStepOfTimes = 1.5;     ///< most that a step changes th
 inline constexpr double kStepOfDeadTime = 4.0;  ///< samples, likewise
 inline constexpr double kStepOfDamping = 0.2;   ///< likewise
 
+// How far a dead time may be off (dead_time_reach.hpp).
+inline constexpr double kReachesOfDeadTime[] = {2.0, 3.0, 4.0, 6.0, 8.0, 12.0};  ///< s.d.
+inline constexpr double kRiseOf95 = 3.84;  ///< chi-square, one degree of freedom
+inline constexpr int kHeldSteps = 3;       ///< of Gauss-Newton
+
 // Which channels, of which form (structure.hpp).
 inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.
 inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton

@@ -9,6 +9,7 @@
 
 #include "core/identification/calibration.hpp"
 #include "core/identification/channel_answers.hpp"
+#include "core/identification/dead_time_reach.hpp"
 #include "core/identification/feedback_test.hpp"
 #include "core/identification/form_choice.hpp"
 #include "core/identification/residual_tests.hpp"
@@ -63,6 +64,7 @@ CvOutcome identify_cv(const Material& material, const IdentificationSettings& se
     choice = std::move(chosen.choice);
     outcome.fit = std::move(chosen.fit);
     answer.output_error = choice.output_error;
+    widen_dead_times(material.all, cv, choice.noise, *outcome.fit);
     const PredictionErrorFit whitened =
         choice.output_error ? fit_prediction_error(material.all, cv, outcome.fit->channels,
                                                    noise_model(material.all, cv), 0)
