@@ -138,7 +138,7 @@ std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file)
     text += ", and not of that alone: the dynamics or the dead time differ by much";
   if (channel.reason == Reason::kWeakExcitation)
     text += "; seen though " + printable(channel.mv) + " moved little";
-  if (!channel.material) text += "; too small to matter";
+  if (!channel.material) text += "; may be too small to matter";
   return text;
 }
 

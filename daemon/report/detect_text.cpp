@@ -70,7 +70,7 @@ std::string legend(const std::vector<MatrixRow>& rows) {
   };
   explain('m', "match");
   explain('X', "mismatch");
-  explain('x', "mismatch too small to matter");
+  explain('x', "mismatch that may be too small to matter");
   explain('u', "undetermined");
   explain('!', "in alarm");
   return text;
