@@ -10,6 +10,9 @@ namespace mpm {
 inline const double kNoRarity = 0.0;
 inline const double kUsualRarity = 2.0 * std::log(12.0);
 inline const double kStateRarity = 2.0 * std::log(24.0);
+/// On top, for a set-point that acts on a CV by itself: it moves nothing but the controller, unless
+/// somebody wired it elsewhere. Whatever the controller moves follows it, and looks like it.
+inline const double kSetpointRarity = 2.0 * std::log(10.0);
 /// A name is better than none.
 inline const double kUnnamedRarity = 2.0 * std::log(1000.0);
 

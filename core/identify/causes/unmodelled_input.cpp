@@ -31,6 +31,11 @@ constexpr double kFastest = 0.2, kSlowest = 30.0, kLatest = 5.0;
 /// A CV of which the model knows no time constant settles within so many samples.
 constexpr double kUsualSamples = 10.0;
 
+/// They are the last of the aux signals (`with_setpoints`).
+bool is_setpoint(const Recording& recording, const Place& place) {
+  return place.aux >= 0 && place.aux >= recording.aux.cols() - recording.setpoints.cols();
+}
+
 /// A measured signal acts on a CV that the model does not connect it to.
 class UnmodelledInput : public Cause {
  public:
@@ -92,7 +97,7 @@ class UnmodelledInput : public Cause {
                     .step = 0.25,
                     .low = 0.0,
                     .high = kLatest * slowest / sample_time_s}},
-                  cost_of(members));
+                  cost_of(members) + (is_setpoint(recording, place) ? kSetpointRarity : 0.0));
   }
 
   [[nodiscard]] bool may_pass_for_noise() const override { return true; }

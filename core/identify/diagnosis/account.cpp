@@ -32,6 +32,33 @@ const char* why_it_goes(const Effect& effect, const Problem& problem, const Find
   return cause.may_be_nothing(finding) ? "its interval includes that it does nothing" : nullptr;
 }
 
+/// Whether what an accusation explains follows a set-point rather, once everything else that was
+/// found is repaired: before, that hides it.
+bool follows_setpoint(const Problem& problem, const SearchResult& found, std::vector<bool> others,
+                      std::size_t accusation, const Judges& judges, const Witness& witness) {
+  others[accusation] = false;
+  if (std::find(others.begin(), others.end(), true) == others.end()) return false;
+  const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
+  const ChannelTests tests = witness.of(extend(problem, found, others, keep, judges.open));
+  const std::vector<int> cvs = touched(found.named[accusation].effect, problem);
+  return std::any_of(cvs.begin(), cvs.end(), [&](int cv) { return tests.setpoint(cv).wins; });
+}
+
+/// Whether the given model's tests do not decide between the channels of a CV and its own
+/// set-point, and it takes more than this one accusation, which leaves nothing to see, to say it by
+/// the channels.
+bool says_too_much(const SearchResult& found, std::size_t accusation, Confirmation says,
+                   const Witness& witness) {
+  const int cv = found.named[accusation].effect.place.cv;
+  if (cv < 0) return false;
+  const RivalSignal& setpoint = witness.given.setpoint(cv);
+  if (setpoint.signal != cv || setpoint.loses) return false;
+  const auto accusations = std::count_if(
+      found.named.begin(), found.named.end(),
+      [cv](const Named& named) { return accuses(named.effect) && named.effect.place.cv == cv; });
+  return says < Confirmation::kNothing || accusations > 1;
+}
+
 /// What the calibrated test does not bear out goes, unless it overwhelms; where feedback moves the
 /// input, what leaves the test anything to see goes. So does an accusation that makes predictions
 /// no better beyond doubt, unless a disturbance that wanders may hide that and the test sees all of
@@ -67,6 +94,11 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
       reasons[i] = "with it the test of the channels sees no less wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
+    else if (accuses(effect) && says_too_much(found, i, says, witness))
+      reasons[i] = kOwnSetpoint;
+    else if (accuses(effect) && follows_setpoint(problem, found, tested, i, judges, witness))
+      reasons[i] =
+          "without it the CV follows a set-point, and better than any error of its channels";
     else if (selection.fates[i] == Fate::kNoBetter &&
              !(says == Confirmation::kNothingOfAll && selection.wanders[i]))
       reasons[i] = why_not_in_model(Fate::kNoBetter);

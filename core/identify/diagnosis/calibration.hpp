@@ -33,6 +33,9 @@ inline constexpr double kStrongEvidence = 30.0;
 inline constexpr double kSurelyRejected = 1e-6;
 /// And of its error being too small to matter, as for an alarm.
 inline constexpr double kSurelyMatters = 1e-3;
+/// Both where nothing is named at all, the first times the number of channels: of a model that the
+/// monitor would call a mismatch nobody says that it matches.
+inline constexpr double kDoubted = 0.01;
 
 /// Half of a 95 % interval in s.d. of a normal estimate; and of one whose noise model is fitted
 /// too.

@@ -33,11 +33,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The controller makes a CV follow its set-point, so that any share of the CV does.
-constexpr const char* kOwnSetpoint =
-    "a CV follows its own set-point: a wrong gain, its sensor's span and a disturbance that moves "
-    "with the set-point look the same";
-
 constexpr const char* kReadSeldom =
     "every CV is read only once in several samples: let sample_time be as long";
 constexpr const char* kOneReadSeldom =

@@ -33,7 +33,11 @@ std::function<bool(const Effect&)> nameable(const ModelSpec& model, const Signal
     if (cause_of(effect).is_curve() && input < shares.size() &&
         shares[input].value_or(1.0) < kCurveOutside)
       return false;
-    return !cause_of(effect).acts_through_channels() || effect.place.aux >= ranges.aux ||
+    const int cv = effect.place.cv;
+    if (effect.place.aux >= ranges.aux)
+      return effect.place.aux != ranges.aux + cv || tests.setpoint(cv).wins ||
+             !tests.reject(tests.channels_to(cv));
+    return !cause_of(effect).acts_through_channels() ||
            tests.reject(channels_of(effect, model, ranges.inputs));
   };
 }

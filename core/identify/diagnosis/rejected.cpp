@@ -8,9 +8,14 @@
 namespace mpm {
 namespace {
 
-bool surely_rejects(const ChannelTests& tests, int cv, int input) {
-  return tests.p_value(cv, input).value_or(1.0) <= kSurelyRejected &&
-         tests.harmless_p_value(cv, input) <= kSurelyMatters;
+struct Level {
+  double match = kSurelyRejected;    ///< p-value of the channel's match
+  double harmless = kSurelyMatters;  ///< and of its error being too small to matter
+};
+
+bool rejects(const ChannelTests& tests, int cv, int input, const Level& level = {}) {
+  return tests.p_value(cv, input).value_or(1.0) <= level.match &&
+         tests.harmless_p_value(cv, input) <= level.harmless;
 }
 
 bool is_about(const Subject& subject, const ChannelSpec& channel) {
@@ -24,9 +29,12 @@ bool is_about(const Subject& subject, const ChannelSpec& channel) {
 std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests& tests,
                                      const Diagnosis& diagnosis) {
   std::vector<Place> rejected;
+  Level level;
+  if (diagnosis.findings.empty() && diagnosis.unexplained.empty())
+    level = {kDoubted / static_cast<double>(model.channels.size()), kDoubted};
   for (const ChannelSpec& channel : model.channels) {
     const auto told = [&](const auto& each) { return is_about(each.subject, channel); };
-    if (surely_rejects(tests, channel.cv, channel.input) &&
+    if (rejects(tests, channel.cv, channel.input, level) &&
         std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), told) &&
         std::none_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(), told))
       rejected.push_back({channel.cv, channel.input});
@@ -36,7 +44,7 @@ std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests&
 
 void keep_rejected(const ChannelTests& repaired, std::vector<Place>& channels) {
   std::erase_if(channels, [&](const Place& channel) {
-    return !surely_rejects(repaired, channel.cv, channel.input);
+    return !rejects(repaired, channel.cv, channel.input);
   });
 }
 

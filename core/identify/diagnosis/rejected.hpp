@@ -10,6 +10,7 @@ namespace mpm {
 
 /// The model's channels that `tests` surely rejects, by an error that matters, and that nothing
 /// named or seen in `diagnosis` is about: whatever is named beside them, the model does not hold.
+/// Where nothing at all is named or seen, those that it rejects as a monitor does.
 [[nodiscard]] std::vector<Place> rejected_channels(const ModelSpec& model,
                                                    const ChannelTests& tests,
                                                    const Diagnosis& diagnosis);

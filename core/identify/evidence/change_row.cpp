@@ -16,12 +16,8 @@ namespace {
 
 std::vector<int> rejected_cvs(const ModelSpec& model, const ChannelTests& tests) {
   std::vector<int> cvs;
-  std::vector<std::pair<int, int>> channels(static_cast<std::size_t>(model.input_count));
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    for (int input = 0; input < model.input_count; ++input)
-      channels[static_cast<std::size_t>(input)] = {cv, input};
-    if (tests.reject(channels)) cvs.push_back(cv);
-  }
+  for (int cv = 0; cv < model.cv_count; ++cv)
+    if (tests.reject(tests.channels_to(cv))) cvs.push_back(cv);
   return cvs;
 }
 
@@ -34,7 +30,7 @@ std::optional<Index> change_row(const ModelSpec& model, const Recording& recordi
   const std::vector<int> cvs = rejected_cvs(model, tests);
   if (cvs.empty()) return std::nullopt;
   const std::unique_ptr<MismatchDetector> detector =
-      regress_recording(model, recording, residuals, samples);
+      regress_recording(model, recording, residuals, samples).detector;
   if (!detector) return std::nullopt;
   ChangeScan scan(detector->shape());
   std::optional<Index> row;

@@ -6,7 +6,6 @@
 
 #include "core/identify/evidence/regress_recording.hpp"
 #include "core/mismatch/materiality.hpp"
-#include "core/mismatch/mismatch_detector.hpp"
 
 namespace mpm {
 
@@ -27,6 +26,12 @@ double mean_square_step(const Eigen::Ref<const VectorXd>& values) {
   return count > 0.0 ? sum / count : 0.0;
 }
 
+/// All rows, where there are set-points and not too many rows; else 0, and none is followed.
+Index rows_to_follow(const Recording& recording) {
+  const bool can = recording.setpoints.cols() > 0 && recording.samples() <= kMostRemembered;
+  return can ? recording.samples() : 0;
+}
+
 double harmless_p_value_of(const ChannelEvidence& evidence, double freedom) {
   const MaterialityLimits limits;
   const double largest = std::min(
@@ -43,11 +48,12 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
     : cvs_(model.cv_count),
       p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)),
       harmless_(p_values_.size(), 1.0),
-      wrong_(p_values_.size(), 0.0) {
-  const std::unique_ptr<MismatchDetector> regressed =
-      regress_recording(model, recording, residuals);
-  if (!regressed) return;
-  MismatchDetector& detector = *regressed;
+      wrong_(p_values_.size(), 0.0),
+      setpoints_(static_cast<std::size_t>(model.cv_count), RivalSignal{.loses = false}) {
+  const RegressedRecording regressed =
+      regress_recording(model, recording, residuals, rows_to_follow(recording));
+  if (!regressed.detector) return;
+  MismatchDetector& detector = *regressed.detector;
   for (int cv = 0; cv < model.cv_count; ++cv) {
     detector.fold(cv);
     if (!(detector.memory(cv).freedom() >= detector.shape().columns())) continue;
@@ -61,7 +67,17 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       harmless_[channel] = harmless_p_value_of(evidence, detector.memory(cv).freedom());
       wrong_[channel] = evidence.statistic * steps;
     }
+    if (rows_to_follow(recording) > 0 && reject(channels_to(cv)))
+      setpoints_[static_cast<std::size_t>(cv)] = detector.rival(
+          cv, regressed.setpoints->followed(cv, detector.history(), detector.regression(cv)));
   }
+}
+
+std::vector<std::pair<int, int>> ChannelTests::channels_to(int cv) const {
+  std::vector<std::pair<int, int>> channels(p_values_.size() / static_cast<std::size_t>(cvs_));
+  for (std::size_t input = 0; input < channels.size(); ++input)
+    channels[input] = {cv, static_cast<int>(input)};
+  return channels;
 }
 
 bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels, double level) const {

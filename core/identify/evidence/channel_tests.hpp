@@ -6,6 +6,7 @@
 
 #include "core/identify/evidence/calibration.hpp"
 #include "core/identify/fit/recording.hpp"
+#include "core/mismatch/mismatch_detector.hpp"
 #include "core/model/model_spec.hpp"
 
 namespace mpm {
@@ -41,16 +42,25 @@ class ChannelTests {
     const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
     return channel < wrong_.size() ? wrong_[channel] : 0.0;
   }
+  /// What the set-points say of a CV in which something is off, beside errors of its channels:
+  /// whether the one that says most explains clearly more or less than those. Where nothing is off,
+  /// or the recording is too long to look, nothing loses or wins.
+  [[nodiscard]] const RivalSignal& setpoint(int cv) const {
+    return setpoints_[static_cast<std::size_t>(cv)];
+  }
   /// Whether some of these channels do not match: the smallest p-value times their number is at
   /// most `level` (0..1).
   [[nodiscard]] bool reject(const std::vector<std::pair<int, int>>& channels,
                             double level = kRejected) const;
+  /// All channels to a CV, as (CV, input).
+  [[nodiscard]] std::vector<std::pair<int, int>> channels_to(int cv) const;
 
  private:
   int cvs_;
   std::vector<std::optional<double>> p_values_;  // per channel, input-major
   std::vector<double> harmless_;                 // likewise
   std::vector<double> wrong_;                    // likewise
+  std::vector<RivalSignal> setpoints_;           // per CV
 };
 
 }  // namespace mpm

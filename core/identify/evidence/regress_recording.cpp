@@ -52,29 +52,36 @@ double fewest_known(const MatrixXd& residuals) {
 
 }  // namespace
 
-std::unique_ptr<MismatchDetector> regress_recording(const ModelSpec& model,
-                                                    const Recording& recording,
-                                                    const MatrixXd& residuals, Index remembered) {
+RegressedRecording regress_recording(const ModelSpec& model, const Recording& recording,
+                                     const MatrixXd& residuals, Index remembered) {
   const LinearModel linear(model);
   const std::optional<DerivedSettings> settings =
       settings_for(model, linear, fewest_known(residuals));
-  if (!settings) return nullptr;
-  auto detector = std::make_unique<MismatchDetector>(
-      shape_of(model, *settings), std::vector{MemoryLength{}},
-      remembered > 0 ? static_cast<int>(remembered) : settings->remembered,
-      settings->evaluation_stride, linear);
+  if (!settings) return {};
+  const int depth = remembered > 0 ? static_cast<int>(remembered) : settings->remembered;
+  RegressedRecording result;
+  result.detector =
+      std::make_unique<MismatchDetector>(shape_of(model, *settings), std::vector{MemoryLength{}},
+                                         depth, settings->evaluation_stride, linear);
+  if (recording.setpoints.cols() > 0)
+    result.setpoints = std::make_unique<OutsideSignals>(
+        result.detector->shape(), static_cast<int>(recording.setpoints.cols()),
+        settings->outside_poles, depth);
   VectorXd inputs(model.input_count);
   auto border = recording.borders.begin();
   for (Index k = 0; k < recording.samples(); ++k) {
     if (border != recording.borders.end() && border->row == k) {
-      detector->skip(settings->fir_lags + settings->residual_order);  // no row has both sides
+      const int apart = settings->fir_lags + settings->residual_order;  // no row has both sides
+      result.detector->skip(apart);
+      if (result.setpoints) result.setpoints->skip(apart);
       ++border;
     }
     inputs.head(recording.inputs.cols()) = recording.inputs.row(k);
     inputs.tail(recording.aux.cols()) = recording.aux.row(k);
-    detector->update(inputs, residuals.row(k).transpose());
+    result.detector->update(inputs, residuals.row(k).transpose());
+    if (result.setpoints) result.setpoints->push(recording.setpoints.row(k).transpose());
   }
-  return detector;
+  return result;
 }
 
 }  // namespace mpm

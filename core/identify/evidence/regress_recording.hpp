@@ -5,17 +5,24 @@
 
 #include "core/identify/fit/recording.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
+#include "core/mismatch/outside_signals.hpp"
 #include "core/model/model_spec.hpp"
 
 namespace mpm {
 
+/// The monitor's regression of a recording, and the recording's set-points beside it.
+struct RegressedRecording {
+  std::unique_ptr<MismatchDetector> detector;  ///< null where there are too few rows
+  std::unique_ptr<OutsideSignals> setpoints;   ///< of as many rows; null where there are none
+};
+
 /// The monitor's regression of a recording's residuals (samples x CVs, measured minus free run, NaN
-/// where unknown), all rows counting alike, with ever fewer lags until the rows suffice for it;
-/// null where they never do. `model` in channels, with the recording's aux signals as inputs after
-/// its own. `remembered`: rows that can be read again; 0 = as many as the monitor would.
-[[nodiscard]] std::unique_ptr<MismatchDetector> regress_recording(const ModelSpec& model,
-                                                                  const Recording& recording,
-                                                                  const Eigen::MatrixXd& residuals,
-                                                                  Eigen::Index remembered = 0);
+/// where unknown), all rows counting alike, with ever fewer lags until the rows suffice for it.
+/// `model` in channels, with the recording's aux signals as inputs after its own. `remembered`:
+/// rows that can be read again; 0 = as many as the monitor would.
+[[nodiscard]] RegressedRecording regress_recording(const ModelSpec& model,
+                                                   const Recording& recording,
+                                                   const Eigen::MatrixXd& residuals,
+                                                   Eigen::Index remembered = 0);
 
 }  // namespace mpm

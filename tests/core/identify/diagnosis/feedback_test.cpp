@@ -97,6 +97,27 @@ TEST_CASE("what follows the CV's own set-point is told, and not named") {
   }
 }
 
+// u is what the set-point and the CV make it, so a set-point and another noise can say all that the
+// gain does, and say it better to a noise model that does not wander enough.
+TEST_CASE("a wrong gain under feedback is the channel's, not the set-point's") {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    const VectorXd disturbance = test::autoregressive(0.08 * test::normal(seed + 30, kRows), 0.97) +
+                                 0.03 * test::normal(seed + 40, kRows);
+    const Diagnosis diagnosis =
+        Loop(1.5, disturbance, VectorXd::Zero(kRows), 3.0 * test::telegraph(seed, kRows, 60))
+            .diagnosed();
+    CAPTURE(diagnosis.reason);
+    REQUIRE(diagnosis.findings.size() == 1);
+    const Finding& finding = diagnosis.findings.front();
+    // Of one channel alone these three are the same.
+    CHECK((finding.subject.cause == &causes::gain() ||
+           finding.subject.cause == &causes::input_scale() ||
+           finding.subject.cause == &causes::output_scale()));
+    CHECK(finding.parameters[0].value == Approx(1.5).margin(0.1));
+  }
+}
+
 TEST_CASE("test signals make a wrong gain known in the same loops") {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     CAPTURE(seed);

@@ -29,7 +29,10 @@ struct Bench {
     u << test::telegraph(1, kRows, 12), test::telegraph(2, kRows, 9);
     residuals << 0.5 * test::first_order(u.col(0), 2.0, 10.0) + 0.1 * test::white(3, kRows),
         0.1 * test::white(4, kRows);
-    return {model, test::recording_of(u, residuals), residuals};
+    Recording recording = test::recording_of(u, residuals);
+    recording.setpoints.resize(kRows, 2);
+    recording.setpoints << test::telegraph(5, kRows, 40), test::telegraph(6, kRows, 50);
+    return {model, recording, residuals};
   }
   [[nodiscard]] bool operator()(const Cause& cause, const Place& place) const {
     Effect effect;
@@ -54,10 +57,16 @@ TEST_CASE("a scale may be named where the test rejects one of its channels") {
   CHECK_FALSE(bench(causes::output_scale(), {1}));
 }
 
-TEST_CASE("a disturbance and a set-point need no test, and a DV has no actuator") {
+TEST_CASE("a CV's own set-point may be named where no wrong channel says as much") {
+  const Bench bench;  // no aux signals: the first behind them is the first CV's set-point
+  CHECK_FALSE(bench(causes::unmodelled_input(), {0, -1, 0}));
+  CHECK(bench(causes::unmodelled_input(), {0, -1, 1}));
+  CHECK(bench(causes::unmodelled_input(), {1, -1, 1}));
+}
+
+TEST_CASE("a disturbance needs no test, and a DV has no actuator") {
   const Bench bench;
   CHECK(bench(causes::step_disturbance(), {1}));
-  CHECK(bench(causes::unmodelled_input(), {1, -1, 0}));  // behind the aux signals, of which none is
   CHECK(bench(causes::input_offset(), {-1, 0}));
   CHECK_FALSE(bench(causes::input_offset(), {-1, 1}));
   CHECK_FALSE(bench(causes::input_stuck(), {-1, 1}));

@@ -59,5 +59,55 @@ TEST_CASE("few rows get a smaller regression, and too few none") {
   CHECK_FALSE(none.reject({{0, 0}}));
 }
 
+constexpr Index kLoopRows = 2000;
+
+VectorXd setpoint_of(std::uint64_t seed) { return 2.0 * test::telegraph(seed, kLoopRows, 100); }
+
+VectorXd noise_of(std::uint64_t seed) {
+  return test::autoregressive(0.08 * test::normal(seed + 1, kLoopRows), 0.95);
+}
+
+ChannelTests tests_beside(const VectorXd& setpoint, const VectorXd& u, const VectorXd& residual) {
+  Recording recording = test::recording_of(u, test::first_order(u, 2.0, 10.0) + residual);
+  recording.setpoints = setpoint;
+  return {test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), recording, residual};
+}
+
+/// A PI loop that follows its set-point, the gain `ratio` times the model's.
+ChannelTests tests_of_loop(double ratio, std::uint64_t seed) {
+  const VectorXd setpoint = setpoint_of(seed), noise = noise_of(seed);
+  VectorXd u = VectorXd::Zero(kLoopRows), residual = u;
+  const double pole = std::exp(-0.1);
+  double sum = 0.0, state = 0.0;
+  for (Index k = 0; k < kLoopRows; ++k) {
+    residual(k) = (ratio - 1.0) * state + noise(k);
+    const double error = setpoint(k) - ratio * state - noise(k);
+    sum += error;
+    u(k) = 0.6 * error + 0.06 * sum;
+    state = pole * state + 2.0 * (1.0 - pole) * u(k);
+  }
+  return tests_beside(setpoint, u, residual);
+}
+
+/// The channel is right; a set-point moves the CV, and partly the input too.
+ChannelTests tests_of_hidden_path(std::uint64_t seed) {
+  const VectorXd setpoint = setpoint_of(seed);
+  return tests_beside(setpoint, test::telegraph(seed + 2, kLoopRows, 12) + 0.5 * setpoint,
+                      test::first_order(setpoint, 1.0, 30.0) + noise_of(seed));
+}
+
+TEST_CASE("a set-point wins where it moves the CV itself, and not against a wrong channel") {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    CAPTURE(seed);
+    const ChannelTests wrong = tests_of_loop(1.5, seed), hidden = tests_of_hidden_path(seed);
+    REQUIRE(wrong.reject({{0, 0}}));
+    REQUIRE(hidden.reject({{0, 0}}));
+    CHECK_FALSE(wrong.setpoint(0).wins);
+    CHECK((hidden.setpoint(0).wins && !hidden.setpoint(0).loses));
+    const RivalSignal sound = tests_of_loop(1.0, seed).setpoint(0);
+    CHECK_FALSE((sound.wins || sound.loses));
+  }
+}
+
 }  // namespace
 }  // namespace mpm

@@ -17,7 +17,7 @@ std::unique_ptr<MismatchDetector> regressed(Index rows, std::vector<Border> bord
   Recording recording = test::recording_of(u, residuals);
   recording.borders = std::move(borders);
   const ModelSpec spec = test::model_of({test::lag(0, 0, 2.0, 10.0)}, 1, 1);
-  return regress_recording(spec, recording, residuals, remembered);
+  return regress_recording(spec, recording, residuals, remembered).detector;
 }
 
 TEST_CASE("the fewer rows, the fewer lags, and of too few there is no regression") {
