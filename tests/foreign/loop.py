@@ -38,7 +38,7 @@ except ImportError:
 import effects
 import regimes
 from channels import Simulator, discrete_form, respond, step_response
-from controller import LIMIT, Dmc
+from controller import LIMIT, Dmc, Pi
 from plants import PLANTS
 
 GAIN_ERROR, TIME_ERROR = 0.02, 0.03  # of every channel, at most
@@ -48,10 +48,10 @@ PAST_LAGS, PAST_MEANS = 8, (24, 80, 250, 800)  # of a CV, samples
 CV_ORIGIN, MV_ORIGIN, AUX_ORIGIN = 50.0, 30.0, 20.0  # values at the operating point
 
 
-def simulate(plant, outside, hidden, samples, present=None, healthy=None):
+def simulate(regime, plant, outside, hidden, samples, present=None, healthy=None):
     """CVs as measured, MVs as applied, valve positions. `present`: of each sample, whether the
     channels are the hidden ones; where not, what it reads is what `healthy` channels would give."""
-    controller = Dmc(plant)
+    controller = Pi(plant) if regime == "pi_control" else Dmc(plant)
     simulator = Simulator(hidden["channels"], plant.cv_count, plant.mv_count + 1)
     other = (Simulator(healthy, plant.cv_count, plant.mv_count + 1) if present is not None else
              None)
@@ -226,14 +226,14 @@ def make(regime, name, effect, seed, samples, model_error, any_size, present=Non
             c.with_gain(1 + model_error * rng.uniform(-GAIN_ERROR, GAIN_ERROR)).with_time(
                 1 + model_error * rng.uniform(-TIME_ERROR, TIME_ERROR)) for c in plant.channels)
         nothing, _ = effects.draw("none", plant, healthy, None, None, samples, rng)
-        pilot = simulate(plant, outside, nothing, samples)
+        pilot = simulate(regime, plant, outside, nothing, samples)
         if not stays_put(plant, pilot[0], pilot[1], None):
             continue
         noise = [regimes.noise_sd(model) for model in outside.noise_models]
         hidden, truth = effects.draw(effect, plant, healthy, pilot[1].std(axis=0), noise,
                                      samples, rng, any_size)
         cvs, mvs, positions = (pilot if effect == "none" else
-                               simulate(plant, outside, hidden, samples, present, healthy))
+                               simulate(regime, plant, outside, hidden, samples, present, healthy))
         if stays_put(plant, cvs, mvs, truth["mv"] if hidden["valve"] else None):
             break
     else:

@@ -15,6 +15,7 @@ analyser              one CV is read every 2 to 12 samples, and the reading stan
 late                  drift, step or noise x 2.9 from the last third on
 injected_steps        constant set-points, and load steps that the loop answers
 noisy_walk            what disturbs the CVs integrates slowly, under measurement noise
+pi_control            as stationary, but each CV has a PI controller of its own: no MPC
 """
 import dataclasses
 
@@ -22,7 +23,8 @@ import numpy as np
 
 REGIMES = ["stationary", "random_walk", "day_night", "constant_setpoints", "rare_moves",
            "hidden_feedforward", "aux_disturbance", "setpoint_disturbance", "quantised",
-           "compressed", "finely_compressed", "analyser", "late", "injected_steps", "noisy_walk"]
+           "compressed", "finely_compressed", "analyser", "late", "injected_steps", "noisy_walk",
+           "pi_control"]
 STILL = ("constant_setpoints", "rare_moves", "injected_steps")  # neither set-points nor the DV move
 
 

@@ -39,6 +39,10 @@ constexpr const char* kOneReadSeldom =
     "a CV is read only once in several samples and was not judged beside the others: give it a "
     "unit of its own, with a sample_time as long";
 
+/// Of the CV that follows another's set-point, where nothing else of it hides the channels' word.
+constexpr const char* kSetpointLoses =
+    "the test of the channels explains clearly more by an error of theirs than the set-point does";
+
 /// Thrown where the caller's `progress` says so; ends all loops at once.
 struct GivenUp {};
 
@@ -56,7 +60,8 @@ std::function<bool(double)> or_give_up(const std::function<bool(double)>& progre
 
 /// What was named, as findings, and what has no name; most important first, what no repair removes
 /// last.
-void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
+void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
+           Diagnosis& diagnosis) {
   Problem& problem = *kept.problem;
   const SearchResult& found = kept.found;
   const Selection& selection = kept.selection;
@@ -65,6 +70,12 @@ void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
   const auto mark_unclear = [&](const Effect& effect) {
     for (const int cv : touched(effect, problem)) unclear[static_cast<std::size_t>(cv)] = true;
   };
+  const auto alone = [&](std::size_t i) {
+    const int cv = found.named[i].effect.place.cv;
+    return std::count_if(found.named.begin(), found.named.end(), [&](const Named& named) {
+             return touches(named.effect, problem.model(), cv);
+           }) == 1;
+  };
   for (std::size_t i = 0; i < found.named.size(); ++i) {
     const Effect& effect = found.named[i].effect;
     const Cause& cause = cause_of(effect);
@@ -72,7 +83,9 @@ void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
     finding.repaired = selection.fates[i] == Fate::kRepaired;
     const bool of_setpoint = effect.place.aux >= judges.aux;
     const bool of_its_own = of_setpoint && effect.place.aux == judges.aux + effect.place.cv;
+    const bool loses = of_setpoint && tests.setpoint(effect.place.cv).loses && alone(i);
     finding.refused = of_its_own    ? kOwnSetpoint
+                      : loses       ? kSetpointLoses
                       : of_setpoint ? "a set-point is no input of a model"
                                     : why_not_in_model(selection.fates[i]);
     finding.explains = selection.explains[i];
@@ -80,7 +93,7 @@ void state(const Account& kept, const Judges& judges, Diagnosis& diagnosis) {
     if (causes::is_unnamed(cause)) {
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
       mark_unclear(effect);
-    } else if (of_its_own || (of_setpoint && finding.explains < kSetpointExplains)) {
+    } else if (of_its_own || loses || (of_setpoint && finding.explains < kSetpointExplains)) {
       unproved.push_back(std::move(finding));
       mark_unclear(effect);
     } else {
@@ -259,7 +272,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
     diagnosis.before = free_runs(first, model);
     diagnosis.after = free_runs(first, extended);
   }
-  state(kept, judges, diagnosis);
+  state(kept, judges, tests, diagnosis);
   if (!validation)
     for (Finding& late :
          begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
