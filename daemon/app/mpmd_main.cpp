@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -195,7 +196,8 @@ config::LoadUnitsResult load(const Options& options) {
     if (options.domain) unit.dds.domain = *options.domain;
     if (options.partition) unit.dds.partition = *options.partition;
     if (options.security) {
-      unit.dds.security = *options.security;
+      // A unit file, as which an extended model is written, takes absolute ones only.
+      unit.dds.security = std::filesystem::absolute(*options.security).lexically_normal().string();
       unit.dds.security_at = {"--security", 0, 0, ""};
     }
   }

@@ -335,6 +335,10 @@ TEST_CASE("keys that are missing are named, where the unit file asks for them") 
         1);
   CHECK_THAT(read_file(out),
              Catch::StartsWith("--security: error: " + folder.file("other") + "/monitor/ca.pem: "));
+  // What is written as a unit file, as extended models are, has to be read again from anywhere.
+  const std::string relative = fs::relative(keys).string();
+  CHECK(run({"mpmd", "--config", unit, "--security", relative, "--print-config"}, out, err) == 0);
+  CHECK_THAT(read_file(out), Catch::Contains("security: \"" + keys + "\""));
   // Who has no keys may look at the settings all the same.
   CHECK(run({"mpmd", "--config", unit, "--print-config"}, out, err) == 0);
   CHECK(run({"mpm", "status", "--config", unit}, out, err) == 3);  // UNKNOWN
