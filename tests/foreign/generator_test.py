@@ -14,6 +14,7 @@ except ImportError:
 
 import loop
 from channels import Channel, Simulator, respond, step_response
+from controller import Dmc, Pi
 from model_reader import model_steps
 from plants import PLANTS
 from regimes import Noise
@@ -89,5 +90,23 @@ def whitens():
         check(abs(white[1:] @ white[:-1]) / len(white) < 0.064, "whiteness")
 
 
-for test in (same_bytes, closed_form, simulates_as_it_responds, reads_back, whitens):
+def controllers_control():
+    """In the last half of a step that nothing disturbs, no CV is off by more than a fifth of it."""
+    for make in PLANTS.values():
+        plant = make()
+        for controller in (Dmc(plant), Pi(plant)):
+            simulator = Simulator(plant.channels, plant.cv_count, plant.mv_count + 1)
+            cvs, inputs = np.zeros(plant.cv_count), np.zeros(plant.mv_count + 1)
+            samples = 20 * int(max(c.settling() for c in plant.channels))
+            for k in range(samples):
+                inputs[:-1] = controller.move(np.array(plant.cv_scale), cvs)
+                controller.applied(inputs)
+                cvs = simulator.step(inputs)
+                if 2 * k > samples:
+                    check(np.all(np.abs(cvs / plant.cv_scale - 1) < 0.2),
+                          f"{type(controller).__name__} of {plant.name}")
+
+
+for test in (same_bytes, closed_form, simulates_as_it_responds, reads_back, whitens,
+             controllers_control):
     test()

@@ -2,9 +2,9 @@
 """Writes one recording of a foreign plant: unit.yaml, data.csv and truth.json.
 
 Shares no code, plant, number generator or controller with sim/ or tests/hidden: first and second
-order channels behind dead times, sampled exactly; dynamic matrix control with a bias update; each
-channel of the plant is off the controller's model by up to 2 % of gain and 3 % of time even where
-nothing is wrong.
+order channels behind dead times, sampled exactly; dynamic matrix control with a bias update, in one
+regime PI controllers instead; each channel of the plant is off the controller's model by up to 2 %
+of gain and 3 % of time even where nothing is wrong.
 
 Usage: loop.py --regime R --plant P --effect E --seed N [--samples 3000] [--model-error 1]
                [--any-size] --out DIR
