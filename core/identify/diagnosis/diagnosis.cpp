@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/priors.hpp"
 #include "core/identify/diagnosis/account.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/clock.hpp"
@@ -58,6 +59,19 @@ std::function<bool(double)> or_give_up(const std::function<bool(double)>& progre
   };
 }
 
+/// Where the tests do not decide between the channels of a CV and its own set-point, that is a
+/// rival of what is laid to the channels, and as probable beside it as before any data.
+void add_own_setpoint(const Effect& effect, const ChannelTests& tests, int first_setpoint,
+                      Finding& finding) {
+  const int cv = effect.place.cv;
+  if (cv < 0 || effect.place.aux >= 0 || !cause_of(effect).acts_through_channels()) return;
+  const RivalSignal& setpoint = tests.setpoint(cv);
+  if (setpoint.signal != cv || setpoint.loses) return;
+  const Subject rival{&causes::unmodelled_input(), {cv, -1, first_setpoint + cv}};
+  finding.rivals.insert(finding.rivals.begin(), {rival, kSetpointRarity, true});
+  finding.confidence = 1.0 / (1.0 / finding.confidence + std::exp(-0.5 * kSetpointRarity));
+}
+
 /// What was named, as findings, and what has no name; most important first, what no repair removes
 /// last.
 void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
@@ -80,6 +94,7 @@ void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
     const Effect& effect = found.named[i].effect;
     const Cause& cause = cause_of(effect);
     Finding finding = to_finding(found, i, problem);
+    add_own_setpoint(effect, tests, judges.aux, finding);
     finding.repaired = selection.fates[i] == Fate::kRepaired;
     const bool of_setpoint = effect.place.aux >= judges.aux;
     const bool of_its_own = of_setpoint && effect.place.aux == judges.aux + effect.place.cv;

@@ -115,6 +115,9 @@ TEST_CASE("a wrong gain under feedback is the channel's, not the set-point's") {
            finding.subject.cause == &causes::input_scale() ||
            finding.subject.cause == &causes::output_scale()));
     CHECK(finding.parameters[0].value == Approx(1.5).margin(0.1));
+    // What nobody can tell apart is told: a set-point is ten times less likely.
+    for (const Rival& rival : finding.rivals)
+      if (rival.subject.place.aux == 0) CHECK(finding.confidence <= 10.0 / 11.0);
   }
 }
 
