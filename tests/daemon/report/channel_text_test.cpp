@@ -28,8 +28,8 @@ TEST_CASE("what the data do not resolve is no number") {
   channel.effect_high = 0.02;
   channel.material = false;
   CHECK(mismatch_text(channel, file) ==
-        "gain ok, time constant +100 % (50 to 150), dead time +240 s (-30 to 510); too small to "
-        "matter");
+        "gain ok, time constant +100 % (50 to 150), dead time +240 s (-30 to 510); may be too "
+        "small to matter");
   channel.usual = false;
   channel.material = true;
   CHECK(mismatch_text(channel, file) ==
