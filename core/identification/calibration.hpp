@@ -62,7 +62,6 @@ inline constexpr double kStepOfDamping = 0.2;   ///< likewise
 
 // How far a dead time may be off (dead_time_reach.hpp).
 inline constexpr double kReachesOfDeadTime[] = {2.0, 3.0, 4.0, 6.0, 8.0, 12.0};  ///< s.d.
-inline constexpr double kRiseOf95 = 3.84;  ///< chi-square, one degree of freedom
 inline constexpr int kHeldSteps = 3;       ///< of Gauss-Newton
 
 // Which channels, of which form (structure.hpp).

@@ -13,6 +13,9 @@ namespace {
 
 using Eigen::Index;
 
+/// Of -2 ln likelihood at the end of a 95 % interval: chi-square, one degree of freedom.
+constexpr double kRise = kNormalTwoSided95 * kNormalTwoSided95;
+
 /// How far the dead time of a channel may be away before the misfit says so, samples; of ever more
 /// s.d. on either side, until two in a row are too far.
 double reach_of(const IdentificationData& data, int cv, const NoiseAssumption& noise,
@@ -32,13 +35,13 @@ double reach_of(const IdentificationData& data, int cv, const NoiseAssumption& n
       const double away = std::abs(held.dead_time - now);
       const double rise =
           fit_prediction_error(data, cv, std::move(channels), noise, kHeldSteps).cost - fit.cost;
-      if (rise < kRiseOf95) {
+      if (rise < kRise) {
         reach = std::max(reach, away);
         within = away;
         rise_within = rise;
         too_far = 0;
       } else if (too_far == 0) {
-        const double share = (kRiseOf95 - rise_within) / (rise - rise_within);
+        const double share = (kRise - rise_within) / (rise - rise_within);
         reach = std::max(reach, within + share * (away - within));
         ++too_far;
       } else {

@@ -197,7 +197,10 @@ config::LoadUnitsResult load(const Options& options) {
     if (options.partition) unit.dds.partition = *options.partition;
     if (options.security) {
       // A unit file, as which an extended model is written, takes absolute ones only.
-      unit.dds.security = std::filesystem::absolute(*options.security).lexically_normal().string();
+      unit.dds.security =
+          options.security->empty()  // who is there, whatever the unit file says
+              ? ""
+              : std::filesystem::absolute(*options.security).lexically_normal().string();
       unit.dds.security_at = {"--security", 0, 0, ""};
     }
   }

@@ -339,6 +339,7 @@ TEST_CASE("keys that are missing are named, where the unit file asks for them") 
   const std::string relative = fs::relative(keys).string();
   CHECK(run({"mpmd", "--config", unit, "--security", relative, "--print-config"}, out, err) == 0);
   CHECK_THAT(read_file(out), Catch::Contains("security: \"" + keys + "\""));
+  CHECK(run({"mpmd", "--config", unit, "--security", "", "--check"}, out, err) == 0);
   // Who has no keys may look at the settings all the same.
   CHECK(run({"mpmd", "--config", unit, "--print-config"}, out, err) == 0);
   CHECK(run({"mpm", "status", "--config", unit}, out, err) == 3);  // UNKNOWN

@@ -101,7 +101,7 @@ class InputOffsetCause : public InputBlockCause {
     const ModelSpec& model = problem.model();
     const Recording& recording = problem.recording();
     const int aux =
-        moves_along(recording.aux, recording.aux.cols() - recording.setpoints.cols(), offset.onset);
+        moves_along(recording.aux, first_setpoint(recording), offset.onset);
     if (aux < 0) return {};
     Rewrite rewrite{{mine}, {}};
     for (const ChannelSpec& channel : model.channels) {

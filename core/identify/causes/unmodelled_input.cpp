@@ -31,9 +31,8 @@ constexpr double kFastest = 0.2, kSlowest = 30.0, kLatest = 5.0;
 /// A CV of which the model knows no time constant settles within so many samples.
 constexpr double kUsualSamples = 10.0;
 
-/// They are the last of the aux signals (`with_setpoints`).
 bool is_setpoint(const Recording& recording, const Place& place) {
-  return place.aux >= 0 && place.aux >= recording.aux.cols() - recording.setpoints.cols();
+  return place.aux >= 0 && place.aux >= first_setpoint(recording);
 }
 
 /// A measured signal acts on a CV that the model does not connect it to.

@@ -8,6 +8,7 @@
 #include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
+#include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/statement.hpp"
 
 namespace mpm {
@@ -44,15 +45,12 @@ bool follows_setpoint(const Problem& problem, const SearchResult& found, std::ve
   return std::any_of(cvs.begin(), cvs.end(), [&](int cv) { return tests.setpoint(cv).wins; });
 }
 
-/// Whether the given model's tests do not decide between the channels of a CV and its own
-/// set-point, and it takes more than this one accusation, which leaves nothing to see, to say it by
-/// the channels.
-bool says_too_much(const SearchResult& found, std::size_t accusation, Confirmation says,
-                   const Witness& witness) {
+/// Whether a CV's own set-point says what is laid to its channels more simply: undecided between
+/// them, one accusation has to leave the test nothing to see.
+bool own_setpoint_is_simpler(const SearchResult& found, std::size_t accusation, Confirmation says,
+                             const ChannelTests& given) {
   const int cv = found.named[accusation].effect.place.cv;
-  if (cv < 0) return false;
-  const RivalSignal& setpoint = witness.given.setpoint(cv);
-  if (setpoint.signal != cv || setpoint.loses) return false;
+  if (cv < 0 || !own_setpoint_undecided(given, cv)) return false;
   const auto accusations = std::count_if(
       found.named.begin(), found.named.end(),
       [cv](const Named& named) { return accuses(named.effect) && named.effect.place.cv == cv; });
@@ -94,7 +92,7 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
       reasons[i] = "with it the test of the channels sees no less wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
-    else if (accuses(effect) && says_too_much(found, i, says, witness))
+    else if (accuses(effect) && own_setpoint_is_simpler(found, i, says, witness.given))
       reasons[i] = kOwnSetpoint;
     else if (accuses(effect) && follows_setpoint(problem, found, tested, i, judges, witness))
       reasons[i] =

@@ -13,11 +13,6 @@ namespace mpm {
 /// Why the extended model does without a finding, for a person; empty where it does not.
 [[nodiscard]] const char* why_not_in_model(Fate fate);
 
-/// The controller makes a CV follow its set-point, so that any share of the CV does.
-inline constexpr const char* kOwnSetpoint =
-    "a CV follows its own set-point: a wrong gain, its sensor's span and a disturbance that moves "
-    "with the set-point look the same";
-
 /// What the search finds, and what is left of it once nothing stands on what unseen data refuse or
 /// on what may be nothing: such goes, the rest is fitted anew, and what only made sense beside it
 /// goes too.

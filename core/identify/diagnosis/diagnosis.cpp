@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/identify/causes/catalog.hpp"
-#include "core/identify/causes/priors.hpp"
 #include "core/identify/diagnosis/account.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/clock.hpp"
@@ -15,6 +14,7 @@
 #include "core/identify/diagnosis/rejected.hpp"
 #include "core/identify/diagnosis/seldom_read.hpp"
 #include "core/identify/diagnosis/selection.hpp"
+#include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/state_space_form.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/diagnosis/verdict.hpp"
@@ -40,10 +40,6 @@ constexpr const char* kOneReadSeldom =
     "a CV is read only once in several samples and was not judged beside the others: give it a "
     "unit of its own, with a sample_time as long";
 
-/// Of the CV that follows another's set-point, where nothing else of it hides the channels' word.
-constexpr const char* kSetpointLoses =
-    "the test of the channels explains clearly more by an error of theirs than the set-point does";
-
 /// Thrown where the caller's `progress` says so; ends all loops at once.
 struct GivenUp {};
 
@@ -57,19 +53,6 @@ std::function<bool(double)> or_give_up(const std::function<bool(double)>& progre
     if (given_up) throw GivenUp();
     return true;
   };
-}
-
-/// Where the tests do not decide between the channels of a CV and its own set-point, that is a
-/// rival of what is laid to the channels, and as probable beside it as before any data.
-void add_own_setpoint(const Effect& effect, const ChannelTests& tests, int first_setpoint,
-                      Finding& finding) {
-  const int cv = effect.place.cv;
-  if (cv < 0 || effect.place.aux >= 0 || !cause_of(effect).acts_through_channels()) return;
-  const RivalSignal& setpoint = tests.setpoint(cv);
-  if (setpoint.signal != cv || setpoint.loses) return;
-  const Subject rival{&causes::unmodelled_input(), {cv, -1, first_setpoint + cv}};
-  finding.rivals.insert(finding.rivals.begin(), {rival, kSetpointRarity, true});
-  finding.confidence = 1.0 / (1.0 / finding.confidence + std::exp(-0.5 * kSetpointRarity));
 }
 
 /// What was named, as findings, and what has no name; most important first, what no repair removes
@@ -97,18 +80,17 @@ void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
     add_own_setpoint(effect, tests, judges.aux, finding);
     finding.repaired = selection.fates[i] == Fate::kRepaired;
     const bool of_setpoint = effect.place.aux >= judges.aux;
-    const bool of_its_own = of_setpoint && effect.place.aux == judges.aux + effect.place.cv;
-    const bool loses = of_setpoint && tests.setpoint(effect.place.cv).loses && alone(i);
-    finding.refused = of_its_own    ? kOwnSetpoint
-                      : loses       ? kSetpointLoses
-                      : of_setpoint ? "a set-point is no input of a model"
-                                    : why_not_in_model(selection.fates[i]);
+    const char* not_setpoint =
+        of_setpoint ? why_not_setpoint(effect, alone(i), tests, judges.aux) : nullptr;
+    finding.refused = not_setpoint != nullptr ? not_setpoint
+                      : of_setpoint           ? "a set-point is no input of a model"
+                                              : why_not_in_model(selection.fates[i]);
     finding.explains = selection.explains[i];
     if (const auto other = selection.with[i]) finding.with = subject_of(found.named[*other].effect);
     if (causes::is_unnamed(cause)) {
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
       mark_unclear(effect);
-    } else if (of_its_own || loses || (of_setpoint && finding.explains < kSetpointExplains)) {
+    } else if (not_setpoint != nullptr || (of_setpoint && finding.explains < kSetpointExplains)) {
       unproved.push_back(std::move(finding));
       mark_unclear(effect);
     } else {

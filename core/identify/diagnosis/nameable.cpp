@@ -2,6 +2,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/setpoint_rival.hpp"
 
 namespace mpm {
 namespace {
@@ -33,10 +34,7 @@ std::function<bool(const Effect&)> nameable(const ModelSpec& model, const Signal
     if (cause_of(effect).is_curve() && input < shares.size() &&
         shares[input].value_or(1.0) < kCurveOutside)
       return false;
-    const int cv = effect.place.cv;
-    if (effect.place.aux >= ranges.aux)
-      return effect.place.aux != ranges.aux + cv || tests.setpoint(cv).wins ||
-             !tests.reject(tests.channels_to(cv));
+    if (effect.place.aux >= ranges.aux) return may_name_setpoint(effect, tests, ranges.aux);
     return !cause_of(effect).acts_through_channels() ||
            tests.reject(channels_of(effect, model, ranges.inputs));
   };

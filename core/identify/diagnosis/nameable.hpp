@@ -23,11 +23,9 @@ struct SignalRanges {
                                                            int model_inputs);
 
 /// Which effects may be named: what acts through channels where the calibrated test rejects those
-/// (`model`'s), a disturbance and a set-point always; a curve only where its input moves from
-/// outside the loop too (shares per input): feedback bends what is straight. What a CV's own
-/// set-point does not where the test rejects a channel that explains as much: under feedback the CV
-/// is what its set-point makes it, and a wrong channel can be said by that too, beside another
-/// noise. All must outlive what is returned.
+/// (`model`'s), a disturbance always, what a set-point does as `may_name_setpoint` says; a curve
+/// only where its input moves from outside the loop too (shares per input): feedback bends what is
+/// straight. All must outlive what is returned.
 [[nodiscard]] std::function<bool(const Effect&)> nameable(
     const ModelSpec& model, const SignalRanges& ranges, const ChannelTests& tests,
     const std::vector<std::optional<double>>& outside_shares);

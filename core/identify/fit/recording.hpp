@@ -39,6 +39,10 @@ struct Recording {
 /// The same with the set-points as measured signals behind the aux ones: what moves with a
 /// set-point is no error of a channel.
 [[nodiscard]] Recording with_setpoints(const Recording& recording);
+/// Where they begin among the aux signals of such a recording.
+[[nodiscard]] inline Eigen::Index first_setpoint(const Recording& recording) {
+  return recording.aux.cols() - recording.setpoints.cols();
+}
 
 /// Rows of a recording that belong together.
 struct Run {

@@ -5,12 +5,15 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
 using Eigen::VectorXd;
 using test::lag;
 
@@ -97,16 +100,18 @@ TEST_CASE("what follows the CV's own set-point is told, and not named") {
   }
 }
 
+Loop wrong_gain(std::uint64_t seed, double size, Index hold) {
+  const VectorXd disturbance = test::autoregressive(0.08 * test::normal(seed + 30, kRows), 0.97) +
+                               0.03 * test::normal(seed + 40, kRows);
+  return {1.5, disturbance, VectorXd::Zero(kRows), size * test::telegraph(seed, kRows, hold)};
+}
+
 // u is what the set-point and the CV make it, so a set-point and another noise can say all that the
 // gain does, and say it better to a noise model that does not wander enough.
 TEST_CASE("a wrong gain under feedback is the channel's, not the set-point's") {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     CAPTURE(seed);
-    const VectorXd disturbance = test::autoregressive(0.08 * test::normal(seed + 30, kRows), 0.97) +
-                                 0.03 * test::normal(seed + 40, kRows);
-    const Diagnosis diagnosis =
-        Loop(1.5, disturbance, VectorXd::Zero(kRows), 3.0 * test::telegraph(seed, kRows, 60))
-            .diagnosed();
+    const Diagnosis diagnosis = wrong_gain(seed, 3.0, 60).diagnosed();
     CAPTURE(diagnosis.reason);
     REQUIRE(diagnosis.findings.size() == 1);
     const Finding& finding = diagnosis.findings.front();
@@ -115,9 +120,69 @@ TEST_CASE("a wrong gain under feedback is the channel's, not the set-point's") {
            finding.subject.cause == &causes::input_scale() ||
            finding.subject.cause == &causes::output_scale()));
     CHECK(finding.parameters[0].value == Approx(1.5).margin(0.1));
-    // What nobody can tell apart is told: a set-point is ten times less likely.
-    for (const Rival& rival : finding.rivals)
-      if (rival.subject.place.aux == 0) CHECK(finding.confidence <= 10.0 / 11.0);
+    // In the first two loops the test of the channels does not tell them apart, in the third it
+    // does.
+    const bool told_apart = seed == 3;
+    CHECK((finding.rivals.at(0).subject.place.aux != 0) == told_apart);
+    CHECK((finding.confidence > 10.0 / 11.0) == told_apart);
+  }
+}
+
+TEST_CASE("undecided, what leaves the channels' test something to see is not laid to a channel") {
+  const Diagnosis diagnosis = wrong_gain(6, 2.0, 120).diagnosed();
+  CHECK(accusations(diagnosis).empty());
+  REQUIRE_FALSE(diagnosis.refused.empty());
+  CHECK(diagnosis.refused.front().refused == kOwnSetpoint);
+}
+
+// Two such loops, each CV with an input of its own and a lag of gain 0.6, time constant 20, to the
+// other's.
+struct TwoLoops {
+  std::uint64_t seed = 1;
+  double across_ratio = 1.0;  ///< hidden: of the gain from the second input to the first CV
+  Index stuck_from = kRows;   ///< hidden: the first input's actuator rests from here on
+  double follows = 0.0;       ///< hidden: the second CV has so much of its own set-point, lagged
+
+  [[nodiscard]] Diagnosis diagnosed() const {
+    constexpr double kAcross = 0.6;
+    MatrixXd u = MatrixXd::Zero(kRows, 2), y = u, setpoints(kRows, 2), noise(kRows, 2);
+    setpoints << 3.0 * test::telegraph(seed, kRows, 100),
+        2.0 * test::telegraph(seed + 1, kRows, 140);
+    noise << test::autoregressive(0.08 * test::normal(seed + 2, kRows), 0.95),
+        test::autoregressive(0.08 * test::normal(seed + 3, kRows), 0.95) +
+            follows * test::first_order(setpoints.col(1), 1.0, 12.0);
+    const double own = std::exp(-0.1), other = std::exp(-0.05);
+    Vector2d main = Vector2d::Zero(), cross = main, sum = main, moved = main;
+    for (Index k = 0; k < kRows; ++k) {
+      y.row(k) = (main + cross).transpose() + noise.row(k);
+      const Vector2d error = (setpoints.row(k) - y.row(k)).transpose();
+      sum += error;
+      const double rests = moved(0);
+      moved = 0.4 * error + 0.04 * sum;
+      u.row(k) = moved.transpose();
+      if (k >= stuck_from) moved(0) = rests;
+      main = own * main + 2.0 * (1.0 - own) * moved;
+      cross = other * cross + kAcross * (1.0 - other) * Vector2d(across_ratio * moved(1), moved(0));
+    }
+    Recording recording = test::recording_of(u, y);
+    recording.setpoints = setpoints;
+    DiagnosisSettings settings;
+    settings.mv_count = 2;
+    return diagnose(test::model_of({lag(0, 0, 2.0, 10.0), lag(0, 1, kAcross, 20.0),
+                                    lag(1, 0, kAcross, 20.0), lag(1, 1, 2.0, 10.0)},
+                                   2, 2),
+                    recording, nullptr, settings);
+  }
+};
+
+TEST_CASE("another CV's set-point is not named where the channels' test explains more") {
+  for (const std::uint64_t seed : {121, 131, 141}) {
+    CAPTURE(seed);
+    const Diagnosis diagnosis = TwoLoops{.seed = seed, .across_ratio = 1.5}.diagnosed();
+    CHECK(diagnosis.verdict == DiagnosisVerdict::kUndetermined);
+    CHECK(diagnosis.findings.empty());
+    REQUIRE(diagnosis.refused.size() == 1);
+    CHECK(diagnosis.refused[0].subject == Subject{&causes::unmodelled_input(), {0, -1, 1}});
   }
 }
 
@@ -137,6 +202,19 @@ TEST_CASE("test signals make a wrong gain known in the same loops") {
       found = true;
     }
     CHECK(found);
+  }
+}
+
+// Before the actuator is repaired nobody sees it: its CVs are off by far more.
+TEST_CASE("what follows a set-point beside a stuck actuator is laid to no channel") {
+  for (const std::uint64_t seed : {71, 81}) {
+    CAPTURE(seed);
+    const Diagnosis diagnosis =
+        TwoLoops{.seed = seed, .stuck_from = 700, .follows = 0.3}.diagnosed();
+    REQUIRE(diagnosis.findings.size() == 1);
+    CHECK(diagnosis.findings[0].subject == Subject{&causes::input_stuck(), {-1, 0}});
+    REQUIRE_FALSE(diagnosis.refused.empty());
+    CHECK(diagnosis.refused[0].subject.place.cv == 1);
   }
 }
 

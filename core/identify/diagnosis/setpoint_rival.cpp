@@ -1,0 +1,45 @@
+#include "core/identify/diagnosis/setpoint_rival.hpp"
+
+#include <cmath>
+
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/priors.hpp"
+
+namespace mpm {
+namespace {
+
+bool is_own(const Effect& effect, int first) { return effect.place.aux == first + effect.place.cv; }
+
+}  // namespace
+
+bool may_name_setpoint(const Effect& effect, const ChannelTests& tests, int first) {
+  const int cv = effect.place.cv;
+  return !is_own(effect, first) || tests.setpoint(cv).wins || !tests.reject(tests.channels_to(cv));
+}
+
+bool own_setpoint_undecided(const ChannelTests& tests, int cv) {
+  const RivalSignal& setpoint = tests.setpoint(cv);
+  return setpoint.signal == cv && !setpoint.loses;
+}
+
+const char* why_not_setpoint(const Effect& effect, bool alone, const ChannelTests& tests,
+                             int first) {
+  if (is_own(effect, first)) return kOwnSetpoint;
+  return alone && tests.setpoint(effect.place.cv).loses
+             ? "the test of the channels explains clearly more by an error of theirs than the "
+               "set-point does"
+             : nullptr;
+}
+
+void add_own_setpoint(const Effect& effect, const ChannelTests& tests, int first,
+                      Finding& finding) {
+  const int cv = effect.place.cv;
+  if (cv < 0 || effect.place.aux >= 0 || !cause_of(effect).acts_through_channels() ||
+      !own_setpoint_undecided(tests, cv))
+    return;
+  const Subject rival{&causes::unmodelled_input(), {cv, -1, first + cv}};
+  finding.rivals.insert(finding.rivals.begin(), {rival, kSetpointRarity, true});
+  finding.confidence = 1.0 / (1.0 / finding.confidence + std::exp(-0.5 * kSetpointRarity));
+}
+
+}  // namespace mpm

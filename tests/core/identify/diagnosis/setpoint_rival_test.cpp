@@ -1,0 +1,88 @@
+#include "core/identify/diagnosis/setpoint_rival.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/identify/causes/catalog.hpp"
+#include "tests/core/identify/small_plant.hpp"
+
+namespace mpm {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::lag;
+
+constexpr Index kRows = 1500;
+constexpr int kFirst = 0;  // no aux signals: the first behind them is the first CV's set-point
+
+/// Two CVs with an input each. What the set-points do comes on top of the CVs; the first input
+/// moves partly with its CV's set-point, so that the test sees something wrong there.
+struct Bench {
+  ChannelTests tests;
+
+  /// `ratio`: of the first channel's gain; `own`: of the first set-point's effect on its CV.
+  Bench(double ratio, double own) : tests(make(ratio, own)) {}
+
+  static ChannelTests make(double ratio, double own) {
+    MatrixXd u(kRows, 2), setpoints(kRows, 2), residuals(kRows, 2);
+    setpoints << test::telegraph(5, kRows, 40), test::telegraph(6, kRows, 50);
+    u << test::telegraph(1, kRows, 12) + 0.5 * setpoints.col(0), test::telegraph(2, kRows, 9);
+    residuals << (ratio - 1.0) * test::first_order(u.col(0), 2.0, 10.0) +
+                     own * test::first_order(setpoints.col(0), 1.0, 30.0) +
+                     0.1 * test::white(3, kRows),
+        0.1 * test::white(4, kRows);
+    Recording recording = test::recording_of(u, residuals);
+    recording.setpoints = setpoints;
+    return {test::model_of({lag(0, 0, 2.0, 10.0), lag(1, 1, 1.0, 5.0)}, 2, 2), recording,
+            residuals};
+  }
+};
+
+Effect of(const Cause& cause, const Place& place) {
+  Effect effect;
+  effect.edit = &cause;
+  effect.place = place;
+  return effect;
+}
+
+Effect setpoint(int cv, int aux) { return of(causes::unmodelled_input(), {cv, -1, aux}); }
+
+TEST_CASE("whether a CV's own set-point may be named the test of its channels says") {
+  const Bench wrong(1.5, 0.0), hidden(1.0, 1.0);
+  CHECK_FALSE(may_name_setpoint(setpoint(0, 0), wrong.tests, kFirst));
+  CHECK(may_name_setpoint(setpoint(0, 0), hidden.tests, kFirst));
+  CHECK(may_name_setpoint(setpoint(0, 1), wrong.tests, kFirst));  // another's
+  CHECK(may_name_setpoint(setpoint(1, 1), wrong.tests, kFirst));  // nothing is wrong there
+}
+
+TEST_CASE("what a set-point is said to do is refused where it loses alone, or is the CV's own") {
+  const Bench wrong(1.5, 0.0), hidden(1.0, 1.0);
+  CHECK(why_not_setpoint(setpoint(0, 0), false, hidden.tests, kFirst) == kOwnSetpoint);
+  CHECK(why_not_setpoint(setpoint(0, 1), true, wrong.tests, kFirst) != nullptr);
+  CHECK(why_not_setpoint(setpoint(0, 1), false, wrong.tests, kFirst) == nullptr);
+  CHECK(why_not_setpoint(setpoint(0, 1), true, hidden.tests, kFirst) == nullptr);
+  CHECK(why_not_setpoint(setpoint(1, 0), true, wrong.tests, kFirst) == nullptr);
+}
+
+TEST_CASE("undecided, a CV's own set-point takes its share of the confidence in a channel") {
+  const Bench wrong(1.5, 0.0), hidden(1.0, 1.0);
+  CHECK_FALSE(own_setpoint_undecided(wrong.tests, 0));
+  REQUIRE(own_setpoint_undecided(hidden.tests, 0));  // it wins, so that channels do not
+  CHECK_FALSE(own_setpoint_undecided(hidden.tests, 1));
+  Finding finding;
+  finding.confidence = 1.0;
+  add_own_setpoint(of(causes::gain(), {1, 1}), hidden.tests, kFirst, finding);
+  add_own_setpoint(of(causes::gain(), {0, 0}), wrong.tests, kFirst, finding);
+  add_own_setpoint(of(causes::step_disturbance(), {0}), hidden.tests, kFirst, finding);
+  add_own_setpoint(setpoint(0, 1), hidden.tests, kFirst, finding);
+  CHECK(finding.rivals.empty());
+  add_own_setpoint(of(causes::gain(), {0, 0}), hidden.tests, kFirst, finding);
+  REQUIRE(finding.rivals.size() == 1);
+  CHECK(finding.rivals[0].subject == Subject{&causes::unmodelled_input(), {0, -1, 0}});
+  CHECK(finding.rivals[0].inseparable);
+  CHECK(finding.confidence == Approx(10.0 / 11.0));  // ten to one before any data
+}
+
+}  // namespace
+}  // namespace mpm
