@@ -62,7 +62,7 @@ inline constexpr double kStepOfDamping = 0.2;   ///< likewise
 
 // How far a dead time may be off (dead_time_reach.hpp).
 inline constexpr double kReachesOfDeadTime[] = {2.0, 3.0, 4.0, 6.0, 8.0, 12.0};  ///< s.d.
-inline constexpr int kHeldSteps = 3;       ///< of Gauss-Newton
+inline constexpr int kHeldSteps = 3;  ///< of Gauss-Newton
 
 // Which channels, of which form (structure.hpp).
 inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.

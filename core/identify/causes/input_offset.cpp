@@ -100,8 +100,7 @@ class InputOffsetCause : public InputBlockCause {
     const Effect& offset = accepted[mine];
     const ModelSpec& model = problem.model();
     const Recording& recording = problem.recording();
-    const int aux =
-        moves_along(recording.aux, first_setpoint(recording), offset.onset);
+    const int aux = moves_along(recording.aux, first_setpoint(recording), offset.onset);
     if (aux < 0) return {};
     Rewrite rewrite{{mine}, {}};
     for (const ChannelSpec& channel : model.channels) {
