@@ -59,8 +59,8 @@ bool own_setpoint_is_simpler(const SearchResult& found, std::size_t accusation, 
 
 /// What the calibrated test does not bear out goes, unless it overwhelms; where feedback moves the
 /// input, what leaves the test anything to see goes. So does an accusation that makes predictions
-/// no better beyond doubt, unless a disturbance that wanders may hide that and the test sees all of
-/// it gone. Why, for a person; null where it stays.
+/// no better beyond doubt, unless the test was sure of it on all rows and sees all of it gone: the
+/// unseen ones may hold too little movement to tell. Why, for a person; null where it stays.
 std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult& found,
                                      const Selection& selection, const Judges& judges,
                                      const Witness& witness) {
@@ -88,7 +88,8 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
     const bool overwhelming =
         selection.sure_gains[i] >= kOverwhelmingGain && effect.edit != &causes::input_stuck();
     const bool outside = moved_from_outside(effect, problem.model(), judges.outside_shares);
-    if (says == Confirmation::kNone && !(overwhelming && outside))
+    if (says == Confirmation::kNone &&
+        !(overwhelming && (outside || effect.edit == &causes::stiction())))
       reasons[i] = "with it the test of the channels sees no less wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
@@ -97,8 +98,8 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
     else if (accuses(effect) && follows_setpoint(problem, found, tested, i, judges, witness))
       reasons[i] =
           "without it the CV follows a set-point, and better than any error of its channels";
-    else if (selection.fates[i] == Fate::kNoBetter &&
-             !(says == Confirmation::kNothingOfAll && selection.wanders[i]))
+    else if (selection.fates[i] == Fate::kNoBetter && says != Confirmation::kTrace &&
+             says != Confirmation::kNothingOfAll)
       reasons[i] = why_not_in_model(Fate::kNoBetter);
   }
   return reasons;

@@ -62,8 +62,10 @@ inline constexpr int kOtherNumbers = 4;
 inline constexpr double kLeastExplained = 0.1;
 /// Movement of an input counts as coming from outside the loop from this share on.
 inline constexpr double kMostlyOutside = 0.5;
-/// A curve is not named where less of its input's movement does.
+/// A curve is not named where less of its input's movement does, and no gain or lags where so
+/// little.
 inline constexpr double kCurveOutside = 0.25;
+inline constexpr double kHardlyOutside = 0.05;
 
 /// Something new is looked for in the rows kept for validation where a CV's mean square residual
 /// there is so many times that of the rows before; what begins so much (share of the rows before)
@@ -88,8 +90,10 @@ inline constexpr double kOverwhelmingGain = 0.3;
 /// The calibrated test bears a repair out where it rejects the repaired model no more than this, or
 /// where it sees less than this share of what is wrong with the given one; and a stuck actuator
 /// where it rejects "no effect at all" no more than this. What it had rejected beyond doubt was
-/// rejected so.
+/// rejected so; of that hardly any may be left, and hardly be seen.
 inline constexpr double kSeesNothing = 0.05;
+inline constexpr double kHardlySees = 1e-3;
+inline constexpr double kHardlyAny = 0.2;
 inline constexpr double kClearlyLessSeen = 0.7;
 inline constexpr double kStillMoves = 1e-5;
 inline constexpr double kBeyondDoubt = 1e-6;

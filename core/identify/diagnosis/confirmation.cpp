@@ -12,6 +12,7 @@ namespace {
 struct Seen {
   double wrong = 0.0;    ///< the most
   double p_value = 1.0;  ///< the smallest, times their number
+  bool matters = false;  ///< some of it surely
 };
 
 Seen seen(const ChannelTests& tests, const std::vector<std::pair<int, int>>& channels) {
@@ -21,6 +22,7 @@ Seen seen(const ChannelTests& tests, const std::vector<std::pair<int, int>>& cha
     const std::optional<double> p = tests.p_value(cv, input);
     if (!p) continue;
     most.wrong = std::max(most.wrong, tests.wrong(cv, input));
+    most.matters = most.matters || tests.harmless_p_value(cv, input) <= kSurelyMatters;
     smallest = std::min(smallest, *p);
     tested += 1.0;
   }
@@ -32,14 +34,19 @@ Seen seen(const ChannelTests& tests, const std::vector<std::pair<int, int>>& cha
 
 Confirmation confirmation(const Effect& effect, const ModelSpec& model, int model_inputs,
                           const ChannelTests& before, const ChannelTests& after) {
-  if (effect.edit == &causes::stiction()) return Confirmation::kNothing;
   const std::vector<std::pair<int, int>> channels = channels_of(effect, model, model_inputs);
   const Seen was = seen(before, channels), is = seen(after, channels);
+  if (effect.edit == &causes::stiction()) {
+    const bool less = is.p_value > kHardlySees || is.wrong < kClearlyLessSeen * was.wrong;
+    return less ? Confirmation::kNothing : Confirmation::kNone;
+  }
   if (effect.edit == &causes::input_stuck())
     return is.p_value > kStillMoves ? Confirmation::kNothing : Confirmation::kNone;
   if (was.p_value > kSeesNothing) return Confirmation::kLess;  // believed without its word
-  if (is.p_value > kSeesNothing)
-    return was.p_value < kBeyondDoubt ? Confirmation::kNothingOfAll : Confirmation::kNothing;
+  const bool sure = was.p_value < kBeyondDoubt && was.matters;
+  if (is.p_value > kSeesNothing) return sure ? Confirmation::kNothingOfAll : Confirmation::kNothing;
+  if (sure && is.p_value > kHardlySees && is.wrong < kHardlyAny * was.wrong)
+    return Confirmation::kTrace;
   return is.wrong < kClearlyLessSeen * was.wrong ? Confirmation::kLess : Confirmation::kNone;
 }
 

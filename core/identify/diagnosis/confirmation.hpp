@@ -18,14 +18,15 @@ struct Witness {
 enum class Confirmation {
   kNone,          ///< it sees no less wrong
   kLess,          ///< clearly less
+  kTrace,         ///< hardly anything of what it had seen beyond doubt and that matters
   kNothing,       ///< nothing any more
-  kNothingOfAll,  ///< nothing any more of what it had seen beyond doubt
+  kNothingOfAll,  ///< nothing of what it had seen beyond doubt and that matters
 };
 
 /// Asked of the channels that an effect changes, where the test saw most, on the given and on the
 /// repaired model. A channel that is said to do nothing, for its actuator is stuck, must indeed do
-/// nothing. A sticking valve swings by itself, which no repair follows for long: its shape says
-/// enough.
+/// nothing. A sticking valve swings by itself, which no repair follows for long: that the test sees
+/// hardly anything more, or clearly less, is enough.
 [[nodiscard]] Confirmation confirmation(const Effect& effect, const ModelSpec& model,
                                         int model_inputs, const ChannelTests& before,
                                         const ChannelTests& after);

@@ -1,5 +1,7 @@
 #include "core/identify/diagnosis/nameable.hpp"
 
+#include <algorithm>
+
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
@@ -7,8 +9,35 @@
 namespace mpm {
 namespace {
 
+using Shares = std::vector<std::optional<double>>;
+
 bool is_of_an_actuator(const Effect& effect) {
   return effect.edit == &causes::input_stuck() || effect.edit == &causes::input_offset();
+}
+
+double outside_share(const Shares& shares, int input) {
+  const auto i = static_cast<std::size_t>(input);
+  return i < shares.size() ? shares[i].value_or(1.0) : 1.0;
+}
+
+/// The most of any input that acts through the effect's channels.
+double outside_share(const Effect& effect, const ModelSpec& model, const Shares& shares) {
+  if (effect.place.aux >= 0) return 1.0;
+  if (effect.place.input >= 0) return outside_share(shares, effect.place.input);
+  double most = 0.0;
+  for (const ChannelSpec& channel : model.channels)
+    if (channel.cv == effect.place.cv) most = std::max(most, outside_share(shares, channel.input));
+  return most;
+}
+
+/// What of the channels only an input that moves from outside the loop can show. A valve that
+/// sticks moves its loop by itself, one that has stuck opens it.
+double outside_needed(const Effect& effect) {
+  const Cause& cause = cause_of(effect);
+  if (cause.is_curve()) return kCurveOutside;
+  const bool by_itself =
+      effect.edit == &causes::stiction() || effect.edit == &causes::input_stuck();
+  return cause.acts_through_channels() && !by_itself ? kHardlyOutside : 0.0;
 }
 
 }  // namespace
@@ -26,14 +55,10 @@ std::vector<std::pair<int, int>> channels_of(const Effect& effect, const ModelSp
 }
 
 std::function<bool(const Effect&)> nameable(const ModelSpec& model, const SignalRanges& ranges,
-                                            const ChannelTests& tests,
-                                            const std::vector<std::optional<double>>& shares) {
+                                            const ChannelTests& tests, const Shares& shares) {
   return [&model, ranges, &tests, &shares](const Effect& effect) {
-    const auto input = static_cast<std::size_t>(effect.place.input);
     if (is_of_an_actuator(effect) && effect.place.input >= ranges.mvs) return false;
-    if (cause_of(effect).is_curve() && input < shares.size() &&
-        shares[input].value_or(1.0) < kCurveOutside)
-      return false;
+    if (outside_share(effect, model, shares) < outside_needed(effect)) return false;
     if (effect.place.aux >= ranges.aux) return may_name_setpoint(effect, tests, ranges.aux);
     return !cause_of(effect).acts_through_channels() ||
            tests.reject(channels_of(effect, model, ranges.inputs));

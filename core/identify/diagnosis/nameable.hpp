@@ -25,7 +25,9 @@ struct SignalRanges {
 /// Which effects may be named: what acts through channels where the calibrated test rejects those
 /// (`model`'s), a disturbance always, what a set-point does as `may_name_setpoint` says; a curve
 /// only where its input moves from outside the loop too (shares per input): feedback bends what is
-/// straight. All must outlive what is returned.
+/// straight. Where it moves hardly at all from there, no channel's gain or lags: to leave the
+/// channel out then explains everything, for the controller holds the CV where it is. All must
+/// outlive what is returned.
 [[nodiscard]] std::function<bool(const Effect&)> nameable(
     const ModelSpec& model, const SignalRanges& ranges, const ChannelTests& tests,
     const std::vector<std::optional<double>>& outside_shares);

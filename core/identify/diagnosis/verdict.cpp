@@ -80,8 +80,8 @@ void decide(double explained, bool sticks, Diagnosis& diagnosis) {
     diagnosis.reason = "what explains most was refused: " + strongest->refused;
   else if (diagnosis.suspect && diagnosis.suspect->evidence > kStrongEvidence)
     diagnosis.reason =
-        "a free run suggests a cause that the calibrated test of the channels does not confirm: "
-        "feedback, or a disturbance that wanders, can look the same";
+        "a free run suggests a cause that the calibrated test of the channels does not confirm, or "
+        "that only feedback shows: it, or a disturbance that wanders, can look the same";
   else if (!diagnosis.rejected.empty())
     diagnosis.reason = "a model that matches would not be rejected so; what is wrong is not told";
   else if (blind > 0)

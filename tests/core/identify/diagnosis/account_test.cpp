@@ -24,16 +24,18 @@ struct Bench {
   std::vector<std::optional<double>> shares;
   SearchSettings settings;
 
-  Bench(double fitted, double not_fitted, double outside_share)
-      : all(plant(fitted, not_fitted)),
+  /// From row `rests` on the input stands still.
+  Bench(double fitted, double not_fitted, double outside_share, Index rests = kRows)
+      : all(plant(fitted, not_fitted, rests)),
         first(part(all, 0, kFitted)),
         unseen(all, kRows - kFitted, model, 1),
         shares{outside_share} {
     settings.progress = [](double) { return true; };
   }
 
-  static Recording plant(double fitted, double not_fitted) {
-    const VectorXd u = test::telegraph(1, kRows, 12);
+  static Recording plant(double fitted, double not_fitted, Index rests) {
+    VectorXd u = test::telegraph(1, kRows, 12);
+    u.tail(kRows - rests).setConstant(u[rests - 1]);
     const VectorXd response = test::first_order(u, 2.0, 10.0);
     VectorXd y = response + 0.1 * test::autoregressive(test::normal(3, kRows), 0.5);
     y.head(kFitted) += (fitted - 1.0) * response.head(kFitted);
@@ -72,6 +74,12 @@ TEST_CASE("what carries over stays") {
   const Account account = Bench(1.5, 1.5, 1.0).take();
   CHECK(names_gain(account));
   CHECK(account.refused.empty());
+}
+
+TEST_CASE("what the test is sure of is named though the unseen rows hold no movement") {
+  const Account account = Bench(1.5, 1.5, 1.0, 530).take();
+  CHECK(names_gain(account));
+  for (const Fate fate : account.selection.fates) CHECK(fate == Fate::kNoBetter);
 }
 
 // Half of the gain is 0.7 of the CV's s.d., far more than the noise: the errors of predictions fall

@@ -14,19 +14,20 @@ using test::lag;
 
 constexpr Index kRows = 1500;
 
-/// The input's part of what a model gets wrong, in shares of the channel: before and after.
-Confirmation says(const Cause& cause, double before, double after) {
-  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+ModelSpec one_lag() { return test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1); }
+
+/// `share`: the input's part of what a model gets wrong, as a share of the channel.
+ChannelTests tests(double share) {
   const VectorXd u = test::telegraph(1, kRows, 12);
-  const VectorXd response = test::first_order(u, 2.0, 10.0);
-  const auto tests = [&](double share) {
-    const VectorXd residual = share * response + 0.1 * test::normal(3, kRows);
-    return ChannelTests(model, test::recording_of(u, residual), residual);
-  };
+  const VectorXd residual = share * test::first_order(u, 2.0, 10.0) + 0.1 * test::normal(3, kRows);
+  return {one_lag(), test::recording_of(u, residual), residual};
+}
+
+Confirmation says(const Cause& cause, double before, double after) {
   Effect effect;
   effect.edit = &cause;
   effect.place = {0, 0};
-  return confirmation(effect, model, 1, tests(before), tests(after));
+  return confirmation(effect, one_lag(), 1, tests(before), tests(after));
 }
 
 TEST_CASE("a repair is borne out by as much as goes") {
@@ -45,8 +46,25 @@ TEST_CASE("a stuck actuator leaves nothing that answers it") {
   CHECK(says(causes::input_stuck(), 0.5, 0.2) == Confirmation::kNone);
 }
 
-TEST_CASE("a sticking valve's shape says enough") {
-  CHECK(says(causes::stiction(), 0.5, 0.6) == Confirmation::kNothing);
+TEST_CASE("a repaired valve that sticks leaves the test clearly less to see") {
+  CHECK(says(causes::stiction(), 0.5, 0.0) == Confirmation::kNothing);
+  CHECK(says(causes::stiction(), 0.5, 0.3) == Confirmation::kNothing);
+  CHECK(says(causes::stiction(), 0.5, 0.6) == Confirmation::kNone);
+}
+
+// One right repair in twenty leaves a p-value below 0.05 by chance.
+TEST_CASE("of much that is surely wrong a trace may be left") {
+  const double trace = 0.006;
+  const ChannelTests left = tests(trace);
+  REQUIRE(left.p_value(0, 0).value() > 1e-3);
+  REQUIRE(left.p_value(0, 0).value() < 0.05);
+  CHECK(says(causes::gain(), 0.5, trace) == Confirmation::kTrace);
+  CHECK(says(causes::gain(), 0.01, trace) < Confirmation::kTrace);
+}
+
+TEST_CASE("what is surely wrong and too small to matter is no reason to accuse") {
+  REQUIRE(tests(0.03).p_value(0, 0).value() < 1e-6);
+  CHECK(says(causes::gain(), 0.03, 0.0) == Confirmation::kNothing);
 }
 
 }  // namespace

@@ -86,5 +86,22 @@ TEST_CASE("a curve may be named where the test rejects and not all movement is f
   CHECK(bench(causes::input_polynomial(), {0, 0}));
 }
 
+// Of a CV that a controller holds a model without the channel explains all that the loop shows.
+TEST_CASE("where nothing but feedback moves an input no gain or lag of it is named") {
+  Bench bench;
+  bench.shares[0] = 0.04;
+  CHECK_FALSE(bench(causes::gain(), {0, 0}));
+  CHECK_FALSE(bench(causes::dead_time(), {0, 0}));
+  CHECK_FALSE(bench(causes::input_scale(), {-1, 0}));
+  CHECK(bench(causes::output_scale(), {0}));  // by the DV
+  bench.shares[1] = 0.04;
+  CHECK_FALSE(bench(causes::output_scale(), {0}));
+  CHECK(bench(causes::stiction(), {-1, 0}));
+  CHECK(bench(causes::input_stuck(), {-1, 0}));
+  CHECK(bench(causes::step_disturbance(), {0}));
+  bench.shares[0] = std::nullopt;  // nobody knows
+  CHECK(bench(causes::gain(), {0, 0}));
+}
+
 }  // namespace
 }  // namespace mpm
