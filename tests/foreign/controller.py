@@ -14,17 +14,24 @@ LIMIT = 5.0  # of an MV, in its scales
 MOST_MOVE = 1.0  # a sample, in its scales
 
 
+def steps_of(plant):
+    """Responses to unit steps: samples x CVs x inputs, the DV last."""
+    horizon = int(max(channel.settling() for channel in plant.channels))
+    steps = np.zeros((horizon + 1, plant.cv_count, plant.mv_count + 1))
+    for channel in plant.channels:
+        steps[:, channel.cv, channel.input] = step_response(channel, horizon + 1)
+    return steps
+
+
 class Dmc:
-    def __init__(self, plant):
-        horizon = int(max(channel.settling() for channel in plant.channels))
-        cvs, mvs = plant.cv_count, plant.mv_count
-        steps = np.zeros((horizon + 1, cvs, mvs + 1))
-        for channel in plant.channels:
-            steps[:, channel.cv, channel.input] = step_response(channel, horizon + 1)
+    """`integrating`: of each CV, whether its steps end in ramps; `limits`: of the MVs."""
+
+    def __init__(self, steps, cv_scale, mv_scale, integrating, limits):
+        horizon, cvs, mvs = len(steps) - 1, len(cv_scale), len(mv_scale)
+        cv_scale, mv_scale = np.array(cv_scale), np.array(mv_scale)
         self.steps = steps
         self.points = np.unique(np.rint(np.linspace(2, 0.6 * horizon, POINTS)).astype(int))
         starts = np.rint(np.array([0.0, 0.06, 0.15][:MOVES]) * horizon).astype(int)
-        cv_scale, mv_scale = np.array(plant.cv_scale), np.array(plant.mv_scale)
         blocks = []
         for start in starts:
             late = np.maximum(0, self.points - start)
@@ -34,18 +41,23 @@ class Dmc:
         gain = np.linalg.solve(effect.T @ effect + penalty, effect.T)[:mvs]
         self.gain = gain * mv_scale[:, None] / np.tile(cv_scale, len(self.points))
         self.free = np.zeros((horizon + 1, cvs))
-        self.ramps = np.zeros(cvs)  # 1 where the prediction goes on in a straight line
-        for channel in plant.channels:
-            if channel.integrating:
-                self.ramps[channel.cv] = 1.0
-        self.most, self.limit = MOST_MOVE * mv_scale, LIMIT * mv_scale
-        self.last = np.zeros(mvs + 1)
+        self.ramps = np.array(integrating, float)  # 1: the prediction goes on in a straight line
+        self.most, self.limit = MOST_MOVE * mv_scale, np.array(limits)
+        self.last = np.zeros(steps.shape[2])
+
+    @classmethod
+    def of(cls, plant):
+        integrating = [any(c.integrating for c in plant.channels if c.cv == cv)
+                       for cv in range(plant.cv_count)]
+        return cls(steps_of(plant), plant.cv_scale, plant.mv_scale, integrating,
+                   LIMIT * np.array(plant.mv_scale))
 
     def move(self, setpoint, measured):
         """The MVs that it wants; `applied` must follow."""
         expected = self.free[self.points] + (measured - self.free[0])
         moves = np.clip(self.gain @ (setpoint - expected).ravel(), -self.most, self.most)
-        return np.clip(self.last[:-1] + moves, -self.limit, self.limit)
+        mvs = len(moves)
+        return np.clip(self.last[:mvs] + moves, -self.limit, self.limit)
 
     def applied(self, inputs):
         """The MVs as applied, by whomever, and the DV: predictions move on by one sample."""

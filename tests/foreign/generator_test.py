@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The foreign plants are what they say: the same bytes from a seed again, step responses as in
-closed form, and a unit file from which the model is read back. Exits with 77 without numpy."""
+closed form, a unit file from which the model is read back, balances that close. Exits with 77
+without numpy."""
 import math
 import pathlib
 import sys
@@ -16,6 +17,7 @@ import loop
 from channels import Channel, Simulator, respond, step_response
 from controller import Dmc, Pi
 from model_reader import model_steps
+from physical_plants import PHYSICAL, four_tanks, heater, responses, settled
 from plants import PLANTS
 from regimes import Noise
 
@@ -94,7 +96,7 @@ def controllers_control():
     """In the last half of a step that nothing disturbs, no CV is off by more than a fifth of it."""
     for make in PLANTS.values():
         plant = make()
-        for controller in (Dmc(plant), Pi(plant)):
+        for controller in (Dmc.of(plant), Pi(plant)):
             simulator = Simulator(plant.channels, plant.cv_count, plant.mv_count + 1)
             cvs, inputs = np.zeros(plant.cv_count), np.zeros(plant.mv_count + 1)
             samples = 20 * int(max(c.settling() for c in plant.channels))
@@ -107,6 +109,26 @@ def controllers_control():
                           f"{type(controller).__name__} of {plant.name}")
 
 
+def balances():
+    """The physical plants come to rest, the tanks and the heater where balances by hand say, and a
+    step model's first row is the rest."""
+    for make in PHYSICAL:
+        plant = make()
+        state = settled(plant, plant.rest, plant.numbers)
+        slope = plant.slope(state, plant.rest, plant.numbers, 0.0)
+        check(np.all(np.abs(slope * plant.sample_time) < 1e-9 * np.abs(state)), plant.name)
+        steps, level = responses(plant, plant.rest, plant.numbers, 3)
+        check(np.all(steps[0] == 0.0) and np.any(steps[1] != 0.0), f"steps of {plant.name}")
+        check(np.allclose(level, plant.measured(state)), f"rest of {plant.name}")
+    plant = four_tanks()
+    inflow = 0.7 * 3.33 * 3.0 + 0.4 * 3.35 * 3.0  # of tank 1, what tank 3 lets through included
+    level = settled(plant, plant.rest, plant.numbers)[0]
+    check(math.isclose(level, (inflow / 0.071) ** 2 / (2 * 981.0), rel_tol=1e-9), "tank 1")
+    plant = heater()
+    warm = (50.0 * 20.0 + 60.0 * 40.0 + 0.5 * 20.0) / 50.5
+    check(math.isclose(settled(plant, plant.rest, plant.numbers)[3], warm, rel_tol=1e-9), "heater")
+
+
 for test in (same_bytes, closed_form, simulates_as_it_responds, reads_back, whitens,
-             controllers_control):
+             controllers_control, balances):
     test()

@@ -51,7 +51,7 @@ CV_ORIGIN, MV_ORIGIN, AUX_ORIGIN = 50.0, 30.0, 20.0  # values at the operating p
 def simulate(regime, plant, outside, hidden, samples, present=None, healthy=None):
     """CVs as measured, MVs as applied, valve positions. `present`: of each sample, whether the
     channels are the hidden ones; where not, what it reads is what `healthy` channels would give."""
-    controller = Pi(plant) if regime == "pi_control" else Dmc(plant)
+    controller = Pi(plant) if regime == "pi_control" else Dmc.of(plant)
     simulator = Simulator(hidden["channels"], plant.cv_count, plant.mv_count + 1)
     other = (Simulator(healthy, plant.cv_count, plant.mv_count + 1) if present is not None else
              None)

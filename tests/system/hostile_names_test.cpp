@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
+#include "tests/allocation_counter.hpp"
 #include "tests/system/bench.hpp"
 
 namespace mpm::test {
@@ -39,7 +40,7 @@ TEST_CASE("a name on the bus neither forges a line of the log nor fills the memo
   Plant plant(2.0);
   bench.publish(known, plant, 50);
   CHECK(bench.observe([&] { return bench.health().frames >= 40; }));
-  CHECK(bench.daemon.resident_kb() < before_kb + 50'000);
+  if (resident_memory_is_ours()) CHECK(bench.daemon.resident_kb() < before_kb + 50'000);
 
   bench.daemon.send(SIGTERM);
   CHECK(bench.daemon.wait(std::chrono::seconds(10)) == 0);
@@ -68,7 +69,7 @@ TEST_CASE("long names of units that stay on the bus do not fill the memory") {
   Plant plant(2.0);
   bench.publish(known, plant, 50);
   CHECK(bench.observe([&] { return bench.health().frames >= 40; }));
-  CHECK(bench.daemon.resident_kb() < before_kb + 50'000);
+  if (resident_memory_is_ours()) CHECK(bench.daemon.resident_kb() < before_kb + 50'000);
 }
 
 TEST_CASE("what strangers write does not fill the memory of a recorder, and that is said") {
@@ -96,7 +97,7 @@ TEST_CASE("what strangers write does not fill the memory of a recorder, and that
   }
   bench.publish(known, plant, 50);
   REQUIRE(known.flush(std::chrono::seconds(20)));
-  CHECK(recorder.resident_kb() < before_kb + 100'000);
+  if (resident_memory_is_ours()) CHECK(recorder.resident_kb() < before_kb + 100'000);
   recorder.send(SIGTERM);
   CHECK(recorder.wait(std::chrono::seconds(20)) == 0);
   const std::string said = read_file(bench.folder.file("record.err"));

@@ -59,9 +59,11 @@ bool own_setpoint_is_simpler(const SearchResult& found, std::size_t accusation, 
 
 /// What the calibrated test does not bear out goes, unless it overwhelms; where feedback moves the
 /// input, what leaves the test anything to see goes. So does an accusation that makes predictions
-/// no better beyond doubt, unless the test was sure of it on all rows and sees all of it gone: the
-/// unseen ones may hold too little movement to tell. Why, for a person; null where it stays.
+/// no better beyond doubt, unless the test was sure of a channel's error on all rows and sees all
+/// of it gone: the unseen ones may hold too little movement to tell. Why, for a person; null where
+/// it stays. `findings`: of what was found, in order.
 std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult& found,
+                                     const std::vector<Finding>& findings,
                                      const Selection& selection, const Judges& judges,
                                      const Witness& witness) {
   std::vector<const char*> reasons(found.named.size(), nullptr);
@@ -98,8 +100,9 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
     else if (accuses(effect) && follows_setpoint(problem, found, tested, i, judges, witness))
       reasons[i] =
           "without it the CV follows a set-point, and better than any error of its channels";
-    else if (selection.fates[i] == Fate::kNoBetter && says != Confirmation::kTrace &&
-             says != Confirmation::kNothingOfAll)
+    else if (selection.fates[i] == Fate::kNoBetter &&
+             !((says == Confirmation::kTrace || says == Confirmation::kNothingOfAll) &&
+               is_channel_error(findings[i])))
       reasons[i] = why_not_in_model(Fate::kNoBetter);
   }
   return reasons;
@@ -128,7 +131,7 @@ Account keep(Explained explained, const Judges& judges, const Witness& witness,
     }
     if (std::find(out.begin(), out.end(), true) == out.end()) {
       const std::vector<const char*> reasons =
-          unconfirmed(problem, before, kept.selection, judges, witness);
+          unconfirmed(problem, before, findings, kept.selection, judges, witness);
       for (std::size_t i = 0; i < out.size(); ++i) {
         if (reasons[i] == nullptr) continue;
         out[i] = true;

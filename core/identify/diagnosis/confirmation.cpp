@@ -5,6 +5,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/nameable.hpp"
+#include "core/identify/fit/quantity.hpp"
 
 namespace mpm {
 namespace {
@@ -37,8 +38,8 @@ Confirmation confirmation(const Effect& effect, const ModelSpec& model, int mode
   const std::vector<std::pair<int, int>> channels = channels_of(effect, model, model_inputs);
   const Seen was = seen(before, channels), is = seen(after, channels);
   if (effect.edit == &causes::stiction()) {
-    const bool less = is.p_value > kHardlySees || is.wrong < kClearlyLessSeen * was.wrong;
-    return less ? Confirmation::kNothing : Confirmation::kNone;
+    const bool less = is.p_value >= was.p_value && is.wrong < kClearlyLessSeen * was.wrong;
+    return less || is.p_value > kHardlySees ? Confirmation::kNothing : Confirmation::kNone;
   }
   if (effect.edit == &causes::input_stuck())
     return is.p_value > kStillMoves ? Confirmation::kNothing : Confirmation::kNone;
@@ -48,6 +49,13 @@ Confirmation confirmation(const Effect& effect, const ModelSpec& model, int mode
   if (sure && is.p_value > kHardlySees && is.wrong < kHardlyAny * was.wrong)
     return Confirmation::kTrace;
   return is.wrong < kClearlyLessSeen * was.wrong ? Confirmation::kLess : Confirmation::kNone;
+}
+
+bool is_channel_error(const Finding& finding) {
+  const Cause& cause = *finding.subject.cause;
+  const Parameter* gain = finding.find(kGainRatio);
+  return cause.acts_through_channels() && !cause.is_curve() && !cause.is_input_block() &&
+         (gain == nullptr || gain->low > 0.0);
 }
 
 }  // namespace mpm

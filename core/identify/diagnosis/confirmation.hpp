@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "core/identify/causes/finding.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/fit/effect.hpp"
 
@@ -26,9 +27,14 @@ enum class Confirmation {
 /// Asked of the channels that an effect changes, where the test saw most, on the given and on the
 /// repaired model. A channel that is said to do nothing, for its actuator is stuck, must indeed do
 /// nothing. A sticking valve swings by itself, which no repair follows for long: that the test sees
-/// hardly anything more, or clearly less, is enough.
+/// hardly anything more, or clearly less and no more surely, is enough.
 [[nodiscard]] Confirmation confirmation(const Effect& effect, const ModelSpec& model,
                                         int model_inputs, const ChannelTests& before,
                                         const ChannelTests& after);
+
+/// Whether a finding says how far a channel is off, so that the test's word alone may be enough: no
+/// curve or valve, which takes more movement to tell from another, and no channel that may do
+/// nothing at all, for whatever is missing from the data looks like that.
+[[nodiscard]] bool is_channel_error(const Finding& finding);
 
 }  // namespace mpm

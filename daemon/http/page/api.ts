@@ -53,9 +53,10 @@ export interface Correlation {
   effective_samples: number | null; verdict: string; state: State; text: string;
 }
 export interface Correlations { sample_time_s: number; inputs: Correlation[] }
+export interface Rival { cause: string; cv: string | null; mv: string | null; tag: string | null; worse: number; inseparable: boolean }
 export interface Finding {
   cause: string; title?: string; cv: string | null; mv: string | null; explanation: string; confidence: number;
-  in_model?: boolean; explains?: number; against?: string[];
+  in_model?: boolean; explains?: number; rivals?: Rival[];
 }
 export interface Diagnosis {
   unit: string; diagnosed: boolean;

@@ -1,5 +1,5 @@
 // What the alarms were found to come from.
-import { get, unitPath, type Diagnosis } from './api';
+import { get, unitPath, type Diagnosis, type Finding, type Rival } from './api';
 import { h } from './dom';
 import { time, unitLink } from './parts';
 import { number } from './text';
@@ -50,6 +50,19 @@ function validation(diagnosis: Diagnosis): HTMLElement | null {
       ...[each.rmse_before, each.rmse_after, each.fit_before, each.fit_after].map((value, i) => cell(number(value, 3), columns[i] ?? '', 'number'))))))));
 }
 
+const WORTH_A_LINE = 0.1; // probability against the finding, from 2 ln odds; the report names the same ones
+
+const probability = (worse: number): number => 1 / (1 + Math.exp(worse / 2));
+
+function rivals(finding: Finding): string {
+  const all = finding.rivals ?? [];
+  const near = all.filter(each => each.inseparable || probability(each.worse) >= WORTH_A_LINE);
+  if (!near.length) return all.length ? 'Nothing else that was tried comes near.' : '';
+  const words = (each: Rival) => `${each.cause.replaceAll('_', ' ')}, ${[each.tag ?? each.mv, each.cv].filter(Boolean).join('\u00a0→\u00a0')}${each.inseparable ? ' (the data do not decide)' : ''}`;
+  const others = all.length - near.length;
+  return `Or else: ${near.map(words).join('; ')}${others ? `; ${others} other${others === 1 ? '' : 's'} less likely` : ''}.`;
+}
+
 export async function diagnosisPage(unit: string): Promise<HTMLElement> {
   const diagnosis = await get<Diagnosis>(`${unitPath(unit)}/diagnosis`);
   const { last, report, reports } = diagnosis;
@@ -68,7 +81,7 @@ export async function diagnosisPage(unit: string): Promise<HTMLElement> {
       h('strong', {}, `${each.title ?? each.cause}${each.mv || each.cv ? `, ${[each.mv, each.cv].filter(Boolean).join('\u00a0→\u00a0')}` : ''}`),
       h('span', { class: 'word' }, `${each.confidence > 0.999 ? '> 99.9' : number(100 * each.confidence, 3)} % sure`),
       h('p', {}, each.explanation),
-      each.against?.length ? h('p', { class: 'note' }, `Tried instead: ${each.against.join('; ')}`) : null)))) : null,
+      rivals(each) ? h('p', { class: 'note' }, rivals(each)) : null)))) : null,
     numbers(diagnosis), validation(diagnosis),
     newest ? h('section', { 'data-key': 'report' }, h('h2', {}, 'Report'),
       h('p', {}, ...reports.flatMap((each, i) => [i ? ', ' : '', h('a', { href: each.html, target: '_blank', rel: 'noopener' }, `alarm of ${each.name.replace(/^(\d+)(\d\d)(\d\d)T(\d\d)(\d\d)(\d\d).*/, '$1-$2-$3 $4:$5:$6 UTC')}`)])),

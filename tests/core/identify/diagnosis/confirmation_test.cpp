@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/fit/quantity.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -17,17 +18,22 @@ constexpr Index kRows = 1500;
 ModelSpec one_lag() { return test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1); }
 
 /// `share`: the input's part of what a model gets wrong, as a share of the channel.
-ChannelTests tests(double share) {
+ChannelTests tests(double share, double noise = 0.1) {
   const VectorXd u = test::telegraph(1, kRows, 12);
-  const VectorXd residual = share * test::first_order(u, 2.0, 10.0) + 0.1 * test::normal(3, kRows);
+  const VectorXd residual =
+      share * test::first_order(u, 2.0, 10.0) + noise * test::normal(3, kRows);
   return {one_lag(), test::recording_of(u, residual), residual};
 }
 
-Confirmation says(const Cause& cause, double before, double after) {
+Confirmation says(const Cause& cause, const ChannelTests& before, const ChannelTests& after) {
   Effect effect;
   effect.edit = &cause;
   effect.place = {0, 0};
-  return confirmation(effect, one_lag(), 1, tests(before), tests(after));
+  return confirmation(effect, one_lag(), 1, before, after);
+}
+
+Confirmation says(const Cause& cause, double before, double after) {
+  return says(cause, tests(before), tests(after));
 }
 
 TEST_CASE("a repair is borne out by as much as goes") {
@@ -50,6 +56,11 @@ TEST_CASE("a repaired valve that sticks leaves the test clearly less to see") {
   CHECK(says(causes::stiction(), 0.5, 0.0) == Confirmation::kNothing);
   CHECK(says(causes::stiction(), 0.5, 0.3) == Confirmation::kNothing);
   CHECK(says(causes::stiction(), 0.5, 0.6) == Confirmation::kNone);
+  // Less in the CV's units, but it stands out of less noise: nothing is repaired.
+  const ChannelTests loud = tests(0.05, 0.3), quiet = tests(0.03, 0.05);
+  REQUIRE(quiet.wrong(0, 0) < 0.5 * loud.wrong(0, 0));
+  REQUIRE(quiet.p_value(0, 0).value() < 1e-2 * loud.p_value(0, 0).value());
+  CHECK(says(causes::stiction(), loud, quiet) == Confirmation::kNone);
 }
 
 // One right repair in twenty leaves a p-value below 0.05 by chance.
@@ -65,6 +76,25 @@ TEST_CASE("of much that is surely wrong a trace may be left") {
 TEST_CASE("what is surely wrong and too small to matter is no reason to accuse") {
   REQUIRE(tests(0.03).p_value(0, 0).value() < 1e-6);
   CHECK(says(causes::gain(), 0.03, 0.0) == Confirmation::kNothing);
+}
+
+TEST_CASE(
+    "the test's word is enough for an error of a channel, and not for its absence or a curve") {
+  const auto may = [](const Cause& cause, double low, double high) {
+    Finding finding;
+    finding.subject.cause = &cause;
+    finding.parameters.push_back({&kGainRatio, 0.5 * (low + high), low, high});
+    return is_channel_error(finding);
+  };
+  CHECK(may(causes::gain(), 0.3, 0.6));
+  CHECK(may(causes::input_scale(), 1.2, 1.4));
+  CHECK_FALSE(may(causes::gain(), -0.02, 0.1));
+  CHECK_FALSE(may(causes::input_polynomial(), 0.3, 0.6));
+  CHECK_FALSE(may(causes::cubic_stiffness(), 0.9, 1.1));
+  CHECK_FALSE(may(causes::stiction(), 0.9, 1.1));
+  Finding late;
+  late.subject.cause = &causes::dead_time();
+  CHECK(is_channel_error(late));
 }
 
 }  // namespace

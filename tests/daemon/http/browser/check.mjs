@@ -187,6 +187,9 @@ try {
   await page.goto(`${running.url}#/unit/shell/diagnosis`);
   await page.waitForSelector(".findings li");
   assert.match(await page.locator(".findings li").first().textContent(), /Gain, u3.*y3/);
+  const named = await page.locator(".findings").textContent();
+  assert.match(named, /Nothing else that was tried comes near|Or else: /);
+  assert.doesNotMatch(named, /odds|worse/); // plain words
   await page.waitForSelector(".changed");
   const report = page.frameLocator("iframe.report");
   await report.locator("h1").waitFor();

@@ -1,0 +1,256 @@
+#!/usr/bin/python3
+"""What `mpm diagnose` says of nonlinear plants from first principles under a linear controller.
+
+Usage: physical.py --mpm build/release/bin/mpm --seeds 100001-100003 [--plant P ...] [--case C ...]
+                [--jobs 1] [--keep DIR] [--markdown FILE] [--bounds]
+
+physical_plants.py has the plants, controller.py the controller (Dmc). Its model, and that of the
+unit file, are the plant's step responses at its operating point. Each plant runs healthy, healthy
+with set-points that move twice as far, with a sensor's span of 0.7, a sensor's bias half-way, a
+valve that sticks, and each of its own changes, from the start or half-way. 3000 samples; a load and
+coloured noise disturb all of it. Seeds below 1000 are for scores, from 100001 on for tuning.
+
+The truth is the changed plant's step responses at the mean inputs of the recording: a channel is
+wrong by the norm of its error over the norm of what the model has, until half as long again as that
+takes to come within 5 % of its end. A finding that accuses is
+* right: of its channels one is wrong by more than WRONG; or it is what was done to the run;
+* curve: a nonlinearity, which all of these plants have;
+* slight: none is wrong by more than WRONG, one by more than SOUND;
+* place: another of the actuator that sticks;
+* wrong: all its channels are as the model has them; a valve that is said to stick, to have stuck or
+  to be shifted where none is.
+Others are `else`, but for the level of a sensor that is biased, which is right.
+--bounds: exit 1 where more than one run of 20 has a wrong finding, so surely that a true share
+of that would break it in one of 1000 scores.
+"""
+import argparse
+import json
+import multiprocessing
+import pathlib
+import tempfile
+
+import numpy as np
+
+from controller import Dmc
+from judge import ACCUSES
+from physical_plants import PHYSICAL, advance, responses, settled
+from score import run, seed_list
+from tables import most, replace_part, share
+
+SAMPLES, HORIZON = 3000, 240
+WRONG, SOUND, STRONG = 0.15, 0.08, 0.25
+MOST_WRONG = 0.05
+CURVES = {"input_nonlinearity", "output_nonlinearity", "state_nonlinearity"}
+OF_ACTUATOR = {"stiction", "input_stuck", "input_offset"}
+SPAN, STICK = 0.7, 1.0  # factor; band in usual movements of the MV
+
+
+def cases_of(plant):
+    return ["healthy", "far", "span", "bias", "stiction", *plant.changes]
+
+
+def filtered(rng, samples, columns, pole):
+    """s.d. 1."""
+    noise = rng.standard_normal((samples, columns))
+    for k in range(1, samples):
+        noise[k] = pole * noise[k - 1] + np.sqrt(1.0 - pole * pole) * noise[k]
+    return noise
+
+
+def levels(rng, samples, low, high, draw):
+    values, k = [], 0
+    while k < samples:
+        hold = int(rng.integers(low, high))
+        values += [draw()] * hold
+        k += hold
+    return np.array(values[:samples])
+
+
+class Run:
+    """One recording, and the truth about it."""
+
+    def __init__(self, plant, case, seed):
+        rng = np.random.default_rng([seed, [p().name for p in PHYSICAL].index(plant.name),
+                                     cases_of(plant).index(case)])
+        self.plant, self.case = plant, case
+        self.steps, self.level = responses(plant, plant.rest, plant.numbers, HORIZON)
+        self.onset = SAMPLES // 2 if case == "bias" or seed % 2 == 0 else 0
+        self.touched = int(rng.integers(len(plant.cvs)))  # the CV of span and bias
+        self.sticks = int(rng.integers(len(plant.mvs)))
+        self.changed = dict(plant.numbers)
+        if case in plant.changes:
+            key, factor = plant.changes[case]
+            self.changed[key] *= factor
+        self.inputs, self.cvs, self.setpoints = self.simulate(rng)
+        self.errors = self.judge_channels()
+
+    def simulate(self, rng):
+        plant, mvs, cvs = self.plant, len(self.plant.mvs), len(self.plant.cvs)
+        reach = 2.0 if self.case == "far" else 1.0
+        setpoints = np.column_stack([
+            level + levels(rng, SAMPLES, 60, 200, lambda b=band: reach * rng.uniform(-b, b))
+            for level, band in zip(self.level, plant.band)])
+        dvs = np.column_stack([np.zeros(SAMPLES)] + [
+            levels(rng, SAMPLES, 80, 250, lambda m=usual: rng.normal(0.0, m))
+            for usual in plant.moves[mvs:]])[:, 1:] + plant.rest[mvs:]
+        load = plant.load * filtered(rng, SAMPLES, 1, 0.95)[:, 0]
+        noise = plant.band * (0.05 * filtered(rng, SAMPLES, cvs, 0.9)
+                              + 0.02 * rng.standard_normal((SAMPLES, cvs)))
+        controller = Dmc(self.steps, plant.band, plant.moves[:mvs], np.zeros(cvs), plant.limits)
+        state = settled(plant, plant.rest, plant.numbers)
+        inputs, measured = np.zeros((SAMPLES, len(plant.rest))), np.zeros((SAMPLES, cvs))
+        position = plant.rest[:mvs].copy()
+        for k in range(SAMPLES):
+            on = k >= self.onset
+            value = plant.measured(state) - self.level
+            if on and self.case == "span":
+                value[self.touched] *= SPAN
+            if on and self.case == "bias":
+                value[self.touched] += 0.7 * plant.band[self.touched]
+            measured[k] = self.level + value + noise[k]
+            wanted = controller.move(setpoints[k] - self.level, measured[k] - self.level)
+            inputs[k] = np.concatenate([plant.rest[:mvs] + wanted, dvs[k]])
+            controller.applied(inputs[k] - plant.rest)
+            free = np.ones(mvs, bool)
+            if on and self.case == "stiction":
+                i = self.sticks
+                free[i] = abs(inputs[k, i] - position[i]) > STICK * plant.moves[i]
+            position = np.where(free, inputs[k, :mvs], position)
+            acting = np.concatenate([position, dvs[k]])
+            state = advance(plant, state, acting, self.changed if on else plant.numbers, load[k])
+        return inputs, measured, setpoints
+
+    def judge_channels(self):
+        """CVs x inputs."""
+        model = self.steps.copy()
+        mean = self.inputs[self.onset:].mean(axis=0)
+        true, _ = responses(self.plant, mean, self.changed, HORIZON)
+        if self.case == "span":
+            true[:, self.touched] *= SPAN
+        away = np.abs(model - model[-1]) > 0.05 * np.abs(model).max(axis=0)
+        settling = 1.5 * (HORIZON - np.argmax(away[::-1], axis=0))
+        for (j, i), end in np.ndenumerate(settling):
+            true[int(end):, j, i] = model[int(end):, j, i] = 0.0
+        return np.linalg.norm(true - model, axis=0) / np.linalg.norm(model, axis=0)
+
+    def write(self, folder):
+        plant = self.plant
+        names = plant.mvs + plant.dvs
+        points = [f"SP_{cv}" for cv in plant.cvs]
+        lines = [f"unit: {plant.name}", f"sample_time: {plant.sample_time}", "signals:", "  mv:"]
+        lines += [f"    - {{tag: {mv}}}" for mv in plant.mvs]
+        lines += ["  dv:"] * bool(plant.dvs) + [f"    - {{tag: {dv}}}" for dv in plant.dvs]
+        lines += ["  cv:"] + [f"    - {{tag: {cv}, setpoint: SP_{cv}}}" for cv in plant.cvs]
+        lines += ["model:", "  channels:"]
+        for i, name in enumerate(names):
+            for j, cv in enumerate(plant.cvs):
+                values = ", ".join(f"{v:.6g}" for v in self.steps[:, j, i])
+                lines.append(f"    - {{cv: {cv}, mv: {name}, step_response: [{values}]}}")
+        rest = dict(zip(names + plant.cvs, [*plant.rest, *self.level]))
+        lines.append("  operating_point: {" + ", ".join(f"{k}: {float(v):.9g}"
+                                                        for k, v in rest.items()) + "}")
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "unit.yaml").write_text("\n".join(lines) + "\n")
+        table = np.column_stack([plant.sample_time * np.arange(SAMPLES), self.inputs, self.cvs,
+                                 self.setpoints])
+        np.savetxt(folder / "data.csv", table, "%.8g", ",", comments="",
+                   header=",".join(["time", *names, *plant.cvs, *points]))
+
+    def judge(self, finding):
+        names = self.plant.mvs + self.plant.dvs
+        cause, cv, mv = finding["cause"], finding["cv"], finding["mv"]
+        j = self.plant.cvs.index(cv) if cv else slice(None)
+        i = names.index(mv) if mv else slice(None)
+        if cause in CURVES:
+            return "curve"
+        if cause not in ACCUSES:
+            level = self.case == "bias" and cause == "output_disturbance" and j == self.touched
+            return "right" if level else "else"
+        if self.case == "stiction" and i == self.sticks:
+            return "right" if cause == "stiction" else "place"
+        if cause in OF_ACTUATOR:
+            return "wrong"
+        error = np.max(self.errors[j, i])
+        return "right" if error > WRONG else "slight" if error > SOUND else "wrong"
+
+    def is_strong(self):
+        return self.case in ("bias", "stiction") or (self.case not in ("healthy", "far")
+                                                     and self.errors.max() > STRONG)
+
+
+def score_case(arguments):
+    name, case, seed, mpm, keep = arguments
+    plant = next(make() for make in PHYSICAL if make.__name__ == name)
+    this = Run(plant, case, seed)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(keep or scratch) / f"{name}-{case.replace(' ', '_')}-{seed}"
+        this.write(folder)
+        code, output, seconds = run(mpm, [
+            "diagnose", "--config", str(folder / "unit.yaml"), "--data", str(folder / "data.csv"),
+            "--out", str(folder / "out"), "--threads", "1"])
+        if code != 0:
+            raise SystemExit(f"{folder.name}: {output[-400:]}")
+        report = json.loads((folder / "out" / "report.json").read_text())
+    findings = [(f["cause"], f["cv"], f["mv"], f["confidence"], this.judge(f))
+                for f in report["findings"]]
+    return {"plant": name, "case": case, "seed": seed, "strong": this.is_strong(),
+            "error": float(this.errors.max()), "verdict": report["verdict"],
+            "reason": report.get("reason", ""), "findings": findings, "seconds": seconds}
+
+
+def describe(result):
+    named = [f"{cause}({','.join(filter(None, (cv, mv)))}) {sure:.3g} {is_}"
+             for cause, cv, mv, sure, is_ in result["findings"]]
+    return (f"{result['plant']} {result['case']} {result['seed']} ({result['error']:.2f}) "
+            f"{result['verdict']}: {'; '.join(named) or result['reason'] or 'nothing'}")
+
+
+def row(name, results):
+    def count(of, which):
+        return sum(any(f[4] == which for f in r["findings"]) for r in of)
+
+    sound = [r for r in results if r["case"] in ("healthy", "far")]
+    strong = [r for r in results if r["strong"]]
+    silent = [r for r in strong if r["verdict"] == "match"]
+    return (f"| {name} | {share(count(sound, 'wrong'), len(sound))} | "
+            f"{share(count(strong, 'right'), len(strong))} | {len(silent)} | "
+            f"{share(count(results, 'wrong'), len(results))} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--mpm", required=True)
+    parser.add_argument("--seeds", default="100001-100003")
+    parser.add_argument("--plant", nargs="+", default=[make.__name__ for make in PHYSICAL])
+    parser.add_argument("--case", nargs="+")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--keep")
+    parser.add_argument("--markdown")
+    parser.add_argument("--bounds", action="store_true")
+    options = parser.parse_args()
+    plants = [make() for make in PHYSICAL if make.__name__ in options.plant]
+    wanted = [(plant.name, case, seed, options.mpm, options.keep) for plant in plants
+              for seed in seed_list(options.seeds) for case in cases_of(plant)
+              if not options.case or case in options.case]
+    results = []
+    with multiprocessing.Pool(options.jobs) as pool:
+        for result in pool.imap(score_case, wanted):
+            print(describe(result), flush=True)
+            results.append(result)
+    rows = ["| plant | sound: accused wrongly | strong: right | strong: match | all: wrong |",
+            "|---|---|---|---|---|"]
+    rows += [row(plant.name, [r for r in results if r["plant"] == plant.name])
+             for plant in plants]
+    rows.append(row("all", results))
+    print("\n".join(rows))
+    if options.markdown:
+        file = pathlib.Path(options.markdown)
+        file.write_text(replace_part(file.read_text(), "physical", rows))
+    wrong = sum(any(f[4] == "wrong" for f in r["findings"]) for r in results)
+    if options.bounds and wrong > most(len(results), MOST_WRONG):
+        raise SystemExit(f"{wrong} of {len(results)} runs have a wrong finding")
+
+
+if __name__ == "__main__":
+    main()
