@@ -6,6 +6,7 @@
 
 #include "core/signal/saturated.hpp"
 #include "core/text/printable.hpp"
+#include "daemon/host/memory.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/topics.hpp"
 
@@ -14,6 +15,10 @@ namespace {
 
 constexpr std::chrono::milliseconds kTick{200};
 constexpr std::size_t kLayoutKeys = 2;
+/// Bytes of a sample that count as large, and so many of them between two looks around as much: the
+/// C library would keep that memory. Given back at the next looks, when the disk has it.
+constexpr std::size_t kLarge = 100'000, kMuch = 8'000'000;
+constexpr int kTrims = 3;
 
 RecordedTopic description_of(const idl::KnownTopic& topic, const std::string& type_name) {
   return {topic.name, type_name, std::string(idl::idl_text()),
@@ -60,7 +65,13 @@ void Recorder::add_reader(idl::RawReader reader, const RecordedTopic& descriptio
 
 void Recorder::look_around() {
   look_for_topics();
+  const std::uint64_t refused_before = refused_;
   look_for_refused();
+  if (refused_ > refused_before || large_bytes_ > kMuch) trims_ = kTrims;
+  large_bytes_ = 0;
+  if (trims_ == 0) return;
+  --trims_;
+  host::give_memory_back();
 }
 
 void Recorder::look_for_refused() {
@@ -106,6 +117,7 @@ int Recorder::take() {
         const std::string unit = idl::unit_of(sample.cdr);
         if (unit.empty() || (!unit_.empty() && unit != unit_)) return;  // "": a writer's greeting
       }
+      if (sample.cdr.size() > kLarge) large_bytes_ += sample.cdr.size();
       const std::int64_t age_ns = saturated_difference(machine_ns, sample.source_time_ns);
       batch_.push_back({topic, now_ns, std::move(sample), age_ns});
     });

@@ -73,6 +73,8 @@ class Recorder {
   idl::UnitChoice chosen_;  // that one alone
   std::set<std::string> not_found_;
   std::uint64_t refused_ = 0;
+  std::size_t large_bytes_ = 0;       // of large samples since the last look around
+  int trims_ = 0;                     // so many looks around will give memory back
   std::set<std::string> refused_on_;  // topics, told once
   std::vector<std::string> news_;
   host::ArrivalClock clock_;  // log times are its
