@@ -57,6 +57,13 @@ bool own_setpoint_is_simpler(const SearchResult& found, std::size_t accusation, 
   return says < Confirmation::kNothing || accusations > 1;
 }
 
+/// Whether nothing but its own valve moves a loop: no repair follows that swing for long.
+bool swings_by_itself(const Effect& effect, const Judges& judges) {
+  const auto input = static_cast<std::size_t>(effect.place.input);
+  return input < judges.outside_shares.size() &&
+         judges.outside_shares[input].value_or(1.0) < kHardlyOutside;
+}
+
 /// What the calibrated test does not bear out goes, unless it overwhelms; where feedback moves the
 /// input, what leaves the test anything to see goes. So does an accusation that makes predictions
 /// no better beyond doubt, unless the test was sure of a channel's error on all rows and sees all
@@ -90,8 +97,9 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
     const bool overwhelming =
         selection.sure_gains[i] >= kOverwhelmingGain && effect.edit != &causes::input_stuck();
     const bool outside = moved_from_outside(effect, problem.model(), judges.outside_shares);
-    if (says == Confirmation::kNone &&
-        !(overwhelming && (outside || effect.edit == &causes::stiction())))
+    const bool sticks = effect.edit == &causes::stiction();
+    if (says == Confirmation::kNone && !(overwhelming && (outside || sticks)) &&
+        !(sticks && swings_by_itself(effect, judges)))
       reasons[i] = "with it the test of the channels sees no less wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";

@@ -95,6 +95,8 @@ inline constexpr double kSeesNothing = 0.05;
 inline constexpr double kHardlySees = 1e-3;
 inline constexpr double kHardlyAny = 0.2;
 inline constexpr double kClearlyLessSeen = 0.7;
+/// Power of the p-value before, beyond which a sticking valve's repair stands out more surely.
+inline constexpr double kMoreSurely = 1.5;
 inline constexpr double kStillMoves = 1e-5;
 inline constexpr double kBeyondDoubt = 1e-6;
 

@@ -1,6 +1,7 @@
 #include "core/identify/diagnosis/confirmation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
@@ -38,7 +39,8 @@ Confirmation confirmation(const Effect& effect, const ModelSpec& model, int mode
   const std::vector<std::pair<int, int>> channels = channels_of(effect, model, model_inputs);
   const Seen was = seen(before, channels), is = seen(after, channels);
   if (effect.edit == &causes::stiction()) {
-    const bool less = is.p_value >= was.p_value && is.wrong < kClearlyLessSeen * was.wrong;
+    const bool less =
+        is.p_value > std::pow(was.p_value, kMoreSurely) && is.wrong < kClearlyLessSeen * was.wrong;
     return less || is.p_value > kHardlySees ? Confirmation::kNothing : Confirmation::kNone;
   }
   if (effect.edit == &causes::input_stuck())

@@ -27,7 +27,7 @@ enum class Confirmation {
 /// Asked of the channels that an effect changes, where the test saw most, on the given and on the
 /// repaired model. A channel that is said to do nothing, for its actuator is stuck, must indeed do
 /// nothing. A sticking valve swings by itself, which no repair follows for long: that the test sees
-/// hardly anything more, or clearly less and no more surely, is enough.
+/// hardly anything more, or clearly less and not clearly more surely, is enough.
 [[nodiscard]] Confirmation confirmation(const Effect& effect, const ModelSpec& model,
                                         int model_inputs, const ChannelTests& before,
                                         const ChannelTests& after);
