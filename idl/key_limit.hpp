@@ -29,6 +29,11 @@ class KeyLimit {
   /// `names`: so many members the type begins with, all strings, and these are its key.
   /// `units`: of which samples are taken; null: of all.
   KeyLimit(std::size_t names, UnitChoice* units);
+  ~KeyLimit();
+  KeyLimit(const KeyLimit&) = delete;
+  KeyLimit& operator=(const KeyLimit&) = delete;
+  KeyLimit(KeyLimit&&) = delete;
+  KeyLimit& operator=(KeyLimit&&) = delete;
   /// As many instances as no plant has, given how many names make one.
   [[nodiscard]] static std::size_t most(std::size_t names);
 
