@@ -44,6 +44,8 @@ const std::vector<Field<MaterialitySettings>>& materiality_fields() {
       {"gain", &S::gain, kPositive, "relative"},
       {"time_constant", &S::time_constant, kPositive, "relative"},
       {"dead_time", &S::dead_time_s, kNotNegative, "s; 0 = half a sample"},
+      {"step_response", &S::step_response, kNotNegative,
+       "relative: what changes it by less does not matter, whichever error it is"},
   };
   return fields;
 }

@@ -21,6 +21,12 @@ inline constexpr int kPastLags = 12;           ///< of the CV's own past
 inline constexpr double kRowsPerColumn = 3.0;  ///< rows behind each column, at least
 inline constexpr double kDependent = 1e-7;     ///< of a scaled column that is left: none
 
+// What CVs have in common (cross_noise.hpp).
+inline constexpr int kCrossLags = 8;                ///< of every CV
+inline constexpr double kCrossRowsPerColumn = 4.0;  ///< rows behind each column, at least
+inline constexpr double kCrossPValue = 1e-4;        ///< below which the past of another CV tells
+inline constexpr double kMostBrought = 20.0;        ///< s.d. of a CV: beyond, nothing settles
+
 // Start values (start_values.hpp), in samples.
 inline constexpr double kFastestStart = 0.6;
 inline constexpr double kStartGrowth = 1.6;   ///< from one time constant to the next

@@ -44,12 +44,22 @@ int partner(const PredictionErrorFit& fit, std::size_t which) {
   return input;
 }
 
+/// s.d. of the free numbers of channel `which`; the gain's is no less than what is known of it.
+VectorXd known_sd(const Material& material, int cv, const PredictionErrorFit& fit,
+                  std::size_t which) {
+  VectorXd sd = sd_of(fit, which);
+  const ChannelShape& shape = fit.channels[which];
+  if (material.least_gain_sd.size() > 0 && !integrates(shape.form))
+    sd(0) = std::max(sd(0), material.least_gain_sd(cv, shape.input));
+  return sd;
+}
+
 void state_numbers(const Material& material, const PredictionErrorFit& fit, std::size_t which,
                    ChannelAnswer& answer) {
   const ChannelShape& shape = fit.channels[which];
   const double dt = material.all.sample_time_s;
   const std::vector<ShapeNumber> numbers = free_numbers(shape);
-  const VectorXd sd = sd_of(fit, which);
+  const VectorXd sd = known_sd(material, answer.cv, fit, which);
   answer.form = shape.form;
   answer.dynamics = transfer_function(shape, dt);
   if (shape.form == ChannelForm::kDamped)
@@ -172,7 +182,7 @@ std::vector<ChannelAnswer> channel_answers(const Material& material, const HighO
         const VectorXd given = response(shape, material.all.inputs.col(input), material.all.runs);
         answer.contribution = spread_of(given, VectorXd::Ones(given.size())) / spread;
         if (answer.left_out == LeftOut::kOnlyFeedback) continue;
-        const double relative = std::abs(sd_of(*fit, c)(0) / shape.gain);
+        const double relative = std::abs(known_sd(material, cv, *fit, c)(0) / shape.gain);
         if (shape.gain == 0.0 || shape.gain * hints[i].sign < 0.0)
           answer.left_out = LeftOut::kWrongSign;
         else if (refused)

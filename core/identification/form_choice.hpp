@@ -20,6 +20,8 @@ struct Material {
   std::vector<bool> test_signals;  ///< inputs that no controller moves
   double feedback_p_value = 1.0;
   bool open_loop = false;  ///< as far as anything shows
+  /// CVs x inputs: s.d. that a steady gain has at least (`CrossNoise`); empty: none.
+  Eigen::MatrixXd least_gain_sd = {};
 };
 
 /// `open_loop`: the user says so; else the data do.

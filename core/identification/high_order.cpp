@@ -12,6 +12,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+int longest_lag(const IdentificationData& data) {
+  const double mean_run =
+      static_cast<double>(data.samples()) / static_cast<double>(data.runs.size());
+  const int longest = std::clamp(static_cast<int>(kLagShare * mean_run), kShortestLag, kLongestLag);
+  return std::min(longest, static_cast<int>(mean_run / 2.0));
+}
+
 std::vector<LagBlock> lag_blocks(int longest) {
   std::vector<LagBlock> blocks;
   int first = 1;
@@ -59,13 +66,6 @@ std::vector<Index> usable_rows(const IdentificationData& data, int cv, int past,
     }
   }
   return rows;
-}
-
-int longest_lag(const IdentificationData& data) {
-  const double mean_run =
-      static_cast<double>(data.samples()) / static_cast<double>(data.runs.size());
-  const int longest = std::clamp(static_cast<int>(kLagShare * mean_run), kShortestLag, kLongestLag);
-  return std::min(longest, static_cast<int>(mean_run / 2.0));
 }
 
 }  // namespace

@@ -17,6 +17,9 @@ struct LagBlock {
 /// speed in few coefficients.
 [[nodiscard]] std::vector<LagBlock> lag_blocks(int longest);
 
+/// The longest lag that runs of such a length bear, samples.
+[[nodiscard]] int longest_lag(const IdentificationData& data);
+
 /// Sums of an input over the blocks, samples x blocks; before a run its first value held.
 [[nodiscard]] Eigen::MatrixXd lagged_sums(const Eigen::Ref<const Eigen::VectorXd>& input,
                                           const std::vector<LagBlock>& blocks,

@@ -9,6 +9,7 @@
 
 #include "core/identification/calibration.hpp"
 #include "core/identification/channel_answers.hpp"
+#include "core/identification/cross_noise.hpp"
 #include "core/identification/dead_time_reach.hpp"
 #include "core/identification/feedback_test.hpp"
 #include "core/identification/form_choice.hpp"
@@ -217,6 +218,27 @@ void keep_vague_that_matter(const Material& material, const std::vector<CvOutcom
   }
 }
 
+/// Whether a controller may move some input.
+bool controlled(const Material& material) {
+  if (material.open_loop) return false;
+  for (std::size_t i = 0; i < material.test_signals.size(); ++i)
+    if (!material.test_signals[i] && material.input_spread(static_cast<Index>(i)) > 0.0)
+      return true;
+  return false;
+}
+
+/// Each CV without what disturbs the others: where no feedback moves the inputs, it does no harm.
+Material by_itself(const Material& material) {
+  Material result = material;
+  if (!controlled(material)) return result;
+  const CrossNoise cross = cross_noise(material.all);
+  result.all.cvs -= cross.brought;
+  result.first.cvs -= cross.brought.topRows(material.first.samples());
+  result.unseen.cvs -= cross.brought.bottomRows(material.unseen.samples());
+  result.least_gain_sd = cross.gain_sd;
+  return result;
+}
+
 /// Whether a CV goes with a test signal of its own row.
 bool answers_within_row(const Material& material) {
   const std::vector<double> p_values = feedback_p_values(material.all, 0);
@@ -277,8 +299,9 @@ Identification identify(const Recording& recording, const IdentificationSettings
   const Material given = material(measured, settings.open_loop);
   std::vector<CvOutcome> outcomes(static_cast<std::size_t>(recording.cvs.cols()));
   const Parallel parallel(settings.threads);
+  const Material fitted = by_itself(given);
   parallel.for_each(outcomes.size(), [&](std::size_t cv) {
-    outcomes[cv] = identify_cv(given, settings, static_cast<int>(cv));
+    outcomes[cv] = identify_cv(fitted, settings, static_cast<int>(cv));
   });
   Identification result;
   result.outside_shares = given.outside;

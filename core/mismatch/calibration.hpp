@@ -20,7 +20,30 @@ namespace materiality {
 inline constexpr double kGain = 0.05;            ///< relative
 inline constexpr double kTimeConstant = 0.10;    ///< relative
 inline constexpr double kDeadTimeSamples = 0.5;  ///< half the resolution of a control interval
+/// Relative, over the response (`StepErrors`): one or two lags that were fitted to a plant's steps
+/// are off by as much, a dead time that is off by a twentieth of the time constant likewise.
+inline constexpr double kStepResponse = 0.02;
+/// Of what an input does so much may be of a kind that no linear channel has, a curve say. Where
+/// other inputs undo most of it, it is a larger part of what is left: it does not matter what
+/// errors come of it. Chosen on a column that two inputs move against one another (tests/foreign).
+inline constexpr double kNoChannel = 0.015;
+/// So many times less is known of a gain for the other inputs, up to which nothing more is borne.
+/// Chosen: under usual controllers 1 to 5, of that column 30 to 90.
+inline constexpr double kUndone = 8.0;
+/// Above this p-value nothing has to be looked at again.
+inline constexpr double kAskedBelow = 0.05;
 }  // namespace materiality
+
+/// Over what of a channel's step response an error of it is measured (`StepErrors`). Chosen.
+namespace step_errors {
+inline constexpr double kSettled = 0.05;   ///< of the largest value, from the last one
+inline constexpr double kBeyond = 1.5;     ///< times as long as it takes to come so near
+inline constexpr double kLater = 0.5;      ///< weight of a value just behind that
+inline constexpr double kLagRatio = 1.05;  ///< of neighbouring lags behind the block's own
+/// Newton steps to the nearest error of a size, at most; and how exact, of the size.
+inline constexpr int kMostSteps = 60;
+inline constexpr double kExact = 1e-12;
+}  // namespace step_errors
 
 /// In a regression on its own past F is too large on few rows, by 1 + factor c + factor c^2 with
 /// c = columns / freedom (Bartlett 1937 on such factors): the residuals' past comes out too fast,

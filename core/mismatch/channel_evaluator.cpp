@@ -9,8 +9,28 @@
 #include "core/mismatch/calibration.hpp"
 #include "core/mismatch/slow_noise.hpp"
 #include "core/statistics/f_distribution.hpp"
+#include "core/statistics/normal.hpp"
 
 namespace mpm {
+namespace {
+
+// What the step response bears does not matter: usual errors by their sizes (not tested: gain and
+// time constant may be free to undo what a dead time surely does), and what is none of these as far
+// as those that are allowed and what the response bears explain it.
+template <class Beyond>
+void bear(ChannelEvidence& evidence, const Beyond& beyond) {
+  const Estimate& step = evidence.step_error;
+  if (!evidence.usual) {
+    if (evidence.p_value_material < calibration::materiality::kAskedBelow)
+      evidence.p_value_material = std::max(evidence.p_value_material, beyond());
+    return;
+  }
+  if (step.value < evidence.step_limit) evidence.p_value_material = 1.0;
+  evidence.harmless =
+      evidence.harmless || step.value + kNormalOneSided95 * step.deviation < evidence.step_limit;
+}
+
+}  // namespace
 
 ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearModel& model,
                                    std::vector<MaterialityLimits> limits)
@@ -24,6 +44,7 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
       joint_(shape),
       joint_usual_(kUsualErrors),
       materiality_(shape.block()),
+      steps_(shape, model),
       sizes_(shape, model),
       estimate_(Eigen::VectorXd::Zero(shape.block())),
       directions_(Eigen::MatrixXd::Zero(shape.block(), error_column::kCount)),
@@ -44,7 +65,7 @@ void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
 void ChannelEvaluator::archive(Archive& a) {
   // not archived: shape_, signatures_ (construction)
   // not archived: explained_, estimates_, covariance_, excitation_, usual_, joint_, joint_usual_,
-  // materiality_, sizes_, estimate_, directions_, error_, joint_error_, slow_noise_ (each
+  // materiality_, steps_, sizes_, estimate_, directions_, error_, joint_error_, slow_noise_ (each
   // evaluation begins anew)
   a(limits_);
 }
@@ -148,15 +169,20 @@ void ChannelEvaluator::judge_alone(int cv, int input, const EstimateNoise& noise
   scaled_error(channel.shifts[1], input, directions_.col(error_column::kEarlier));
   covariance_.whiten(directions_.col(error_column::kLater));
   covariance_.whiten(directions_.col(error_column::kEarlier));
+  const MaterialityLimits& limits = limits_[index(cv, input)];
   const double left = materiality_.fit(estimate_, directions_, noise, evidence);
-  materiality_.judge(left, estimate_, directions_, usual_, limits_[index(cv, input)], noise,
-                     evidence);
+  materiality_.judge(left, estimate_, directions_, usual_, limits, noise, evidence);
+  size_step(cv, input, noise, evidence);
   // What matters is judged of small errors, as it was calibrated; how large they are is said of
   // any.
   if (evidence.p_value < calibration::error_sizes::kRefinedBelow)
     size_error(cv, input, left, noise, evidence);
   else if (!evidence.usual)
     estimate_free_gain(channel.gain, input, noise, evidence);
+  bear(evidence, [&] {
+    return steps_.beyond({cv, input, materiality_.beside_allowed(), usual_, noise}, estimates_,
+                         covariance_, evidence.step_limit);
+  });
 }
 
 void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noise,
@@ -170,14 +196,34 @@ void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noi
   }
   test_usual_errors(joint_usual_, channel.estimate, noise, evidence);
   if (signatures.gain == 0.0) return;
+  const MaterialityLimits& limits = limits_[index(cv, input)];
   const double left = materiality_.fit(channel.estimate, channel.directions, noise, evidence);
-  materiality_.judge(left, channel.estimate, channel.directions, joint_usual_,
-                     limits_[index(cv, input)], noise, evidence);
-  if (evidence.p_value >= calibration::error_sizes::kRefinedBelow) return;
-  const JointErrors::Freed freed = joint_.freed(input, estimates_);
-  covariance_.read(freed.factor, freed.first);
-  for (int r = 0; r < shape_.block(); ++r) estimate_(r) = freed.factor.z(freed.first + r, 0);
-  size_error(cv, input, estimate_.squaredNorm(), noise, evidence);
+  materiality_.judge(left, channel.estimate, channel.directions, joint_usual_, limits, noise,
+                     evidence);
+  size_step(cv, input, noise, evidence);
+  if (evidence.p_value < calibration::error_sizes::kRefinedBelow) {
+    const JointErrors::Freed freed = joint_.freed(input, estimates_);
+    covariance_.read(freed.factor, freed.first);
+    for (int r = 0; r < shape_.block(); ++r) estimate_(r) = freed.factor.z(freed.first + r, 0);
+    size_error(cv, input, estimate_.squaredNorm(), noise, evidence);
+  }
+  bear(evidence, [&] {
+    return steps_.beyond({cv, input, materiality_.beside_allowed().head(channel.estimate.size()),
+                          joint_usual_, noise},
+                         channel.usual, evidence.step_limit);
+  });
+}
+
+void ChannelEvaluator::size_step(int cv, int input, const EstimateNoise& noise,
+                                 ChannelEvidence& evidence) const {
+  evidence.step_limit = limits_[index(cv, input)].step_response;
+  const double undone = evidence.excitation_index / evidence.excitation_index_alone;
+  if (std::isfinite(undone))
+    evidence.step_limit =
+        std::max(evidence.step_limit, calibration::materiality::kNoChannel *
+                                          (undone - calibration::materiality::kUndone));
+  evidence.step_error =
+      steps_.of_fit(cv, input, materiality_.fitted(), materiality_.fitted_shift(), noise.variance);
 }
 
 void ChannelEvaluator::scaled_error(const Signature& error, int input,
@@ -221,8 +267,9 @@ void ChannelEvaluator::size_error(int cv, int input, double left, const Estimate
                                   ChannelEvidence& evidence) {
   const auto block = static_cast<double>(estimate_.size());
   const double enough = noise.variance * (block + 2.0 * std::sqrt(2.0 * block));  // two s.d.
-  const double refined = sizes_.refine(
-      {cv, input, estimates_, covariance_, estimate_, noise.variance}, left, enough, evidence);
+  const double refined =
+      sizes_.refine({cv, input, estimates_, covariance_, estimate_, noise.variance, steps_}, left,
+                    enough, evidence);
   evidence.usual = Materiality::explained(refined, estimate_.size(), noise);
   if (!evidence.usual)
     estimate_free_gain(signatures_[index(cv, input)].gain, input, noise, evidence);

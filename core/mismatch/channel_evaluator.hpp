@@ -15,6 +15,7 @@
 #include "core/mismatch/joint_errors.hpp"
 #include "core/mismatch/materiality.hpp"
 #include "core/mismatch/regression_memory.hpp"
+#include "core/mismatch/step_errors.hpp"
 #include "core/mismatch/usual_error_space.hpp"
 
 namespace mpm {
@@ -71,6 +72,8 @@ class ChannelEvaluator {
   void judge_jointly(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
   void test_usual_errors(const UsualErrorSpace& usual, const Eigen::VectorXd& estimate,
                          const EstimateNoise& noise, ChannelEvidence& evidence) const;
+  /// How much of the step response the error is, by its linear sizes, and how much is borne.
+  void size_step(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence) const;
   void size_error(int cv, int input, double left, const EstimateNoise& noise,
                   ChannelEvidence& evidence);
   void estimate_free_gain(double model_gain, int input, const EstimateNoise& noise,
@@ -94,6 +97,7 @@ class ChannelEvaluator {
   JointErrors joint_;
   UsualErrorSpace joint_usual_;
   Materiality materiality_;
+  StepErrors steps_;
   ErrorSizes sizes_;
   Eigen::VectorXd estimate_;    // of the input's coefficients, whitened
   Eigen::MatrixXd directions_;  // block x error_column::kCount, whitened

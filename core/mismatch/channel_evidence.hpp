@@ -12,12 +12,14 @@ struct MaterialityLimits {
   double gain = calibration::materiality::kGain;
   double time_constant = calibration::materiality::kTimeConstant;
   double dead_time_samples = calibration::materiality::kDeadTimeSamples;
+  /// Whatever of these is off, the step response is not by more than this (`StepErrors`).
+  double step_response = calibration::materiality::kStepResponse;
   /// Where it is no error of gain, time constant or dead time, only its gain counts.
   bool gain_alone = false;
 
   template <class Archive>
   void archive(Archive& a) {
-    a(gain, time_constant, dead_time_samples, gain_alone);
+    a(gain, time_constant, dead_time_samples, step_response, gain_alone);
   }
 };
 
@@ -48,19 +50,24 @@ struct ChannelEvidence {
   double excitation_index_alone = 0;  ///< the same, were the other inputs known not to matter
   int confounder = -1;                ///< input whose estimate is most correlated with this one's
 
-  bool usual = false;     ///< errors of gain, time constant and dead time explain all that is seen
-  bool harmless = false;  ///< and all three are within the limits, each with 95 % confidence
-  Estimate gain_error;    ///< relative to the reference gain, whatever else is wrong
+  bool usual = false;  ///< errors of gain, time constant and dead time explain all that is seen
+  /// And all three are within the limits, or the step response is, with 95 % confidence.
+  bool harmless = false;
+  Estimate gain_error;       ///< relative to the reference gain, whatever else is wrong
   Estimate log_time_error;   ///< ln(plant's time constants / model's); meaningful if `usual`
   Estimate dead_time_error;  ///< samples, plant minus model; meaningful if `usual`
-  double dead_time = 0.0;    ///< of the model, samples
+  Estimate step_error;       ///< of the step response (`StepErrors`); meaningful if `usual`
+  /// How much of such an error does not matter: the limit, or more where other inputs undo most of
+  /// what this one does.
+  double step_limit = calibration::materiality::kStepResponse;
+  double dead_time = 0.0;  ///< of the model, samples
 
   template <class Archive>
   void archive(Archive& a) {
     a(statistic, p_value, numerator_freedom, tests, block_statistic, directed_statistic,
       directed_freedom, p_value_material, reference_gain, gain_error_ratio, excitation_index,
       excitation_index_alone, confounder, usual, harmless, gain_error, log_time_error,
-      dead_time_error, dead_time);
+      dead_time_error, step_error, step_limit, dead_time);
   }
 };
 

@@ -33,6 +33,14 @@ Eigen::Vector3d ReducedErrors::deviations() const {
   return norms;
 }
 
+// |r'^-1 weights|
+double ReducedErrors::deviation_of(const Eigen::Vector3d& weights) const {
+  Eigen::Vector3d solved = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i)
+    if (r(i, i) != 0.0) solved(i) = (weights(i) - r.col(i).head(i).dot(solved.head(i))) / r(i, i);
+  return solved.norm();
+}
+
 ErrorReduction::ErrorReduction(int rows) : basis_(Eigen::MatrixXd::Zero(rows, 3)) {}
 
 // [gain, time, shift] = Q R by Gram-Schmidt, twice each (Kahan; Parlett 1980), and Q' of the

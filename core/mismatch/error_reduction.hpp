@@ -25,6 +25,8 @@ struct ReducedErrors {
   [[nodiscard]] Eigen::Vector3d fit() const;
   /// S.d. of x for unit noise; infinite in directions that take no part.
   [[nodiscard]] Eigen::Vector3d deviations() const;
+  /// S.d. of weights' x for unit noise, of directions that take part.
+  [[nodiscard]] double deviation_of(const Eigen::Vector3d& weights) const;
 };
 
 /// Makes them; no allocation after construction.

@@ -55,9 +55,11 @@ double ErrorSizes::refine(const Channel& channel, double left, double enough,
     try_from({0.0, start[0], start[1]});
   }
   if (!(best.left < left)) return left;
-  evidence.gain_error = {best.value(0), best.deviation(0)};
-  evidence.log_time_error = {best.value(1), best.deviation(1)};
-  evidence.dead_time_error = {best.value(2), best.deviation(2)};
+  const Eigen::Vector3d deviation = std::sqrt(channel.variance) * best.reduced.deviations();
+  evidence.gain_error = {best.value(0), deviation(0)};
+  evidence.log_time_error = {best.value(1), deviation(1)};
+  evidence.dead_time_error = {best.value(2), deviation(2)};
+  evidence.step_error = step_error(channel, best);
   return best.left;
 }
 
@@ -68,15 +70,12 @@ ErrorSizes::Errors ErrorSizes::descend(const Channel& channel, const Eigen::Vect
   for (int step = 0; step < sizes::kMostSteps; ++step) {
     for (int e = 0; e < 3; ++e) {
       Eigen::Vector3d moved = now.value;
-      // Towards the inside where there is an end.
-      const double size = sizes::kSlopeSteps[static_cast<std::size_t>(e)];
-      moved(e) += size;
-      if (within(channel, moved)(e) != moved(e)) moved(e) -= 2.0 * size;
+      const double by = move(channel, e, moved);
       leave(channel, moved, beside_);
-      slopes_.col(e) = (left_ - beside_) / (moved(e) - now.value(e));
+      slopes_.col(e) = (left_ - beside_) / by;
     }
-    const ReducedErrors reduced = reduction_.reduce(left_, slopes_, error_column::kLater);
-    now.deviation = std::sqrt(channel.variance) * reduced.deviations();
+    now.reduced = reduction_.reduce(left_, slopes_, error_column::kLater);
+    const ReducedErrors& reduced = now.reduced;
     Eigen::Vector3d towards = Eigen::Vector3d::Zero();
     for (int i = 2; i >= 0; --i)
       if (reduced.r(i, i) > 0.0)
@@ -97,6 +96,29 @@ ErrorSizes::Errors ErrorSizes::descend(const Channel& channel, const Eigen::Vect
   return now;
 }
 
+double ErrorSizes::move(const Channel& channel, int error, Eigen::Vector3d& value) const {
+  const double from = value(error);
+  const double size = sizes::kSlopeSteps[static_cast<std::size_t>(error)];
+  value(error) += size;
+  if (within(channel, value)(error) != value(error)) value(error) = from - size;
+  return value(error) - from;
+}
+
+Estimate ErrorSizes::step_error(const Channel& channel, const Errors& errors) {
+  const auto size = [&](const Eigen::Vector3d& value) {
+    change(channel, value);
+    return channel.steps.of_pulse(channel.cv, channel.input, changed_);
+  };
+  const double own = size(errors.value);
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+  for (int e = 0; e < 3; ++e) {
+    Eigen::Vector3d moved = errors.value;
+    const double by = move(channel, e, moved);
+    slope(e) = (size(moved) - own) / by;
+  }
+  return {own, std::sqrt(channel.variance) * errors.reduced.deviation_of(slope)};
+}
+
 Eigen::Vector3d ErrorSizes::within(const Channel& channel, const Eigen::Vector3d& value) const {
   return {std::clamp(value(0), -sizes::kMostGain, sizes::kMostGain),
           std::clamp(value(1), -sizes::kMostLogTime, sizes::kMostLogTime),
@@ -104,8 +126,7 @@ Eigen::Vector3d ErrorSizes::within(const Channel& channel, const Eigen::Vector3d
                      static_cast<double>(basis_.fir_lags()))};
 }
 
-double ErrorSizes::leave(const Channel& channel, const Eigen::Vector3d& value,
-                         Eigen::Ref<Eigen::VectorXd> out) {
+void ErrorSizes::change(const Channel& channel, const Eigen::Vector3d& value) {
   const Response& model = response(channel.cv, channel.input);
   const double dead = model.dead_time, slower = std::exp(-value(1));
   // An integrator with longer lags rises as steeply in the end.
@@ -126,6 +147,11 @@ double ErrorSizes::leave(const Channel& channel, const Eigen::Vector3d& value,
     changed_(l) = gain * (now - before) - model.pulse(l);
     before = now;
   }
+}
+
+double ErrorSizes::leave(const Channel& channel, const Eigen::Vector3d& value,
+                         Eigen::Ref<Eigen::VectorXd> out) {
+  change(channel, value);
   signature_.replace(basis_, changed_, work_);
   signature_.filter(channel.estimates.own_past().data(), out);
   out.array() *= channel.estimates.norms(channel.input).array();

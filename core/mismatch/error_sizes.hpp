@@ -8,6 +8,7 @@
 #include "core/mismatch/error_reduction.hpp"
 #include "core/mismatch/input_estimates.hpp"
 #include "core/mismatch/signature.hpp"
+#include "core/mismatch/step_errors.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {
@@ -32,6 +33,7 @@ class ErrorSizes {
     const BlockCovariance& covariance;  ///< of the input
     const Eigen::VectorXd& target;      ///< its coefficients, whitened
     double variance = 1.0;              ///< of these
+    const StepErrors& steps;
   };
   /// Starts from the errors in `evidence`, of which a fit has left `left`, in squares, and from
   /// some large ones, until no more than `enough` is left. What fits best takes their place. What
@@ -46,7 +48,7 @@ class ErrorSizes {
   };
   struct Errors {  // gain, relative; ln of the time constants' ratio; dead time, samples
     Eigen::Vector3d value = Eigen::Vector3d::Zero();
-    Eigen::Vector3d deviation = Eigen::Vector3d::Zero();
+    ReducedErrors reduced;
     double left = 0.0;
   };
 
@@ -54,6 +56,11 @@ class ErrorSizes {
     return responses_[static_cast<std::size_t>(input * cvs_ + cv)];
   }
   [[nodiscard]] Errors descend(const Channel& channel, const Eigen::Vector3d& start);
+  /// Towards the inside where there is an end; by how much it has moved.
+  double move(const Channel& channel, int error, Eigen::Vector3d& value) const;
+  [[nodiscard]] Estimate step_error(const Channel& channel, const Errors& errors);
+  /// The error of the pulse response, into `changed_`.
+  void change(const Channel& channel, const Eigen::Vector3d& value);
   [[nodiscard]] Eigen::Vector3d within(const Channel& channel, const Eigen::Vector3d& value) const;
   /// What the errors leave of the target.
   double leave(const Channel& channel, const Eigen::Vector3d& value,

@@ -28,6 +28,7 @@ double Materiality::beyond(const Estimate& estimate, double limit, double freedo
 
 Materiality::Materiality(int block)
     : reduction_(std::max(block, kUsualErrors)),
+      beside_allowed_(Eigen::VectorXd::Zero(block)),
       usual_directions_(Eigen::MatrixXd::Zero(kUsualErrors, error_column::kCount)),
       usual_estimate_(Eigen::VectorXd::Zero(kUsualErrors)) {}
 
@@ -61,6 +62,8 @@ double Materiality::fit(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& 
     const double square = whole.rest_square + (whole.c - whole.r * fit).squaredNorm();
     if (square >= nearest) continue;
     nearest = square;
+    fitted_ = whole;
+    fitted_shift_ = shift;
     const Eigen::Vector3d deviations = std::sqrt(noise.variance) * whole.deviations();
     evidence.gain_error = {fit(0), deviations(0)};
     evidence.log_time_error = {fit(1), deviations(1)};
@@ -94,16 +97,23 @@ void Materiality::judge_unusual(const Eigen::VectorXd& estimate, const Eigen::Ma
   const double log_time = std::log1p(limits.time_constant);
   const Eigen::Vector3d low(-limits.gain, -log_time, 0.0);
   const Eigen::Vector3d high(limits.gain, log_time, limits.dead_time_samples);
-  const auto distance = [&](const ReducedErrors& reduced) {
-    return reduced.rest_square + box_least_squares(reduced.r, reduced.c, low, high).distance_square;
-  };
   double nearest = kInfinity;
   double nearest_usual = kInfinity;
   for (const int shift : {error_column::kLater, error_column::kEarlier}) {
-    nearest = std::min(nearest, distance(reduction_.reduce(estimate, directions, shift)));
-    nearest_usual = std::min(nearest_usual,
-                             distance(reduction_.reduce(usual_estimate_.head(rank),
-                                                        usual_directions_.topRows(rank), shift)));
+    const ReducedErrors whole = reduction_.reduce(estimate, directions, shift);
+    const BoxSolution allowed = box_least_squares(whole.r, whole.c, low, high);
+    if (whole.rest_square + allowed.distance_square < nearest) {
+      nearest = whole.rest_square + allowed.distance_square;
+      auto left = beside_allowed_.head(estimate.size());
+      left = estimate - allowed.x(2) * directions.col(shift);
+      for (const int d : {error_column::kGain, error_column::kTime})
+        left -= allowed.x(d) * directions.col(d);
+    }
+    const ReducedErrors part =
+        reduction_.reduce(usual_estimate_.head(rank), usual_directions_.topRows(rank), shift);
+    nearest_usual =
+        std::min(nearest_usual,
+                 part.rest_square + box_least_squares(part.r, part.c, low, high).distance_square);
   }
   const auto block = static_cast<double>(estimate.size());
   const double block_p =

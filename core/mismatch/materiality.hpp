@@ -23,6 +23,12 @@ class Materiality {
   /// `directions` (block x error_column::kCount): whitened.
   [[nodiscard]] double fit(const Eigen::VectorXd& estimate, const Eigen::MatrixXd& directions,
                            const EstimateNoise& noise, ChannelEvidence& evidence);
+  /// The three errors of the last `fit`, and which way its dead time goes.
+  [[nodiscard]] const ReducedErrors& fitted() const { return fitted_; }
+  [[nodiscard]] int fitted_shift() const { return fitted_shift_; }
+  /// What the allowed errors nearest to it leave of the last estimate that was judged and is no
+  /// usual error.
+  [[nodiscard]] const Eigen::VectorXd& beside_allowed() const { return beside_allowed_; }
   /// Whether no more than noise is left of a block of so many coefficients.
   [[nodiscard]] static bool explained(double left, Eigen::Index block, const EstimateNoise& noise);
   /// p-value of |parameter| <= limit: Student's t of the excess, one-sided.
@@ -40,7 +46,10 @@ class Materiality {
                      const EstimateNoise& noise, ChannelEvidence& evidence);
 
   ErrorReduction reduction_;
+  ReducedErrors fitted_;
+  int fitted_shift_ = error_column::kLater;
   // The directions and the estimate as the directed test sees them.
+  Eigen::VectorXd beside_allowed_;
   Eigen::MatrixXd usual_directions_;
   Eigen::VectorXd usual_estimate_;
 };

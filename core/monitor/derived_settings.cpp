@@ -79,20 +79,30 @@ void derive_materiality(const ModelSpec& spec, const LinearModel& model,
     return MaterialityLimits{settings.gain, settings.time_constant,
                              settings.dead_time_s > 0.0
                                  ? settings.dead_time_s / spec.sample_time_s
-                                 : calibration::materiality::kDeadTimeSamples};
+                                 : calibration::materiality::kDeadTimeSamples,
+                             settings.step_response};
   };
   derived.materiality.assign(static_cast<std::size_t>(spec.input_count * spec.cv_count),
                              limits(monitor.materiality));
   for (const ChannelMateriality& channel : monitor.channel_materiality)
     derived.materiality[static_cast<std::size_t>(channel.input * spec.cv_count + channel.cv)] =
         limits(channel.limits);
-  // A time constant is known no better than a dead time: half a sample, or what the user sets.
+  // Unless the user sets it, a dead time has a share of the time constant; and a time constant is
+  // known no better than half a sample, or the dead time that the user sets.
+  std::vector<bool> set(derived.materiality.size(), monitor.materiality.dead_time_s > 0.0);
+  for (const ChannelMateriality& channel : monitor.channel_materiality)
+    set[static_cast<std::size_t>(channel.input * spec.cv_count + channel.cv)] =
+        channel.limits.dead_time_s > 0.0;
   for (int i = 0; i < spec.input_count; ++i)
     for (int j = 0; j < spec.cv_count; ++j) {
-      MaterialityLimits& channel =
-          derived.materiality[static_cast<std::size_t>(i * spec.cv_count + j)];
+      const auto at = static_cast<std::size_t>(i * spec.cv_count + j);
+      MaterialityLimits& channel = derived.materiality[at];
       channel.time_constant = std::max(
           channel.time_constant, channel.dead_time_samples / model.time_constant_samples(j, i));
+      if (!set[at])
+        channel.dead_time_samples =
+            std::max(channel.dead_time_samples,
+                     calibration::materiality::kDeadTimeShare * model.time_constant_samples(j, i));
     }
 }
 

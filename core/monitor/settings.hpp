@@ -19,6 +19,7 @@ struct MaterialitySettings {
   double gain = calibration::materiality::kGain;                   ///< relative to the model's
   double time_constant = calibration::materiality::kTimeConstant;  ///< relative to the model's
   double dead_time_s = 0.0;                                        ///< 0 = half a sample time
+  double step_response = calibration::materiality::kStepResponse;  ///< relative (`StepErrors`)
 };
 
 /// The same of one channel, in place of the unit's.

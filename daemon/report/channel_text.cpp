@@ -49,7 +49,7 @@ std::string gain_part(const ChannelRecord& channel, const ChannelFile& file) {
     return "answers, where the model has nothing: gain " + (in_units.empty() ? effect : in_units) +
            " (" + interval_text(channel.effect_low, channel.effect_high) + ")";
   }
-  if (!channel.gain_resolved()) return "gain --";
+  if (!channel.gain_resolved()) return "gain not known";
   const Interval percent = gain_percent(channel);
   if (percent.holds(0.0) && percent.within(-kOkPercent, kOkPercent)) return "gain ok";
   const std::string in_units = with_units(signed_text(channel.effect_size, 3), file);
@@ -58,7 +58,7 @@ std::string gain_part(const ChannelRecord& channel, const ChannelFile& file) {
 }
 
 std::string time_constant_part(const ChannelRecord& channel) {
-  if (!channel.time_constant_resolved()) return "time constant --";
+  if (!channel.time_constant_resolved()) return "time constant not known";
   const Interval ratio{channel.time_constant_low, channel.time_constant_high};
   if (ratio.holds(1.0) && ratio.within(1.0 / kOkTimeRatio, kOkTimeRatio)) return "time constant ok";
   return "time constant " + signed_text(percent_of_ratio(channel.time_constant_ratio)) + " % (" +
@@ -66,7 +66,7 @@ std::string time_constant_part(const ChannelRecord& channel) {
 }
 
 std::string dead_time_part(const ChannelRecord& channel, const ChannelFile& file) {
-  if (!channel.dead_time_resolved()) return "dead time --";
+  if (!channel.dead_time_resolved()) return "dead time not known";
   const Interval seconds{channel.dead_time_low_s, channel.dead_time_high_s};
   const double most = kOkDeadTimeSamples * file.sample_time_s;
   if (seconds.holds(0.0) && seconds.within(-most, most)) return "dead time ok";
@@ -135,7 +135,8 @@ std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file)
   if (file.modelled && channel.usual)
     text += ", " + time_constant_part(channel) + ", " + dead_time_part(channel, file);
   else if (file.modelled)
-    text += ", and not of that alone: the dynamics or the dead time differ by much";
+    text += std::string(", and not of that alone: the dynamics or the dead time differ") +
+            (channel.material ? " by much" : "");
   if (channel.reason == Reason::kWeakExcitation)
     text += "; seen though " + printable(channel.mv) + " moved little";
   if (!channel.material) text += "; may be too small to matter";
@@ -225,7 +226,7 @@ std::string error_text(const AlarmRecord& alarm, const ChannelRecord* channel) {
         !Interval{channel->dead_time_low_s, channel->dead_time_high_s}.holds(0.0))
       return "dead time " + signed_text(channel->dead_time_error_s) + " s";
   }
-  if (!channel->gain_resolved()) return "gain --";
+  if (!channel->gain_resolved()) return "gain not known";
   return "gain " + signed_text(channel->percent_of_gain(alarm.effect_size)) + " %";
 }
 

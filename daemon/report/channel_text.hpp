@@ -20,9 +20,9 @@ struct ChannelFile {
 [[nodiscard]] ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
                                        const std::string& cv);
 
-/// Of a mismatch: "gain +41 % (31 to 51; +0.0404 t/h per %), time constant ok, dead time --". What
-/// the data do not resolve is `--`; `ok` is what its 95 % interval holds to be as modelled, and
-/// nothing much else.
+/// Of a mismatch: "gain +41 % (31 to 51; +0.0404 t/h per %), time constant ok, dead time not
+/// known". What the data do not resolve is `--`; `ok` is what its 95 % interval holds to be as
+/// modelled, and nothing much else.
 [[nodiscard]] std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file);
 
 /// How a channel answers as no linear one does; empty unless it does.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "core/model/linear_model.hpp"
 #include "core/signal/frame.hpp"
@@ -18,8 +19,9 @@ struct OpenLoopUnit {
   double gain_ratio = 1.0, time_constant_ratio = 1.0, later = 0.0;
   int from = 0, until = 1000000;  ///< samples
   std::uint64_t seed = 0;
-  bool graded = false;       ///< inputs move to any value, not to one of two
-  int still_from = 1000000;  ///< input 1 stays where it was, samples
+  bool graded = false;                    ///< inputs move to any value, not to one of two
+  int still_from = 1000000;               ///< input 1 stays where it was, samples
+  std::optional<TransferFunction> plant;  ///< what the channel is in truth, before these changes
   SignalCounts counts{2, 0, 2, 0};
 
   OpenLoopUnit() {
@@ -45,6 +47,7 @@ struct OpenLoopUnit {
   void run(int samples, Each each) const {
     ModelSpec wrong = model;
     auto& channel = std::get<TransferFunction>(wrong.channels[1].dynamics);
+    if (plant) channel = *plant;
     channel.gain *= gain_ratio;
     for (double& time_constant_s : channel.time_constants_s) time_constant_s *= time_constant_ratio;
     channel.dead_time_s += later;

@@ -4,8 +4,10 @@ controller meets. Each: states' derivatives by `slope`, CVs by `measured`; time 
 Sources: four tanks, Johansson (2000), IEEE TCST 8(3), minimum-phase setting; stirred reactor with one
 exothermic reaction, Seborg, Edgar and Mellichamp, Process Dynamics and Control, example 2.5, cooled
 below its ignition; evaporator, Newell and Lee (1989), Applied Process Control, its separator's level
-held by the product flow; heater: a stirred tank heated by steam, a sensor's lag, two more tanks
-that its outflow passes (assumed numbers).
+held by the product flow, or (separator) left to the controller, integrating; heater: a stirred tank heated by steam, a sensor's lag, two more tanks
+that its outflow passes (assumed numbers); column: sixteen stages of a binary mixture with constant
+molar flows and relative volatility, levels held by the products, after Skogestad (1997), Trans.
+IChemE 75A (assumed numbers; 98 and 2 %, so that reflux and boil-up nearly undo one another).
 """
 import dataclasses
 import typing
@@ -31,6 +33,7 @@ class Physical:
     changes: dict  # name: constant, factor
     slope: typing.Callable  # states, inputs, numbers, disturbance -> derivative per s
     measured: typing.Callable
+    integrating: tuple = ()  # CVs, by number
 
 
 def four_tanks():
@@ -72,15 +75,21 @@ def reactor():
         slope, lambda x: x[::-1])
 
 
+def boiled(x, steam, cooling, feed, n):
+    """Evaporator: vapour and condensate, kg/min."""
+    _, product, pressure = x
+    inside = 0.5616 * pressure + 0.3126 * product + 48.43
+    heat = n["heater"] * 0.16 * (feed + 50.0) * (0.1538 * steam + 90.0 - inside)
+    vapour = (heat - 0.07 * feed * (inside - 40.0)) / 38.5
+    condensed = n["condenser"] * 6.84 * (0.507 * pressure + 55.0 - 25.0)
+    return vapour, condensed / (38.5 * (1.0 + n["condenser"] * 6.84 / (0.14 * cooling)))
+
+
 def evaporator():
     def slope(x, u, n, load):
-        level, product, pressure = x
+        level, product, _ = x
         steam, cooling, feed = u
-        inside = 0.5616 * pressure + 0.3126 * product + 48.43
-        heat = n["heater"] * 0.16 * (feed + 50.0) * (0.1538 * steam + 90.0 - inside)
-        vapour = (heat - 0.07 * feed * (inside - 40.0)) / 38.5
-        condensed = n["condenser"] * 6.84 * (0.507 * pressure + 55.0 - 25.0)
-        condensed /= 38.5 * (1.0 + n["condenser"] * 6.84 / (0.14 * cooling))
+        vapour, condensed = boiled(x, steam, cooling, feed, n)
         drawn = 2.0 + 1.2 * (level - 1.0)
         return np.array([(feed - vapour - drawn) / 20.0,
                          (feed * 5.0 - drawn * product) / 20.0 + 0.1 * load,
@@ -92,6 +101,23 @@ def evaporator():
         np.array([1.5, 1.5]), 0.5, np.array([1.0, 25.0, 50.5]), {"condenser": 1.0, "heater": 1.0},
         {"condenser fouls": ("condenser", 0.85), "heater fouls": ("heater", 0.9)},
         slope, lambda x: x[1:])
+
+
+def separator():
+    def slope(x, u, n, load):
+        drawn, steam, cooling, feed = u
+        vapour, condensed = boiled(x, steam, cooling, feed, n)
+        return np.array([(feed - vapour - drawn) / 20.0 + 0.01 * load,
+                         (feed * 5.0 - drawn * x[1]) / 20.0 + 0.1 * load,
+                         (vapour - condensed) / 4.0 + 0.05 * load]) / 60.0
+
+    return Physical(
+        "separator", 60.0, 6, ["F2", "P100", "F200"], ["F1"], ["L2", "X2", "P2"],
+        np.array([1.999996614939544, 194.7, 208.0, 10.0]), np.array([1.5, 70.0, 90.0]),
+        np.array([0.08, 8.0, 12.0, 0.15]), np.array([0.15, 1.5, 1.5]), 0.5,
+        np.array([1.0, 25.0, 50.5]), {"condenser": 1.0, "heater": 1.0},
+        {"condenser fouls": ("condenser", 0.85), "heater fouls": ("heater", 0.9)},
+        slope, lambda x: x, (0,))
 
 
 def heater():
@@ -111,7 +137,35 @@ def heater():
         slope, lambda x: x[[1, 3]])
 
 
-PHYSICAL = [four_tanks, reactor, evaporator, heater]
+def column():
+    """Time in minutes here; states: the light component on each stage, the reboiler's first."""
+    stages, fed = 16, 8
+    holdup = np.full(stages, 0.5)
+    holdup[[0, -1]] = 2.0
+
+    def slope(x, u, n, load):
+        reflux, boilup, feed = u
+        vapour = n["volatility"] * x / (1.0 + (n["volatility"] - 1.0) * x)
+        rising = np.concatenate([[0.0], boilup * vapour[:-1]])  # into a stage
+        down = np.full(stages, reflux + feed)
+        down[fed + 1:] = reflux
+        down[0] = reflux + feed - boilup  # the bottom product
+        falling = np.concatenate([down[1:-1] * x[1:-1], [reflux * x[-1], 0.0]])
+        change = rising + falling - down * x - boilup * vapour
+        change[-1] = boilup * (vapour[-2] - x[-1])  # a total condenser
+        change[fed] += feed * (n["light"] + 0.01 * load)
+        return change / holdup / 60.0
+
+    return Physical(
+        "column", 120.0, 30, ["REFLUX", "BOILUP"], ["FEED"], ["XTOP", "XBOT"],
+        np.array([1.517557633575, 2.017557633575, 1.0]), np.array([0.6, 0.6]),
+        np.array([0.03, 0.03, 0.02]), np.array([0.004, 0.004]), 1.0,
+        np.linspace(0.02, 0.98, stages), {"volatility": 2.2, "light": 0.5},
+        {"trays foul": ("volatility", 0.97), "feed is heavy": ("light", 0.94)},
+        slope, lambda x: x[[-1, 0]])
+
+
+PHYSICAL = [four_tanks, reactor, evaporator, heater, column, separator]
 
 
 def advance(plant, state, inputs, numbers, load=0.0):
@@ -126,7 +180,9 @@ def advance(plant, state, inputs, numbers, load=0.0):
 def settled(plant, inputs, numbers, samples=3000):
     state = plant.states
     for _ in range(samples):
-        state = advance(plant, state, inputs, numbers)
+        before, state = state, advance(plant, state, inputs, numbers)
+        if np.all(np.abs(state - before) <= 1e-14 * np.abs(state)):
+            break
     return state
 
 

@@ -7,6 +7,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/nameable.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/statement.hpp"
@@ -134,7 +135,8 @@ Account keep(Explained explained, const Judges& judges, const Witness& witness,
       const char* reason = why_it_goes(effect, problem, finding, kept.selection.fates[i]);
       out.push_back(reason != nullptr);
       finding.repaired = false;
-      finding.refused = reason != nullptr ? reason : "without what was refused it explains nothing";
+      finding.refused =
+          reason != nullptr ? reason : "it explained something only beside what was refused";
       finding.explains = kept.selection.explains[i];
     }
     if (std::find(out.begin(), out.end(), true) == out.end()) {
@@ -199,13 +201,14 @@ Account account_for(const ModelSpec& model, int model_inputs, const Recording& f
   };
   Account account = take(settings);
   const std::optional<Named>& suspect = account.found.suspect;
-  if (!suspect || suspect->evidence < kStrongEvidence ||
-      !moved_from_outside(suspect->effect, model, judges.outside_shares))
-    return account;
+  const auto alone = [&](const Effect& effect) {
+    return moved_from_outside(effect, model, judges.outside_shares) &&
+           !witness.given.undone(channels_of(effect, model, model_inputs));
+  };
+  if (!suspect || suspect->evidence < kStrongEvidence || !alone(suspect->effect)) return account;
   SearchSettings open = settings;
   open.may_name = [&](const Effect& effect) {
-    return settings.may_name(effect) || (cause_of(effect).acts_through_channels() &&
-                                         moved_from_outside(effect, model, judges.outside_shares));
+    return settings.may_name(effect) || (cause_of(effect).acts_through_channels() && alone(effect));
   };
   Account other = take(open);
   return overwhelms(other, settings) ? std::move(other) : std::move(account);

@@ -42,6 +42,11 @@ double outside_needed(const Effect& effect) {
 
 }  // namespace
 
+bool is_linear_error(const Effect& effect) {
+  return effect.find(kGainRatio) != nullptr || effect.find(kTimeConstantRatio) != nullptr ||
+         effect.find(kDeadTimeError) != nullptr;
+}
+
 std::vector<std::pair<int, int>> channels_of(const Effect& effect, const ModelSpec& model,
                                              int model_inputs) {
   const Place& place = effect.place;
@@ -60,8 +65,10 @@ std::function<bool(const Effect&)> nameable(const ModelSpec& model, const Signal
     if (is_of_an_actuator(effect) && effect.place.input >= ranges.mvs) return false;
     if (outside_share(effect, model, shares) < outside_needed(effect)) return false;
     if (effect.place.aux >= ranges.aux) return may_name_setpoint(effect, tests, ranges.aux);
-    return !cause_of(effect).acts_through_channels() ||
-           tests.reject(channels_of(effect, model, ranges.inputs));
+    if (!cause_of(effect).acts_through_channels()) return true;
+    const std::vector<std::pair<int, int>> channels = channels_of(effect, model, ranges.inputs);
+    const bool seen_if_any = is_linear_error(effect) || cause_of(effect).is_curve();
+    return tests.reject(channels) && (!seen_if_any || tests.may_matter(channels));
   };
 }
 

@@ -11,6 +11,7 @@
 #include "core/identify/evidence/mean_reversion.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
+#include "core/model/linear_model.hpp"
 
 namespace mpm {
 
@@ -18,6 +19,11 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
+
+/// Free runs of such a CV go where its load does, and its noise is smooth by itself.
+bool integrates(const ModelSpec& model, int cv) {
+  return LinearModel(model).integrating().row(cv).any();
+}
 
 Explained explain_with(const NoiseModel& noise, const ModelSpec& model, int model_inputs,
                        const Recording& recording, const SearchSettings& settings) {
@@ -36,6 +42,7 @@ double log_error(const Explained& explained, const Recording& recording, Index f
   Simulator simulator(recording);
   double sum = 0.0;
   for (int cv = 0; cv < model.cv_count; ++cv) {
+    if (integrates(model, cv)) continue;
     const VectorXd errors =
         (recording.cvs.col(cv) - free_run(simulator, model, cv)).tail(recording.samples() - first);
     const double error = mean_of_finite(errors.cwiseAbs2());
@@ -47,6 +54,7 @@ double log_error(const Explained& explained, const Recording& recording, Index f
 bool is_too_smooth(const Explained& explained) {
   return std::any_of(
       explained.found.fit.cvs.begin(), explained.found.fit.cvs.end(), [&](const CvFit& fit) {
+        if (integrates(explained.problem->model(), fit.cv)) return false;
         const CvData& data = explained.problem->data(fit.cv);
         const double all = fit.residual.squaredNorm() / std::max(1.0, data.known.sum());
         return fit.variance < kTooSmooth * all;

@@ -11,6 +11,10 @@ namespace mpm {
 /// of another implementation: of 27 right findings 23 are kept, of 18 wrong ones none.
 inline constexpr double kRejected = 0.05;
 
+/// And where its error's being too small to matter has at most this. Chosen: some two s.d. beyond
+/// what does not matter.
+inline constexpr double kMayMatter = 0.05;
+
 /// The test's regression is made smaller until so many rows stand behind each of its columns, and
 /// no smaller than this.
 inline constexpr double kTestRowsPerColumn = 6.0;

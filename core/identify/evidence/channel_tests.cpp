@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/identify/evidence/regress_recording.hpp"
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/materiality.hpp"
 
 namespace mpm {
@@ -38,7 +39,8 @@ double harmless_p_value_of(const ChannelEvidence& evidence, double freedom) {
       {Materiality::beyond(evidence.gain_error, limits.gain, freedom),
        Materiality::beyond(evidence.log_time_error, std::log1p(limits.time_constant), freedom),
        Materiality::beyond(evidence.dead_time_error, limits.dead_time_samples, freedom)});
-  return std::min(evidence.p_value_material, largest);
+  const double step = evidence.step_error.value < evidence.step_limit ? 1.0 : 0.0;
+  return std::min(evidence.p_value_material, std::max(largest, step));
 }
 
 }  // namespace
@@ -49,6 +51,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)),
       harmless_(p_values_.size(), 1.0),
       wrong_(p_values_.size(), 0.0),
+      masked_(p_values_.size(), 1.0),
       setpoints_(static_cast<std::size_t>(model.cv_count), RivalSignal{.loses = false}) {
   const RegressedRecording regressed =
       regress_recording(model, recording, residuals, rows_to_follow(recording));
@@ -65,6 +68,8 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
       p_values_[channel] = evidence.p_value;
       harmless_[channel] = harmless_p_value_of(evidence, detector.memory(cv).freedom());
+      if (evidence.excitation_index_alone > 0.0 && std::isfinite(evidence.excitation_index))
+        masked_[channel] = evidence.excitation_index / evidence.excitation_index_alone;
       wrong_[channel] = evidence.statistic * steps;
     }
     if (rows_to_follow(recording) > 0 && reject(channels_to(cv)))
@@ -90,6 +95,20 @@ bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels, doub
     tested += 1.0;
   }
   return tested > 0.0 && smallest * tested <= level;
+}
+
+bool ChannelTests::undone(const std::vector<std::pair<int, int>>& channels) const {
+  return std::any_of(channels.begin(), channels.end(), [&](const std::pair<int, int>& each) {
+    const auto channel = static_cast<std::size_t>(each.second * cvs_ + each.first);
+    return channel < masked_.size() && masked_[channel] > calibration::materiality::kUndone;
+  });
+}
+
+bool ChannelTests::may_matter(const std::vector<std::pair<int, int>>& channels,
+                              double level) const {
+  return std::any_of(channels.begin(), channels.end(), [&](const std::pair<int, int>& channel) {
+    return harmless_p_value(channel.first, channel.second) <= level;
+  });
 }
 
 }  // namespace mpm

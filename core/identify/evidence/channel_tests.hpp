@@ -52,6 +52,12 @@ class ChannelTests {
   /// most `level` (0..1).
   [[nodiscard]] bool reject(const std::vector<std::pair<int, int>>& channels,
                             double level = kRejected) const;
+  /// Whether the error of some of these channels may matter: "too small" has at most this p-value.
+  [[nodiscard]] bool may_matter(const std::vector<std::pair<int, int>>& channels,
+                                double level = kMayMatter) const;
+  /// Whether other inputs undo most of what the input of some of these channels does, so that small
+  /// errors of any kind are large ones of what is left.
+  [[nodiscard]] bool undone(const std::vector<std::pair<int, int>>& channels) const;
   /// All channels to a CV, as (CV, input).
   [[nodiscard]] std::vector<std::pair<int, int>> channels_to(int cv) const;
 
@@ -60,6 +66,7 @@ class ChannelTests {
   std::vector<std::optional<double>> p_values_;  // per channel, input-major
   std::vector<double> harmless_;                 // likewise
   std::vector<double> wrong_;                    // likewise
+  std::vector<double> masked_;                   // likewise: s.d. of its gain to that of it alone
   std::vector<RivalSignal> setpoints_;           // per CV
 };
 

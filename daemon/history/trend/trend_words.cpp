@@ -22,7 +22,7 @@ const ChannelHead& head_of(const Trend& trend, const std::string& mv, const std:
 std::string signed_text(double value) { return (value > 0.0 ? "+" : "") + number_text(value, 2); }
 
 std::string gain_text(const ChannelHead& head, double error, double low, double high) {
-  if (!known(error)) return "gain --";
+  if (!known(error)) return "gain not known";
   return "gain " + (head.modelled ? signed_text(error) + " %" : number_text(error)) + " (" +
          interval_text(low, high, head.modelled ? 2 : 3) + ")";
 }

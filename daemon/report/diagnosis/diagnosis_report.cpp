@@ -217,9 +217,17 @@ std::string finding_text(const DiagnosisRun& run, const Finding& finding) {
   if (!finding.repaired && !finding.refused.empty())
     text += "     not in the extended model: " + finding.refused + '\n';
   if (finding.with)
-    text += "     in the extended model only together with: " + needed_text(names, finding) + '\n';
+    text += "     its repair helps only with that of: " + needed_text(names, finding) + '\n';
   for (const Rival& rival : finding.rivals)
     if (rival.inseparable) text += "     or: " + rival_text(run, rival) + '\n';
+  return text;
+}
+
+/// Of a free run that is off by more than the CV moves, as that of a level soon is, no number.
+std::string fit_text(double percent) {
+  if (percent < 0.0) return "< 0 %";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", percent);
   return text;
 }
 
@@ -231,9 +239,10 @@ std::string score_table(const DiagnosisRun& run) {
   for (std::size_t cv = 0; cv < run.diagnosis.scores.size(); ++cv) {
     const CvScore& score = run.diagnosis.scores[cv];
     char line[200];
-    std::snprintf(line, sizeof line, "    %-12s %12s %8s %10.1f %% %6.1f %%   ",
+    std::snprintf(line, sizeof line, "    %-12s %12s %8s %12s %8s   ",
                   run.unit.cv.at(cv).tag.c_str(), number_text(score.rmse_before).c_str(),
-                  number_text(score.rmse_after).c_str(), score.fit_before, score.fit_after);
+                  number_text(score.rmse_after).c_str(), fit_text(score.fit_before).c_str(),
+                  fit_text(score.fit_after).c_str());
     text += line;
     if (score.refused)
       text += "an extension was tried and did not carry over";

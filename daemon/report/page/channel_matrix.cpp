@@ -76,6 +76,10 @@ Json estimate_cell(const DiagnosisRun& run, int cv, int input) {
       channels.begin(), channels.end(),
       [&](const ChannelEstimate& each) { return each.cv == cv && each.input == input; });
   if (known == channels.end()) return cell("none", "");
+  const std::vector<Place>& rejected = run.diagnosis.rejected;
+  if (std::any_of(rejected.begin(), rejected.end(),
+                  [&](const Place& place) { return place.cv == cv && place.input == input; }))
+    return cell("doubt", "");
   const Parameter& gain = known->gain_ratio;
   if (run.diagnosis.verdict == DiagnosisVerdict::kUndetermined ||
       !(gain.high - gain.low <= 2.0 * kWidest))

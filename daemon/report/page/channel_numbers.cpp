@@ -20,6 +20,7 @@ constexpr double kNoticeable = 0.05;  ///< of a gain or a time constant
 struct Numbers {
   double gain = OldAndNew::kUnknown;
   std::vector<double> time_constants;
+  double lead = OldAndNew::kUnknown;
   double dead_time = OldAndNew::kUnknown;
   bool integrating = false;
 };
@@ -30,11 +31,14 @@ const Block* block_of(const std::vector<std::optional<Block>>& blocks, int index
   return i < blocks.size() && blocks[i] ? &*blocks[i] : nullptr;
 }
 
-double slope(const InputBlock* block) {
+/// At so much from the origin.
+double slope(const InputBlock* block, double at) {
   const auto* polynomial = block == nullptr ? nullptr : std::get_if<Polynomial>(block);
-  return polynomial == nullptr || polynomial->coefficients.empty()
-             ? 1.0
-             : polynomial->coefficients.front();
+  if (polynomial == nullptr || polynomial->coefficients.empty()) return 1.0;
+  double sum = 0.0, power = 1.0;
+  for (std::size_t i = 0; i < polynomial->coefficients.size(); ++i, power *= at)
+    sum += static_cast<double>(i + 1) * polynomial->coefficients[i] * power;
+  return sum;
 }
 
 double slope(const OutputBlock* block) {
@@ -44,6 +48,7 @@ double slope(const OutputBlock* block) {
 
 void add_times(const TransferFunction& dynamics, double, Numbers& numbers) {
   numbers.time_constants = dynamics.time_constants_s;
+  numbers.lead = dynamics.lead_s;
   numbers.dead_time = dynamics.dead_time_s;
 }
 void add_times(const TankChain& dynamics, double, Numbers& numbers) {
@@ -58,7 +63,9 @@ void add_times(const StepResponse&, double, Numbers&) {}
 /// A model as the table needs it.
 class Source {
  public:
-  explicit Source(const ModelSpec& spec) : spec_(spec) {
+  /// `operated`: the inputs at which gains are read, from their origin; none: there.
+  explicit Source(const ModelSpec& spec, std::vector<double> operated = {})
+      : spec_(spec), operated_(std::move(operated)) {
     if (spec.channels.empty() && !spec.state_space) return;
     const LinearModel model(spec);
     gain_ = model.steady_gain();
@@ -74,11 +81,13 @@ class Source {
       return std::nullopt;
     Numbers numbers;
     numbers.integrating = integrating_(cv, input);
-    numbers.gain = gain_(cv, input) * slope(block_of(spec_.input_blocks, input)) *
+    const auto at = static_cast<std::size_t>(input);
+    const double operated = at < operated_.size() ? operated_[at] : 0.0;
+    numbers.gain = gain_(cv, input) * slope(block_of(spec_.input_blocks, input), operated) *
                    slope(block_of(spec_.output_blocks, cv));
     if (numbers.integrating) numbers.gain /= spec_.sample_time_s;
     if (channel != spec_.channels.end()) {
-      if (channel->input_block) numbers.gain *= slope(&*channel->input_block);
+      if (channel->input_block) numbers.gain *= slope(&*channel->input_block, operated);
       std::visit([&](const auto& each) { add_times(each, spec_.sample_time_s, numbers); },
                  channel->dynamics);
     }
@@ -87,6 +96,7 @@ class Source {
 
  private:
   const ModelSpec& spec_;
+  std::vector<double> operated_;
   Eigen::MatrixXd gain_;
   Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic> integrating_;
 };
@@ -102,6 +112,7 @@ ChannelNumbers compared(int cv, int input, const std::optional<Numbers>& before,
   if (before) {
     result.integrating = before->integrating;
     result.gain.old_value = before->gain;
+    result.lead.old_value = before->lead;
     result.dead_time.old_value = before->dead_time;
     for (std::size_t i = 0; i < before->time_constants.size(); ++i)
       result.time_constants[i].old_value = before->time_constants[i];
@@ -109,6 +120,7 @@ ChannelNumbers compared(int cv, int input, const std::optional<Numbers>& before,
   if (after) {
     result.integrating = after->integrating;
     result.gain.new_value = after->gain;
+    result.lead.new_value = after->lead;
     result.dead_time.new_value = after->dead_time;
     for (std::size_t i = 0; i < after->time_constants.size(); ++i)
       result.time_constants[i].new_value = after->time_constants[i];
@@ -130,10 +142,9 @@ void set_intervals(const Parameter* gain, const Parameter* time_constant,
                    const Parameter* dead_time, ChannelNumbers& channel) {
   const double old_gain = channel.gain.old_value;
   if (gain != nullptr) set_interval(channel.gain, old_gain * gain->low, old_gain * gain->high);
-  if (time_constant != nullptr && channel.time_constants.size() == 1) {
-    OldAndNew& lag = channel.time_constants.front();
-    set_interval(lag, lag.old_value * time_constant->low, lag.old_value * time_constant->high);
-  }
+  if (time_constant != nullptr)
+    for (OldAndNew& lag : channel.time_constants)
+      set_interval(lag, lag.old_value * time_constant->low, lag.old_value * time_constant->high);
   if (dead_time != nullptr) {
     OldAndNew& late = channel.dead_time;
     set_interval(late, std::max(0.0, late.old_value + dead_time->low),
@@ -219,6 +230,7 @@ std::string csv_of(const std::vector<ChannelNumbers>& channels, const config::Un
     for (const OldAndNew& each : channel.time_constants)
       rows.push_back({"time constant", "s", each});
     if (channel.damping) rows.push_back({"damping", "", *channel.damping});
+    if (channel.has_lead()) rows.push_back({"lead", "s", channel.lead});
     rows.push_back({"dead time", "s", channel.dead_time});
     for (const auto& [name, of, number] : rows) {
       if (!std::isfinite(number.old_value) && !std::isfinite(number.new_value)) continue;
@@ -273,16 +285,48 @@ Json times_json(const std::vector<OldAndNew>& numbers, bool changed) {
   return cell(before, after, range, "", changed);
 }
 
-/// "15.8 s, damping 0.8"
+/// "15.8 s, damping 0.8", "12 s, lead 4 s"
 Json lags_json(const ChannelNumbers& channel, bool changed) {
   Json json = times_json(channel.time_constants, changed);
   if (channel.damping)
     json["new"] =
         json["new"].get<std::string>() + ", damping " + rounded(channel.damping->new_value);
+  const auto add_lead = [&](const char* key, double lead) {
+    if (channel.has_lead() && std::isfinite(lead))
+      json[key] = json[key].get<std::string>() + ", lead " + duration(lead);
+  };
+  add_lead("old", channel.lead.old_value);
+  add_lead("new", channel.lead.new_value);
   return json;
 }
 
+double median(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  std::vector<double> known;
+  for (const double value : values)
+    if (std::isfinite(value)) known.push_back(value);
+  if (known.empty()) return OldAndNew::kUnknown;
+  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+  std::nth_element(known.begin(), middle, known.end());
+  return *middle;
+}
+
+/// Medians of the recorded inputs, from the model's origin.
+std::vector<double> operated(const DiagnosisRun& run, const ModelSpec& model) {
+  std::vector<double> from_origin;
+  for (Eigen::Index i = 0; i < run.recording.inputs.cols() && i < model.input_count; ++i) {
+    const double origin = i < model.input_origin.size() ? model.input_origin(i) : 0.0;
+    const double usual = median(run.recording.inputs.col(i));
+    from_origin.push_back(std::isfinite(usual) ? usual - origin : 0.0);
+  }
+  return from_origin;
+}
+
 }  // namespace
+
+bool ChannelNumbers::has_lead() const {
+  const auto is = [](double value) { return std::isfinite(value) && value != 0.0; };
+  return is(lead.old_value) || is(lead.new_value);
+}
 
 bool ChannelNumbers::changed(double sample_time_s) const {
   return differ_by_share(gain) || differ(dead_time, sample_time_s) ||
@@ -291,7 +335,8 @@ bool ChannelNumbers::changed(double sample_time_s) const {
 
 std::vector<ChannelNumbers> channel_numbers(const DiagnosisRun& run) {
   const Diagnosis& diagnosis = run.diagnosis;
-  const Source before(run.unit.model), after(diagnosis.extended);
+  const Source before(run.unit.model, operated(run, run.unit.model)),
+      after(diagnosis.extended, operated(run, diagnosis.extended));
   std::vector<ChannelNumbers> channels;
   for (int cv = 0; cv < diagnosis.extended.cv_count; ++cv)
     for (int input = 0; input < diagnosis.extended.input_count; ++input) {

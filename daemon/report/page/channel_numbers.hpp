@@ -26,18 +26,20 @@ struct ChannelNumbers {
   int input = 0;
   bool integrating = false;
   OldAndNew gain;                         ///< CV units per input unit (and s where it integrates)
-  std::vector<OldAndNew> time_constants;  ///< s; those of two lags have no interval of their own
+  std::vector<OldAndNew> time_constants;  ///< s
+  OldAndNew lead;                         ///< s; 0 or unknown: none
   OldAndNew dead_time;                    ///< s
   /// Of a pair that overshoots, whose time is the one time constant; the interval is that of the
   /// fit.
   std::optional<OldAndNew> damping = {};
 
+  [[nodiscard]] bool has_lead() const;
   /// By so much that somebody would type it anew; what a fit moves along with it is less.
   [[nodiscard]] bool changed(double sample_time_s) const;
 };
 
-/// Of every channel of either model, CV by CV. A gain is that of small moves around the operating
-/// point, with what static blocks make of it.
+/// Of every channel of either model, CV by CV. A gain is that of small moves around where the plant
+/// was operated, the medians of the recorded inputs, with what static blocks make of it.
 [[nodiscard]] std::vector<ChannelNumbers> channel_numbers(const DiagnosisRun& run);
 /// Of every channel that was identified; old values where the unit file had a model.
 [[nodiscard]] std::vector<ChannelNumbers> channel_numbers(const IdentificationRun& run);

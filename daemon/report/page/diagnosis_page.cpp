@@ -194,7 +194,9 @@ Json errors_json(const DiagnosisRun& run) {
     if (score.gain_low == score.gain_high) less = "unchanged";
     if (score.refused) less = "tried, refused";
     if (!score.judged) less = "not judged";
-    const auto fit = [](double value) { return fixed_text(value, 0) + " %"; };
+    const auto fit = [](double value) {  // of one that is off by more than the CV moves, no number
+      return value < 0.0 ? std::string("< 0 %") : fixed_text(value, 0) + " %";
+    };
     json.push_back({run.unit.cv[cv].tag, rounded(score.rmse_before, unit),
                     rounded(score.rmse_after, unit), less, fit(score.fit_before),
                     fit(score.fit_after)});

@@ -15,7 +15,8 @@ TEST_CASE("what the data do not resolve is no number") {
   channel.effect_low = -40.0;
   channel.effect_high = 120.0;
   channel.time_constant_ratio = channel.dead_time_error_s = std::nan("");
-  CHECK(mismatch_text(channel, file) == "gain --, time constant --, dead time --");
+  CHECK(mismatch_text(channel, file) ==
+        "gain not known, time constant not known, dead time not known");
 
   channel = mismatch("FIC-101", "AI-201");
   channel.time_constant_ratio = 2.0;
@@ -47,7 +48,7 @@ TEST_CASE("of a model whose gain is negative, more gain is more in its direction
   CHECK(error_text(raised, &channel) == "gain +37 %");
   CHECK(error_text(raised, nullptr) == "gain off by -0.037");
   channel.effect_high = 1.0;
-  CHECK(error_text(raised, &channel) == "gain --");
+  CHECK(error_text(raised, &channel) == "gain not known");
 }
 
 TEST_CASE("an alarm tells of the gain only where that may be what is wrong") {

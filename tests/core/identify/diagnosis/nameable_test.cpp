@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/fit/quantity.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -15,9 +16,10 @@ using test::lag;
 
 constexpr Index kRows = 1500;
 
-/// An MV and a DV act on one CV, the MV with 1.5 times its gain; the second CV is as the model
-/// says.
+/// An MV and a DV act on one CV, the MV with a gain that is `off`, of 2; the second CV is as the
+/// model says.
 struct Bench {
+  double off = 1.0, noise = 0.1;
   ModelSpec model =
       test::model_of({lag(0, 0, 2.0, 10.0), lag(0, 1, 1.0, 5.0), lag(1, 1, 1.0, 8.0)}, 2, 2);
   ChannelTests tests = make();
@@ -27,8 +29,8 @@ struct Bench {
   ChannelTests make() const {
     MatrixXd u(kRows, 2), residuals(kRows, 2);
     u << test::telegraph(1, kRows, 12), test::telegraph(2, kRows, 9);
-    residuals << 0.5 * test::first_order(u.col(0), 2.0, 10.0) + 0.1 * test::white(3, kRows),
-        0.1 * test::white(4, kRows);
+    residuals << test::first_order(u.col(0), off, 10.0) + noise * test::white(3, kRows),
+        noise * test::white(4, kRows);
     Recording recording = test::recording_of(u, residuals);
     recording.setpoints.resize(kRows, 2);
     recording.setpoints << test::telegraph(5, kRows, 40), test::telegraph(6, kRows, 50);
@@ -101,6 +103,22 @@ TEST_CASE("where nothing but feedback moves an input no gain or lag of it is nam
   CHECK(bench(causes::step_disturbance(), {0}));
   bench.shares[0] = std::nullopt;  // nobody knows
   CHECK(bench(causes::gain(), {0, 0}));
+}
+
+// In a free run errors that matter in no channel may add up to what looks like a large one.
+TEST_CASE("what is off by too little to matter names no channel, however surely it is seen") {
+  const Bench bench{.off = 0.03, .noise = 0.01};  // 1.5 %
+  REQUIRE(bench.tests.reject({{0, 0}}, 1e-6));
+  Effect gain;
+  gain.edit = &causes::gain();
+  gain.place = {0, 0};
+  Coordinate ratio;
+  ratio.quantity = &kGainRatio;
+  gain.coordinates = {ratio};
+  CHECK_FALSE(bench.may(gain));
+  CHECK_FALSE(bench(causes::input_polynomial(), {0, 0}));
+  CHECK(bench(causes::stiction(), {-1, 0}));
+  CHECK(Bench().may(gain));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST_CASE("alarms and silence are said in a sentence, and what no sentence can b
   CHECK(words_of(trend, Standing{"u", "y", test::kMonday, 41.2, 31.4, 50.9}, moment) ==
         "u -> y: gain +41 % (31 to 51), in alarm since 00:00 on 5 January");
   CHECK(words_of(trend, Standing{"u", "y", {}, kUnknown, kUnknown, kUnknown}, moment) ==
-        "u -> y: gain --, in alarm since before these data begin");
+        "u -> y: gain not known, in alarm since before these data begin");
   Silence silence;
   silence.last = trend.last[0];
   silence.last.verdict = "undetermined";

@@ -1,7 +1,9 @@
 #include "daemon/report/page/channel_numbers.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <variant>
 
 #include "daemon/report/diagnosis/extended_unit.hpp"
 #include "tests/daemon/report/identification/small_run.hpp"
@@ -50,7 +52,30 @@ TEST_CASE("blocks before and behind a channel are part of its gain") {
   const double plain = of(channel_numbers(run), 1, 0).gain.new_value;
   run.diagnosis.extended.output_blocks[1] = Scale{1.5};
   run.diagnosis.extended.input_blocks[0] = Polynomial{{0.8, 0.1}};
-  CHECK(of(channel_numbers(run), 1, 0).gain.new_value == Approx(1.5 * 0.8 * plain));
+  // Of small moves around where the input mostly was, d of its origin: 0.8 + 2 * 0.1 d.
+  std::vector<double> moved(run.recording.inputs.col(0).begin(), run.recording.inputs.col(0).end());
+  std::sort(moved.begin(), moved.end());
+  const double d = moved[moved.size() / 2] - run.diagnosis.extended.input_origin(0);
+  REQUIRE(std::abs(d) > 0.01);
+  CHECK(of(channel_numbers(run), 1, 0).gain.new_value == Approx(1.5 * (0.8 + 0.2 * d) * plain));
+}
+
+TEST_CASE("a lead is in the table, and two time constants have their intervals") {
+  DiagnosisRun run = sample_run(600);
+  const auto lead_of = [](DiagnosisRun& of_run, double lead_s) {
+    for (ChannelSpec& channel : of_run.diagnosis.extended.channels)
+      if (auto* tf = std::get_if<TransferFunction>(&channel.dynamics))
+        if (channel.cv == 2 && channel.input == 2) tf->lead_s = lead_s;
+  };
+  CHECK_FALSE(of(channel_numbers(run), 2, 2).has_lead());
+  lead_of(run, 4.5);
+  const ChannelNumbers channel = of(channel_numbers(run), 2, 2);
+  REQUIRE(channel.has_lead());
+  CHECK(channel.lead.new_value == 4.5);
+  const auto json = numbers_json({channel}, extended_unit(run.unit, run.diagnosis));
+  CHECK(std::string(json["csv"]).find(",lead,s,0,4.5,") != std::string::npos);
+  CHECK(std::string(json["rows"][0]["time_constant"]["new"]).find("lead 4.5 s") !=
+        std::string::npos);
 }
 
 TEST_CASE("the table is a CSV that any tag survives") {
