@@ -43,6 +43,8 @@ double outside_needed(const Effect& effect) {
 }  // namespace
 
 bool is_linear_error(const Effect& effect) {
+  if (cause_of(effect).is_input_block())
+    return false;  // beside a valve gain and lags are freed too
   return effect.find(kGainRatio) != nullptr || effect.find(kTimeConstantRatio) != nullptr ||
          effect.find(kDeadTimeError) != nullptr;
 }
