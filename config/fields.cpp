@@ -43,7 +43,8 @@ const std::vector<Field<MaterialitySettings>>& materiality_fields() {
   static const std::vector<Field<S>> fields = {
       {"gain", &S::gain, kPositive, "relative"},
       {"time_constant", &S::time_constant, kPositive, "relative"},
-      {"dead_time", &S::dead_time_s, kNotNegative, "s; 0 = half a sample"},
+      {"dead_time", &S::dead_time_s, kNotNegative,
+       "s; 0 = half a sample, or 4 % of the time constant if that is more"},
       {"step_response", &S::step_response, kNotNegative,
        "relative: what changes it by less does not matter, whichever error it is"},
   };

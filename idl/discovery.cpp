@@ -59,6 +59,15 @@ std::string property(const dds_qos_t* qos, const char* name) {
   return text;
 }
 
+std::string user_data_of(const dds_qos_t* qos) {
+  void* value = nullptr;
+  std::size_t size = 0;
+  if (!dds_qget_userdata(qos, &value, &size) || value == nullptr) return "";
+  std::string data(static_cast<const char*>(value), size);
+  dds_free(value);
+  return data;
+}
+
 Process process_of(const dds_builtintopic_participant_t& participant) {
   return {property(participant.qos, "__Hostname"), property(participant.qos, "__ProcessName"),
           property(participant.qos, "__Pid")};
@@ -114,7 +123,7 @@ std::vector<Endpoint> Discovery::endpoints() const {
           if (std::memcmp(&endpoint.participant_key, &own, sizeof own) == 0) return;
           endpoints.push_back({endpoint.topic_name, endpoint.type_name, writers, handle,
                                processes[bytes_of(endpoint.participant_key)],
-                               mismatch_of(endpoint, writers)});
+                               mismatch_of(endpoint, writers), user_data_of(endpoint.qos)});
         });
   };
   add(publications_, true);

@@ -28,6 +28,7 @@ struct Endpoint {
   /// Of a topic of ours: why it meets no reader (of an output: no writer) that has the topic's
   /// profile, each reason in words. Empty where it does.
   std::vector<std::string> mismatch;
+  std::string user_data = {};  ///< whatever it gives
 };
 
 /// A type that was asked of the one who uses it.

@@ -93,6 +93,42 @@ Qos neighbour_health_qos() {
   return qos;
 }
 
+Qos role_reader_qos() {
+  Qos qos(dds_create_qos());
+  // What is lost is said again at once.
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
+  dds_qset_ownership(qos.get(), DDS_OWNERSHIP_EXCLUSIVE);
+  dds_qset_liveliness(qos.get(), DDS_LIVELINESS_MANUAL_BY_TOPIC,
+                      std::chrono::nanoseconds(kRoleLease).count());
+  return qos;
+}
+
+Qos role_writer_qos(const std::string& unit, int strength) {
+  Qos qos = role_reader_qos();
+  dds_qset_userdata(qos.get(), unit.data(), unit.size());
+  dds_qset_ownership_strength(qos.get(), strength);
+  return qos;
+}
+
+bool set_strength(dds_entity_t writer, int strength) {
+  const Qos qos(dds_create_qos());
+  dds_qset_ownership_strength(qos.get(), strength);
+  return dds_set_qos(writer, qos.get()) == DDS_RETCODE_OK;
+}
+
+Qos others_alarm_qos() {
+  Qos qos = alarm_qos();
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  return qos;
+}
+
+Qos others_alarm_event_qos() {
+  Qos qos = transient_local(1, 1);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  return qos;
+}
+
 Qos foreign_reader_qos() {
   Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);

@@ -2,7 +2,9 @@
 
 #include <dds/dds.h>
 
+#include <chrono>
 #include <memory>
+#include <string>
 
 namespace mpm::idl {
 
@@ -37,6 +39,20 @@ enum class WriterPace {
 /// A reader of what other monitors say of their health: nothing of its own participant's, the last
 /// word only, of so many units at most.
 [[nodiscard]] Qos neighbour_health_qos();
+
+/// Of mpm/role: readers hear the writer of the greatest `strength` that is alive, which one is that
+/// has written within `kRoleLease`.
+inline constexpr std::chrono::milliseconds kRoleLease{125};
+/// `unit`: whose, for who looks who stands by.
+[[nodiscard]] Qos role_writer_qos(const std::string& unit, int strength);
+[[nodiscard]] Qos role_reader_qos();
+/// Of a writer of mpm/role that exists.
+[[nodiscard]] bool set_strength(dds_entity_t writer, int strength);
+
+/// Readers of what other monitors say of alarms: as those of everybody else, but for what this
+/// process itself says.
+[[nodiscard]] Qos others_alarm_qos();
+[[nodiscard]] Qos others_alarm_event_qos();
 
 /// A reader of what others write: matches any writer, and drops the oldest samples of an instance
 /// where it cannot follow.

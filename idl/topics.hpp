@@ -24,6 +24,7 @@ inline constexpr const char* kCommandTopic = "mpm/command";
 inline constexpr const char* kCommandReplyTopic = "mpm/command_reply";
 inline constexpr const char* kHealthTopic = "mpm/health";
 inline constexpr const char* kPerformanceTopic = "mpm/performance";
+inline constexpr const char* kRoleTopic = "mpm/role";
 
 /// The kinds of signals that have a DDS topic; kAux comes from files only.
 inline constexpr std::array kTopicKinds = {SignalKind::kMv,       SignalKind::kDv,
@@ -76,6 +77,10 @@ struct TopicType<mpm_Health> {
 template <>
 struct TopicType<mpm_Performance> {
   static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Performance_desc; }
+};
+template <>
+struct TopicType<mpm_Role> {
+  static constexpr const dds_topic_descriptor_t* descriptor() { return &mpm_Role_desc; }
 };
 
 /// The topic that carries a kind of record: the type of its samples, its name and profile (as in

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "idl/entity.hpp"
@@ -28,6 +29,13 @@ class Writer {
     dds_publication_matched_status_t status{};
     check(dds_get_publication_matched_status(writer_.get(), &status), "matched readers");
     return static_cast<int>(status.current_count);
+  }
+
+  /// As SampleInfo::writer of what it writes.
+  [[nodiscard]] std::uint64_t handle() const {
+    dds_instance_handle_t handle = 0;
+    check(dds_get_instance_handle(writer_.get(), &handle), "handle of a writer");
+    return handle;
   }
 
   [[nodiscard]] dds_entity_t get() const { return writer_.get(); }

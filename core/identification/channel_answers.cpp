@@ -49,8 +49,8 @@ VectorXd known_sd(const Material& material, int cv, const PredictionErrorFit& fi
                   std::size_t which) {
   VectorXd sd = sd_of(fit, which);
   const ChannelShape& shape = fit.channels[which];
-  if (material.least_gain_sd.size() > 0 && !integrates(shape.form))
-    sd(0) = std::max(sd(0), material.least_gain_sd(cv, shape.input));
+  if (material.cross.gain_sd.size() > 0 && !integrates(shape.form))
+    sd(0) = std::max(sd(0), material.cross.gain_sd(cv, shape.input));
   return sd;
 }
 
@@ -145,7 +145,8 @@ std::vector<ChannelAnswer> channel_answers(const Material& material, const HighO
                                            const std::optional<PredictionErrorFit>& fit,
                                            const NoiseAssumption& noise, bool refused) {
   std::vector<ChannelAnswer> answers;
-  const double spread = spread_of(material.all.cvs.col(cv), material.all.known.col(cv));
+  const double spread =
+      spread_of(as_measured(material, cv, material.all.cvs.col(cv)), material.all.known.col(cv));
   const double typical = model.sound ? typical_time_constant(model, fit) : 1.0;
   std::vector<double> worth;
   if (fit) worth = worth_of_channels(material.all, cv, *fit, noise);

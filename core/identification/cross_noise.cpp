@@ -35,22 +35,6 @@ struct JointRegression {
   [[nodiscard]] Index first_lag_of(Index cv) const { return levels + cv * lags; }
 };
 
-std::vector<Index> rows_known(const IdentificationData& data, int lags, Index skipped) {
-  std::vector<Index> rows;
-  for (const auto& [first, count] : data.runs) {
-    Index known = 0;
-    for (Index k = first; k < first + count; ++k) {
-      if (data.known.row(k).minCoeff() == 0.0) {
-        known = 0;
-        continue;
-      }
-      if (known >= lags && k - first >= skipped) rows.push_back(k);
-      ++known;
-    }
-  }
-  return rows;
-}
-
 /// Nothing where the rows do not suffice.
 std::optional<JointRegression> joint_regression(const IdentificationData& data) {
   JointRegression joint;
@@ -62,7 +46,8 @@ std::optional<JointRegression> joint_regression(const IdentificationData& data) 
     if (longest < kCrossLags) return std::nullopt;
     joint.blocks = lag_blocks(longest);
     columns = joint.first_lag_of(cvs) + inputs * static_cast<Index>(joint.blocks.size());
-    joint.rows = rows_known(data, joint.lags, longest / 4);
+    joint.rows =
+        rows_with_past(data.runs, data.known.rowwise().minCoeff(), joint.lags, longest / 4);
     if (static_cast<double>(joint.rows.size()) >=
         kCrossRowsPerColumn * static_cast<double>(columns))
       break;

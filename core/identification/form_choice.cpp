@@ -40,6 +40,11 @@ Material material(const Recording& recording, bool open_loop) {
   return result;
 }
 
+VectorXd as_measured(const Material& material, int cv, const Eigen::Ref<const VectorXd>& values) {
+  if (material.cross.brought.size() == 0) return values;
+  return values + material.cross.brought.col(cv);
+}
+
 NoiseAssumption noise_model(const IdentificationData& data, int cv) {
   const double rows = data.known.col(cv).sum() / static_cast<double>(data.runs.size());
   return {{std::clamp(static_cast<int>(rows / kRowsPerNoiseLag), 1, kNoiseOrder), 0.0}, 1.0};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/identification/channel_hint.hpp"
+#include "core/identification/cross_noise.hpp"
 #include "core/identification/high_order.hpp"
 #include "core/identification/identification_data.hpp"
 #include "core/identification/prediction_error.hpp"
@@ -20,12 +21,15 @@ struct Material {
   std::vector<bool> test_signals;  ///< inputs that no controller moves
   double feedback_p_value = 1.0;
   bool open_loop = false;  ///< as far as anything shows
-  /// CVs x inputs: s.d. that a steady gain has at least (`CrossNoise`); empty: none.
-  Eigen::MatrixXd least_gain_sd = {};
+  CrossNoise cross = {};   ///< taken off the CVs; empty: nothing is
 };
 
 /// `open_loop`: the user says so; else the data do.
 [[nodiscard]] Material material(const Recording& recording, bool open_loop);
+
+/// With what was taken off a CV, samples, again.
+[[nodiscard]] Eigen::VectorXd as_measured(const Material& material, int cv,
+                                          const Eigen::Ref<const Eigen::VectorXd>& values);
 
 /// An autoregression of an order that the rows of a mean run bear.
 [[nodiscard]] NoiseAssumption noise_model(const IdentificationData& data, int cv);

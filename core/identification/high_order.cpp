@@ -19,6 +19,23 @@ int longest_lag(const IdentificationData& data) {
   return std::min(longest, static_cast<int>(mean_run / 2.0));
 }
 
+std::vector<Index> rows_with_past(const std::vector<Run>& runs, const VectorXd& known, int past,
+                                  Index skipped) {
+  std::vector<Index> rows;
+  for (const auto& [first, count] : runs) {
+    Index before = 0;
+    for (Index k = first; k < first + count; ++k) {
+      if (known(k) == 0.0) {
+        before = 0;
+        continue;
+      }
+      if (before >= past && k - first >= skipped) rows.push_back(k);
+      ++before;
+    }
+  }
+  return rows;
+}
+
 std::vector<LagBlock> lag_blocks(int longest) {
   std::vector<LagBlock> blocks;
   int first = 1;
@@ -49,27 +66,6 @@ MatrixXd lagged_sums(const Eigen::Ref<const VectorXd>& input, const std::vector<
   return sums;
 }
 
-namespace {
-
-/// Rows whose own past is known.
-std::vector<Index> usable_rows(const IdentificationData& data, int cv, int past, Index skipped) {
-  std::vector<Index> rows;
-  for (const auto& [first, count] : data.runs) {
-    Index known = 0;
-    for (Index k = first; k < first + count; ++k) {
-      if (data.known(k, cv) == 0.0) {
-        known = 0;
-        continue;
-      }
-      if (known >= past && k - first >= skipped) rows.push_back(k);
-      ++known;
-    }
-  }
-  return rows;
-}
-
-}  // namespace
-
 HighOrderModel high_order_model(const IdentificationData& data, int cv, int past) {
   HighOrderModel model;
   model.past = past;
@@ -79,7 +75,8 @@ HighOrderModel high_order_model(const IdentificationData& data, int cv, int past
   Index levels = 0, columns = 0;
   for (;;) {  // fewer lags until the rows suffice
     model.blocks = lag_blocks(longest);
-    rows = usable_rows(data, cv, model.past, std::max(model.past, longest / 4));
+    rows = rows_with_past(data.runs, data.known.col(cv), model.past,
+                          std::max(model.past, longest / 4));
     levels = static_cast<Index>(data.runs.size());
     columns = model.past + inputs * static_cast<Index>(model.blocks.size());
     if (static_cast<double>(rows.size()) >= kRowsPerColumn * static_cast<double>(columns + levels))

@@ -20,6 +20,12 @@ struct LagBlock {
 /// The longest lag that runs of such a length bear, samples.
 [[nodiscard]] int longest_lag(const IdentificationData& data);
 
+/// Rows of which `past` rows before them in their run and they themselves are known (`known`: 1 or
+/// 0), none of the first `skipped` of a run.
+[[nodiscard]] std::vector<Eigen::Index> rows_with_past(const std::vector<Run>& runs,
+                                                       const Eigen::VectorXd& known, int past,
+                                                       Eigen::Index skipped);
+
 /// Sums of an input over the blocks, samples x blocks; before a run its first value held.
 [[nodiscard]] Eigen::MatrixXd lagged_sums(const Eigen::Ref<const Eigen::VectorXd>& input,
                                           const std::vector<LagBlock>& blocks,

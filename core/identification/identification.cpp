@@ -55,7 +55,8 @@ CvOutcome identify_cv(const Material& material, const IdentificationSettings& se
   CvOutcome outcome;
   CvAnswer& answer = outcome.answer;
   answer.cv = cv;
-  answer.spread = spread_of(material.all.cvs.col(cv), material.all.known.col(cv));
+  answer.spread =
+      spread_of(as_measured(material, cv, material.all.cvs.col(cv)), material.all.known.col(cv));
   const std::vector<ChannelHint> hints = hints_of(settings, cv, material.input_spread);
   const HighOrderModel model = high_order_model(material.all, cv, kPastLags);
   Choice choice;
@@ -72,7 +73,8 @@ CvOutcome identify_cv(const Material& material, const IdentificationSettings& se
                             : *outcome.fit;
     answer.rows = whitened.rows;
     answer.innovation_sd = std::sqrt(whitened.variance);
-    answer.noise_sd = spread_of(whitened.residual, material.all.known.col(cv));
+    answer.noise_sd =
+        spread_of(as_measured(material, cv, whitened.residual), material.all.known.col(cv));
     answer.long_run_sd =
         answer.innovation_sd / std::max(kLeastReturn, 1.0 - whitened.noise.coefficients.sum());
     answer.whiteness_p_value = whiteness_p_value(whitened);
@@ -231,11 +233,11 @@ bool controlled(const Material& material) {
 Material by_itself(const Material& material) {
   Material result = material;
   if (!controlled(material)) return result;
-  const CrossNoise cross = cross_noise(material.all);
+  CrossNoise cross = cross_noise(material.all);
   result.all.cvs -= cross.brought;
   result.first.cvs -= cross.brought.topRows(material.first.samples());
   result.unseen.cvs -= cross.brought.bottomRows(material.unseen.samples());
-  result.least_gain_sd = cross.gain_sd;
+  result.cross = std::move(cross);
   return result;
 }
 

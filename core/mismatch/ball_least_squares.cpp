@@ -12,7 +12,8 @@ BallLeastSquares::BallLeastSquares(int size)
 
 // Newton on 1 / |x| - 1 / radius, which is concave in the multiplier: from 0 on it comes nearer
 // from one side (Reinsch 1971).
-double BallLeastSquares::distance_square(const Eigen::MatrixXd& m, const Eigen::VectorXd& c,
+double BallLeastSquares::distance_square(const Eigen::MatrixXd& m,
+                                         const Eigen::Ref<const Eigen::VectorXd>& c,
                                          double radius) {
   if (!(radius > 0.0)) return c.squaredNorm();
   svd_.compute(m);

@@ -10,8 +10,8 @@ namespace mpm {
 class BallLeastSquares {
  public:
   explicit BallLeastSquares(int size);
-  [[nodiscard]] double distance_square(const Eigen::MatrixXd& m, const Eigen::VectorXd& c,
-                                       double radius);
+  [[nodiscard]] double distance_square(const Eigen::MatrixXd& m,
+                                       const Eigen::Ref<const Eigen::VectorXd>& c, double radius);
 
  private:
   Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd_;

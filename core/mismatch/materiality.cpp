@@ -43,6 +43,7 @@ void Materiality::judge(double left, const Eigen::VectorXd& estimate,
                         const MaterialityLimits& limits, const EstimateNoise& noise,
                         ChannelEvidence& evidence) {
   evidence.usual = explained(left, estimate.size(), noise);
+  beside_allowed_.head(estimate.size()) = estimate;
   if (evidence.usual)
     judge_usual(limits, noise, evidence);
   else

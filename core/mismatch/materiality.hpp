@@ -26,8 +26,8 @@ class Materiality {
   /// The three errors of the last `fit`, and which way its dead time goes.
   [[nodiscard]] const ReducedErrors& fitted() const { return fitted_; }
   [[nodiscard]] int fitted_shift() const { return fitted_shift_; }
-  /// What the allowed errors nearest to it leave of the last estimate that was judged and is no
-  /// usual error.
+  /// What the allowed errors nearest to it leave of the last estimate that was judged; all of one
+  /// that usual errors explain.
   [[nodiscard]] const Eigen::VectorXd& beside_allowed() const { return beside_allowed_; }
   /// Whether no more than noise is left of a block of so many coefficients.
   [[nodiscard]] static bool explained(double left, Eigen::Index block, const EstimateNoise& noise);

@@ -76,13 +76,6 @@ inline constexpr std::int64_t kBetween = 50;
 inline constexpr double kPoleRatio = 3.0;
 }  // namespace confounding
 
-/// Of the time constant: a dead time that is off by less does not matter unless the user says so.
-/// Chosen: lags that were fitted to a plant of higher order have one that is off by as much, and
-/// the thesis's third scenario, of 8 to 12 %, is twice as much and more.
-namespace materiality {
-inline constexpr double kDeadTimeShare = 0.04;
-}  // namespace materiality
-
 /// What an alarm takes beside the p-values that the user may set.
 namespace alarms {
 /// That the error matters may be a little less certain than that there is one: to raise an alarm it

@@ -18,7 +18,7 @@ enum class ThresholdKind {
 struct MaterialitySettings {
   double gain = calibration::materiality::kGain;                   ///< relative to the model's
   double time_constant = calibration::materiality::kTimeConstant;  ///< relative to the model's
-  double dead_time_s = 0.0;                                        ///< 0 = half a sample time
+  double dead_time_s = 0.0;  ///< 0 = half a sample time, or a share of the time constant
   double step_response = calibration::materiality::kStepResponse;  ///< relative (`StepErrors`)
 };
 

@@ -61,6 +61,8 @@ struct Options {
   live::ServiceOptions service;
   std::string state_folder = default_state_folder();
   std::string token_file;
+  bool standby = false;
+  int standby_rank = 0;
   std::string log_level = "info";
   std::string http;  // address; empty: no page
   std::vector<std::string> http_names;
@@ -106,6 +108,14 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--token-file", options.token_file,
                  "take commands (mpm ack, shelve ..., and those of the operator page) from those "
                  "who know the first line of this file; without it nobody can give any");
+  app.add_flag("--standby", options.standby,
+               "share the units with other monitors that are started so: one of them speaks, and "
+               "should it fall silent another one goes on within a fifth of a second");
+  app.add_option("--standby-rank", options.standby_rank,
+                 "of several that start together the one of the greatest rank speaks")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000))
+      ->needs("--standby");
   app.add_flag("--dds-from-environment", options.service.use_environment,
                "take the DDS settings from CYCLONEDDS_URI instead of the unit files");
   app.add_option(
@@ -129,6 +139,7 @@ void declare(CLI::App& app, Options& options) {
       "  mpmd --config /etc/mpm/shell.yaml\n"
       "  mpmd --config /etc/mpm/units --journal /var/lib/mpm/journal --journal-keep 2GB\n"
       "  mpmd --config /etc/mpm/units --http 8080 --token-file /etc/mpm/token\n"
+      "  mpmd --config /etc/mpm/units --standby\n"
       "  mpmd --config /etc/mpm/units --check\n"
       "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or unit file");
 }
@@ -300,6 +311,7 @@ int run(Options& options) {
       options.service.token = host::CommandToken::read(options.token_file);
     if (options.service.alarm_journal.empty() && !options.state_folder.empty())
       options.service.alarm_journal = options.state_folder + "/alarms.sqlite";
+    if (options.standby) options.service.standby_rank = options.standby_rank;
     if (!options.state_folder.empty()) options.service.samples = options.state_folder + "/samples";
     return serve(options, std::move(loaded.units), stop, hang_up);
   } catch (const std::exception& error) {

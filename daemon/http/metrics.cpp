@@ -94,6 +94,9 @@ void add_state(const std::vector<Unit>& units, Families& out) {
          {"normal", "maintenance_required", "function_check", "out_of_specification", "failure"})
       out.add(unit.snapshot->health.state == state ? 1.0 : 0.0,
               {{"unit", unit.name}, {"state", state}});
+  out.begin("mpm_speaks", "1 while this monitor speaks for the unit, 0 while it stands by",
+            MetricType::Gauge);
+  for (const Unit& unit : units) out.add(unit.snapshot->speaks ? 1.0 : 0.0, {{"unit", unit.name}});
   out.begin("mpm_service_factor_ratio", "Share of time that the controller acts",
             MetricType::Gauge);
   for (const Unit& unit : units)

@@ -119,6 +119,7 @@ void UnitFeed::on_view(const live::UnitView& view) {
   copy->health = view.health;
   copy->troubles = view.troubles;
   copy->performance = view.performance;
+  copy->speaks = view.speaks;
   noted_.view = std::move(copy);
   offer();
 }

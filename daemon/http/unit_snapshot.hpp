@@ -21,6 +21,7 @@ struct UnitSnapshot {
   HealthRecord health;
   std::vector<bus::Trouble> troubles;
   PerformanceRecord performance;
+  bool speaks = true;  ///< no other monitor does for this unit
 };
 
 }  // namespace mpm::http

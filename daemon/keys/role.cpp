@@ -18,7 +18,7 @@ Permissions permissions_of(Role role) {
       return {{"mpm/*"},
               {idl::kChannelStatusTopic, idl::kAlarmTopic, idl::kAlarmEventTopic,
                idl::kControllerAlarmTopic, idl::kHealthTopic, idl::kPerformanceTopic,
-               idl::kCommandReplyTopic}};
+               idl::kCommandReplyTopic, idl::kRoleTopic}};
     case Role::kGateway:
       // mpm replay writes what it reads itself once: so it has the type of a topic.
       return {inputs_and({idl::kLayoutTopic, idl::kHealthTopic}), inputs_and({idl::kLayoutTopic})};

@@ -20,7 +20,7 @@ constexpr std::chrono::seconds kCommandPeriod{10};
 }  // namespace
 
 Domain::Domain(const idl::DomainOptions& options, const std::vector<std::string>& units,
-               CommandGate& gate)
+               CommandGate& gate, std::optional<int> rank)
     : participant_(options),
       discovery_(participant_),
       sampled_(units),
@@ -35,6 +35,7 @@ Domain::Domain(const idl::DomainOptions& options, const std::vector<std::string>
       outputs_(participant_),
       gate_(gate),
       command_limit_(kMostCommands, kCommandPeriod) {
+  if (rank) others_.emplace(participant_, &spoken_of_, *rank);
   around_.place = bus::place_text(options);
   around_.self = idl::name_of(discovery_.own());
 }
@@ -42,6 +43,9 @@ Domain::Domain(const idl::DomainOptions& options, const std::vector<std::string>
 UnitPipeline& Domain::add_unit(const config::UnitConfig& unit, SampleJournal* samples,
                                Clock::time_point now) {
   auto pipeline = std::make_unique<UnitPipeline>(unit, outputs_, samples, now);
+  if (others_)
+    pipeline->share(
+        std::make_unique<Role>(participant_, unit.unit, discovery_.own(), others_->rank), now);
   return *(units_[unit.unit] = std::move(pipeline));
 }
 
@@ -62,16 +66,55 @@ void Domain::poll(Clock::time_point now) {
       it->second->forget_layout(layout.kind);
   });
   samples_.take([&](const idl::SampleView& sample) {
+    if (others_)
+      settle_roles(Clock::now());  // judging all that has come takes longer than a role bears
     if (const auto it = units_.find(sample.unit); it != units_.end()) it->second->push(sample, now);
   });
   take_commands(now);
+}
+
+Domain::Others::Others(const idl::Participant& participant, idl::UnitChoice* units, int own_rank)
+    : rank(own_rank),
+      roles(participant, idl::kRoleTopic, idl::role_reader_qos(), kBatch, units),
+      alarms(participant, idl::kAlarmTopic, idl::others_alarm_qos(), kBatch, units),
+      events(participant, idl::kAlarmEventTopic, idl::others_alarm_event_qos(), kBatch, units),
+      controllers(participant, idl::kControllerAlarmTopic, idl::others_alarm_qos(), kBatch, units) {
+}
+
+void Domain::settle_roles(Clock::time_point now) {
+  if (!others_ || now < next_roles_) return;
+  next_roles_ = now + Role::kPeriod / 2;
+  for (const auto& [name, unit] : units_) unit->say_role(now);
+  others_->roles.take_with_info([&](const mpm_Role& role, const idl::SampleInfo& info) {
+    if (!info.valid || role.unit == nullptr) return;
+    if (const auto it = units_.find(std::string_view(role.unit)); it != units_.end())
+      it->second->hear_role(role, info.writer);
+  });
+  take_told();
+  for (const auto& [name, unit] : units_) unit->settle_role(now);
+}
+
+// All that there is: whoever takes over must not tell it again.
+void Domain::take_told() {
+  const auto take_all = [this]<class Record>(auto& reader, const Record*) {
+    const auto hear = [this](const auto& sample) {
+      if (sample.unit == nullptr) return;
+      if (const auto it = units_.find(std::string_view(sample.unit)); it != units_.end())
+        it->second->hear_told(idl::record_of<Record>(sample));
+    };
+    while (reader.take(hear) == kBatch) {
+    }
+  };
+  take_all(others_->events, static_cast<const AlarmRecord*>(nullptr));
+  take_all(others_->alarms, static_cast<const AlarmStateRecord*>(nullptr));
+  take_all(others_->controllers, static_cast<const ControllerAlarmRecord*>(nullptr));
 }
 
 void Domain::take_commands(Clock::time_point now) {
   commands_.take([&](const mpm_Command& sample) {
     if (sample.unit == nullptr) return;
     const auto it = units_.find(std::string_view(sample.unit));
-    if (it == units_.end()) return;
+    if (it == units_.end() || it->second->stands_by()) return;  // who speaks answers
     if (!command_limit_.admit(now)) {
       if (command_log_limit_.admit(now))
         spdlog::warn("more than {} commands in {} s: the rest is ignored", kMostCommands,

@@ -46,7 +46,9 @@ void recall(const std::vector<UnitPipeline*>& pipelines,
 
 MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
                                const ServiceOptions& options, DiagnosisWorker& worker)
-    : gate_(options.token), commands_(options.commands) {
+    : gate_(options.token),
+      longest_wait_(options.standby_rank ? Role::kPeriod : kLongestWait),
+      commands_(options.commands) {
   if (!options.alarm_journal.empty()) alarm_journal_.emplace(options.alarm_journal);
   if (!options.sample_journal.empty()) samples_.emplace(options.sample_journal);
   idl::DomainOptions any;
@@ -68,8 +70,10 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
     const std::string xml = idl::domain_xml(settings);
     Domain*& domain = domain_of[xml];
     if (domain == nullptr) {
-      domain =
-          domains_.emplace_back(std::make_unique<Domain>(settings, units_of[xml], gate_)).get();
+      domain = domains_
+                   .emplace_back(std::make_unique<Domain>(settings, units_of[xml], gate_,
+                                                          options.standby_rank))
+                   .get();
       domain->attach_to(wait_set_);
     }
     UnitPipeline& pipeline = domain->add_unit(unit, samples_ ? &*samples_ : nullptr, now);
@@ -101,9 +105,10 @@ void MonitorService::run(const std::function<bool()>& stop) {
   notifier_.ready();
   Clock::time_point next_status{};
   while (!stop()) {
-    const bool readable = wait_set_.wait(kLongestWait);
+    const bool readable = wait_set_.wait(longest_wait_);
     const Clock::time_point now = Clock::now();
     for (const auto& domain : domains_) {
+      domain->settle_roles(now);
       if (readable) domain->poll(now);
       domain->tick(now);
     }
@@ -134,11 +139,13 @@ CommandReply MonitorService::carry_out(const AlarmCommand& command) {
 }
 
 std::string MonitorService::status() const {
-  std::uint64_t units = 0, matching = 0, mismatching = 0, undetermined = 0, alarms = 0;
+  std::uint64_t units = 0, standing_by = 0, matching = 0, mismatching = 0, undetermined = 0,
+                alarms = 0;
   for (const auto& domain : domains_) {
     for (const auto& [name, unit] : domain->units()) {
       const HealthRecord& health = unit->health();
       ++units;
+      if (unit->stands_by()) ++standing_by;
       matching += health.matching;
       mismatching += health.mismatching;
       undetermined += health.undetermined;
@@ -149,6 +156,7 @@ std::string MonitorService::status() const {
                      fmt::format("; channels: {} match, {} mismatch, {} undetermined; ", matching,
                                  mismatching, undetermined) +
                      counted(alarms, "alarm");
+  if (standing_by > 0) text += fmt::format("; stands by for {} of them", standing_by);
   std::size_t troubled = 0;
   for (const auto& domain : domains_)
     for (const auto& [name, unit] : domain->units())

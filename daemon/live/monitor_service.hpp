@@ -30,6 +30,7 @@ struct ServiceOptions {
   /// Who looks on at a unit, null: nobody; may be empty. They must outlive the service.
   std::function<UnitObserver*(const config::UnitConfig&)> observer;
   CommandQueue* commands = nullptr;  ///< to be answered by the loop; may be null
+  std::optional<int> standby_rank;   ///< as Role's; none: all units are this process's alone
 };
 
 /// All units of a daemon and the loop that drives them. Everything but the diagnoses happens in the
@@ -59,6 +60,7 @@ class MonitorService {
   std::optional<SampleJournal> samples_;
   std::vector<std::unique_ptr<Domain>> domains_;  // one per distinct DDS setting
   idl::WaitSet wait_set_;
+  std::chrono::milliseconds longest_wait_;
   CommandQueue* commands_;
   host::Notifier notifier_;
 };

@@ -32,14 +32,16 @@ bool worth_keeping(const AlarmDesk::Occurrence& occurrence, const AlarmStanding&
 
 }  // namespace
 
-UnitAlarms::UnitAlarms(const config::UnitConfig& unit, const idl::OutputWriters& outputs,
+UnitAlarms::UnitAlarms(const config::UnitConfig& unit, const UnitOutputs& outputs,
                        const std::vector<ChannelRecord>& channels)
     : unit_(unit.unit),
       settings_(unit.alarm_handling.controller),
       outputs_(outputs),
       desk_(unit.alarm_handling, unit.sample_time_s, names_of(channels)),
       observed_(channels.size()),
-      fresh_(channels.size() + 1, false) {
+      fresh_(channels.size() + 1, false),
+      held_(channels.size(), false),
+      said_(channels.size(), false) {
   for (const ChannelRecord& channel : channels) {
     AlarmStateRecord record;
     record.unit = channel.unit;
@@ -57,7 +59,10 @@ UnitAlarms::UnitAlarms(const config::UnitConfig& unit, const idl::OutputWriters&
   for (int i = AlarmDesk::kController; i < desk_.channels(); ++i) refresh(i);
 }
 
-bool UnitAlarms::announce() { return publish_again(true); }
+bool UnitAlarms::announce() {
+  for (std::size_t i = 0; i < alarms_.size(); ++i) said_[i] = alarms_[i].to == AlarmChange::kActive;
+  return publish_again(true);
+}
 
 void UnitAlarms::keep(AlarmJournal& journal, std::int64_t wall_ns) {
   journal_ = &journal;
@@ -88,7 +93,7 @@ void UnitAlarms::note(const std::vector<ChannelRecord>& channels,
     source_time_ns_ = channels.front().source_time_ns;
   }
   for (std::size_t i = 0; i < changes.size(); ++i)
-    if (AlarmStateRecord* alarm = find(changes[i].mv, changes[i].cv)) {
+    if (AlarmStateRecord* alarm = find(changes[i].mv, changes[i].cv); alarm && !known(changes[i])) {
       std::string text = changes[i].to == AlarmChange::kActive ? texts[i] : alarm->view.message;
       *alarm = AlarmStateRecord(changes[i]);
       alarm->view.message = std::move(text);
@@ -107,7 +112,7 @@ void UnitAlarms::recall(const std::vector<ChannelRecord>& channels,
 void UnitAlarms::archive(Archive& a) {
   // not archived: unit_, settings_, outputs_, journal_ (construction)
   // not archived: desk_, controller_ (`keep` has them from the journal)
-  // not archived: observed_, fresh_ (each frame says them anew)
+  // not archived: observed_, fresh_, held_, said_ (each frame and `announce` say them anew)
   a(alarms_, interval_);
   a.time(source_time_ns_);
   recalled_ = recalled_ || a.reads();
@@ -116,23 +121,121 @@ void UnitAlarms::archive(Archive& a) {
 bool UnitAlarms::push(const std::vector<ChannelRecord>& channels,
                       const std::vector<AlarmRecord>& changes,
                       const std::vector<std::string>& texts, std::int64_t wall_ns) {
-  for (std::size_t i = 0; i < channels.size(); ++i)
-    observed_[i] = {channels[i].alarm == AlarmState::kActive, meaningful(channels[i].reason)};
+  bool written = true;
   note(channels, changes, texts);
+  for (const AlarmRecord& change : changes)
+    if (!known(change)) written = say(change) && written;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const bool own = channels[i].alarm == AlarmState::kActive;
+    if (held_[i] && (own || channels[i].verdict != Verdict::kUndetermined)) {
+      held_[i] = false;
+      if (!own) written = clear_held(i) && written;
+    }
+    observed_[i] = {own || held_[i], meaningful(channels[i].reason)};
+  }
   desk_.observe(observed_, {source_time_ns_, wall_ns});
-  return settle(wall_ns, nullptr);
+  return settle(wall_ns, nullptr) && written;
 }
 
-bool UnitAlarms::diagnosed(const AlarmRecord& diagnosis, std::int64_t wall_ns) {
+// Another monitor has told it.
+bool UnitAlarms::known(const AlarmRecord& change) const {
+  const int alarm = desk_.find(change.mv, change.cv);
+  return alarm >= 0 && held_[static_cast<std::size_t>(alarm)] && change.to == AlarmChange::kActive;
+}
+
+// Now that this monitor knows the channel itself.
+bool UnitAlarms::clear_held(std::size_t i) {
+  alarms_[i].to = AlarmChange::kCleared;
+  alarms_[i].interval = interval_;
+  alarms_[i].source_time_ns = source_time_ns_;
+  fresh_[i] = true;
+  return say(alarms_[i]);
+}
+
+bool UnitAlarms::say(const AlarmRecord& change) {
+  if (const int alarm = desk_.find(change.mv, change.cv); alarm >= 0 && !outputs_.silent())
+    said_[static_cast<std::size_t>(alarm)] = change.to != AlarmChange::kCleared;
+  return outputs_.write(change);
+}
+
+bool UnitAlarms::take_over(const ToldAlarms& told, const std::vector<ChannelRecord>& channels,
+                           std::int64_t wall_ns) {
+  bool written = true;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    AlarmStateRecord& alarm = alarms_[i];
+    const bool own = channels[i].alarm == AlarmState::kActive,
+               stood = told.active(alarm.mv, alarm.cv).value_or(said_[i]);
+    held_[i] = stood && !own && channels[i].verdict == Verdict::kUndetermined;
+    observed_[i] = {own || held_[i], meaningful(channels[i].reason)};
+    const AlarmStateRecord* state = told.state(alarm.mv, alarm.cv);
+    if (state != nullptr) {
+      const bool active = state->to == AlarmChange::kActive;
+      const AlarmStanding standing = standing_of(state->view, active);
+      note_acts(static_cast<int>(i), standing, wall_ns);
+      (void)desk_.resume(alarm.mv, alarm.cv, standing);
+      if (active || !observed_[i].active) alarm = *state;
+    }
+    const auto event = told.events.find({alarm.mv, alarm.cv});
+    if (stood && alarm.to != AlarmChange::kActive && event != told.events.end())
+      alarm = AlarmStateRecord(event->second);  // it fell silent between the two topics
+    if (stood && !observed_[i].active)
+      written = clear_held(i) && written;
+    else if (!stood && observed_[i].active)
+      written = say(alarm) && written;
+    said_[i] = observed_[i].active;
+  }
+  if (told.controller) {
+    const AlarmStanding standing =
+        standing_of(told.controller->view, told.controller->state == AlarmState::kActive);
+    note_acts(AlarmDesk::kController, standing, wall_ns);
+    (void)desk_.resume("", "", standing);
+    controller_.state = told.controller->state;
+    controller_.interval = told.controller->interval;
+    controller_.source_time_ns = told.controller->source_time_ns;
+    controller_.view.message = told.controller->view.message;
+  }
+  desk_.observe(observed_, {source_time_ns_, wall_ns});
+  fresh_.assign(fresh_.size(), true);
+  return settle(wall_ns, nullptr) && written;
+}
+
+// What people did where another monitor spoke, for this one's journal.
+void UnitAlarms::note_acts(int alarm, const AlarmStanding& told, std::int64_t wall_ns) {
+  if (journal_ == nullptr) return;
+  const AlarmStanding& own = desk_.standing(alarm);
+  const auto note = [&](bool changed, AlarmOccurrence what) {
+    if (!changed) return;
+    history::AlarmEntry act = entry(alarm, std::string(to_string(what)), wall_ns);
+    act.standing = told;
+    act.user = told.user;
+    act.comment = told.comment;
+    journal_->push(std::move(act));
+  };
+  note(told.ack_time_ns > own.ack_time_ns, AlarmOccurrence::kAcknowledged);
+  note(told.shelving != own.shelving, told.shelving == Shelving::kUnshelved
+                                          ? AlarmOccurrence::kUnshelved
+                                          : AlarmOccurrence::kShelved);
+  note(told.suppressed != own.suppressed,
+       told.suppressed ? AlarmOccurrence::kSuppressed : AlarmOccurrence::kUnsuppressed);
+  note(told.out_of_service != own.out_of_service,
+       told.out_of_service ? AlarmOccurrence::kOutOfService : AlarmOccurrence::kInService);
+}
+
+bool UnitAlarms::diagnosed(const AlarmRecord& diagnosis, std::int64_t interval,
+                           std::int64_t source_time_ns, std::int64_t wall_ns) {
   AlarmStateRecord* alarm = find(diagnosis.mv, diagnosis.cv);
   if (alarm == nullptr) return true;
+  AlarmRecord event = diagnosis;
+  event.interval = interval;
+  event.source_time_ns = source_time_ns;
   const bool news = alarm->view.message != diagnosis.named.text;
   *alarm = AlarmStateRecord(diagnosis);
   alarm->view.message = diagnosis.named.text;
   const int index = static_cast<int>(alarm - alarms_.data());
   refresh(index);
   if (journal_ != nullptr && news) journal_->push(entry(index, "diagnosed", wall_ns));
-  return write(index);
+  const bool written = write(index);
+  return outputs_.write(event) && written;
 }
 
 bool UnitAlarms::tick(std::int64_t wall_ns) {

@@ -10,7 +10,8 @@
 #include "core/record/channel_record.hpp"
 #include "core/record/controller_alarm_record.hpp"
 #include "daemon/live/alarm_journal.hpp"
-#include "idl/output_writers.hpp"
+#include "daemon/live/told_alarms.hpp"
+#include "daemon/live/unit_outputs.hpp"
 
 namespace mpm {
 class Archive;
@@ -18,13 +19,13 @@ class Archive;
 
 namespace mpm::live {
 
-/// The alarms of one unit towards people: what stands, on mpm/alarm and mpm/controller_alarm; what
-/// becomes of it, in the journal; what people do about it.
+/// The alarms of one unit towards people: what changes, on mpm/alarm_event; what stands, on
+/// mpm/alarm and mpm/controller_alarm; what becomes of it, in the journal; what people do about it.
 class UnitAlarms {
  public:
   /// `channels`: of the unit, of which nothing was said yet. Nothing is published before
   /// `announce`.
-  UnitAlarms(const config::UnitConfig& unit, const idl::OutputWriters& outputs,
+  UnitAlarms(const config::UnitConfig& unit, const UnitOutputs& outputs,
              const std::vector<ChannelRecord>& channels);
 
   /// As `push`, of a frame that was judged before a restart: nobody is told, and how it stands is
@@ -44,8 +45,16 @@ class UnitAlarms {
   /// wrong with the channel of each in words. False where something could not be published.
   bool push(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& changes,
             const std::vector<std::string>& texts, std::int64_t wall_ns);
-  /// A cause was named; the alarm is as old as it was.
-  bool diagnosed(const AlarmRecord& diagnosis, std::int64_t wall_ns);
+  /// From now on this process speaks for the unit, of whose alarms readers know `told` from
+  /// another. What they know stands as they know it, with what people did about it; of what is
+  /// otherwise they are told. An alarm that stands for them and of whose channel nothing is known
+  /// here yet goes on until something is. Where `told` is silent, what this process, or one before
+  /// it, said last counts. `channels`: as in `push`. False as in `push`.
+  bool take_over(const ToldAlarms& told, const std::vector<ChannelRecord>& channels,
+                 std::int64_t wall_ns);
+  /// A cause was named, at that interval; the alarm is as old as it was.
+  bool diagnosed(const AlarmRecord& diagnosis, std::int64_t interval, std::int64_t source_time_ns,
+                 std::int64_t wall_ns);
   /// What time alone brings. `wall_ns`: UTC.
   bool tick(std::int64_t wall_ns);
   CommandReply apply(const AlarmCommand& command, std::int64_t wall_ns);
@@ -57,6 +66,9 @@ class UnitAlarms {
   /// Anew, for readers that were told otherwise: all, or those that stand.
   bool publish_again(bool all);
 
+  [[nodiscard]] bool has(const std::string& mv, const std::string& cv) const {
+    return desk_.find(mv, cv) >= 0;
+  }
   [[nodiscard]] const std::vector<AlarmStateRecord>& channels() const { return alarms_; }
   [[nodiscard]] const ControllerAlarmRecord& controller() const { return controller_; }
   /// Why the journal cannot be written; empty: it can, or there is none.
@@ -69,6 +81,10 @@ class UnitAlarms {
   void note(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& changes,
             const std::vector<std::string>& texts);
   bool settle(std::int64_t wall_ns, const AlarmCommand* command);
+  void note_acts(int alarm, const AlarmStanding& told, std::int64_t wall_ns);
+  [[nodiscard]] bool known(const AlarmRecord& change) const;
+  [[nodiscard]] bool clear_held(std::size_t i);
+  bool say(const AlarmRecord& change);
   void refresh(int alarm);
   [[nodiscard]] std::string controller_text() const;
   [[nodiscard]] history::AlarmEntry entry(int alarm, std::string what, std::int64_t wall_ns) const;
@@ -76,12 +92,14 @@ class UnitAlarms {
 
   const std::string unit_;
   const ControllerAlarmSettings settings_;
-  const idl::OutputWriters& outputs_;
+  const UnitOutputs& outputs_;
   AlarmDesk desk_;
   std::vector<AlarmStateRecord> alarms_;  // as last written
   ControllerAlarmRecord controller_;      // likewise
   std::vector<AlarmDesk::Observation> observed_;
   std::vector<bool> fresh_;  // to be written; the controller's last
+  std::vector<bool> held_;   // stands because another monitor said so
+  std::vector<bool> said_;   // stands for who reads, as this process last said
   std::int64_t interval_ = 0, source_time_ns_ = 0;
   bool recalled_ = false;
   AlarmJournal* journal_ = nullptr;

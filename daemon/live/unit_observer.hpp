@@ -24,6 +24,7 @@ struct UnitView {
   const HealthRecord& health;
   const std::vector<bus::Trouble>& troubles;
   const PerformanceRecord& performance;  ///< over what there is of the window
+  bool speaks = true;                    ///< no other monitor does
 };
 
 /// Looks on at one unit, from within the event loop: whatever it does, it does between two samples,

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "config/suggest.hpp"
 #include "core/archive/archive.hpp"
@@ -33,6 +34,8 @@ constexpr std::chrono::seconds kStandstill{5};
 constexpr std::chrono::seconds kTold{60};
 // Another monitor says something each second.
 constexpr std::chrono::seconds kOtherMonitorGone{10};
+// A monitor that starts is found within a second or so.
+constexpr std::chrono::seconds kPartnerKnown{10};
 constexpr std::size_t kMostInDetail = 3;
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 // Of those without the token, to be kept: enough to see who tries, too few to fill a journal.
@@ -77,7 +80,7 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       outputs_(outputs),
       samples_(samples),
       monitor_(config),
-      alarms_(config, outputs, monitor_.channels()),
+      alarms_(config, outputs_, monitor_.channels()),
       performance_(report::performance_setup(config),
                    config.monitor.performance_window_s / config.sample_time_s),
       calculator_(config),
@@ -212,7 +215,6 @@ void UnitPipeline::on_frame(const Frame& frame) {
   const std::vector<std::string> texts = alarm_texts();
   for (std::size_t i = 0; i < texts.size(); ++i) {
     const AlarmRecord& alarm = monitor_.alarms()[i];
-    written = outputs_.write(alarm) && written;
     spdlog::log(alarm.to == AlarmChange::kActive ? spdlog::level::warn : spdlog::level::info,
                 "{}: {} -> {}: alarm {} at interval {} ({}, p {:.1e})", alarm.unit, alarm.mv,
                 alarm.cv, to_string(alarm.to), alarm.interval, texts[i], alarm.p_value);
@@ -264,7 +266,7 @@ void UnitPipeline::archive(Archive& a) {
   // not archived: now_, last_frame_, next_health_, stood_still_, stood_still_for_, incomplete_at_,
   // refused_limit_, beyond_limit_, output_limit_, restart_limit_, refusal_limit_ (the clock)
   // not archived: inputs_, trouble_log_, troubles_, trouble_text_, other_monitors_,
-  // other_monitor_spoke_, keys_until_ (what is around this process)
+  // other_monitor_spoke_, keys_until_, role_, role_begins_, told_ (what is around this process)
   a(aligner_, monitor_, performance_, alarms_);
   if (diagnosis_) a(*diagnosis_);
 }
@@ -383,10 +385,9 @@ void UnitPipeline::publish_diagnosis() {
                outcome->folder.empty() ? "" : " Report in " + outcome->folder + ".");
   bool written = true;
   for (AlarmRecord& alarm : diagnosis_->diagnosed(*outcome)) {
-    written = alarms_.diagnosed(alarm, wall_ns()) && written;  // as old as it was
+    written = alarms_.diagnosed(alarm, outcome->interval, outcome->time_ns, wall_ns()) && written;
     alarm.interval = outcome->interval;
     alarm.source_time_ns = outcome->time_ns;
-    written = outputs_.write(alarm) && written;
     if (observer_ != nullptr) observer_->on_alarm(alarm, alarm.named.text);
   }
   if (!written && output_limit_.admit(now_))
@@ -418,6 +419,9 @@ void UnitPipeline::refuse(const AlarmCommand& command, const std::string& action
 }
 
 CommandReply UnitPipeline::obey(const AlarmCommand& command) {
+  if (stands_by())
+    return {false, "this monitor stands by: give the command to " +
+                       (role_->speaker().empty() ? "the one that speaks" : role_->speaker())};
   CommandReply reply = alarms_.apply(command, wall_ns());
   spdlog::info("{}: {} {}: {} ({} on {})", config_.unit,
                command.cv.empty() ? "the controller's alarm" : command.mv + " -> " + command.cv,
@@ -431,8 +435,51 @@ std::int64_t UnitPipeline::wall_ns() {
       .count();
 }
 
+void UnitPipeline::share(std::unique_ptr<Role> role, Clock::time_point now) {
+  role_ = std::move(role);
+  role_begins_ = now;
+  outputs_.be_silent(true);
+}
+
+void UnitPipeline::say_role(Clock::time_point now) { role_->say(now, wall_ns()); }
+
+void UnitPipeline::settle_role(Clock::time_point now) {
+  if (!role_->settle(now, wall_ns())) return;
+  outputs_.be_silent(!role_->active());
+  other_monitors_.clear();
+  next_health_ = now;
+  if (!role_->active()) {
+    spdlog::warn("{}: stands by; {} speaks", config_.unit, role_->speaker());
+    return;
+  }
+  role_begins_ = now;
+  spdlog::info("{}: speaks{}", config_.unit,
+               role_->speaker().empty() ? "" : " in place of " + role_->speaker());
+  bool written = alarms_.take_over(std::exchange(told_, {}), monitor_.channels(), wall_ns());
+  if (aligner_.counters().frames > 0) {
+    for (const ChannelRecord& channel : monitor_.channels())
+      written = outputs_.write(channel) && written;
+    written = outputs_.write(performance()) && written;
+  }
+  if (!written) spdlog::warn("{}: not all could be said anew", config_.unit);
+}
+
+// Whoever writes what is no channel of this unit does not fill the memory.
+void UnitPipeline::hear_told(AlarmRecord event) {
+  if (!alarms_.has(event.mv, event.cv)) return;
+  ToldAlarms::Channel channel{event.mv, event.cv};
+  told_.events.insert_or_assign(std::move(channel), std::move(event));
+}
+
+void UnitPipeline::hear_told(AlarmStateRecord state) {
+  if (!alarms_.has(state.mv, state.cv)) return;
+  ToldAlarms::Channel channel{state.mv, state.cv};
+  told_.states.insert_or_assign(std::move(channel), std::move(state));
+}
+
 void UnitPipeline::hear_other_monitor(std::uint64_t writer, std::string name,
                                       Clock::time_point now) {
+  if (stands_by()) return;
   other_monitors_[writer] = {std::move(name), now};
   for (auto other = other_monitors_.begin(); other != other_monitors_.end();)
     other = now - other->second.heard < kOtherMonitorGone ? std::next(other)
@@ -460,7 +507,7 @@ void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
 
 void UnitPipeline::show() {
   observer_->on_view({monitor_.channels(), alarms_.channels(), alarms_.controller(), health_,
-                      troubles_, performance()});
+                      troubles_, performance(), !stands_by()});
 }
 
 void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around) {
@@ -532,6 +579,8 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   }
   if (other_monitor_speaks())
     add("other monitor", Severity::kMaintenanceRequired, monitors_text(around.self));
+  if (role_ && role_->active() && now_ - role_begins_ > kPartnerKnown && !partner(around))
+    add("no standby", Severity::kMaintenanceRequired, "no other monitor stands by for this unit");
   if (keys_until_ &&
       wall_ns() / kSecond > *keys_until_ - std::chrono::seconds(keys::kNotice).count())
     add("keys", Severity::kMaintenanceRequired,
@@ -557,6 +606,12 @@ std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around
   return found;
 }
 
+bool UnitPipeline::partner(const bus::Surroundings& around) const {
+  return std::any_of(around.endpoints.begin(), around.endpoints.end(), [this](const auto& other) {
+    return other.writer && other.topic == idl::kRoleTopic && other.user_data == config_.unit;
+  });
+}
+
 // The worst of what NE 107 has a word for.
 void UnitPipeline::judge_health(const std::vector<bus::Trouble>& troubles) {
   const auto set = [this](const char* state, std::string detail) {
@@ -579,6 +634,10 @@ void UnitPipeline::judge_health(const std::vector<bus::Trouble>& troubles) {
     set("function_check", bus::kNothingDetermined);
   else
     set("normal", "");
+  if (stands_by())
+    health_.detail = "stands by" +
+                     (role_->speaker().empty() ? "" : "; " + role_->speaker() + " speaks") +
+                     (health_.detail.empty() ? "" : "; " + health_.detail);
 }
 
 }  // namespace mpm::live

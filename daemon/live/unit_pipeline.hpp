@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <ctime>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,15 +19,17 @@
 #include "daemon/history/journal.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/live_diagnosis.hpp"
+#include "daemon/live/role.hpp"
 #include "daemon/live/sample_journal.hpp"
 #include "daemon/live/sample_log.hpp"
 #include "daemon/live/state_files.hpp"
+#include "daemon/live/told_alarms.hpp"
 #include "daemon/live/trouble_log.hpp"
 #include "daemon/live/unit_alarms.hpp"
 #include "daemon/live/unit_observer.hpp"
+#include "daemon/live/unit_outputs.hpp"
 #include "daemon/live/unit_samples.hpp"
 #include "daemon/report/unit_monitor.hpp"
-#include "idl/output_writers.hpp"
 #include "idl/sample_view.hpp"
 
 namespace mpm::live {
@@ -54,6 +58,20 @@ class UnitPipeline {
   }
   /// Tells readers how the alarms stand, at the start.
   void announce();
+  /// From now on it is one of several, and says nothing until it is the one that speaks. Before
+  /// `announce`.
+  void share(std::unique_ptr<Role> role, Clock::time_point now);
+  /// Whether another monitor speaks for this unit.
+  [[nodiscard]] bool stands_by() const { return outputs_.silent(); }
+  /// Those with a role only. Often, and before anything of the unit's is taken: says that it is
+  /// there, then, after what others say has come in by `hear_role`, speaks or stands by.
+  void say_role(Clock::time_point now);
+  void hear_role(const mpm_Role& sample, std::uint64_t writer) { role_->hear(sample, writer); }
+  void settle_role(Clock::time_point now);
+  /// Another monitor has told this of the unit's alarms.
+  void hear_told(AlarmRecord event);
+  void hear_told(AlarmStateRecord state);
+  void hear_told(ControllerAlarmRecord controller) { told_.controller = std::move(controller); }
   /// A person's command to this unit: `admitted`, or why not.
   CommandReply obey(const CommandRecord& record,
                     const std::variant<AlarmCommand, std::string>& admitted);
@@ -89,7 +107,7 @@ class UnitPipeline {
   void tick(Clock::time_point now, std::uint64_t unknown_unit, const bus::Surroundings& around);
   /// True while the list of endpoints in the surroundings is of use.
   [[nodiscard]] bool wants_endpoints(Clock::time_point now) const {
-    return inputs_.wants_endpoints(now);
+    return inputs_.wants_endpoints(now) || (role_ && role_->active());
   }
 
   [[nodiscard]] const HealthRecord& health() const { return health_; }
@@ -106,6 +124,7 @@ class UnitPipeline {
   void go_on(Clock::time_point now);
   void publish_alarms_again();
   [[nodiscard]] bool other_monitor_speaks() const;
+  [[nodiscard]] bool partner(const bus::Surroundings& around) const;
   [[nodiscard]] std::string monitors_text(const std::string& self) const;
   /// Over what there is of the window.
   [[nodiscard]] PerformanceRecord performance();
@@ -119,7 +138,7 @@ class UnitPipeline {
   void report_refused(const idl::SampleView& sample);
 
   config::UnitConfig config_;
-  const idl::OutputWriters& outputs_;
+  UnitOutputs outputs_;
   SampleJournal* samples_;
   std::optional<history::Journal> journal_;
   std::optional<SampleLog> log_;
@@ -152,6 +171,9 @@ class UnitPipeline {
   std::map<std::uint64_t, OtherMonitor> other_monitors_;  // by writer
   bool other_monitor_spoke_ = false;                      // at the last health
   HealthRecord health_;
+  std::unique_ptr<Role> role_;  // null: nobody shares the unit
+  Clock::time_point role_begins_;
+  ToldAlarms told_;
   std::optional<std::time_t> keys_until_;
   std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
   host::RateLimiter refused_limit_, beyond_limit_, output_limit_, restart_limit_;

@@ -21,7 +21,7 @@ struct ChannelFile {
                                        const std::string& cv);
 
 /// Of a mismatch: "gain +41 % (31 to 51; +0.0404 t/h per %), time constant ok, dead time not
-/// known". What the data do not resolve is `--`; `ok` is what its 95 % interval holds to be as
+/// known", which is what the data do not resolve; `ok` is what its 95 % interval holds to be as
 /// modelled, and nothing much else.
 [[nodiscard]] std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file);
 

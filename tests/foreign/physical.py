@@ -233,9 +233,10 @@ def score_case(arguments):
         report = json.loads((folder / "out" / "report.json").read_text())
     findings = [(f["cause"], f["cv"], f["mv"], f["confidence"], this.judge(f))
                 for f in report["findings"]]
-    return {"plant": name, "model": model, "case": case, "seed": seed, "alarms": alarms, "strong": this.is_strong(),
-            "error": float(this.errors.max()), "verdict": report["verdict"],
-            "reason": report.get("reason", ""), "findings": findings, "seconds": seconds}
+    return {"plant": name, "model": model, "case": case, "seed": seed, "alarms": alarms,
+            "strong": this.is_strong(), "error": float(this.errors.max()),
+            "verdict": report["verdict"], "reason": report.get("reason", ""),
+            "findings": findings, "seconds": seconds}
 
 
 def describe(result):
@@ -254,7 +255,8 @@ def row(name, results):
     strong = [r for r in results if r["strong"]]
     silent = [r for r in strong if r["verdict"] == "match"]
     alarmed = [r for r in sound if r["alarms"]]
-    return (f"| {name} | {share(len(alarmed), len(sound))} | {share(count(sound, 'wrong'), len(sound))} | "
+    return (f"| {name} | {share(len(alarmed), len(sound))} | "
+            f"{share(count(sound, 'wrong'), len(sound))} | "
             f"{share(count(strong, 'right'), len(strong))} | {len(silent)} | "
             f"{share(count(results, 'wrong'), len(results))} |")
 
@@ -275,7 +277,8 @@ def main():
     options = parser.parse_args()
     plants = [make() for make in PHYSICAL if make.__name__ in options.plant]
     wanted = [(plant.name, case, seed, model, options.mpm, options.keep) for plant in plants
-              for model in options.model for seed in seed_list(options.seeds) for case in cases_of(plant)
+              for model in options.model for seed in seed_list(options.seeds)
+              for case in cases_of(plant)
               if not options.case or case in options.case]
     results = []
     with multiprocessing.Pool(options.jobs) as pool:

@@ -1,13 +1,14 @@
 """Plants from first principles, nonlinear and of another kind than all fits here: what a linear
 controller meets. Each: states' derivatives by `slope`, CVs by `measured`; time in s.
 
-Sources: four tanks, Johansson (2000), IEEE TCST 8(3), minimum-phase setting; stirred reactor with one
-exothermic reaction, Seborg, Edgar and Mellichamp, Process Dynamics and Control, example 2.5, cooled
-below its ignition; evaporator, Newell and Lee (1989), Applied Process Control, its separator's level
-held by the product flow, or (separator) left to the controller, integrating; heater: a stirred tank heated by steam, a sensor's lag, two more tanks
-that its outflow passes (assumed numbers); column: sixteen stages of a binary mixture with constant
-molar flows and relative volatility, levels held by the products, after Skogestad (1997), Trans.
-IChemE 75A (assumed numbers; 98 and 2 %, so that reflux and boil-up nearly undo one another).
+Sources: four tanks, Johansson (2000), IEEE TCST 8(3), minimum-phase setting; stirred reactor with
+one exothermic reaction, Seborg, Edgar and Mellichamp, Process Dynamics and Control, example 2.5,
+cooled below its ignition; evaporator, Newell and Lee (1989), Applied Process Control, its
+separator's level held by the product flow, or (separator) left to the controller, integrating;
+heater: a stirred tank heated by steam, a sensor's lag, two more tanks that its outflow passes
+(assumed numbers); column: sixteen stages of a binary mixture with constant molar flows and relative
+volatility, levels held by the products, after Skogestad (1997), Trans. IChemE 75A (assumed numbers;
+98 and 2 %, so that reflux and boil-up nearly undo one another).
 """
 import dataclasses
 import typing

@@ -201,14 +201,16 @@ Account account_for(const ModelSpec& model, int model_inputs, const Recording& f
   };
   Account account = take(settings);
   const std::optional<Named>& suspect = account.found.suspect;
-  const auto alone = [&](const Effect& effect) {
+  const auto shown_by_free_run = [&](const Effect& effect) {
     return moved_from_outside(effect, model, judges.outside_shares) &&
            !witness.given.undone(channels_of(effect, model, model_inputs));
   };
-  if (!suspect || suspect->evidence < kStrongEvidence || !alone(suspect->effect)) return account;
+  if (!suspect || suspect->evidence < kStrongEvidence || !shown_by_free_run(suspect->effect))
+    return account;
   SearchSettings open = settings;
   open.may_name = [&](const Effect& effect) {
-    return settings.may_name(effect) || (cause_of(effect).acts_through_channels() && alone(effect));
+    return settings.may_name(effect) ||
+           (cause_of(effect).acts_through_channels() && shown_by_free_run(effect));
   };
   Account other = take(open);
   return overwhelms(other, settings) ? std::move(other) : std::move(account);

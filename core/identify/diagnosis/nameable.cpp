@@ -40,14 +40,15 @@ double outside_needed(const Effect& effect) {
   return cause.acts_through_channels() && !by_itself ? kHardlyOutside : 0.0;
 }
 
-}  // namespace
-
+/// Whether it is all through an error of gains, time constants or dead times, which the calibrated
+/// test sees where it can be seen at all; a valve frees gain and lags beside its own.
 bool is_linear_error(const Effect& effect) {
-  if (cause_of(effect).is_input_block())
-    return false;  // beside a valve gain and lags are freed too
-  return effect.find(kGainRatio) != nullptr || effect.find(kTimeConstantRatio) != nullptr ||
-         effect.find(kDeadTimeError) != nullptr;
+  return !cause_of(effect).is_input_block() &&
+         (effect.find(kGainRatio) != nullptr || effect.find(kTimeConstantRatio) != nullptr ||
+          effect.find(kDeadTimeError) != nullptr);
 }
+
+}  // namespace
 
 std::vector<std::pair<int, int>> channels_of(const Effect& effect, const ModelSpec& model,
                                              int model_inputs) {

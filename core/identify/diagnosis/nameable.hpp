@@ -22,10 +22,6 @@ struct SignalRanges {
                                                            const ModelSpec& model,
                                                            int model_inputs);
 
-/// Whether it is all through an error of gains, time constants or dead times, which the calibrated
-/// test sees where it can be seen at all.
-[[nodiscard]] bool is_linear_error(const Effect& effect);
-
 /// Which effects may be named: what acts through channels where the calibrated test rejects those
 /// (`model`'s), a linear error or a curve where what it rejects may matter: in a free run errors
 /// that matter in no channel may add up, so that a CV that two inputs move against one another

@@ -12,6 +12,7 @@
 #include "config/suggest.hpp"
 #include "core/text/printable.hpp"
 #include "idl/topic_catalog.hpp"
+#include "idl/topics.hpp"
 
 namespace mpm::bus {
 namespace {
@@ -26,6 +27,8 @@ constexpr double kOtherTimeS = 86400.0;
 // From which on samples that repeat an interval are told.
 constexpr std::uint64_t kFewestRepeated = 3;
 constexpr std::uint64_t kRepeatedInverseShare = 4;
+// A monitor that speaks says its health each second.
+constexpr double kSpeaksEachS = 3.0;
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -238,12 +241,21 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
     findings.troubles.insert(findings.troubles.end(), troubles.begin(), troubles.end());
     add_unwritten(troubles, findings);
   }
+  std::map<std::string, idl::Process> sharers;  // monitors of which one speaks
+  for (const idl::Endpoint& endpoint : around.endpoints)
+    if (endpoint.topic == idl::kRoleTopic && endpoint.writer && endpoint.user_data == findings.unit)
+      sharers[idl::name_of(endpoint.process)] = endpoint.process;
   for (const auto& [writer, word] : unit.monitors) {
     const idl::Endpoint* endpoint = find_writer(around, writer);
     if (endpoint == nullptr) continue;  // it has left
+    const double age_s = seconds(now - word.when);
+    const auto shares = sharers.find(idl::name_of(endpoint->process));
+    if (shares != sharers.end() && age_s > kSpeaksEachS) continue;  // it spoke before another one
+    if (shares != sharers.end()) sharers.erase(shares);
     findings.monitors.push_back(
-        {endpoint->process, word.state, word.detail, word.active_alarms, seconds(now - word.when)});
+        {endpoint->process, word.state, word.detail, word.active_alarms, age_s});
   }
+  for (const auto& [name, process] : sharers) findings.standbys.push_back(process);
   if (findings.monitors.empty())
     findings.troubles.push_back(
         {"no monitor", Severity::kMaintenanceRequired, "no monitor watches it"});

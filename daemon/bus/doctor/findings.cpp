@@ -87,6 +87,7 @@ std::string unit_text(const UnitFindings& unit) {
   if (unit.monitors.empty()) text += row("monitor", "none");
   for (const MonitorFindings& monitor : unit.monitors)
     text += row("monitor", monitor_text(monitor));
+  for (const idl::Process& standby : unit.standbys) text += row("standby", idl::name_of(standby));
   for (const TopicFindings& topic : unit.topics) {
     if (topic.writers.empty())
       text += row(topic.topic, topic.needed ? "nobody writes it" : "nobody writes it; not needed");
@@ -151,7 +152,11 @@ Json json_of(const UnitFindings& unit) {
   }
   Json json = {{"unit", unit.unit}};
   if (!unit.place.empty()) json["place"] = unit.place;
-  json.update({{"monitors", std::move(monitors)}, {"topics", std::move(topics)}});
+  Json standbys = Json::array();
+  for (const idl::Process& standby : unit.standbys) standbys.push_back(json_of(standby));
+  json.update({{"monitors", std::move(monitors)},
+               {"standbys", std::move(standbys)},
+               {"topics", std::move(topics)}});
   return json;
 }
 

@@ -40,6 +40,7 @@ struct UnitFindings {
   std::string unit;
   std::string place;  ///< as in Findings, where those are of several; else empty
   std::vector<MonitorFindings> monitors;
+  std::vector<idl::Process> standbys;  ///< would speak should none of these do
   std::vector<TopicFindings> topics;
   std::vector<Trouble> troubles;  ///< the worst first
 };

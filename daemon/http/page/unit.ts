@@ -68,7 +68,8 @@ export async function unitPage(name: string): Promise<HTMLElement> {
       h('a', { class: 'button', href: `${unitLink(unit.unit)}/diagnosis` }, 'Diagnosis')),
     troubles.length ? h('ul', { class: 'troubles' }, ...troubles.map(each => h('li', { class: healthOf(each.severity).name },
       h('span', { 'aria-hidden': 'true' }, `${healthOf(each.severity).sign} `), h('strong', {}, `${healthOf(each.severity).word}: `), each.text)))
-      : unit.health.state === 'function_check' ? h('p', { class: 'note' }, unit.health.detail) : null,
+      : null,
+    unit.health.detail.startsWith('stands by') || (!troubles.length && unit.health.state === 'function_check') ? h('p', { class: 'note' }, unit.health.detail) : null,
     kpiStrip(unit.kpi),
     h('div', { class: 'columns' },
       h('section', { 'aria-labelledby': 'matrix' }, h('h2', { id: 'matrix' }, 'Model against plant'), matrix(unit), legend(unit.channels.map(each => each.state))),

@@ -19,6 +19,7 @@ constexpr double kNoticeable = 0.05;  ///< of a gain or a time constant
 
 struct Numbers {
   double gain = OldAndNew::kUnknown;
+  double curve = 1.0;  ///< of the gain: slope of what bends the input
   std::vector<double> time_constants;
   double lead = OldAndNew::kUnknown;
   double dead_time = OldAndNew::kUnknown;
@@ -83,11 +84,12 @@ class Source {
     numbers.integrating = integrating_(cv, input);
     const auto at = static_cast<std::size_t>(input);
     const double operated = at < operated_.size() ? operated_[at] : 0.0;
-    numbers.gain = gain_(cv, input) * slope(block_of(spec_.input_blocks, input), operated) *
-                   slope(block_of(spec_.output_blocks, cv));
+    numbers.curve = slope(block_of(spec_.input_blocks, input), operated);
+    if (channel != spec_.channels.end() && channel->input_block)
+      numbers.curve *= slope(&*channel->input_block, operated);
+    numbers.gain = gain_(cv, input) * numbers.curve * slope(block_of(spec_.output_blocks, cv));
     if (numbers.integrating) numbers.gain /= spec_.sample_time_s;
     if (channel != spec_.channels.end()) {
-      if (channel->input_block) numbers.gain *= slope(&*channel->input_block, operated);
       std::visit([&](const auto& each) { add_times(each, spec_.sample_time_s, numbers); },
                  channel->dynamics);
     }
@@ -137,10 +139,10 @@ void set_interval(OldAndNew& number, double low, double high) {
   number.high = high;
 }
 
-/// Ratios and differences to the given model.
+/// Ratios and differences to the given model; a gain's beside what a curve makes of it, `curve`.
 void set_intervals(const Parameter* gain, const Parameter* time_constant,
-                   const Parameter* dead_time, ChannelNumbers& channel) {
-  const double old_gain = channel.gain.old_value;
+                   const Parameter* dead_time, double curve, ChannelNumbers& channel) {
+  const double old_gain = curve * channel.gain.old_value;
   if (gain != nullptr) set_interval(channel.gain, old_gain * gain->low, old_gain * gain->high);
   if (time_constant != nullptr)
     for (OldAndNew& lag : channel.time_constants)
@@ -163,9 +165,9 @@ void set_interval(OldAndNew& number, const Parameter* parameter) {
 }
 
 /// A finding knows better than the channel fitted by itself.
-void set_intervals(const Finding& finding, ChannelNumbers& channel) {
+void set_intervals(const Finding& finding, double curve, ChannelNumbers& channel) {
   set_intervals(finding.find(kGainRatio), finding.find(kTimeConstantRatio),
-                finding.find(kDeadTimeError), channel);
+                finding.find(kDeadTimeError), curve, channel);
   if (std::isfinite(channel.gain.old_value)) return;
   set_interval(channel.gain, by_name(finding, "gain"));
   if (channel.time_constants.size() == 1)
@@ -343,14 +345,15 @@ std::vector<ChannelNumbers> channel_numbers(const DiagnosisRun& run) {
       const std::optional<Numbers> old_numbers = before(cv, input), numbers = after(cv, input);
       if (!old_numbers && !numbers) continue;
       ChannelNumbers channel = compared(cv, input, old_numbers, numbers);
+      const double curve = old_numbers && numbers ? numbers->curve / old_numbers->curve : 1.0;
       for (const ChannelEstimate& estimate : diagnosis.channels)
         if (estimate.cv == cv && estimate.input == input)
           set_intervals(&estimate.gain_ratio, &estimate.time_constant_ratio,
-                        &estimate.dead_time_error, channel);
+                        &estimate.dead_time_error, curve, channel);
       for (const Finding& finding : diagnosis.findings) {
         const int about = input_of(run, finding.subject.place), its_cv = finding.subject.place.cv;
         if (finding.repaired && (about == input || about == -1) && (its_cv == cv || its_cv < 0))
-          set_intervals(finding, channel);
+          set_intervals(finding, curve, channel);
       }
       channels.push_back(std::move(channel));
     }

@@ -8,8 +8,8 @@ namespace {
 TEST_CASE("who monitors writes what monitors say, and nothing of the process") {
   const Permissions monitor = permissions_of(Role::kMonitor);
   const std::vector<std::string_view> outputs = {
-      "mpm/channel_status", "mpm/alarm",       "mpm/alarm_event",  "mpm/controller_alarm",
-      "mpm/health",         "mpm/performance", "mpm/command_reply"};
+      "mpm/channel_status", "mpm/alarm",       "mpm/alarm_event",   "mpm/controller_alarm",
+      "mpm/health",         "mpm/performance", "mpm/command_reply", "mpm/role"};
   CHECK(monitor.writes == outputs);
   CHECK(permissions_of(Role::kViewer).writes.empty());
   CHECK(permissions_of(Role::kOperator).writes == std::vector<std::string_view>{"mpm/command"});
