@@ -15,6 +15,9 @@ inline constexpr double kChance = 1e-6;
 /// Returns to the value before the last that make a signal a coarse one. Chosen: a fine one has
 /// none.
 inline constexpr int kReturns = 3;
+/// Repetitions in a row from which on a fine one is frozen. Chosen: of four digits one in some
+/// hundred values repeats the one before by chance, one in some ten thousand twice.
+inline constexpr int kFrozenOfFine = 2;
 /// What is presumed of a signal's share of repetitions: one in a hundred, as if seen in so many
 /// values. Chosen.
 inline constexpr double kPriorRepeated = 0.5;

@@ -63,7 +63,7 @@ void Screen::Repeats::archive(Archive& a) {
 }
 
 bool Screen::Repeats::frozen() const {
-  if (!coarse() && !may_be_held) return run > 0;
+  if (!coarse() && !may_be_held) return run >= calibration::repeats::kFrozenOfFine;
   if (may_be_held && run > calibration::repeats::kLongestOfInput) return false;
   return run > 0 && run * std::log(repeated / counted) < std::log(calibration::repeats::kChance);
 }

@@ -53,8 +53,8 @@ void Role::say(Clock::time_point now, std::int64_t wall_ns) {
 void Role::hear(const mpm_Role& sample, std::uint64_t writer) {
   heard_ = writer;
   if (writer == self_) return;
-  speaker_ = idl::name_of({sample.host == nullptr ? "" : sample.host, "mpmd",
-                           std::to_string(sample.process)});
+  speaker_ = idl::name_of(
+      {sample.host == nullptr ? "" : sample.host, "mpmd", std::to_string(sample.process)});
 }
 
 bool Role::settle(Clock::time_point now, std::int64_t wall_ns) {

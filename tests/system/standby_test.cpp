@@ -44,8 +44,8 @@ struct Cell {
                                           folder.file("token"),
                                           "--standby"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    monitors.emplace(
-        name, Process(arguments, folder.file(name + ".out"), folder.file(name + ".err")));
+    monitors.emplace(name,
+                     Process(arguments, folder.file(name + ".out"), folder.file(name + ".err")));
     REQUIRE(idl::eventually(
         [&] { return log(name).find("watching 2 channels") != std::string::npos; }, 20s));
     // Found by the plant, and by the others.

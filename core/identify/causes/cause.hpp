@@ -78,6 +78,9 @@ class Cause : public Edit {
 
   /// 2 ln of the prior odds against it: errors of channels are what one expects.
   [[nodiscard]] virtual double rarity() const;
+  /// Odds, against it, of what acts alike and is no cause here: no recording tells the two apart,
+  /// so that it takes its share of the confidence.
+  [[nodiscard]] virtual double alike() const { return 0.0; }
   /// Slow and without an edge, so that a noise model can take it for its own.
   [[nodiscard]] virtual bool may_pass_for_noise() const { return false; }
   /// Whether anyone would care; nothing: judged by how much of the CV it moves.

@@ -88,6 +88,10 @@ class InputOffsetCause : public InputBlockCause {
     }
   }
 
+  /// A load that comes in there, or a change of what the input feeds, does the same to every CV:
+  /// which of the plants from first principles of tests/foreign/physical.py show.
+  [[nodiscard]] double alike() const override { return 1.0; }
+
   /// The input need not move for it to show: it is a load on its CVs.
   [[nodiscard]] bool acts_through_channels() const override { return false; }
 
@@ -130,7 +134,9 @@ class InputOffsetCause : public InputBlockCause {
                          : names.in_source(std::abs(size->value), place) +
                                (size->value < 0.0 ? " lower" : " higher") + " (size " +
                                interval_of(*size, names.source(place).unit) + ")");
-    text += ": its actuator leaks, its zero has shifted, or what it feeds has changed. ";
+    text +=
+        ": its actuator leaks, its zero has shifted, or what it feeds has changed, which "
+        "acts alike. ";
     const int cv = only_cv(names.model, place.input);
     if (cv >= 0)
       text += "Only " + names.cv(cv).tag +

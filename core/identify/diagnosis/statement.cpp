@@ -44,7 +44,7 @@ Finding to_finding(const SearchResult& found, std::size_t index, const Problem& 
   Finding finding;
   finding.subject = subject_of(effect);
   finding.evidence = named.evidence;
-  finding.confidence = named.confidence;
+  finding.confidence = named.confidence / (1.0 + named.confidence * cause_of(effect).alike());
   finding.rivals = named.rivals;
   const double sample_time_s = problem.surroundings().sample_time_s;
   const Index first = first_coordinate(found.fit, index);

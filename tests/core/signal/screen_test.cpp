@@ -94,6 +94,22 @@ TEST_CASE("a frozen sensor is caught from its first repetition on, and let go at
   CHECK(screen.counters().frozen == 59);
 }
 
+// As values with few digits do by chance.
+TEST_CASE("a value that comes twice is no frozen sensor, one that comes three times is") {
+  for (const int times : {2, 3}) {
+    Screen screen(kCounts, {true}, {true}, 0);
+    double first = 0.0;
+    const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
+      double& value = frame[SignalKind::kCv].values(0);
+      if (k % 100 == 50) first = value;
+      if (k % 100 >= 50 && k % 100 < 50 + times) value = first;
+    });
+    CAPTURE(times);
+    CHECK(rejected(passed) == (times == 2 ? 0 : 20));
+    CHECK(screen.counters().frozen == (times == 2 ? 0 : 20));
+  }
+}
+
 TEST_CASE("values at the end of an instrument's range are caught") {
   Screen screen(kCounts, {true}, {true}, 0);
   int clipped = 0;
