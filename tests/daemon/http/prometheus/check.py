@@ -35,6 +35,7 @@ tests:
       - {series: 'mpm_health{unit="shell",state="out_of_specification"}', values: '0x10 1x40'}
       - {series: 'mpm_build_info{version="x"}', values: '1x30'}
     alert_rule_test:
+      - {eval_time: 15m, alertname: MpmNobodySpeaks, exp_alerts: []}
       - {eval_time: 15m, alertname: MpmNoData, exp_alerts: []}
       - {eval_time: 12m, alertname: MpmUnhealthy, exp_alerts: []}
       - eval_time: 30m
@@ -53,6 +54,25 @@ tests:
         exp_alerts:
           - exp_labels: {severity: critical}
             exp_annotations: {summary: "no monitor of model-plant mismatch answers"}
+  # Two that stand by for one another; the one that speaks goes after ten minutes, and nobody goes on.
+  - interval: 1m
+    input_series:
+      - {series: 'mpm_speaks{unit="shell",instance="a"}', values: '1x10 _x40'}
+      - {series: 'mpm_speaks{unit="shell",instance="b"}', values: '0x50'}
+      - {series: 'mpm_controller_alarm_active{unit="shell",instance="a"}', values: '1x10 _x40'}
+      - {series: 'mpm_controller_alarm_active{unit="shell",instance="b"}', values: '1x50'}
+    alert_rule_test:
+      - eval_time: 5m
+        alertname: MpmControllerAlarm
+        exp_alerts:
+          - exp_labels: {severity: warning, unit: shell, instance: a}
+            exp_annotations: {summary: "shell: the controller's model does not match the plant"}
+      - {eval_time: 5m, alertname: MpmNobodySpeaks, exp_alerts: []}
+      - eval_time: 20m
+        alertname: MpmNobodySpeaks
+        exp_alerts:
+          - exp_labels: {severity: critical, unit: shell}
+            exp_annotations: {summary: "shell: 0 monitors speak for it, which should be one"}
 """
 
 
