@@ -38,8 +38,9 @@ struct ScreenCounters {
 /// who stands still for good is held; predictions only where an input that acts on them has moved
 /// all the time of its dead time. What a signal's resolution explains is learnt: a coarse signal
 /// also returns to the value before the last, a fine one never does. A fine one may repeat a value
-/// once, where few digits are written down, and is frozen if it does so twice in a row; of a coarse one, with a share r of repetitions, a run is frozen once r^length falls
-/// below one in a million. No allocation after construction.
+/// once, where few digits are written down, and is frozen if it does so twice in a row; of a coarse
+/// one, with a share r of repetitions, a run is frozen once r^length falls below one in a million.
+/// No allocation after construction.
 class Screen {
  public:
   static constexpr int kDelay = 3;

@@ -214,12 +214,15 @@ class Run:
 
 
 def score_case(arguments):
-    name, case, seed, model, mpm, keep = arguments
+    name, case, seed, model, mpm, keep, limit = arguments
     plant = next(make() for make in PHYSICAL if make.__name__ == name)
     this = Run(plant, case, seed, model)
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(keep or scratch) / f"{name}-{model}-{case.replace(' ', '_')}-{seed}"
         this.write(folder)
+        if limit is not None:
+            with open(folder / "unit.yaml", "a", encoding="utf-8") as unit:
+                unit.write(f"monitor: {{materiality: {{step_response: {limit}}}}}\n")
         given = ["--config", str(folder / "unit.yaml"), "--data", str(folder / "data.csv")]
         code, output, _ = run(mpm, ["detect", *given, "--json"])
         if code > 1:
@@ -271,12 +274,15 @@ def main():
     parser.add_argument("--case", nargs="+")
     parser.add_argument("--model", nargs="+", default=["exact", "reduced"])
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--step-response", type=float,
+                        help="monitor.materiality.step_response of the unit files")
     parser.add_argument("--keep")
     parser.add_argument("--markdown")
     parser.add_argument("--bounds", action="store_true")
     options = parser.parse_args()
     plants = [make() for make in PHYSICAL if make.__name__ in options.plant]
-    wanted = [(plant.name, case, seed, model, options.mpm, options.keep) for plant in plants
+    wanted = [(plant.name, case, seed, model, options.mpm, options.keep, options.step_response)
+              for plant in plants
               for model in options.model for seed in seed_list(options.seeds)
               for case in cases_of(plant)
               if not options.case or case in options.case]

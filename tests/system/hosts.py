@@ -3,8 +3,8 @@
 
 Usage: hosts.py --bin build/release/bin [--losses 30] [--bounds]
 
-Each host is a network namespace of its own on one bridge (root). Units u0, u1, u2, of whose plants
-one channel each is wrong (scenario hidden_gain of config/plants/shell3x3.yaml): host i speaks for ui
+Each host is a network namespace of its own on one bridge (root). Units u0, u1, u2, of whose
+plants one channel each is wrong (scenario hidden_gain of config/plants/shell3x3.yaml): host i speaks for ui
 and stands by for the unit of the host before it. A host is lost without a word: its link goes down,
 then its processes are killed. Said is how long nobody spoke for each unit that it spoke for, as one
 who reads mpm/health on a fourth host sees it, and of which alarms readers were told.
@@ -74,7 +74,8 @@ class Watch:
     def __init__(self, net, program, folder, topic):
         self.heard = []
         self.process = net.start("control", program, "echo", topic, "--json", "--config",
-                                 folder / "u0.yaml", stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+                                 folder / "u0.yaml", stdout=subprocess.PIPE,
+                                 stderr=subprocess.DEVNULL, text=True)
         threading.Thread(target=self.read, daemon=True).start()
 
     def read(self):
@@ -201,8 +202,8 @@ def main():
                     process.kill()
                     process.wait()
             net.close()
-    print(f"{options.losses} hosts lost: silent for {1e3 * statistics.median(took):.0f} ms (median), "
-          f"{1e3 * max(took):.0f} ms at most")
+    print(f"{options.losses} hosts lost: silent for {1e3 * statistics.median(took):.0f} ms "
+          f"(median), {1e3 * max(took):.0f} ms at most")
     for unit, words in sorted(told.items()):
         print(f"{unit}: {', '.join(words)}")
     if options.bounds and any(len(told.get(f"u{number}", [])) != 1 for number in range(HOSTS)):

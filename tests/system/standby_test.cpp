@@ -186,6 +186,13 @@ TEST_CASE("one that knows nothing yet lets stand what stood, as people left it")
   CHECK(cell.states["u1"].view.client_user_id == "ann");
   CHECK(cell.states["u1"].view.acknowledged);
   CHECK(cell.seen_by_newcomer("u1").to == AlarmChange::kActive);
+  // Its own journal knows who did what where it stood by.
+  REQUIRE(run({"mpm", "journal", "--journal", cell.folder.file("b") + "/alarms.sqlite"},
+              cell.folder.file("out"), cell.folder.file("err")) == 0);
+  CAPTURE(read_file(cell.folder.file("out")));
+  CHECK_THAT(read_file(cell.folder.file("out")), Catch::Matchers::Contains("acknowledged") &&
+                                                     Catch::Matchers::Contains("ann") &&
+                                                     Catch::Matchers::Contains("seen"));
 
   SECTION("its own judgement then says the same, and nobody is told twice") {
     cell.play(wrong, kFrames);
