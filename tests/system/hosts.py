@@ -5,8 +5,7 @@ Usage: hosts.py --bin build/release/bin [--losses 30] [--bounds]
 
 Each host is a network namespace of its own on one bridge (root). Units u0, u1, u2, of whose
 plants one channel each is wrong (scenario hidden_gain of config/plants/shell3x3.yaml): host i speaks
-for ui
-and stands by for the unit of the host before it. A host is lost without a word: its link goes down,
+for ui and stands by for the unit of the host before it. A host is lost without a word: its link goes down,
 then its processes are killed. Said is how long nobody spoke for each unit that it spoke for, as one
 who reads mpm/health on a fourth host sees it, and of which alarms readers were told.
 """

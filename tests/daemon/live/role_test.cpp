@@ -1,8 +1,11 @@
 #include "daemon/live/role.hpp"
 
 #include <catch2/catch.hpp>
+#include <map>
 #include <memory>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "idl/reader.hpp"
 #include "tests/idl/test_domain.hpp"
