@@ -86,6 +86,8 @@ try {
   await page.waitForSelector(".matrix td.mismatch");
   assert.match(await page.locator(".matrix td.mismatch").textContent(), /Mismatch.*gain \+\d+ %/);
   assert.equal(await page.evaluate(() => document.activeElement.tagName), "H1", "focus goes to what is new");
+  const beyond = await page.evaluate(() => [...document.querySelectorAll(".scroll")].map(each => each.scrollHeight - each.clientHeight));
+  assert.deepEqual(beyond.filter(pixels => pixels > 0), [], "a table scrolls up and down for its margin");
   await check(page, "unit", { full: true });
 
   // The whole way of an operator: acknowledge, name, token, answer.
