@@ -112,8 +112,8 @@ void UnitAlarms::recall(const std::vector<ChannelRecord>& channels,
 void UnitAlarms::archive(Archive& a) {
   // not archived: unit_, settings_, outputs_, journal_ (construction)
   // not archived: desk_, controller_ (`keep` has them from the journal)
-  // not archived: observed_, fresh_, held_, said_ (each frame and `announce` say them anew)
-  a(alarms_, interval_);
+  // not archived: observed_, fresh_, said_ (each frame and `announce` say them anew)
+  a(alarms_, held_, interval_);
   a.time(source_time_ns_);
   recalled_ = recalled_ || a.reads();
 }
