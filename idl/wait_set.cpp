@@ -57,4 +57,9 @@ bool WaitSet::wait(std::chrono::nanoseconds timeout) const {
   }
 }
 
+bool WaitSet::ready() const {
+  dds_attach_t which{};
+  return check(dds_waitset_wait(wait_set_.get(), &which, 1, 0), "wait") > 0;
+}
+
 }  // namespace mpm::idl

@@ -25,6 +25,8 @@ class WaitSet {
   void attach(dds_entity_t condition);
   /// True if something is there to take, false after `timeout`.
   [[nodiscard]] bool wait(std::chrono::nanoseconds timeout) const;
+  /// Whether `wait` would return at once.
+  [[nodiscard]] bool ready() const;
 
  private:
   void wake_now_and_then();

@@ -1,9 +1,16 @@
 #include "core/archive/archive.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
 namespace mpm {
+namespace {
+
+// Copied within a tenth of a millisecond or two.
+constexpr std::size_t kPiece = 1 << 20;
+
+}  // namespace
 
 void Archive::refuse(const std::string& what) const {
   throw std::runtime_error("what was put away does not fit here: " + what + ", " +
@@ -11,15 +18,25 @@ void Archive::refuse(const std::string& what) const {
 }
 
 void Archive::bytes(void* memory, std::size_t count) {
+  if (!reads()) return append(static_cast<const std::byte*>(memory), count);
   if (count == 0) return;
-  if (!reads()) {
-    const auto* from = static_cast<const std::byte*>(memory);
-    out_->insert(out_->end(), from, from + count);
-    return;
-  }
   if (count > in_.size()) refuse("it ends too early");
   std::memcpy(memory, in_.data(), count);
   in_ = in_.subspan(count);
+}
+
+void Archive::append(const std::byte* from, std::size_t count) {
+  while (count > 0) {
+    if (stop_ && before_look_ == 0) {
+      if (stop_()) throw Stopped{};
+      before_look_ = kPiece;
+    }
+    const std::size_t piece = stop_ ? std::min(count, before_look_) : count;
+    out_->insert(out_->end(), from, from + piece);
+    from += piece;
+    count -= piece;
+    if (stop_) before_look_ -= piece;
+  }
 }
 
 void Archive::length(std::size_t fixed) {

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace mpm {
@@ -23,8 +25,12 @@ namespace mpm {
 /// are read with `within`: whatever the bytes say, the object may be wrong but not broken.
 class Archive {
  public:
-  /// Appends to `out`.
-  explicit Archive(std::vector<std::byte>& out) : out_(&out) {}
+  /// What a writing archive throws once it was told to stop; nothing but its bytes has changed.
+  struct Stopped {};
+
+  /// Appends to `out`. `stop`: asked before every megabyte; empty: never.
+  explicit Archive(std::vector<std::byte>& out, std::function<bool()> stop = nullptr)
+      : out_(&out), stop_(std::move(stop)) {}
   explicit Archive(std::span<const std::byte> in) : in_(in) {}
 
   [[nodiscard]] bool reads() const { return out_ == nullptr; }
@@ -119,10 +125,13 @@ class Archive {
   }
 
   void bytes(void* memory, std::size_t count);
+  void append(const std::byte* from, std::size_t count);
   [[nodiscard]] std::size_t varying_length(std::size_t length);
   [[noreturn]] void refuse(const std::string& what) const;
 
   std::vector<std::byte>* out_ = nullptr;
+  std::function<bool()> stop_;
+  std::size_t before_look_ = 0;  // bytes
   std::span<const std::byte> in_;
 };
 

@@ -34,6 +34,7 @@
 #include "daemon/live/make_diagnosis.hpp"
 #include "daemon/live/monitor_service.hpp"
 #include "daemon/live/report_store.hpp"
+#include "daemon/live/role.hpp"
 #include "idl/version.hpp"
 
 namespace mpm::app {
@@ -114,7 +115,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--standby-rank", options.standby_rank,
                  "of several that start together the one of the greatest rank speaks")
       ->capture_default_str()
-      ->check(CLI::Range(0, 1000))
+      ->check(CLI::Range(0, live::Role::kGreatestRank))
       ->needs("--standby");
   app.add_flag("--dds-from-environment", options.service.use_environment,
                "take the DDS settings from CYCLONEDDS_URI instead of the unit files");

@@ -182,4 +182,10 @@ void Domain::tick(Clock::time_point now) {
   forget_strangers(now);
 }
 
+// One state at a time: a role is to be said between two of them.
+bool Domain::rest(const std::function<bool()>& disturbed) {
+  return std::any_of(units_.begin(), units_.end(),
+                     [&](const auto& unit) { return unit.second->rest(disturbed); });
+}
+
 }  // namespace mpm::live

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,6 +39,8 @@ class Domain {
   /// `poll` itself while it lasts.
   void settle_roles(Clock::time_point now);
   void tick(Clock::time_point now);
+  /// Nothing waits, until `disturbed` says otherwise. True where a unit made use of it.
+  bool rest(const std::function<bool()>& disturbed);
 
   [[nodiscard]] const std::map<std::string, std::unique_ptr<UnitPipeline>, std::less<>>& units()
       const {

@@ -118,6 +118,9 @@ void MonitorService::run(const std::function<bool()>& stop) {
                          if (UnitPipeline* unit = find(command.unit))
                            unit->refuse(command, std::string(to_string(command.action)), why);
                        });
+    const auto disturbed = [this] { return wait_set_.ready(); };
+    for (const auto& domain : domains_)
+      if (domain->rest(disturbed)) break;
     notifier_.feed_watchdog(now);
     if (now < next_status) continue;
     next_status = now + kStatusPeriod;

@@ -1,6 +1,5 @@
 #include "daemon/live/role.hpp"
 
-#include <algorithm>
 #include <charconv>
 
 namespace mpm::live {
@@ -11,7 +10,7 @@ namespace {
 constexpr std::chrono::seconds kListen{2};
 // Above every rank.
 constexpr int kSpeaks = 1 << 16;
-constexpr int kGreatestRank = 1000;
+static_assert(kSpeaks > Role::kGreatestRank);
 
 int number_of(const std::string& text) {
   int number = 0;
@@ -23,13 +22,12 @@ int number_of(const std::string& text) {
 
 Role::Role(const idl::Participant& participant, const std::string& unit, const idl::Process& self,
            int rank)
-    : writer_(participant, idl::kRoleTopic,
-              idl::role_writer_qos(unit, std::clamp(rank, 0, kGreatestRank))),
+    : writer_(participant, idl::kRoleTopic, idl::role_writer_qos(unit, rank)),
       self_(writer_.handle()),
       unit_(unit),
       host_(self.host),
       process_(number_of(self.pid)),
-      rank_(std::clamp(rank, 0, kGreatestRank)) {}
+      rank_(rank) {}
 
 void Role::write() const {
   mpm_Role sample{};

@@ -21,8 +21,9 @@ class Role {
   using Clock = std::chrono::steady_clock;
   /// Between two calls of `say` at most, five of which its word is good for.
   static constexpr std::chrono::milliseconds kPeriod = idl::kRoleLease / 5;
+  static constexpr int kGreatestRank = 1000;
 
-  /// `rank`: 0..1000; of several that start together the greatest speaks.
+  /// `rank`: 0..kGreatestRank; of several that start together the greatest speaks.
   Role(const idl::Participant& participant, const std::string& unit, const idl::Process& self,
        int rank);
 

@@ -196,7 +196,17 @@ std::optional<std::uint64_t> SampleLog::push(const BlockView& block) {
   record_.clear();
   encode(block, record_);
   append(record_);
-  return begins && descriptor_ >= 0 ? std::optional(files_.back().number) : std::nullopt;
+  return begins && descriptor_ >= 0 ? std::optional(last()) : std::nullopt;
+}
+
+bool SampleLog::full() const {
+  return begun_ && std::any_of(blocks_.begin(), blocks_.end(),
+                               [this](std::uint64_t blocks) { return blocks > keep_ / kFiles; });
+}
+
+std::optional<std::uint64_t> SampleLog::begin_next() {
+  begin_file();
+  return descriptor_ >= 0 ? std::optional(last()) : std::nullopt;
 }
 
 void SampleLog::push_expiry() { append(kExpiry); }
@@ -235,7 +245,7 @@ void SampleLog::begin_file() {
     sync_path(all_units);
     sync_path(all_units.parent_path());
   }
-  const std::uint64_t number = files_.empty() ? 1 : files_.back().number + 1;
+  const std::uint64_t number = last() + 1;
   descriptor_ = ::open(path_of(number).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_APPEND,
                        S_IRUSR | S_IWUSR | S_IRGRP);
   if (descriptor_ < 0) return fail("cannot be made");

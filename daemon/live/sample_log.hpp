@@ -44,6 +44,12 @@ class SampleLog {
   /// Never throws for the disk: see `problem`. The number of the file that begins with this block,
   /// where one does.
   std::optional<std::uint64_t> push(const BlockView& block);
+  /// Whether the next block begins a file for what the last one holds.
+  [[nodiscard]] bool full() const;
+  /// The next block begins a file of this number; nothing where there can be none.
+  std::optional<std::uint64_t> begin_next();
+  /// Of the last file; 0: there is none.
+  [[nodiscard]] std::uint64_t last() const { return files_.empty() ? 0 : files_.back().number; }
   void push_expiry();
   /// From now on files from this one on stay, whatever the others hold, up to `kMostHeld` times
   /// `keep`: a state stands before them.

@@ -137,15 +137,24 @@ bool StateFiles::poll() {
   return true;
 }
 
-void StateFiles::keep(std::uint64_t file,
-                      const std::function<void(std::vector<std::byte>&)>& fill) {
-  if (!poll()) return;
+bool StateFiles::keep(
+    const std::function<std::optional<std::uint64_t>(std::vector<std::byte>&)>& fill) {
+  if (!poll()) return false;
   bytes_.clear();
-  fill(bytes_);
-  writing_ = std::async(std::launch::async, [this, file, bytes = std::move(bytes_)]() mutable {
-    std::string problem = write_state(folder_, belongs_, file, bytes);
-    return Written{oldest_in(folder_), std::move(problem), std::move(bytes)};
-  });
+  const std::optional<std::uint64_t> file = fill(bytes_);
+  if (!file) return false;
+  writing_ =
+      std::async(std::launch::async, [this, file = *file, bytes = std::move(bytes_)]() mutable {
+        std::string problem = write_state(folder_, belongs_, file, bytes);
+        return Written{oldest_in(folder_), std::move(problem), std::move(bytes)};
+      });
+  return true;
+}
+
+// Touched, too: a page that was never used costs as much as its copying.
+void StateFiles::expect(std::size_t bytes) {
+  bytes_.resize(bytes);
+  bytes_.clear();
 }
 
 }  // namespace mpm::live

@@ -27,8 +27,11 @@ class StateFiles {
   [[nodiscard]] std::vector<std::uint64_t> find(const std::vector<std::uint64_t>& files);
   /// Nothing where it is damaged, or does not belong here.
   [[nodiscard]] std::optional<std::vector<std::byte>> read(std::uint64_t file) const;
-  /// Has what `fill` appends written. Where the one before is still being written, that must do.
-  void keep(std::uint64_t file, const std::function<void(std::vector<std::byte>&)>& fill);
+  /// Has what `fill` appends written, beside the file that it names; nothing where it names none.
+  /// Where the one before is still being written, that must do. Returns whether it will be.
+  bool keep(const std::function<std::optional<std::uint64_t>(std::vector<std::byte>&)>& fill);
+  /// So many bytes are to be expected: takes the memory for them now.
+  void expect(std::size_t bytes);
   /// Looks whether what was to be kept is written, or could not be; true where nothing is at hand.
   bool poll();
   /// Of those on disk, as `find` and `poll` have seen, the first; 0: none. What is behind it in the

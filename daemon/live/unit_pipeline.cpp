@@ -3,14 +3,10 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <optional>
-#include <span>
-#include <stdexcept>
 #include <utility>
 
-#include "config/suggest.hpp"
 #include "core/archive/archive.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/text/number_text.hpp"
@@ -18,7 +14,7 @@
 #include "daemon/files/aligning.hpp"
 #include "daemon/files/times/time_text.hpp"
 #include "daemon/keys/check_keys.hpp"
-#include "daemon/live/lost_troubles.hpp"
+#include "daemon/live/unit_samples.hpp"
 #include "daemon/report/channel_text.hpp"
 #include "daemon/report/unit_performance.hpp"
 #include "idl/topics.hpp"
@@ -27,33 +23,10 @@ namespace mpm::live {
 namespace {
 
 constexpr std::chrono::seconds kHealthPeriod{1};
-constexpr int kSilentSamples = 10;
-constexpr int kPause = 3;  // samples
-// The loop turns five times a second at least.
-constexpr std::chrono::seconds kStandstill{5};
-constexpr std::chrono::seconds kTold{60};
-// Another monitor says something each second.
-constexpr std::chrono::seconds kOtherMonitorGone{10};
-// A monitor that starts is found within a second or so.
-constexpr std::chrono::seconds kPartnerKnown{10};
-constexpr std::size_t kMostInDetail = 3;
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 // Of those without the token, to be kept: enough to see who tries, too few to fill a journal.
 constexpr int kMostRefusals = 60;
 constexpr std::chrono::minutes kRefusalPeriod{1};
-
-host::RateLimiter::Clock::duration samples_or(double sample_time_s, int samples,
-                                              std::chrono::seconds at_least) {
-  return std::max<host::RateLimiter::Clock::duration>(
-      at_least, std::chrono::duration_cast<host::RateLimiter::Clock::duration>(
-                    std::chrono::duration<double>(sample_time_s * samples)));
-}
-
-bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
-  bus::ExpectedInputs expected = bus::expected_inputs(unit, files::needed_kinds(unit));
-  expected.silence = samples_or(unit.sample_time_s, kSilentSamples, std::chrono::seconds(5));
-  return expected;
-}
 
 /// Null where the model has no such channel, whose gain an error could be told by.
 const ChannelRecord* modelled_channel(const config::UnitConfig& unit,
@@ -94,12 +67,12 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
           },
           files::aligner_settings(config)),
       patience_(files::frame_patience(config)),
-      inputs_(expected_of(config), now),
+      health_(config_, now),
+      neighbours_(config.unit),
       now_(now),
       last_frame_(now),
       next_health_(now),
       refusal_limit_(kMostRefusals, kRefusalPeriod) {
-  health_.unit = config.unit;
   for (const config::InputSignal& aux : config.aux)
     for (const config::CalculatedSignal& signal : config.calc)
       if (config.calculation_of(aux.tag) == nullptr &&
@@ -125,88 +98,48 @@ void UnitPipeline::diagnose_with(DiagnosisWorker& worker, int asker) {
     diagnosis_.emplace(std::make_shared<const config::UnitConfig>(config_), worker, asker);
 }
 
-// Of two monitors a reader keeps the last word, and one that starts clears all alarms. While
-// another one speaks an alarm of either stands; when it has left, what this one says holds.
-void UnitPipeline::publish_alarms_again() {
-  const bool speaks = other_monitor_speaks();
-  const bool left = other_monitor_spoke_ && !speaks;
-  other_monitor_spoke_ = speaks;
-  if (!speaks && !left) return;
-  if (!alarms_.publish_again(left) && output_limit_.admit(now_))
-    spdlog::warn("{}: the alarms could not be published anew", config_.unit);
-}
-
-bool UnitPipeline::other_monitor_speaks() const {
-  return std::any_of(other_monitors_.begin(), other_monitors_.end(), [this](const auto& other) {
-    return now_ - other.second.heard < kOtherMonitorGone;
-  });
-}
-
-// In the same words from each of them: a reader gets what they say in turn.
-std::string UnitPipeline::monitors_text(const std::string& self) const {
-  std::vector<std::string> names = {self};
-  for (const auto& [writer, other] : other_monitors_)
-    if (now_ - other.heard < kOtherMonitorGone) names.push_back(other.name);
-  std::sort(names.begin(), names.end());
-  return std::to_string(names.size()) +
-         " monitors watch this unit: " + config::join(names, kMostInDetail) +
-         "; readers see them in turn";
-}
-
 void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
   go_on(now);
   if (!aligner_.pending()) last_frame_ = now;  // patience counts from here
-  inputs_.push(sample.kind,
-               {sample.writer, sample.interval, sample.source_time_ns, sample.values.size(),
-                sample.quality.size()},
-               now);
+  health_.push(sample);
   const AlignerCounters before = aligner_.counters();
   const BlockView block{sample.kind, sample.interval, sample.source_time_ns, sample.values,
                         sample.quality};
-  if (log_ && fits(block, config_.counts()))
-    if (const auto begun = log_->push(block)) keep_state(*begun);
+  if (checkpoints_ && fits(block, config_.counts())) checkpoints_->push(block);
   aligner_.push(block);
-  const AlignerCounters& after = aligner_.counters();
-  if (after.wrong_length != before.wrong_length) report_refused(sample);
-  if (after.beyond != before.beyond && beyond_limit_.admit(now))
-    spdlog::warn("{}: {} sample of interval {}: numbers beyond 2^53 are not taken; ignored{}",
-                 config_.unit, idl::sample_topic(sample.kind), sample.interval,
-                 beyond_limit_.held_back() == 0
-                     ? ""
-                     : fmt::format(" ({} more like this before)", beyond_limit_.held_back()));
-  if (after.restarts != before.restarts && restart_limit_.admit(now))
-    spdlog::info("{}: the controller restarted: interval {} after {}{}", config_.unit,
-                 sample.interval, health_.interval,
-                 restart_limit_.held_back() == 0
-                     ? ""
-                     : fmt::format(" ({} more like this before)", restart_limit_.held_back()));
+  report(sample, before);
 }
 
 // Samples may be the first that is seen after a standstill, and are not to be blamed for it.
 void UnitPipeline::go_on(Clock::time_point now) {
-  if (now - now_ > kStandstill) {
-    stood_still_ = now;
-    stood_still_for_ = now - now_;
-    inputs_.stood_still(now);
-  }
+  health_.go_on(now);
   now_ = now;
 }
 
-void UnitPipeline::report_refused(const idl::SampleView& sample) {
-  if (!refused_limit_.admit(now_)) return;
-  spdlog::warn(
-      "{}: {} sample of interval {} has {} values and {} qualities, expected {}; ignored{}",
-      config_.unit, idl::sample_topic(sample.kind), sample.interval, sample.values.size(),
-      sample.quality.size(), config_.counts().of(sample.kind),
-      refused_limit_.held_back() == 0
-          ? ""
-          : fmt::format(" ({} more like this before)", refused_limit_.held_back()));
+// What the aligner has made of it that a person should know.
+void UnitPipeline::report(const idl::SampleView& sample, const AlignerCounters& before) {
+  const AlignerCounters& after = aligner_.counters();
+  const auto others = [](const host::RateLimiter& limit) {
+    return limit.held_back() == 0 ? ""
+                                  : fmt::format(" ({} more like this before)", limit.held_back());
+  };
+  if (after.wrong_length != before.wrong_length && refused_limit_.admit(now_))
+    spdlog::warn(
+        "{}: {} sample of interval {} has {} values and {} qualities, expected {}; ignored{}",
+        config_.unit, idl::sample_topic(sample.kind), sample.interval, sample.values.size(),
+        sample.quality.size(), config_.counts().of(sample.kind), others(refused_limit_));
+  if (after.beyond != before.beyond && beyond_limit_.admit(now_))
+    spdlog::warn("{}: {} sample of interval {}: numbers beyond 2^53 are not taken; ignored{}",
+                 config_.unit, idl::sample_topic(sample.kind), sample.interval,
+                 others(beyond_limit_));
+  if (after.restarts != before.restarts && restart_limit_.admit(now_))
+    spdlog::info("{}: the controller restarted: interval {} after {}{}", config_.unit,
+                 sample.interval, health_.record().interval, others(restart_limit_));
 }
 
 void UnitPipeline::on_frame(const Frame& frame) {
   last_frame_ = now_;
-  health_.interval = frame.interval;
-  health_.source_time_ns = frame.source_time_ns;
+  health_.move_to(frame.interval, frame.source_time_ns);
   monitor_.push(frame);
 
   bool written = true;
@@ -247,8 +180,7 @@ std::vector<std::string> UnitPipeline::alarm_texts() {
 // A diagnosis that was due then is made again, for the causes that alarms were given are nowhere
 // else: only the last of them is left when the unit goes on.
 void UnitPipeline::recall_frame(const Frame& frame) {
-  health_.interval = frame.interval;
-  health_.source_time_ns = frame.source_time_ns;
+  health_.move_to(frame.interval, frame.source_time_ns);
   monitor_.push(frame);
   (void)performance_.push(frame, monitor_.monitor().judged());
   if (!monitor_.alarms().empty())
@@ -260,61 +192,22 @@ void UnitPipeline::recall_frame(const Frame& frame) {
 // All that the samples have made, as far as what is said of them depends on it.
 void UnitPipeline::archive(Archive& a) {
   // not archived: config_, outputs_, calculator_, patience_, observer_ (construction)
-  // not archived: samples_, journal_, log_, states_, files_between_states_, next_state_ (the disk)
+  // not archived: samples_, journal_, checkpoints_ (the disk)
   // not archived: recalling_, calculated_ (empty between calls)
-  // not archived: health_ (made of the others)
-  // not archived: now_, last_frame_, next_health_, stood_still_, stood_still_for_, incomplete_at_,
-  // refused_limit_, beyond_limit_, output_limit_, restart_limit_, refusal_limit_ (the clock)
-  // not archived: inputs_, trouble_log_, troubles_, trouble_text_, other_monitors_,
-  // other_monitor_spoke_, keys_until_, role_, role_begins_, told_ (what is around this process)
+  // not archived: health_ (made of the others, and of what is around this process)
+  // not archived: now_, last_frame_, next_health_, refused_limit_, beyond_limit_, output_limit_,
+  // restart_limit_, refusal_limit_ (the clock)
+  // not archived: neighbours_, told_, keys_until_ (what is around this process)
   a(aligner_, monitor_, performance_, alarms_);
   if (diagnosis_) a(*diagnosis_);
 }
 
-// Before the first sample of that file is acted upon: what the file holds comes behind the state.
-void UnitPipeline::keep_state(std::uint64_t file) {
-  states_->poll();
-  log_->hold_from(states_->oldest());
-  if (file < next_state_) return;
-  next_state_ = file + files_between_states_;
-  states_->keep(file, [this](std::vector<std::byte>& bytes) {
-    Archive away(bytes);
-    archive(away);
-  });
-}
-
-// The file of the log behind the last state that there is; 0: there is none, and all stays as
-// construction made it.
-std::uint64_t UnitPipeline::take_back_state() {
-  std::vector<std::byte> constructed;
-  Archive away(constructed);
-  archive(away);
-  for (const std::uint64_t file : states_->find(log_->files())) {
-    const std::optional<std::vector<std::byte>> bytes = states_->read(file);
-    if (!bytes) continue;
-    try {
-      Archive back{std::span(*bytes)};
-      archive(back);
-      back.require(back.left() == 0, "more bytes than belong there");
-      health_.interval = monitor_.interval();
-      health_.source_time_ns = monitor_.source_time_ns();
-      if (diagnosis_) diagnosis_->resume(alarms_.channels());
-      return file;
-    } catch (const std::runtime_error& error) {
-      spdlog::warn("{}: state {}: {}", config_.unit, file, error.what());
-      Archive back{std::span(constructed)};
-      archive(back);
-    }
-  }
-  return 0;
-}
-
 std::string UnitPipeline::recall(const UnitSamples& samples) {
-  log_.emplace(samples.folder, samples.meaning, samples.keep);
-  states_.emplace(samples.folder, samples.owner);
-  files_between_states_ = samples.files_between_states;
-  const std::uint64_t from = take_back_state();
-  log_->hold_from(states_->oldest());
+  checkpoints_.emplace(samples, config_.unit, [this](Archive& a) { archive(a); });
+  if (checkpoints_->take_back()) {
+    health_.move_to(monitor_.interval(), monitor_.source_time_ns());
+    if (diagnosis_) diagnosis_->resume(alarms_.channels());
+  }
   const std::uint64_t before = aligner_.counters().frames;
   // What the state stands for is nowhere but in the samples, for who wants to see it.
   Aligner earlier(
@@ -332,13 +225,14 @@ std::string UnitPipeline::recall(const UnitSamples& samples) {
   };
   recalling_ = true;
   const std::string lost =
-      log_->recall(into(aligner_), from, observer_ != nullptr ? into(earlier) : nullptr);
+      checkpoints_->recall(into(aligner_), observer_ != nullptr ? into(earlier) : nullptr);
   recalling_ = false;
-  health_.incomplete = aligner_.counters().incomplete;  // no news
+  health_.recall(aligner_.counters());
   const std::uint64_t frames = aligner_.counters().frames;
   if (frames > 0) alarms_.recall(monitor_.channels(), {}, {});
   if (diagnosis_) diagnosis_->repeat();
-  count_channels();
+  health_.count(monitor_.channels());
+  if (frames > before) checkpoints_->keep_now();
   std::string text =
       frames == 0 ? "begins anew" : "goes on behind " + counted(frames, "sample") + " from before";
   if (before > 0) text += ", of which it judges " + std::to_string(frames - before) + " again";
@@ -420,8 +314,9 @@ void UnitPipeline::refuse(const AlarmCommand& command, const std::string& action
 
 CommandReply UnitPipeline::obey(const AlarmCommand& command) {
   if (stands_by())
-    return {false, "this monitor stands by: give the command to " +
-                       (role_->speaker().empty() ? "the one that speaks" : role_->speaker())};
+    return {false,
+            "this monitor stands by: give the command to " +
+                (neighbours_.speaker().empty() ? "the one that speaks" : neighbours_.speaker())};
   CommandReply reply = alarms_.apply(command, wall_ns());
   spdlog::info("{}: {} {}: {} ({} on {})", config_.unit,
                command.cv.empty() ? "the controller's alarm" : command.mv + " -> " + command.cv,
@@ -436,26 +331,22 @@ std::int64_t UnitPipeline::wall_ns() {
 }
 
 void UnitPipeline::share(std::unique_ptr<Role> role, Clock::time_point now) {
-  role_ = std::move(role);
-  role_begins_ = now;
+  neighbours_.share(std::move(role), now);
   outputs_.be_silent(true);
 }
 
-void UnitPipeline::say_role(Clock::time_point now) { role_->say(now, wall_ns()); }
-
 void UnitPipeline::settle_role(Clock::time_point now) {
-  if (!role_->settle(now, wall_ns())) return;
-  outputs_.be_silent(!role_->active());
-  other_monitors_.clear();
+  if (!neighbours_.settle(now, wall_ns())) return;
+  outputs_.be_silent(neighbours_.stands_by());
   next_health_ = now;
-  if (!role_->active()) {
-    spdlog::warn("{}: stands by; {} speaks", config_.unit, role_->speaker());
+  const std::string speaker = neighbours_.speaker();
+  if (neighbours_.stands_by()) {
+    spdlog::warn("{}: stands by; {} speaks", config_.unit, speaker);
     return;
   }
-  role_begins_ = now;
-  spdlog::info("{}: speaks{}", config_.unit,
-               role_->speaker().empty() ? "" : " in place of " + role_->speaker());
+  spdlog::info("{}: speaks{}", config_.unit, speaker.empty() ? "" : " in place of " + speaker);
   bool written = alarms_.take_over(std::exchange(told_, {}), monitor_.channels(), wall_ns());
+  if (checkpoints_) checkpoints_->want_state();  // what was told is in no sample
   if (aligner_.counters().frames > 0) {
     for (const ChannelRecord& channel : monitor_.channels())
       written = outputs_.write(channel) && written;
@@ -477,26 +368,17 @@ void UnitPipeline::hear_told(AlarmStateRecord state) {
   told_.states.insert_or_assign(std::move(channel), std::move(state));
 }
 
-void UnitPipeline::hear_other_monitor(std::uint64_t writer, std::string name,
-                                      Clock::time_point now) {
-  if (stands_by()) return;
-  other_monitors_[writer] = {std::move(name), now};
-  for (auto other = other_monitors_.begin(); other != other_monitors_.end();)
-    other = now - other->second.heard < kOtherMonitorGone ? std::next(other)
-                                                          : other_monitors_.erase(other);
-}
-
 void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
                         const bus::Surroundings& around) {
   go_on(now);
   if (aligner_.pending() && now - last_frame_ > patience_) {
-    if (log_) log_->push_expiry();
+    if (checkpoints_) checkpoints_->push_expiry();
     aligner_.expire();
   }
   if (diagnosis_) publish_diagnosis();
   if (now >= next_health_) {
     next_health_ = now + kHealthPeriod;
-    if (states_) states_->poll();
+    if (checkpoints_) checkpoints_->poll();
     if (!alarms_.tick(wall_ns()) && output_limit_.admit(now_))
       spdlog::warn("{}: the alarms could not be published", config_.unit);
     publish_health(unknown_unit, around);
@@ -505,139 +387,57 @@ void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
   if (observer_ != nullptr && observer_->wants_view(now)) show();
 }
 
+// What another monitor said meanwhile may be what readers know.
+void UnitPipeline::publish_alarms_again() {
+  const std::optional<bool> all = neighbours_.to_say_again(now_);
+  if (all && !alarms_.publish_again(*all) && output_limit_.admit(now_))
+    spdlog::warn("{}: the alarms could not be published anew", config_.unit);
+}
+
 void UnitPipeline::show() {
-  observer_->on_view({monitor_.channels(), alarms_.channels(), alarms_.controller(), health_,
-                      troubles_, performance(), !stands_by()});
+  observer_->on_view({monitor_.channels(), alarms_.channels(), alarms_.controller(),
+                      health_.record(), health_.troubles(), performance(), !stands_by()});
 }
 
 void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around) {
-  const AlignerCounters& aligner = aligner_.counters();
-  health_.frames = aligner.frames;
-  health_.used = monitor_.counters().used;
-  health_.missing = aligner.missing;
-  if (health_.incomplete != aligner.incomplete) incomplete_at_ = now_;
-  health_.incomplete = aligner.incomplete;
-  health_.late = aligner.late;
-  health_.repeated = aligner.repeated;
-  health_.out_of_order = aligner.out_of_order;
-  health_.bad_values = monitor_.counters().bad_values;
-  health_.wrong_length = aligner.wrong_length;
-  health_.beyond = aligner.beyond;
-  health_.unknown_unit = unknown_unit;
-  health_.restarts = aligner.restarts;
-  count_channels();
-  troubles_ = troubles(around);
-  const std::vector<bus::Trouble>& found = troubles_;
-  trouble_text_ = bus::joined_text(found, kMostInDetail);
-  for (const TroubleLog::Line& line : trouble_log_.update(found, now_, wall_ns() / kSecond))
-    spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", config_.unit,
-                line.text);
-  judge_health(found);
-  if (journal_) journal_->push(health_);
-  if (!outputs_.write(health_) && output_limit_.admit(now_))
+  std::vector<bus::Trouble> others = neighbours_.troubles(around, now_);
+  for (bus::Trouble& trouble : keeping_troubles()) others.push_back(std::move(trouble));
+  const HealthRecord& health = health_.judge(
+      {aligner_.counters(), monitor_, unknown_unit, around, std::move(others), stands_by_text()},
+      wall_ns() / kSecond);
+  if (journal_) journal_->push(health);
+  if (!outputs_.write(health) && output_limit_.admit(now_))
     spdlog::warn("{}: the health could not be published", config_.unit);
 }
 
-void UnitPipeline::count_channels() {
-  health_.undetermined = health_.matching = health_.mismatching = health_.active_alarms = 0;
-  for (const ChannelRecord& channel : monitor_.channels()) {
-    if (channel.verdict == Verdict::kMatch)
-      ++health_.matching;
-    else if (channel.verdict == Verdict::kMismatch)
-      ++health_.mismatching;
-    else
-      ++health_.undetermined;
-    if (channel.alarm == AlarmState::kActive) ++health_.active_alarms;
-  }
+std::string UnitPipeline::stands_by_text() const {
+  if (!stands_by()) return "";
+  const std::string speaker = neighbours_.speaker();
+  return "stands by" + (speaker.empty() ? "" : "; " + speaker + " speaks");
 }
 
-std::vector<bus::Trouble> UnitPipeline::troubles(const bus::Surroundings& around) const {
+// What this process cannot keep, and how long it may go on.
+std::vector<bus::Trouble> UnitPipeline::keeping_troubles() const {
   using bus::Severity;
-  std::vector<bus::Trouble> found = inputs_.troubles(around, now_);
-  const auto add = [&found](const char* key, Severity severity, std::string text) {
-    found.push_back({key, severity, std::move(text)});
+  std::vector<bus::Trouble> found;
+  const auto add = [&found](const std::string& key, std::string text) {
+    found.push_back({key, Severity::kMaintenanceRequired, std::move(text)});
   };
-  // Where a topic is missing or has gaps or a counter jumped, that is why.
-  if (incomplete_at_ &&
-      now_ - *incomplete_at_ < samples_or(config_.sample_time_s, 2, kHealthPeriod) &&
-      (found.empty() || found.front().severity == Severity::kMaintenanceRequired))
-    add("incomplete", Severity::kOutOfSpecification, "data incomplete");
-  std::vector<LostSignal> lost = monitor_.monitor().lost();
-  std::erase_if(lost, [this](const LostSignal& signal) {  // its topic pauses, which will be told
-    const std::optional<Clock::time_point> last = inputs_.stream(signal.kind).last();
-    return signal.cause == LossCause::kNoValue && last &&
-           now_ - *last > samples_or(config_.sample_time_s, kPause, kHealthPeriod);
-  });
-  for (bus::Trouble& trouble : lost_troubles(config_, lost, found))
-    found.push_back(std::move(trouble));
-  if (stood_still_ && now_ - *stood_still_ < kTold) {
-    add("standstill", Severity::kOutOfSpecification,
-        fmt::format(
-            "the monitor itself stood still for {} s: its machine is too busy or was asleep",
-            std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()));
-    found.back().event = std::to_string(stood_still_->time_since_epoch().count());
-  }
-  if (other_monitor_speaks())
-    add("other monitor", Severity::kMaintenanceRequired, monitors_text(around.self));
-  if (role_ && role_->active() && now_ - role_begins_ > kPartnerKnown && !partner(around))
-    add("no standby", Severity::kMaintenanceRequired, "no other monitor stands by for this unit");
-  if (keys_until_ &&
-      wall_ns() / kSecond > *keys_until_ - std::chrono::seconds(keys::kNotice).count())
-    add("keys", Severity::kMaintenanceRequired,
-        std::string("the keys of this monitor ") +
-            (wall_ns() / kSecond > *keys_until_ ? "have expired " : "expire ") +
-            files::formatted_utc(*keys_until_, "%Y-%m-%dT%H:%M:%SZ"));
-  const auto add_journal = [&](const std::string& which, const std::string& problem) {
-    if (!problem.empty())
-      add(which.c_str(), Severity::kMaintenanceRequired,
-          "the " + which + " cannot be written: " + problem);
+  const auto add_file = [&add](const std::string& which, const std::string& problem) {
+    if (!problem.empty()) add(which, "the " + which + " cannot be written: " + problem);
   };
-  if (journal_) add_journal("journal", journal_->problem());
-  if (samples_ != nullptr) add_journal("journal of every sample", samples_->problem());
+  const std::int64_t now_s = wall_ns() / kSecond;
+  if (keys_until_ && now_s > *keys_until_ - std::chrono::seconds(keys::kNotice).count())
+    add("keys", std::string("the keys of this monitor ") +
+                    (now_s > *keys_until_ ? "have expired " : "expire ") +
+                    files::formatted_utc(*keys_until_, "%Y-%m-%dT%H:%M:%SZ"));
+  if (journal_) add_file("journal", journal_->problem());
+  if (samples_ != nullptr) add_file("journal of every sample", samples_->problem());
   if (diagnosis_ && !diagnosis_->file_problem().empty())
-    add("reports", Severity::kMaintenanceRequired,
-        "reports of diagnoses cannot be kept: " + diagnosis_->file_problem());
-  add_journal("journal of alarms", alarms_.journal_problem());
-  if (log_) {
-    const std::string& problem = log_->problem();
-    add_journal("log of samples for a restart", problem.empty() ? states_->problem() : problem);
-  }
-  sort_by_severity(found);
+    add("reports", "reports of diagnoses cannot be kept: " + diagnosis_->file_problem());
+  add_file("journal of alarms", alarms_.journal_problem());
+  if (checkpoints_) add_file("log of samples for a restart", checkpoints_->problem());
   return found;
-}
-
-bool UnitPipeline::partner(const bus::Surroundings& around) const {
-  return std::any_of(around.endpoints.begin(), around.endpoints.end(), [this](const auto& other) {
-    return other.writer && other.topic == idl::kRoleTopic && other.user_data == config_.unit;
-  });
-}
-
-// The worst of what NE 107 has a word for.
-void UnitPipeline::judge_health(const std::vector<bus::Trouble>& troubles) {
-  const auto set = [this](const char* state, std::string detail) {
-    health_.state = state;
-    health_.detail = std::move(detail);
-  };
-  const std::string alarms = counted(health_.active_alarms, "alarm");
-  const std::string besides = trouble_text_.empty() ? "" : "; " + trouble_text_;
-  const bool in_trouble = !troubles.empty();
-  const bool serious =
-      in_trouble && troubles.front().severity > bus::Severity::kMaintenanceRequired;
-  const bool waiting = health_.frames == 0, alarmed = health_.active_alarms > 0;
-  if (serious || (in_trouble && !waiting && !alarmed))
-    set(to_string(troubles.front().severity), trouble_text_);
-  else if (waiting)
-    set("function_check", bus::kNoCompleteData + besides);
-  else if (alarmed)
-    set("maintenance_required", alarms + besides);
-  else if (health_.matching + health_.mismatching == 0)
-    set("function_check", bus::kNothingDetermined);
-  else
-    set("normal", "");
-  if (stands_by())
-    health_.detail = "stands by" +
-                     (role_->speaker().empty() ? "" : "; " + role_->speaker() + " speaks") +
-                     (health_.detail.empty() ? "" : "; " + health_.detail);
 }
 
 }  // namespace mpm::live

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
-#include <map>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,18 +14,18 @@
 #include "config/unit_config.hpp"
 #include "core/performance/performance_window.hpp"
 #include "core/signal/aligner.hpp"
+#include "daemon/bus/trouble.hpp"
 #include "daemon/bus/unit_inputs.hpp"
 #include "daemon/files/calculator.hpp"
 #include "daemon/history/journal.hpp"
 #include "daemon/host/rate_limiter.hpp"
+#include "daemon/live/checkpoints.hpp"
 #include "daemon/live/live_diagnosis.hpp"
-#include "daemon/live/role.hpp"
+#include "daemon/live/neighbours.hpp"
 #include "daemon/live/sample_journal.hpp"
-#include "daemon/live/sample_log.hpp"
-#include "daemon/live/state_files.hpp"
 #include "daemon/live/told_alarms.hpp"
-#include "daemon/live/trouble_log.hpp"
 #include "daemon/live/unit_alarms.hpp"
+#include "daemon/live/unit_health.hpp"
 #include "daemon/live/unit_observer.hpp"
 #include "daemon/live/unit_outputs.hpp"
 #include "daemon/live/unit_samples.hpp"
@@ -35,8 +35,7 @@
 namespace mpm::live {
 
 /// One unit from samples to outputs: aligner -> calculated signals -> monitor -> records -> DDS and
-/// journal; what its alarms are diagnosed to come from; and what is wrong with its data, its
-/// neighbours and its disk.
+/// journal, and what its alarms are diagnosed to come from.
 class UnitPipeline {
  public:
   using Clock = std::chrono::steady_clock;
@@ -53,7 +52,7 @@ class UnitPipeline {
   [[nodiscard]] std::string recall(const UnitSamples& samples);
   /// From now on what happens to alarms is kept there, and what people did about them before holds.
   void keep(AlarmJournal& journal) {
-    if (log_) journal.rest_on(config_.unit, log_->folder());
+    if (checkpoints_) journal.rest_on(config_.unit, checkpoints_->folder());
     alarms_.keep(journal, wall_ns());
   }
   /// Tells readers how the alarms stand, at the start.
@@ -65,8 +64,10 @@ class UnitPipeline {
   [[nodiscard]] bool stands_by() const { return outputs_.silent(); }
   /// Those with a role only. Often, and before anything of the unit's is taken: says that it is
   /// there, then, after what others say has come in by `hear_role`, speaks or stands by.
-  void say_role(Clock::time_point now);
-  void hear_role(const mpm_Role& sample, std::uint64_t writer) { role_->hear(sample, writer); }
+  void say_role(Clock::time_point now) { neighbours_.role()->say(now, wall_ns()); }
+  void hear_role(const mpm_Role& sample, std::uint64_t writer) {
+    neighbours_.role()->hear(sample, writer);
+  }
   void settle_role(Clock::time_point now);
   /// Another monitor has told this of the unit's alarms.
   void hear_told(AlarmRecord event);
@@ -90,13 +91,13 @@ class UnitPipeline {
 
   void push(const idl::SampleView& sample, Clock::time_point now);
   /// What the control system says its values are, or that nobody says it of `kind` any more.
-  void hear(const mpm_Layout& layout) { inputs_.hear(layout); }
-  void forget_layout(const char* kind) { inputs_.forget_layout(kind); }
-  /// Another monitor of this unit said something: `name`, as idl::name_of; `writer`, as in
-  /// idl::SampleInfo.
-  void hear_other_monitor(std::uint64_t writer, std::string name, Clock::time_point now);
-  /// All others have left.
-  void hear_no_other_monitor() { other_monitors_.clear(); }
+  void hear(const mpm_Layout& layout) { health_.hear(layout); }
+  void forget_layout(const char* kind) { health_.forget_layout(kind); }
+  /// As Neighbours::hear.
+  void hear_other_monitor(std::uint64_t writer, std::string name, Clock::time_point now) {
+    neighbours_.hear(writer, std::move(name), now);
+  }
+  void hear_no_other_monitor() { neighbours_.hear_none(); }
   /// Reports cannot be kept, and why; empty: they can.
   void set_report_problem(std::string problem) {
     if (diagnosis_) diagnosis_->set_file_problem(std::move(problem));
@@ -105,45 +106,41 @@ class UnitPipeline {
   void set_keys_until(std::time_t until) { keys_until_ = until; }
   /// Gives up waiting where nothing comes, and publishes the health about once a second.
   void tick(Clock::time_point now, std::uint64_t unknown_unit, const bus::Surroundings& around);
+  /// As Checkpoints::rest.
+  bool rest(const std::function<bool()>& disturbed) {
+    return checkpoints_ && checkpoints_->rest(disturbed);
+  }
   /// True while the list of endpoints in the surroundings is of use.
   [[nodiscard]] bool wants_endpoints(Clock::time_point now) const {
-    return inputs_.wants_endpoints(now) || (role_ && role_->active());
+    return health_.wants_endpoints(now) || neighbours_.wants_endpoints();
   }
 
-  [[nodiscard]] const HealthRecord& health() const { return health_; }
+  [[nodiscard]] const HealthRecord& health() const { return health_.record(); }
   /// What is wrong, in words, apart from the alarms; empty if nothing is.
-  [[nodiscard]] const std::string& trouble_text() const { return trouble_text_; }
+  [[nodiscard]] const std::string& trouble_text() const { return health_.trouble_text(); }
 
  private:
   void on_frame(const Frame& frame);
   void recall_frame(const Frame& frame);
   void archive(Archive& a);
-  [[nodiscard]] std::uint64_t take_back_state();
-  void keep_state(std::uint64_t file);
   [[nodiscard]] std::vector<std::string> alarm_texts();
   void go_on(Clock::time_point now);
-  void publish_alarms_again();
-  [[nodiscard]] bool other_monitor_speaks() const;
-  [[nodiscard]] bool partner(const bus::Surroundings& around) const;
-  [[nodiscard]] std::string monitors_text(const std::string& self) const;
+  void report(const idl::SampleView& sample, const AlignerCounters& before);
   /// Over what there is of the window.
   [[nodiscard]] PerformanceRecord performance();
   void publish_performance();
   void publish_diagnosis();
-  void count_channels();
+  void publish_alarms_again();
   void publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around);
+  [[nodiscard]] std::vector<bus::Trouble> keeping_troubles() const;
+  [[nodiscard]] std::string stands_by_text() const;
   void show();
-  [[nodiscard]] std::vector<bus::Trouble> troubles(const bus::Surroundings& around) const;
-  void judge_health(const std::vector<bus::Trouble>& troubles);
-  void report_refused(const idl::SampleView& sample);
 
   config::UnitConfig config_;
   UnitOutputs outputs_;
   SampleJournal* samples_;
   std::optional<history::Journal> journal_;
-  std::optional<SampleLog> log_;
-  std::optional<StateFiles> states_;
-  std::uint64_t files_between_states_ = 1, next_state_ = 0;
+  std::optional<Checkpoints> checkpoints_;
   bool recalling_ = false;
   report::UnitMonitor monitor_;
   UnitAlarms alarms_;
@@ -154,28 +151,13 @@ class UnitPipeline {
   std::optional<LiveDiagnosis> diagnosis_;
   UnitObserver* observer_ = nullptr;
   Clock::duration patience_;  // without a frame while something waits
-  bus::UnitInputs inputs_;
-  TroubleLog trouble_log_;
-  std::vector<bus::Trouble> troubles_;  // at the last health
-  std::string trouble_text_;
+  UnitHealth health_;
+  Neighbours neighbours_;
+  ToldAlarms told_;
   Clock::time_point now_;  // of the event loop
   Clock::time_point last_frame_;
   Clock::time_point next_health_;
-  std::optional<Clock::time_point> stood_still_;  // when this process went on
-  Clock::duration stood_still_for_{};
-  /// Who, and when it was heard.
-  struct OtherMonitor {
-    std::string name;
-    Clock::time_point heard;
-  };
-  std::map<std::uint64_t, OtherMonitor> other_monitors_;  // by writer
-  bool other_monitor_spoke_ = false;                      // at the last health
-  HealthRecord health_;
-  std::unique_ptr<Role> role_;  // null: nobody shares the unit
-  Clock::time_point role_begins_;
-  ToldAlarms told_;
   std::optional<std::time_t> keys_until_;
-  std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
   host::RateLimiter refused_limit_, beyond_limit_, output_limit_, restart_limit_;
   host::RateLimiter refusal_limit_;
 };

@@ -27,6 +27,7 @@ TEST_CASE("a wait set has something from when a sample comes until it is taken")
     REQUIRE(writer.write(sample));
     CHECK(wait_set.wait(10s));
     CHECK(wait_set.wait(0s));
+    CHECK(wait_set.ready());
     CHECK(reader.take([](const mpm_Alarm&) {}) == 1);
     CHECK_FALSE(wait_set.wait(0s));
   }

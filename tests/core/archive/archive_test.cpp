@@ -123,6 +123,27 @@ TEST_CASE("what does not fit is refused, and said how") {
   CHECK_THAT(refused(longer), Catch::Contains("more bytes"));
 }
 
+TEST_CASE("who puts much away is asked before every megabyte whether to stop") {
+  std::vector<double> much(1 << 19, 1.5);  // four megabytes, and eight bytes for their count
+  std::vector<std::byte> whole;
+  Archive away(whole);
+  away(much);
+  std::vector<std::byte> asked_for;
+  int asked = 0;
+  Archive patient(asked_for, [&] { return ++asked > 100; });
+  patient(much);
+  CHECK(asked == 5);
+  CHECK(asked_for == whole);
+  for (int last = 1; last <= 5; ++last) {
+    std::vector<std::byte> bytes;
+    asked = 0;
+    Archive stopped(bytes, [&] { return ++asked == last; });
+    CHECK_THROWS_AS(stopped(much), Archive::Stopped);
+    CHECK(bytes.size() == (static_cast<std::size_t>(last) - 1) << 20);
+    CHECK(much == std::vector<double>(1 << 19, 1.5));
+  }
+}
+
 // A listing that names what is of the wrong size or beyond its limits, as bytes alone can have it.
 TEST_CASE("no number gets beyond its limits, and no list takes more than the bytes stand for") {
   const auto of = [](std::int64_t number) {

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <set>
 #include <thread>
@@ -30,10 +31,18 @@ std::string path(const test::TemporaryFolder& folder, std::uint64_t file) {
   return numbered_path(folder.file(""), "state-", file);
 }
 
+void begin(StateFiles& states, std::uint64_t file, const Bytes& bytes) {
+  CHECK(states.keep([&](Bytes& to) {
+    to = bytes;
+    return std::optional(file);
+  }));
+}
+
 /// Written by a thread; whoever leaves waits for it.
 void keep(const std::string& folder, const std::string& belongs, std::uint64_t file,
           const Bytes& bytes) {
-  StateFiles(folder, belongs).keep(file, [&](Bytes& to) { to = bytes; });
+  StateFiles states(folder, belongs);
+  begin(states, file, bytes);
 }
 
 void await(StateFiles& states) {
@@ -121,6 +130,24 @@ TEST_CASE("a damaged state is not used") {
   CHECK(states.read(8));
 }
 
+TEST_CASE("what names no file is not written, and costs the one before nothing") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("");
+  keep(place, "a", 8, some_bytes(8));
+  StateFiles states(place, "a");
+  states.expect(10'000);
+  CHECK_FALSE(states.keep([](Bytes& to) {
+    CHECK(to.capacity() >= 10'000);
+    to = some_bytes(9);
+    return std::optional<std::uint64_t>();
+  }));
+  CHECK(names_in(place) == std::set<std::string>{"state-000000000008"});
+  begin(states, 10, {});  // nothing of 9 is left
+  await(states);
+  REQUIRE(states.read(10));
+  CHECK(states.read(10)->empty());
+}
+
 TEST_CASE("what cannot be written is told, and the state before stays") {
   const test::TemporaryFolder folder;
   const std::string place = folder.file("states");
@@ -128,16 +155,16 @@ TEST_CASE("what cannot be written is told, and the state before stays") {
   keep(place, "a", 8, some_bytes(8));
   StateFiles states(place, "a");
   fs::rename(place, folder.file("away"));
-  states.keep(9, [](Bytes& to) { to = some_bytes(9); });
+  begin(states, 9, some_bytes(9));
   await(states);
   CHECK(states.problem().find(place) != std::string::npos);
   fs::rename(folder.file("away"), place);
   CHECK(states.read(8) == some_bytes(8));
-  states.keep(10, [](Bytes& to) { to = some_bytes(10); });
+  begin(states, 10, some_bytes(10));
   await(states);
   CHECK(states.problem().empty());
   CHECK(states.oldest() == 8);
-  states.keep(11, [](Bytes& to) { to = some_bytes(11); });
+  begin(states, 11, some_bytes(11));
   await(states);
   CHECK(states.oldest() == 10);
   CHECK(states.read(10) == some_bytes(10));

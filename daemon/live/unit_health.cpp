@@ -1,0 +1,157 @@
+#include "daemon/live/unit_health.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/text/number_text.hpp"
+#include "daemon/files/aligning.hpp"
+#include "daemon/live/lost_troubles.hpp"
+
+namespace mpm::live {
+namespace {
+
+using Clock = UnitHealth::Clock;
+
+constexpr int kSilentSamples = 10;
+constexpr std::chrono::seconds kLeastSilence{5};
+constexpr int kPause = 3;             // samples
+constexpr int kIncompleteShows = 2;   // samples
+constexpr std::chrono::seconds kLeastPause{1};
+constexpr std::chrono::seconds kStandstill{5};
+constexpr std::chrono::seconds kTold{60};
+constexpr std::size_t kMostInDetail = 3;
+
+Clock::duration samples_or(double sample_time_s, int samples, std::chrono::seconds at_least) {
+  return std::max<Clock::duration>(
+      at_least, std::chrono::duration_cast<Clock::duration>(
+                    std::chrono::duration<double>(sample_time_s * samples)));
+}
+
+bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
+  bus::ExpectedInputs expected = bus::expected_inputs(unit, files::needed_kinds(unit));
+  expected.silence = samples_or(unit.sample_time_s, kSilentSamples, kLeastSilence);
+  return expected;
+}
+
+}  // namespace
+
+UnitHealth::UnitHealth(const config::UnitConfig& unit, Clock::time_point now)
+    : unit_(unit), inputs_(expected_of(unit), now), now_(now) {
+  record_.unit = unit.unit;
+}
+
+void UnitHealth::go_on(Clock::time_point now) {
+  if (now - now_ > kStandstill) {
+    stood_still_ = now;
+    stood_still_for_ = now - now_;
+    inputs_.stood_still(now);
+  }
+  now_ = now;
+}
+
+void UnitHealth::push(const idl::SampleView& sample) {
+  inputs_.push(sample.kind,
+               {sample.writer, sample.interval, sample.source_time_ns, sample.values.size(),
+                sample.quality.size()},
+               now_);
+}
+
+void UnitHealth::move_to(std::int64_t interval, std::int64_t source_time_ns) {
+  record_.interval = interval;
+  record_.source_time_ns = source_time_ns;
+}
+
+void UnitHealth::count(const std::vector<ChannelRecord>& channels) {
+  record_.undetermined = record_.matching = record_.mismatching = record_.active_alarms = 0;
+  for (const ChannelRecord& channel : channels) {
+    if (channel.verdict == Verdict::kMatch)
+      ++record_.matching;
+    else if (channel.verdict == Verdict::kMismatch)
+      ++record_.mismatching;
+    else
+      ++record_.undetermined;
+    if (channel.alarm == AlarmState::kActive) ++record_.active_alarms;
+  }
+}
+
+const HealthRecord& UnitHealth::judge(const Found& found, std::int64_t wall_s) {
+  const AlignerCounters& aligner = found.aligner;
+  record_.frames = aligner.frames;
+  record_.used = found.monitor.counters().used;
+  record_.missing = aligner.missing;
+  if (record_.incomplete != aligner.incomplete) incomplete_at_ = now_;
+  record_.incomplete = aligner.incomplete;
+  record_.late = aligner.late;
+  record_.repeated = aligner.repeated;
+  record_.out_of_order = aligner.out_of_order;
+  record_.bad_values = found.monitor.counters().bad_values;
+  record_.wrong_length = aligner.wrong_length;
+  record_.beyond = aligner.beyond;
+  record_.unknown_unit = found.unknown_unit;
+  record_.restarts = aligner.restarts;
+  count(found.monitor.channels());
+  troubles_ = find_troubles(found);
+  trouble_text_ = bus::joined_text(troubles_, kMostInDetail);
+  for (const TroubleLog::Line& line : trouble_log_.update(troubles_, now_, wall_s))
+    spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", unit_.unit,
+                line.text);
+  decide();
+  if (!found.in_front.empty())
+    record_.detail = found.in_front + (record_.detail.empty() ? "" : "; " + record_.detail);
+  return record_;
+}
+
+std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
+  using bus::Severity;
+  std::vector<bus::Trouble> all = inputs_.troubles(found.around, now_);
+  // Where a topic is missing or has gaps or a counter jumped, that is why.
+  if (incomplete_at_ &&
+      now_ - *incomplete_at_ < samples_or(unit_.sample_time_s, kIncompleteShows, kLeastPause) &&
+      (all.empty() || all.front().severity == Severity::kMaintenanceRequired))
+    all.push_back({"incomplete", Severity::kOutOfSpecification, "data incomplete"});
+  std::vector<LostSignal> lost = found.monitor.monitor().lost();
+  std::erase_if(lost, [this](const LostSignal& signal) {  // its topic pauses, which will be told
+    const std::optional<Clock::time_point> last = inputs_.stream(signal.kind).last();
+    return signal.cause == LossCause::kNoValue && last &&
+           now_ - *last > samples_or(unit_.sample_time_s, kPause, kLeastPause);
+  });
+  for (bus::Trouble& trouble : lost_troubles(unit_, lost, all)) all.push_back(std::move(trouble));
+  if (stood_still_ && now_ - *stood_still_ < kTold)
+    all.push_back(
+        {"standstill", Severity::kOutOfSpecification,
+         fmt::format("the monitor itself stood still for {} s: its machine is too busy or was "
+                     "asleep",
+                     std::chrono::duration_cast<std::chrono::seconds>(stood_still_for_).count()),
+         std::to_string(stood_still_->time_since_epoch().count())});
+  all.insert(all.end(), found.others.begin(), found.others.end());
+  sort_by_severity(all);
+  return all;
+}
+
+// The worst of what NE 107 has a word for.
+void UnitHealth::decide() {
+  const auto set = [this](const char* state, std::string detail) {
+    record_.state = state;
+    record_.detail = std::move(detail);
+  };
+  const std::string alarms = counted(record_.active_alarms, "alarm");
+  const std::string besides = trouble_text_.empty() ? "" : "; " + trouble_text_;
+  const bool in_trouble = !troubles_.empty();
+  const bool serious =
+      in_trouble && troubles_.front().severity > bus::Severity::kMaintenanceRequired;
+  const bool waiting = record_.frames == 0, alarmed = record_.active_alarms > 0;
+  if (serious || (in_trouble && !waiting && !alarmed))
+    set(to_string(troubles_.front().severity), trouble_text_);
+  else if (waiting)
+    set("function_check", bus::kNoCompleteData + besides);
+  else if (alarmed)
+    set("maintenance_required", alarms + besides);
+  else if (record_.matching + record_.mismatching == 0)
+    set("function_check", bus::kNothingDetermined);
+  else
+    set("normal", "");
+}
+
+}  // namespace mpm::live

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/unit_config.hpp"
+#include "core/record/channel_record.hpp"
+#include "core/record/health_record.hpp"
+#include "core/signal/aligner.hpp"
+#include "daemon/bus/trouble.hpp"
+#include "daemon/bus/unit_inputs.hpp"
+#include "daemon/live/trouble_log.hpp"
+#include "daemon/report/unit_monitor.hpp"
+#include "idl/sample_view.hpp"
+
+namespace mpm::live {
+
+/// What is wrong with a unit apart from its channels, and what health (NE 107) that and its alarms
+/// make.
+class UnitHealth {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  UnitHealth(const config::UnitConfig& unit, Clock::time_point now);
+
+  /// The event loop goes on, which it does five times a second at least. Before all others.
+  void go_on(Clock::time_point now);
+  void push(const idl::SampleView& sample);
+  /// What the control system says its values are, or that nobody says it of `kind` any more.
+  void hear(const mpm_Layout& layout) { inputs_.hear(layout); }
+  void forget_layout(const char* kind) { inputs_.forget_layout(kind); }
+  /// The record is of that sample from now on.
+  void move_to(std::int64_t interval, std::int64_t source_time_ns);
+  /// How things stand without a look at what is wrong.
+  void count(const std::vector<ChannelRecord>& channels);
+  /// What a process before this one missed is no news.
+  void recall(const AlignerCounters& aligner) { record_.incomplete = aligner.incomplete; }
+
+  /// What there is to be judged at one moment.
+  struct Found {
+    const AlignerCounters& aligner;
+    report::UnitMonitor& monitor;  // makes its records when asked
+    std::uint64_t unknown_unit = 0;
+    const bus::Surroundings& around;
+    std::vector<bus::Trouble> others = {};  ///< what is seen elsewhere
+    std::string in_front = {};              ///< of the detail
+  };
+  /// Logs what begins and what is over.
+  const HealthRecord& judge(const Found& found, std::int64_t wall_s);
+
+  [[nodiscard]] const HealthRecord& record() const { return record_; }
+  /// At the last judgement, the worst first.
+  [[nodiscard]] const std::vector<bus::Trouble>& troubles() const { return troubles_; }
+  /// The worst of them, in words; empty if there is none.
+  [[nodiscard]] const std::string& trouble_text() const { return trouble_text_; }
+  [[nodiscard]] bool wants_endpoints(Clock::time_point now) const {
+    return inputs_.wants_endpoints(now);
+  }
+
+ private:
+  [[nodiscard]] std::vector<bus::Trouble> find_troubles(const Found& found) const;
+  void decide();
+
+  const config::UnitConfig& unit_;
+  bus::UnitInputs inputs_;
+  TroubleLog trouble_log_;
+  std::vector<bus::Trouble> troubles_;
+  std::string trouble_text_;
+  HealthRecord record_;
+  Clock::time_point now_;
+  std::optional<Clock::time_point> stood_still_;  // when this process went on
+  Clock::duration stood_still_for_{};
+  std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
+};
+
+}  // namespace mpm::live
