@@ -21,15 +21,23 @@ using Clock = std::chrono::steady_clock;
 constexpr int kSamples = 6000;  // more than any memory of the two units holds
 constexpr int kTimes = 11;
 
+double ms_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+double median_of(const std::function<double()>& measured) {
+  std::vector<double> each(kTimes);
+  std::generate(each.begin(), each.end(), measured);
+  std::nth_element(each.begin(), each.begin() + kTimes / 2, each.end());
+  return each[kTimes / 2];
+}
+
 double median_ms(const std::function<void()>& step) {
-  std::vector<double> times;
-  for (int n = 0; n < kTimes; ++n) {
+  return median_of([&] {
     const Clock::time_point begin = Clock::now();
     step();
-    times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
-  }
-  std::nth_element(times.begin(), times.begin() + kTimes / 2, times.end());
-  return times[kTimes / 2];
+    return ms_since(begin);
+  });
 }
 
 config::UnitConfig square_unit(int size) {
@@ -74,12 +82,26 @@ void measure(const std::string& name, const config::UnitConfig& unit) {
     Archive archive(bytes);
     archive(monitor);
   });
+  // What somebody who comes in the midst of it has to wait at most, as in Checkpoints::rest.
+  const double waits = median_of([&] {
+    bytes.clear();
+    double longest_ms = 0.0;
+    Clock::time_point begin = Clock::now();
+    Archive archive(bytes, [&] {
+      longest_ms = std::max(longest_ms, ms_since(begin));
+      begin = Clock::now();
+      return false;
+    });
+    archive(monitor);
+    return longest_ms;
+  });
   report::UnitMonitor anew(unit);
   const double back = median_ms([&] { take_back(bytes, anew); });
   const double made = median_ms([&] { report::UnitMonitor another(unit); });
   std::printf(
-      "%-10s %6.2f MB, put away in %.2f ms, taken back in %.2f ms, constructed in %.2f ms\n",
-      name.c_str(), static_cast<double>(bytes.size()) * 1e-6, away, back, made);
+      "%-10s %6.2f MB, put away in %.2f ms, of which somebody waits %.2f ms at most; taken back in "
+      "%.2f ms, constructed in %.2f ms\n",
+      name.c_str(), static_cast<double>(bytes.size()) * 1e-6, away, waits, back, made);
 }
 
 }  // namespace
