@@ -6,7 +6,10 @@
 /// where nothing else is said; what they give together is scored by tests/identify_score.
 namespace mpm {
 
-inline constexpr int kFewestRows = 30;            ///< fewer tell nothing
+/// Rows per unknown of a CV's fit, of those that are fitted first (three quarters): with fewer,
+/// intervals are too narrow by far. Three unknowns per input, and so many besides.
+inline constexpr int kRowsPerUnknown = 5;
+inline constexpr int kUnknownsPerInput = 3, kOtherUnknowns = 12;
 inline constexpr double kStill = 1e-9;            ///< of its level: rounding, not movement
 inline constexpr double kNumbersOfChannel = 3.0;  ///< gain, time constant, dead time
 inline constexpr double kNotZero = 1e-300;        ///< to divide by

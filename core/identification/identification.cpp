@@ -294,8 +294,12 @@ Identification nothing_of(const Recording& recording) {
 
 }  // namespace
 
+Index needed_rows(Index inputs) {
+  return 4 * kRowsPerUnknown * (kUnknownsPerInput * inputs + kOtherUnknowns) / 3;
+}
+
 Identification identify(const Recording& recording, const IdentificationSettings& settings) {
-  if (recording.samples() < kFewestRows) return nothing_of(recording);
+  if (recording.samples() < needed_rows(recording.inputs.cols())) return nothing_of(recording);
   std::vector<Index> read_every;
   const Recording measured = without_seldom_read(recording, read_every);
   const Material given = material(measured, settings.open_loop);

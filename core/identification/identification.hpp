@@ -95,6 +95,9 @@ struct Identification {
   double longest_lag_s = 0.0;  ///< that was looked at
 };
 
+/// Rows that an identification with so many inputs takes at least; fewer tell nothing.
+[[nodiscard]] Eigen::Index needed_rows(Eigen::Index inputs);
+
 /// A model from data alone.
 [[nodiscard]] Identification identify(const Recording& recording,
                                       const IdentificationSettings& settings);

@@ -74,12 +74,13 @@ bool Screen::Repeats::at_end() const {
 }
 
 Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::vector<bool> acts,
-               int dead_time)
+               int dead_time, Looks looks)
     : counts_(counts),
       may_predict_(std::move(may_predict)),
       predicted_(static_cast<std::size_t>(counts.cv), false),
       acts_(std::move(acts)),
       dead_time_(dead_time),
+      looks_(looks),
       since_rest_(static_cast<std::size_t>(counts.inputs()), 0),
       ring_(kHeld, Frame(counts)),
       marked_(kHeld),
@@ -106,7 +107,7 @@ void Screen::Range::archive(Archive& a) {
 }
 
 void Screen::archive(Archive& a) {
-  // not archived: counts_, may_predict_, acts_, dead_time_ (construction)
+  // not archived: counts_, may_predict_, acts_, dead_time_, looks_ (construction)
   // not archived: all_mvs_rest_, longest_out_, anew_ (each frame says it anew)
   a(predicted_, inputs_matter_, since_rest_, ring_, marked_);
   a.within(position_, 0, kHeld - 1);
@@ -137,13 +138,8 @@ void Screen::push(const Frame& frame) {
   if (inputs_matter_) follow_compression_of_inputs();
   if (inputs_matter_) follow_predictions(frame[SignalKind::kPrediction]);
   follow_inputs();
-  if (inputs_matter_) {
-    screen_repeats(SignalKind::kMv);
-    screen_repeats(SignalKind::kDv);
-  }
-  screen_repeats(SignalKind::kPrediction);
-  screen_repeats(SignalKind::kCv);
-  if (pushed_ > kDelay)
+  if (looks_ == Looks::kAll) screen_repeats();
+  if (looks_ == Looks::kAll && pushed_ > kDelay)
     for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
   for (const SignalKind kind : kScreened) learn_range(kind);
 }
@@ -213,6 +209,15 @@ bool Screen::may_rest(SignalKind kind, int index) const {
         since_rest_[static_cast<std::size_t>(i)] > dead_time_ + 1)
       return false;
   return true;
+}
+
+void Screen::screen_repeats() {
+  if (inputs_matter_) {
+    screen_repeats(SignalKind::kMv);
+    screen_repeats(SignalKind::kDv);
+  }
+  screen_repeats(SignalKind::kPrediction);
+  screen_repeats(SignalKind::kCv);
 }
 
 void Screen::screen_repeats(SignalKind kind) {

@@ -47,10 +47,19 @@ class Screen {
   static constexpr int kLongestDelay = calibration::extent::kLongestBurst;
   static constexpr int kHeld = kLongestDelay + 2;  ///< frames; no more leave at once
 
+  /// What is marked: all that is said above, or only what goes far beyond all that a signal has
+  /// been and comes back.
+  enum class Looks { kAll, kFar };
+
   /// `may_predict[j]`: a prediction of CV j may come with the frames. `acts[input * cvs + cv]`: the
   /// model has that channel; `dead_time`: its longest, samples.
   Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::vector<bool> acts,
-         int dead_time);
+         int dead_time, Looks looks = Looks::kAll);
+  /// Where no prediction will come.
+  Screen(const SignalCounts& counts, Looks looks)
+      : Screen(counts, std::vector<bool>(static_cast<std::size_t>(counts.cv), false),
+               std::vector<bool>(static_cast<std::size_t>(counts.cv * counts.inputs()), true), 0,
+               looks) {}
 
   void push(const Frame& frame);
   /// The next frame that leaves, with its qualities as found; null where there is none. Valid until
@@ -127,6 +136,7 @@ class Screen {
   void follow_inputs();
   void follow_compression_of_inputs();
   [[nodiscard]] bool may_rest(SignalKind kind, int index) const;
+  void screen_repeats();
   void screen_repeats(SignalKind kind);
   void mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter);
   void screen_spikes(int cv);
@@ -144,6 +154,7 @@ class Screen {
   std::vector<bool> predicted_;
   std::vector<bool> acts_;
   int dead_time_;
+  Looks looks_;
   bool inputs_matter_ = true;
   bool all_mvs_rest_ = true;
   std::vector<int> since_rest_;  // per input, samples

@@ -8,6 +8,7 @@
 
 #include "config/finding.hpp"
 #include "config/unit_layout.hpp"
+#include "core/identify/evidence/jumps.hpp"
 #include "core/identify/fit/runs.hpp"
 #include "core/text/number_text.hpp"
 
@@ -16,6 +17,9 @@ namespace {
 
 // 640 MB as doubles: three months of seconds at 10 tags.
 constexpr std::int64_t kMostValues = 80'000'000;
+
+// Share of an input's values.
+constexpr double kLeastKnown = 0.5;
 
 // Less movement than this share of its level is rounding, not a move.
 constexpr double kStill = 1e-9;
@@ -104,6 +108,18 @@ bool moves(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return high - low > kStill * std::max(std::abs(low), std::abs(high));
 }
 
+std::vector<std::pair<std::string, std::uint64_t>> by_tag(const config::UnitConfig& unit,
+                                                          const JumpTally& jumps) {
+  config::SignalTally tally;
+  const auto mvs = static_cast<std::ptrdiff_t>(unit.counts().mv);
+  tally[static_cast<std::size_t>(SignalKind::kMv)].assign(jumps.inputs.begin(),
+                                                          jumps.inputs.begin() + mvs);
+  tally[static_cast<std::size_t>(SignalKind::kDv)].assign(jumps.inputs.begin() + mvs,
+                                                          jumps.inputs.end());
+  tally[static_cast<std::size_t>(SignalKind::kCv)].assign(jumps.cvs.begin(), jumps.cvs.end());
+  return config::by_tag(unit, tally);
+}
+
 }  // namespace
 
 RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit,
@@ -162,13 +178,15 @@ RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit
   file.bad_tags = config::by_tag(unit, table.unusable());
   for (const auto& [tag, bad] : file.bad_tags) file.bad_values += static_cast<std::int64_t>(bad);
   table.move_to(recording);
+  file.jumps = by_tag(unit, leave_out_jumps(recording));
   const Eigen::Index rows = recording.samples();
   if (!recording.borders.empty()) recording = without_scraps(recording);
   file.scraps = rows - recording.samples();
   return file;
 }
 
-std::string recording_problem(const Recording& recording, Eigen::Index needed) {
+std::string recording_problem(const Recording& recording, const config::UnitConfig& unit,
+                              Eigen::Index needed) {
   const auto usable = [](const Eigen::MatrixXd& block, Eigen::Index row) {
     return block.row(row).array().isFinite().any();
   };
@@ -179,6 +197,19 @@ std::string recording_problem(const Recording& recording, Eigen::Index needed) {
     return "too short: " + counted(static_cast<std::uint64_t>(rows), "usable sample") +
            ", a diagnosis of this model needs " + std::to_string(needed) + " (" +
            seconds_text(static_cast<double>(needed) * recording.sample_time_s) + ")";
+  for (Eigen::Index i = 0; i < recording.inputs.cols(); ++i) {
+    const double known = static_cast<double>(recording.inputs.col(i).array().isFinite().count()) /
+                         static_cast<double>(recording.samples());
+    const bool acts = unit.model.state_space ||
+                      std::any_of(unit.model.channels.begin(), unit.model.channels.end(),
+                                  [i](const ChannelSpec& channel) {
+                                    return channel.input == static_cast<int>(i);
+                                  });
+    if (acts && known < kLeastKnown)
+      return unit.input_tag(static_cast<int>(i)) + " has no usable value in " +
+             percent_text(1.0 - known) +
+             " of the samples: without it the model cannot be simulated";
+  }
   for (Eigen::Index i = 0; i < recording.inputs.cols(); ++i)
     if (moves(recording.inputs.col(i))) return {};
   return "no excitation: no MV or DV of the model moves, so nothing can be told about it";

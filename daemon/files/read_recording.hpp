@@ -19,7 +19,9 @@ struct RecordingFile {
   std::int64_t out_of_order = 0;  ///< rows whose time did not grow; left out
   std::int64_t bad_values = 0;    ///< of inputs and CVs in the rows that are there
   std::vector<std::pair<std::string, std::uint64_t>> bad_tags;  ///< whose they are
-  std::int64_t long_gaps = 0;                                   ///< after each a new run begins
+  /// Values left out because no process gives them (leave_out_jumps()), by tag.
+  std::vector<std::pair<std::string, std::uint64_t>> jumps;
+  std::int64_t long_gaps = 0;    ///< after each a new run begins
   std::int64_t longest_gap = 0;  ///< intervals that a run goes on across
   std::int64_t scraps = 0;       ///< rows of runs too short to tell anything; left out
 };
@@ -32,8 +34,9 @@ struct RecordingFile {
 [[nodiscard]] RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit,
                                            const std::string& name, const TimeChoice& choice = {});
 
-/// Why no model can be diagnosed on this recording, one line for a person; empty where one can.
-/// `needed` rows at least.
-[[nodiscard]] std::string recording_problem(const Recording& recording, Eigen::Index needed);
+/// Why the unit's model cannot be diagnosed on this recording, one line for a person; empty where
+/// it can. `needed` rows at least.
+[[nodiscard]] std::string recording_problem(const Recording& recording,
+                                            const config::UnitConfig& unit, Eigen::Index needed);
 
 }  // namespace mpm::files

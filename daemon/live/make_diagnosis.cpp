@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/identify/evidence/jumps.hpp"
 #include "daemon/files/folder_name.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/live/named_cause.hpp"
@@ -18,6 +19,7 @@ report::DiagnosisRun prepare(const DiagnosisJob& job) {
   report::DiagnosisRun run;
   run.unit = *job.unit;
   run.recording = job.samples.recording(job.unit->sample_time_s);
+  (void)leave_out_jumps(run.recording);
   run.program = idl::version_text("mpmd");
   run.command_line = "mpmd, because of the alarm of " + files::time_folder(job.alarm_time_ns);
   run.config_file = job.unit->unit + " as mpmd runs it";
@@ -55,7 +57,8 @@ std::optional<DiagnosisOutcome> make_diagnosis(const DiagnosisJob& job, const Re
   if (job.only_writes) return write_again(job, store);
   DiagnosisOutcome outcome;
   report::DiagnosisRun run = prepare(job);
-  outcome.problem = files::recording_problem(run.recording, needed_samples(run.unit.model));
+  outcome.problem =
+      files::recording_problem(run.recording, run.unit, needed_samples(run.unit.model));
   if (!outcome.problem.empty()) return outcome;
   DiagnosisSettings settings;
   settings.mv_count = run.unit.counts().mv;

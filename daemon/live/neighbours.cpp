@@ -58,10 +58,11 @@ std::vector<bus::Trouble> Neighbours::troubles(const bus::Surroundings& around,
   using bus::Severity;
   std::vector<bus::Trouble> found;
   if (any_speaks(now))
-    found.push_back({"other monitor", Severity::kMaintenanceRequired, names_text(around.self, now)});
+    found.push_back(
+        {"other monitor", Severity::kMaintenanceRequired, names_text(around.self, now)});
   if (role_ && role_->active() && now - role_begins_ > kStandbyKnown && !has_standby(around))
-    found.push_back({"no standby", Severity::kMaintenanceRequired,
-                     "no other monitor stands by for this unit"});
+    found.push_back(
+        {"no standby", Severity::kMaintenanceRequired, "no other monitor stands by for this unit"});
   return found;
 }
 

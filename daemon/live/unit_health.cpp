@@ -16,17 +16,17 @@ using Clock = UnitHealth::Clock;
 
 constexpr int kSilentSamples = 10;
 constexpr std::chrono::seconds kLeastSilence{5};
-constexpr int kPause = 3;             // samples
-constexpr int kIncompleteShows = 2;   // samples
+constexpr int kPause = 3;            // samples
+constexpr int kIncompleteShows = 2;  // samples
 constexpr std::chrono::seconds kLeastPause{1};
 constexpr std::chrono::seconds kStandstill{5};
 constexpr std::chrono::seconds kTold{60};
 constexpr std::size_t kMostInDetail = 3;
 
 Clock::duration samples_or(double sample_time_s, int samples, std::chrono::seconds at_least) {
-  return std::max<Clock::duration>(
-      at_least, std::chrono::duration_cast<Clock::duration>(
-                    std::chrono::duration<double>(sample_time_s * samples)));
+  return std::max<Clock::duration>(at_least,
+                                   std::chrono::duration_cast<Clock::duration>(
+                                       std::chrono::duration<double>(sample_time_s * samples)));
 }
 
 bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {

@@ -2,6 +2,9 @@
 
 #include <Eigen/Core>
 
+#include <limits>
+
+#include "core/identify/fit/problem.hpp"
 #include "core/identify/fit/whitening.hpp"
 
 /// Numbers that decide a diagnosis after the search. Chosen by hand where nothing else is said; no
@@ -76,6 +79,10 @@ inline constexpr int kMostLate = 2;
 
 /// What moves with a set-point is named where it explains so much of the unseen error.
 inline constexpr double kSetpointExplains = 0.3;
+
+/// An error of one channel that the calibrated test finds too small to matter is believed to be
+/// small where its numbers are.
+inline constexpr Tolerances kSmall{0.1, 0.2, std::numeric_limits<double>::infinity()};
 
 /// One of so many samples of a CV must be known.
 inline constexpr Eigen::Index kFewestKnownParts = 10;

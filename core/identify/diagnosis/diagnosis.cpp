@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/channel_error.hpp"
 #include "core/identify/diagnosis/account.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/clock.hpp"
@@ -55,6 +56,24 @@ std::function<bool(double)> or_give_up(const std::function<bool(double)>& progre
   };
 }
 
+enum class Worth { kFinding, kSmall, kUnproved };
+
+/// An error of a channel that the calibrated test finds too small to matter is small where its own
+/// numbers are; else one of the two is wrong: the test, where predictions gain overwhelmingly.
+Worth worth_of(std::size_t i, const Account& kept, const Judges& judges,
+               const ChannelTests& tests) {
+  const Effect& effect = kept.found.named[i].effect;
+  const Problem& problem = *kept.problem;
+  if (!is_error_of_channel(effect) ||
+      tests.may_matter(channels_of(effect, problem.model(), problem.surroundings().model_inputs)))
+    return Worth::kFinding;
+  if (material_errors(effect, kSmall) == 0) return Worth::kSmall;
+  const bool overwhelms = kept.selection.fates[i] == Fate::kRepaired &&
+                          kept.selection.sure_gains[i] >= kOverwhelmingGain &&
+                          moved_from_outside(effect, problem.model(), judges.outside_shares);
+  return overwhelms ? Worth::kFinding : Worth::kUnproved;
+}
+
 /// What was named, as findings, and what has no name; most important first, what no repair removes
 /// last.
 void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
@@ -87,7 +106,14 @@ void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
                                               : why_not_in_model(selection.fates[i]);
     finding.explains = selection.explains[i];
     if (const auto other = selection.with[i]) finding.with = subject_of(found.named[*other].effect);
-    if (causes::is_unnamed(cause)) {
+    const Worth worth = worth_of(i, kept, judges, tests);
+    if (worth == Worth::kSmall) {
+      diagnosis.small.push_back(std::move(finding));
+    } else if (worth == Worth::kUnproved) {
+      finding.refused = "for the test of the channels it is too small to matter";
+      unproved.push_back(std::move(finding));
+      mark_unclear(effect);
+    } else if (causes::is_unnamed(cause)) {
       diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
       mark_unclear(effect);
     } else if (not_setpoint != nullptr || (of_setpoint && finding.explains < kSetpointExplains)) {

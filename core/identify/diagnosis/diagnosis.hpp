@@ -44,6 +44,9 @@ struct Diagnosis {
   Eigen::Index samples = 0, fit_samples = 0, validation_samples = 0;
   std::vector<Finding> findings;  ///< most important first
   std::vector<Finding> refused;   ///< found, but their repair did not carry over to unseen data
+  /// Linear errors of channels that are there and too small to matter, by the monitor's limits: the
+  /// others were told beside them.
+  std::vector<Finding> small;
   std::vector<Unexplained> unexplained;
   /// What would explain the data best and may not be named, for the calibrated test of the channels
   /// does not reject them.

@@ -40,6 +40,14 @@ double outside_needed(const Effect& effect) {
   return cause.acts_through_channels() && !by_itself ? kHardlyOutside : 0.0;
 }
 
+}  // namespace
+
+bool is_error_of_channel(const Effect& effect) {
+  return cause_of(effect).together_with_others() != nullptr;
+}
+
+namespace {
+
 /// Whether it is all through an error of gains, time constants or dead times, which the calibrated
 /// test sees where it can be seen at all; a valve frees gain and lags beside its own.
 bool is_linear_error(const Effect& effect) {
@@ -70,8 +78,9 @@ std::function<bool(const Effect&)> nameable(const ModelSpec& model, const Signal
     if (effect.place.aux >= ranges.aux) return may_name_setpoint(effect, tests, ranges.aux);
     if (!cause_of(effect).acts_through_channels()) return true;
     const std::vector<std::pair<int, int>> channels = channels_of(effect, model, ranges.inputs);
-    const bool seen_if_any = is_linear_error(effect) || cause_of(effect).is_curve();
-    return tests.reject(channels) && (!seen_if_any || tests.may_matter(channels));
+    const bool has_to_matter =
+        cause_of(effect).is_curve() || (is_linear_error(effect) && !is_error_of_channel(effect));
+    return tests.reject(channels) && (!has_to_matter || tests.may_matter(channels));
   };
 }
 

@@ -22,14 +22,18 @@ struct SignalRanges {
                                                            const ModelSpec& model,
                                                            int model_inputs);
 
+/// Whether it is an error of one channel's gain, time constants or dead time, or of several.
+[[nodiscard]] bool is_error_of_channel(const Effect& effect);
+
 /// Which effects may be named: what acts through channels where the calibrated test rejects those
-/// (`model`'s), a linear error or a curve where what it rejects may matter: in a free run errors
-/// that matter in no channel may add up, so that a CV that two inputs move against one another
-/// seems to have another scale. A disturbance may be named always, what a set-point does as
-/// `may_name_setpoint` says; a curve only where its input moves from outside the loop too (shares
-/// per input): feedback bends what is straight. Where it moves hardly at all from there, no
-/// channel's gain or lags: to leave the channel out then explains everything, for the controller
-/// holds the CV where it is. All must outlive what is returned.
+/// (`model`'s), a curve or another linear error than a channel's where what it rejects may matter:
+/// in a free run errors that matter in no channel may add up, so that a CV that two inputs move
+/// against one another seems to have another scale. An error of one channel may be too small to
+/// matter: not taken in, another cause would explain what it does. A disturbance may be named
+/// always, what a set-point does as `may_name_setpoint` says; a curve only where its input moves
+/// from outside the loop too (shares per input): feedback bends what is straight. Where it moves
+/// hardly at all from there, no channel's gain or lags: to leave the channel out then explains
+/// everything, for the controller holds the CV where it is. All must outlive what is returned.
 [[nodiscard]] std::function<bool(const Effect&)> nameable(
     const ModelSpec& model, const SignalRanges& ranges, const ChannelTests& tests,
     const std::vector<std::optional<double>>& outside_shares);

@@ -36,6 +36,7 @@ std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests&
     const auto told = [&](const auto& each) { return is_about(each.subject, channel); };
     if (rejects(tests, channel.cv, channel.input, level) &&
         std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), told) &&
+        std::none_of(diagnosis.small.begin(), diagnosis.small.end(), told) &&
         std::none_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(), told))
       rejected.push_back({channel.cv, channel.input});
   }

@@ -68,7 +68,8 @@ Given read_all(const std::vector<std::string>& files, const config::UnitConfig& 
                const files::TimeStyle& times, const files::TimeChoice& choice,
                std::vector<std::string>& notices, report::PerformanceTally* performance = nullptr) {
   Given all = read_given(files, unit, times, choice, notices, performance);
-  const std::string problem = files::recording_problem(all.recording, needed_samples(unit.model));
+  const std::string problem =
+      files::recording_problem(all.recording, unit, needed_samples(unit.model));
   if (!problem.empty()) refuse(all.name, problem);
   return all;
 }

@@ -293,6 +293,7 @@ nlohmann::ordered_json to_json(const DiagnosisRun& run) {
             {"validation", scores_json(run)},
             {"extended_model", "extended.yaml"},
             {"refused", findings_json(run, diagnosis.refused)},
+            {"small", findings_json(run, diagnosis.small)},
             {"unexplained", unexplained_json(run)},
             {"suspect", suspect_json(run)},
             {"inputs", inputs_json(run)},
@@ -318,6 +319,8 @@ std::string to_text(const DiagnosisRun& run) {
   int number = 0;
   for (const Finding& finding : diagnosis.findings)
     text += "\n  " + std::to_string(++number) + ". " + finding_text(run, finding);
+  for (const Finding& finding : diagnosis.small)
+    text += "\n  too small to matter: " + explain(run, finding) + '\n';
   for (const Finding& finding : diagnosis.refused)
     text += "\n  refused: " + names_of(run).subject(finding.subject) + ": " +
             (finding.refused.empty() ? "its repair did not carry over" : finding.refused) + '\n';

@@ -57,7 +57,8 @@ std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answe
              number_text(static_cast<double>(every) * run.recording.sample_time_s, 6) + " s";
     }
     case LeftOut::kTooFewRows:
-      return "too few samples for so many inputs";
+      return "too few samples for so many inputs: " +
+             std::to_string(needed_rows(run.recording.inputs.cols())) + " are needed";
     case LeftOut::kOnlyFeedback:
       return "only feedback moves " + input +
              ": what is seen is the controller as much as the process; move it, or a set-point, "

@@ -130,7 +130,9 @@ TEST_CASE("without any rest a state is kept all the same, later") {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   process.written();
-  REQUIRE(process.states().count("state-000000000003") + process.states().count("state-000000000004") == 1);
+  REQUIRE(process.states().count("state-000000000003") +
+              process.states().count("state-000000000004") ==
+          1);
   Process next(folder);
   CHECK(next.had_state);
   CHECK(next.sums.count == k);

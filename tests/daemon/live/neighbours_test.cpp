@@ -24,9 +24,10 @@ TEST_CASE("a monitor that nobody arranged is named, the same by each, until it i
   CHECK_FALSE(neighbours.stands_by());
   CHECK(told(neighbours, kStart).empty());
   neighbours.hear(7, "mpmd (process 2 on host b)", kStart);
-  CHECK(told(neighbours, kStart + seconds(9)) ==
-        "2 monitors watch this unit: mpmd (process 1 on host a), mpmd (process 2 on host b); readers "
-        "see them in turn");
+  CHECK(
+      told(neighbours, kStart + seconds(9)) ==
+      "2 monitors watch this unit: mpmd (process 1 on host a), mpmd (process 2 on host b); readers "
+      "see them in turn");
   CHECK(told(neighbours, kStart + seconds(10)).empty());
   neighbours.hear(7, "mpmd (process 2 on host b)", kStart + seconds(20));
   neighbours.hear_none();
@@ -37,8 +38,9 @@ TEST_CASE("many others are named in part") {
   Neighbours neighbours("unit");
   for (std::uint64_t other = 0; other < 8; ++other)
     neighbours.hear(other, "other " + std::to_string(other), kStart);
-  CHECK(told(neighbours, kStart).find("9 monitors watch this unit: mpmd (process 1 on host a), "
-                                      "other 0, other 1 ... (6 more)") == 0);
+  CHECK(told(neighbours, kStart)
+            .find("9 monitors watch this unit: mpmd (process 1 on host a), "
+                  "other 0, other 1 ... (6 more)") == 0);
 }
 
 TEST_CASE("what stands is said again while another speaks, and all once it has left") {

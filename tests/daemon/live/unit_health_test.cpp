@@ -78,7 +78,8 @@ TEST_CASE("the worst trouble gives the state, and what is told elsewhere is one 
   CHECK(worst.state == "failure");
   CHECK(worst.detail == "it burns; the disk is full");
   CHECK(toy.health.troubles().size() == 2);
-  CHECK(toy.judge(5, {}, "stands by").detail == "stands by; " + std::string(bus::kNothingDetermined));
+  CHECK(toy.judge(5, {}, "stands by").detail ==
+        "stands by; " + std::string(bus::kNothingDetermined));
 }
 
 TEST_CASE("a frame that was not complete is told for two samples") {

@@ -49,6 +49,41 @@ TEST_CASE("a model that is right matches") {
   CHECK(channel.gain_ratio.high - channel.gain_ratio.low < 0.2);
 }
 
+// 2 % of the time constant is half of what the monitor bears. Left out of the search it was given
+// to another cause: the play of a valve, for a PI loop that ramps its input.
+TEST_CASE("an error too small to matter is told as one, and for nothing else") {
+  constexpr Index kLong = 3000;
+  constexpr double kDeadTime = 3.0, kSlow = 150.0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    CAPTURE(seed);
+    VectorXd u(kLong), y(kLong), measured(kLong);
+    VectorXd inside = VectorXd::Zero(kLong + 4);
+    const double keep = std::exp(-1.0 / kSlow);
+    const VectorXd setpoint = 2.0 * test::telegraph(seed, kLong, 300);
+    const VectorXd noise = 0.02 * test::white(seed + 10, kLong);
+    double sum = 0.0;
+    for (Index k = 0; k < kLong; ++k) {
+      y(k) = inside(k);
+      measured(k) = y(k) + noise(k);
+      sum += (setpoint(k) - measured(k)) / 200.0;
+      u(k) = 0.5 * (setpoint(k) - measured(k)) + sum;
+      const double acts = k < 3 ? 0.0 : u(k - static_cast<Index>(kDeadTime));
+      inside(k + 1) = keep * inside(k) + 2.0 * (1.0 - keep) * acts;
+    }
+    DiagnosisSettings settings;
+    settings.mv_count = 1;
+    const Diagnosis diagnosis = diagnose(test::model_of({lag(0, 0, 2.0, kSlow)}, 1, 1),
+                                         test::recording_of(u, measured), nullptr, settings);
+    CHECK(diagnosis.verdict == DiagnosisVerdict::kMatch);
+    CHECK(diagnosis.findings.empty());
+    REQUIRE(diagnosis.small.size() == 1);
+    CHECK(diagnosis.small[0].subject == Subject{&causes::dead_time(), {0, 0}});
+    const Parameter* dead_time = diagnosis.small[0].find(kDeadTimeError);
+    REQUIRE(dead_time != nullptr);
+    CHECK(dead_time->value == Approx(kDeadTime).margin(0.3));
+  }
+}
+
 TEST_CASE("a hidden gain is named, measured and repaired") {
   const Diagnosis diagnosis = diagnosis_of(plant(1.4));
   CHECK(diagnosis.verdict == DiagnosisVerdict::kMismatch);

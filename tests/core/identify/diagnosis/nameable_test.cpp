@@ -105,21 +105,29 @@ TEST_CASE("where nothing but feedback moves an input no gain or lag of it is nam
   CHECK(bench(causes::gain(), {0, 0}));
 }
 
-// In a free run errors that matter in no channel may add up to what looks like a large one.
-TEST_CASE("what is off by too little to matter names no channel, however surely it is seen") {
+// In a free run errors that matter in no channel may add up to what looks like a large one of all.
+TEST_CASE("what is off by too little to matter names no curve and no scale, however surely seen") {
   const Bench bench{.off = 0.03, .noise = 0.01};  // 1.5 %
   REQUIRE(bench.tests.reject({{0, 0}}, 1e-6));
-  Effect gain;
-  gain.edit = &causes::gain();
-  gain.place = {0, 0};
+  CHECK_FALSE(bench(causes::input_polynomial(), {0, 0}));
+  Effect scale;
+  scale.edit = &causes::output_scale();
+  scale.place = {0};
   Coordinate ratio;
   ratio.quantity = &kGainRatio;
-  gain.coordinates = {ratio};
-  CHECK_FALSE(bench.may(gain));
-  CHECK_FALSE(bench(causes::input_polynomial(), {0, 0}));
-  CHECK(Bench().may(gain));
-  gain.edit = &causes::stiction();  // with a gain of its own
-  CHECK(bench.may(gain));
+  scale.coordinates = {ratio};
+  CHECK_FALSE(bench.may(scale));
+  CHECK(Bench().may(scale));
+  scale.edit = &causes::stiction();  // with a gain of its own
+  scale.place = {-1, 0};
+  CHECK(bench.may(scale));
+}
+
+// Else another cause would be named for what it does.
+TEST_CASE("an error of a channel is taken in however small it is") {
+  const Bench bench{.off = 0.03, .noise = 0.01};
+  CHECK(bench(causes::gain(), {0, 0}));
+  CHECK(bench(causes::dead_time(), {0, 0}));
 }
 
 }  // namespace
