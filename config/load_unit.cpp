@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "config/default_movement.hpp"
+#include "config/failure_text.hpp"
 #include "config/load_sections.hpp"
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
@@ -113,14 +114,24 @@ std::vector<std::string> unit_files(const std::string& path) {
   return files;
 }
 
+namespace {
+
+std::string why_none(const std::string& folder) {
+  std::error_code failure;
+  (void)std::filesystem::directory_iterator(folder, failure);
+  return failure ? "cannot be read: " + failure_text(failure.value())
+                 : "the folder holds no unit file (*.yaml, *.yml)";
+}
+
+}  // namespace
+
 LoadUnitsResult load_units(const std::vector<std::string>& paths) {
   LoadUnitsResult result;
   std::map<std::string, std::string> file_of_unit;
   for (const std::string& path : paths) {
     const std::vector<std::string> files = unit_files(path);
     if (files.empty())
-      result.findings.push_back(
-          {path, 0, 0, Severity::kError, "", "the folder holds no unit file (*.yaml)"});
+      result.findings.push_back({path, 0, 0, Severity::kError, "", why_none(path)});
     for (const std::string& file : files) {
       LoadResult one = load_unit(file);
       result.findings.insert(result.findings.end(), one.findings.begin(), one.findings.end());

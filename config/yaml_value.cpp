@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <system_error>
 #include <tuple>
 
+#include "config/failure_text.hpp"
 #include "config/suggest.hpp"
 #include "config/yaml_text.hpp"
 #include "core/text/printable.hpp"
@@ -393,7 +395,7 @@ std::optional<std::string> read_text_file(const std::string& path, Report& repor
   const YAML::Mark nowhere = YAML::Mark::null_mark();
   std::error_code failure;
   const auto status = std::filesystem::status(path, failure);
-  if (!std::filesystem::exists(status)) {
+  if (status.type() == std::filesystem::file_type::not_found) {
     report.add(Severity::kError, nowhere, "", "no such file");
     return std::nullopt;
   }
@@ -403,7 +405,7 @@ std::optional<std::string> read_text_file(const std::string& path, Report& repor
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    report.add(Severity::kError, nowhere, "", "cannot be read");
+    report.add(Severity::kError, nowhere, "", "cannot be read: " + failure_text(errno));
     return std::nullopt;
   }
   std::string text;

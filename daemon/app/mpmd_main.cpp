@@ -142,7 +142,9 @@ void declare(CLI::App& app, Options& options) {
       "  mpmd --config /etc/mpm/units --http 8080 --token-file /etc/mpm/token\n"
       "  mpmd --config /etc/mpm/units --standby\n"
       "  mpmd --config /etc/mpm/units --check\n"
-      "Exit codes: 0 done, 1 --check found errors, 2 failed, 3 bad usage or unit file");
+      "Exit codes: 0 done, 1 --check found errors, 2 failed (a port or a folder is taken ...), 3 "
+      "bad "
+      "usage, unit file, key or token");
 }
 
 std::string cost_text(const config::UnitConfig& unit) {
@@ -283,6 +285,11 @@ int serve(const Options& options, std::vector<config::UnitConfig> units, host::S
 
 int run(Options& options) {
   config::LoadUnitsResult loaded = load(options);
+  if (!options.token_file.empty()) try {
+      options.service.token = host::CommandToken::read(options.token_file);
+    } catch (const std::exception& error) {
+      loaded.findings.push_back({"--token-file", 0, 0, config::Severity::kError, "", error.what()});
+    }
   for (const config::Finding& finding : loaded.findings)
     (options.check ? std::cout : std::cerr) << config::format(finding) << '\n';
   if (!loaded.ok()) return options.check ? kFound : kBadInput;
@@ -308,8 +315,6 @@ int run(Options& options) {
   host::AwaitedSignal hang_up({SIGHUP});
   host::set_up_logging(options.log_level);
   try {
-    if (!options.token_file.empty())
-      options.service.token = host::CommandToken::read(options.token_file);
     if (options.service.alarm_journal.empty() && !options.state_folder.empty())
       options.service.alarm_journal = options.state_folder + "/alarms.sqlite";
     if (options.standby) options.service.standby_rank = options.standby_rank;

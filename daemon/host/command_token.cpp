@@ -10,10 +10,11 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <vector>
+
+#include "config/failure_text.hpp"
 
 namespace mpm::host {
 namespace {
@@ -41,14 +42,15 @@ CommandToken CommandToken::read(const std::string& path) {
     return std::runtime_error("token file " + path + ": " + why);
   };
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) throw fail(std::strerror(errno));
+  if (::stat(path.c_str(), &status) != 0) throw fail(config::failure_text(errno));
   if (!S_ISREG(status.st_mode)) throw fail("is no file");
   if ((status.st_mode & S_IRWXO) != 0)
     throw fail("anybody may read or write it; chmod 0640 or less");
   std::ifstream file(path);
+  if (!file) throw fail(config::failure_text(errno));
   std::array<char, kLongest + 1> line{};
   file.getline(line.data(), static_cast<std::streamsize>(line.size()));
-  if (!file && file.gcount() == 0) throw fail("cannot be read");
+  if (!file && file.gcount() == 0) throw fail("nothing is in it");
   std::string secret(line.data());
   while (!secret.empty() && (secret.back() == '\r' || secret.back() == ' ')) secret.pop_back();
   if (secret.size() < kShortest)

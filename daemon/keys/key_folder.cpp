@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+
+#include "config/failure_text.hpp"
 
 namespace mpm::keys {
 namespace {
@@ -21,7 +22,7 @@ constexpr std::time_t kAuthorityDays = 3650;
 constexpr mode_t kSecret = 0600, kOpen = 0644, kSecretFolder = 0700, kOpenFolder = 0755;
 
 [[noreturn]] void fail(const fs::path& path) {
-  throw std::runtime_error(path.string() + ": " + std::strerror(errno));
+  throw std::runtime_error(path.string() + ": " + config::failure_text(errno));
 }
 
 // With its mode from the beginning: a key is nobody else's for no moment.

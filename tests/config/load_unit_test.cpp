@@ -1,3 +1,4 @@
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -314,6 +315,28 @@ TEST_CASE("Files that cannot be read are findings") {
   CHECK(format(directory.findings[0]) == folder.path() + ": error: is a folder, not a file");
 }
 
+TEST_CASE("What may not be read is told with the reason and the user") {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("a.yaml", kSmall);
+  REQUIRE(::chmod(file.c_str(), 0) == 0);
+  // To root nothing is forbidden.
+  const uid_t user = ::geteuid(), nobody = 65534;
+  const bool root = user == 0;
+  if (root) REQUIRE(::seteuid(nobody) == 0);
+  const LoadResult one = load_unit(file);
+  if (root) REQUIRE(::seteuid(user) == 0);
+  REQUIRE(::chmod(folder.path().c_str(), 0) == 0);
+  if (root) REQUIRE(::seteuid(nobody) == 0);
+  const LoadResult hidden = load_unit(file);
+  const LoadUnitsResult all = load_units({folder.path()});
+  if (root) REQUIRE(::seteuid(user) == 0);
+  REQUIRE(::chmod(folder.path().c_str(), 0700) == 0);
+  for (const std::vector<Finding>& findings : {one.findings, hidden.findings, all.findings}) {
+    REQUIRE(findings.size() == 1);
+    CHECK(findings[0].message.rfind("cannot be read: Permission denied (for user ", 0) == 0);
+  }
+}
+
 TEST_CASE("A folder stands for its unit files, sorted") {
   const TemporaryFolder folder;
   const std::string b = folder.write("b.yaml", kSmall);
@@ -335,7 +358,7 @@ TEST_CASE("Two files of the same unit and a folder without units are errors") {
   const LoadUnitsResult empty = load_units({folder.path()});
   REQUIRE(empty.findings.size() == 1);
   CHECK(format(empty.findings[0]) ==
-        folder.path() + ": error: the folder holds no unit file (*.yaml)");
+        folder.path() + ": error: the folder holds no unit file (*.yaml, *.yml)");
 
   const std::string a = folder.write("a.yaml", kSmall);
   const std::string b = folder.write("b.yaml", kSmall);

@@ -146,6 +146,12 @@ TEST_CASE("command lines end with the agreed exit codes") {
   CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--journal-every-sample",
              "/no/such/folder/x"},
             out, err) == 2);
+  const std::string token = folder.file("token");
+  CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--token-file", token}, out, err) == 3);
+  CHECK(read_file(err) ==
+        "--token-file: error: token file " + token + ": No such file or directory\n");
+  CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--token-file", token, "--check"}, out,
+            err) == 1);
   write_file(folder.file("nic.yaml"), unit_yaml("nic") + "dds: {interface: nosuchnic0}\n");
   CHECK(run({"mpmd", "--config", folder.file("nic.yaml")}, out, err) == 2);
   CHECK(read_file(err).find("nosuchnic0") != std::string::npos);  // Cyclone's reason is passed on
