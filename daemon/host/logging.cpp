@@ -3,8 +3,10 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <memory>
 
 #include "core/text/printable.hpp"
@@ -58,18 +60,27 @@ void log_dds(idl::LogLevel level, const std::string& message) {
   }
 }
 
+// journald names the stream that it reads, see systemd.exec(5); standard error may have been sent
+// elsewhere since.
+bool journal_reads_standard_error() {
+  const char* named = std::getenv("JOURNAL_STREAM");
+  struct stat status {};
+  return named != nullptr && fstat(STDERR_FILENO, &status) == 0 &&
+         fmt::format("{}:{}", status.st_dev, status.st_ino) == named;
+}
+
 }  // namespace
 
 void set_up_logging(const std::string& level) {
   auto logger =
       spdlog::stderr_color_mt("mpm", wants_color(STDERR_FILENO) ? spdlog::color_mode::automatic
                                                                 : spdlog::color_mode::never);
-  if (isatty(STDERR_FILENO)) {
-    logger->set_pattern("%Y-%m-%d %H:%M:%S %^%l%$ %v");
-  } else {
+  if (journal_reads_standard_error()) {  // it has times of its own
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
     formatter->add_flag<SyslogPriority>('*').set_pattern("<%*>%v");
     logger->set_formatter(std::move(formatter));
+  } else {
+    logger->set_pattern("%Y-%m-%d %H:%M:%S %^%l%$ %v");
   }
   logger->set_level(spdlog::level::from_str(level));
   spdlog::set_default_logger(std::move(logger));

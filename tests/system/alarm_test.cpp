@@ -52,7 +52,7 @@ TEST_CASE("a mismatch becomes an alarm that who joins later sees; SIGTERM ends t
   CHECK(bench.daemon.wait(std::chrono::seconds(1)) == 0);
   CHECK(bench.observe([&] { return !bench.seen<idl::MonitorGone>().empty(); }));
   INFO(read_file(bench.folder.file("mpmd.err")));
-  CHECK(read_file(bench.folder.file("mpmd.err")).find("<4>toy: u1 -> y1: alarm active") !=
+  CHECK(read_file(bench.folder.file("mpmd.err")).find(" warning toy: u1 -> y1: alarm active") !=
         std::string::npos);
 }
 
