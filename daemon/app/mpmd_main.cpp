@@ -1,4 +1,5 @@
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -314,6 +315,8 @@ int run(Options& options) {
   host::StopSignal stop({SIGTERM, SIGINT});
   host::AwaitedSignal hang_up({SIGHUP});
   host::set_up_logging(options.log_level);
+  // What it writes is its own and its group's, also where no service manager says so.
+  ::umask(::umask(0) | S_IRWXO | S_IWGRP);
   try {
     if (options.service.alarm_journal.empty() && !options.state_folder.empty())
       options.service.alarm_journal = options.state_folder + "/alarms.sqlite";

@@ -174,6 +174,7 @@ TEST_CASE("an alarm gets its cause, who joins later sees it, and no sample waits
   CHECK(read_file(report + "report.html").find("</html>") != std::string::npos);
   CHECK(run({"mpmd", "--check", "--config", report + "extended.yaml"},
             plant.folder.file("check.out"), plant.folder.file("check.err")) == 0);
+  CHECK(open_to_others(plant.folder.file("state")) == std::vector<std::string>{});
 }
 
 TEST_CASE("SIGTERM ends the daemon within a second, also in the middle of a diagnosis") {

@@ -39,6 +39,16 @@ void write_file(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;
 }
 
+std::vector<std::string> open_to_others(const std::string& folder) {
+  namespace fs = std::filesystem;
+  constexpr fs::perms kOfOthers = fs::perms::others_all | fs::perms::group_write;
+  std::vector<std::string> found;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if ((entry.status().permissions() & kOfOthers) != fs::perms::none)
+      found.push_back(entry.path().string());
+  return found;
+}
+
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);

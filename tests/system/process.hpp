@@ -25,6 +25,8 @@ class TemporaryFolder {
 
 [[nodiscard]] std::string read_file(const std::string& path);
 void write_file(const std::string& path, const std::string& text);
+/// What is in a folder and may be read by anybody, or written to by more than its owner.
+[[nodiscard]] std::vector<std::string> open_to_others(const std::string& folder);
 [[nodiscard]] std::vector<std::string> lines_of(const std::string& text);
 
 /// One of our programs, running; killed if the test leaves it behind.
