@@ -24,6 +24,7 @@
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/quantity.hpp"
+#include "daemon/host/lock_file.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/standard_output.hpp"
@@ -243,6 +244,33 @@ std::optional<std::vector<config::UnitConfig>> load_anew(const Options& options)
   return std::move(loaded.units);
 }
 
+/// What two would spoil if both wrote to it: journals whose entries build upon one another, samples
+/// and states. Throws where another mpmd does.
+std::vector<host::LockFile> lock_places(const Options& options) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;  // who writes there tells
+  std::set<std::string> places;
+  const auto add = [&places](const std::string& path, const std::string& ending) {
+    std::error_code failure;
+    const fs::path real = fs::weakly_canonical(path, failure);  // one folder is locked once
+    places.insert((failure ? path : real.string()) + ending);
+  };
+  if (const std::string& folder = options.state_folder; !folder.empty()) {
+    fs::create_directories(folder, ignored);
+    add(folder, "/.lock");
+  }
+  if (const std::string& folder = options.service.journal; !folder.empty()) {
+    fs::create_directory(folder, ignored);
+    add(folder, "/.lock");
+  }
+  if (!options.service.alarm_journal.empty()) add(options.service.alarm_journal, ".lock");
+  std::vector<host::LockFile> locks;
+  for (const std::string& place : places)
+    if (locks.emplace_back(place); !locks.back().problem().empty())
+      spdlog::warn("cannot be locked against another mpmd: {}", locks.back().problem());
+  return locks;
+}
+
 int serve(const Options& options, std::vector<config::UnitConfig> units, host::StopSignal& stop,
           host::AwaitedSignal& hang_up) {
   spdlog::info("{} starts", idl::version_text("mpmd"));
@@ -322,6 +350,7 @@ int run(Options& options) {
       options.service.alarm_journal = options.state_folder + "/alarms.sqlite";
     if (options.standby) options.service.standby_rank = options.standby_rank;
     if (!options.state_folder.empty()) options.service.samples = options.state_folder + "/samples";
+    const std::vector<host::LockFile> locks = lock_places(options);
     return serve(options, std::move(loaded.units), stop, hang_up);
   } catch (const std::exception& error) {
     if (!spdlog::should_log(spdlog::level::err)) throw;  // no log is silence

@@ -1,5 +1,6 @@
 #include <arpa/inet.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -7,6 +8,7 @@
 #include <csignal>
 #include <cstring>
 #include <random>
+#include <regex>
 
 #include "idl/log.hpp"
 #include "tests/system/bench.hpp"
@@ -63,6 +65,92 @@ TEST_CASE("systemd is told when the daemon is ready, alive, well and stopping") 
   bench.daemon.send(SIGINT);
   CHECK(bench.daemon.wait(std::chrono::seconds(1)) == 0);
   CHECK(socket.hears("STOPPING=1"));
+}
+
+TEST_CASE("the log has levels for journald where that reads it, and times and words elsewhere") {
+  TemporaryFolder folder;
+  const std::string unit = folder.file("nic.yaml"), err = folder.file("err");
+  write_file(unit, unit_yaml("nic") + "dds: {interface: nosuchnic0}\n");
+  write_file(err, "");
+  struct stat status {};
+  REQUIRE(stat(err.c_str(), &status) == 0);
+  const std::string ours = std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+  const auto log_with = [&](const std::string& stream) {
+    Process daemon({"mpmd", "--config", unit}, folder.file("out"), err,
+                   {"JOURNAL_STREAM=" + stream});
+    CHECK(daemon.wait(std::chrono::seconds(20)) == 2);
+    return read_file(err);
+  };
+  const std::string plain = log_with(ours + "0");  // somebody else's
+  CHECK(std::regex_search(plain, std::regex("^[0-9-]{10} [0-9:]{8} info mpmd ")));
+  CHECK(std::regex_search(plain, std::regex("\n[0-9-]{10} [0-9:]{8} error mpmd: error: ")));
+  const std::string prefixed = log_with(ours);
+  CHECK(prefixed.rfind("<6>mpmd ", 0) == 0);
+  CHECK(prefixed.find("\n<3>mpmd: error: ") != std::string::npos);
+}
+
+TEST_CASE("of two daemons on one folder the second one is refused, until the first is gone") {
+  TemporaryFolder folder;
+  const std::string out = folder.file("out"), err = folder.file("err");
+  write_file(folder.file("toy.yaml"), unit_yaml("toy"));
+  const std::vector<std::string> plain = {"mpmd", "--config", folder.file("toy.yaml"),
+                                          "--partition", idl::test_domain("locked").partition};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command = plain;
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  };
+  const std::string state = folder.file("state"), journal = folder.file("journal");
+  Process first(with({"--state-dir", state, "--journal", journal}), folder.file("first.out"),
+                folder.file("first.err"));
+  REQUIRE(idl::eventually([&] {
+    return read_file(folder.file("first.err")).find("watching 2 channels") != std::string::npos;
+  }));
+  const std::string holder = " is held by process " + std::to_string(first.pid()) + " on host ";
+  const std::vector<std::vector<std::string>> refused = {
+      {"--state-dir", state},
+      {"--state-dir", folder.file(".") + "/state", "--standby"},
+      {"--journal", journal},
+      {"--alarm-journal", state + "/alarms.sqlite"}};
+  for (const std::vector<std::string>& more : refused) {
+    CHECK(run(with(more), out, err) == 2);
+    INFO(read_file(err));
+    CHECK(lines_of(read_file(err)).size() == 1);
+    CHECK(read_file(err).find(holder) != std::string::npos);
+  }
+  // Who only looks is not concerned, nor who takes folders of his own, or one for both.
+  CHECK(run(with({"--state-dir", state, "--check"}), out, err) == 0);
+  CHECK(run({"mpm", "journal", "--journal", state + "/alarms.sqlite", "--verify"}, out, err) == 0);
+  {
+    Process other(with({"--state-dir", folder.file("other"), "--journal", folder.file("other")}),
+                  out, err);
+    CHECK(idl::eventually(
+        [&] { return read_file(err).find("watching 2 channels") != std::string::npos; }));
+  }
+  first.send(SIGKILL);
+  REQUIRE(first.wait(std::chrono::seconds(10)));
+  Process next(with({"--state-dir", state, "--journal", journal}), out, err);
+  CHECK(idl::eventually(
+      [&] { return read_file(err).find("watching 2 channels") != std::string::npos; }));
+}
+
+// As of who starts it by hand: a service manager masks more.
+TEST_CASE("what the daemon writes is its own and its group's alone") {
+  TemporaryFolder folder;
+  const mode_t mask = ::umask(022);
+  Bench bench("modes", {"--state-dir", folder.file("state"), "--journal", folder.file("journal"),
+                        "--journal-every-sample", folder.file("samples.jsonl")});
+  ::umask(mask);
+  const idl::UnitPublisher publisher = bench.publisher(idl::WriterPace::kLossless);
+  Plant plant(4.0);
+  bench.publish(publisher, plant, 600);
+  CHECK(bench.observe([&] { return bench.health().frames == 600; }));
+  bench.daemon.send(SIGTERM);
+  CHECK(bench.daemon.wait(std::chrono::seconds(20)) == 0);
+  for (const char* name :
+       {"state/alarms.sqlite", "state/samples/toy", "journal/toy-000001.jsonl", "samples.jsonl"})
+    CHECK(std::filesystem::exists(folder.file(name)));
+  CHECK(open_to_others(folder.file(".")) == std::vector<std::string>{});
 }
 
 TEST_CASE("garbage from the network neither stops the daemon nor floods its log") {

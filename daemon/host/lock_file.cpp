@@ -1,0 +1,69 @@
+#include "daemon/host/lock_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <climits>
+#include <stdexcept>
+#include <utility>
+
+#include "config/failure_text.hpp"
+#include "core/text/printable.hpp"
+
+namespace mpm::host {
+namespace {
+
+constexpr std::size_t kLongestHolder = 300;
+// For who may look into the folder to see who it is.
+constexpr mode_t kMode = 0640;
+
+std::string self() {
+  std::array<char, HOST_NAME_MAX + 1> host{};
+  gethostname(host.data(), host.size() - 1);
+  return "process " + std::to_string(getpid()) + " on host " + host.data();
+}
+
+std::string holder(int descriptor) {
+  std::array<char, kLongestHolder> text{};
+  const ssize_t count = pread(descriptor, text.data(), text.size(), 0);
+  const std::string said(text.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
+  return said.empty() ? "another process"
+                      : printable(said.substr(0, said.find('\n')), kLongestHolder);
+}
+
+}  // namespace
+
+LockFile::LockFile(const std::string& path)
+    // No link: it would be somebody else's file that is written to.
+    : descriptor_(
+          open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, kMode)) {
+  if (descriptor_ < 0) {
+    problem_ = path + ": " + config::failure_text(errno);
+    return;
+  }
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    const int error = errno;
+    const std::string who = holder(descriptor_);
+    close(std::exchange(descriptor_, -1));
+    if (error == EWOULDBLOCK)
+      throw std::runtime_error(path + ": is held by " + who + "; each needs a place of its own");
+    problem_ = path + ": " + config::failure_text(error);
+    return;
+  }
+  // What is said of the holder is for people; the lock holds without it.
+  const std::string me = self() + "\n";
+  if (ftruncate(descriptor_, 0) == 0)
+    static_cast<void>(pwrite(descriptor_, me.data(), me.size(), 0) > 0);
+}
+
+LockFile::LockFile(LockFile&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), problem_(std::move(other.problem_)) {}
+
+LockFile::~LockFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+}  // namespace mpm::host
