@@ -225,11 +225,14 @@ config::LoadUnitsResult load(const Options& options) {
 }
 
 /// The units as their files say now; nothing, and the log says why, where they cannot be taken.
-std::optional<std::vector<config::UnitConfig>> load_anew(const Options& options) {
+/// `problem` says it in one line.
+std::optional<std::vector<config::UnitConfig>> load_anew(const Options& options,
+                                                         std::string& problem) {
   if (options.service.samples.empty()) {
     spdlog::warn(
         "SIGHUP: the unit files are not read anew without --state-dir, for all statistics "
         "would begin anew; restart to have that");
+    problem = "without --state-dir";
     return std::nullopt;
   }
   config::LoadUnitsResult loaded = load(options);
@@ -238,6 +241,12 @@ std::optional<std::vector<config::UnitConfig>> load_anew(const Options& options)
   if (!loaded.ok() || loaded.units.empty()) {
     spdlog::error("SIGHUP: the unit files are not taken: {}; the units go on as they were",
                   loaded.units.empty() && loaded.ok() ? "there are none" : "they have errors");
+    problem = "there are no unit files";
+    for (const config::Finding& finding : loaded.findings)
+      if (finding.severity == config::Severity::kError) {
+        problem = config::format(finding);
+        break;
+      }
     return std::nullopt;
   }
   spdlog::info("SIGHUP: the unit files were read anew");
@@ -292,14 +301,21 @@ int serve(const Options& options, std::vector<config::UnitConfig> units, host::S
     service_options.first_asker = std::exchange(askers, askers + static_cast<int>(units.size()));
     live::MonitorService service(units, service_options, worker);
     service.run([&] {
-      if (hang_up.take())
-        if (auto anew = load_anew(options)) {
+      if (hang_up.take()) {
+        host::Notifier& notifier = service.notifier();
+        notifier.reloading();
+        std::string problem;
+        if (auto anew = load_anew(options, problem)) {
           units = std::move(*anew);
-          again = true;
+          again = true;  // the next service says when it is ready
+        } else {
+          notifier.remark("not reloaded: " + problem);
+          notifier.ready();
         }
+      }
       return again || stop.received();
     });
-    if (!again) service.say_stopping();
+    if (!again) service.notifier().stopping();
   }
   const bool idle = worker.stop(kPatience);
   spdlog::info("stopped");

@@ -13,14 +13,19 @@ class Notifier {
 
   Notifier();
   void ready() const;
+  /// Until ready() again.
+  void reloading() const;
   void stopping() const;
   void status(const std::string& text);
+  /// Stands behind every status from now on; of several lines the first.
+  void remark(const std::string& text);
   void feed_watchdog(Clock::time_point now);
 
  private:
   Clock::duration watchdog_period_{};  // zero: none asked for
   Clock::time_point next_feed_{};
   std::string last_status_;
+  std::string remark_;
 };
 
 }  // namespace mpm::host

@@ -44,8 +44,8 @@ class MonitorService {
 
   /// Until `stop()` says so, which is asked at least five times a second.
   void run(const std::function<bool()>& stop);
-  /// Tells systemd that this was the end.
-  void say_stopping() { notifier_.stopping(); }
+  /// What tells systemd how the service is.
+  [[nodiscard]] host::Notifier& notifier() { return notifier_; }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -45,6 +45,13 @@ class NotifySocket {
   std::string heard_;
 };
 
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+    ++found;
+  return found;
+}
+
 }  // namespace
 
 TEST_CASE("systemd is told when the daemon is ready, alive, well and stopping") {
@@ -61,6 +68,24 @@ TEST_CASE("systemd is told when the daemon is ready, alive, well and stopping") 
     return read_file(bench.folder.file("mpmd.err"))
                .find(" info SIGHUP: the unit files were read") != std::string::npos;
   }));
+  CHECK(socket.hears("RELOADING=1\n"));
+  CHECK(idl::eventually([&] { return count(socket.heard(), "READY=1\n") == 2; }));
+  CHECK(socket.heard().find("not reloaded") == std::string::npos);
+
+  // One that cannot be taken: until one can be, the status says so.
+  const std::string file = bench.folder.file("toy.yaml");
+  write_file(file, unit_yaml("toy") + "no_such_key: 1\n");
+  bench.daemon.send(SIGHUP);
+  CHECK(socket.hears("; not reloaded: " + file + ":13:1: error: "));
+  CHECK(idl::eventually([&] { return count(socket.heard(), "READY=1\n") == 3; }));
+  write_file(file, unit_yaml("toy"));
+  bench.daemon.send(SIGHUP);
+  CHECK(idl::eventually([&] { return count(socket.heard(), "READY=1\n") == 4; }));
+  const std::string& heard = socket.heard();
+  CHECK(count(heard, "RELOADING=1\n") == 3);
+  const std::size_t last = heard.rfind("STATUS=");
+  CHECK(heard.substr(last, heard.find('\n', last) - last).find("not reloaded") ==
+        std::string::npos);
   CHECK(socket.heard().find("STOPPING=1") == std::string::npos);
   bench.daemon.send(SIGINT);
   CHECK(bench.daemon.wait(std::chrono::seconds(1)) == 0);
