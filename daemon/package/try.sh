@@ -29,7 +29,7 @@ ExecStopPost=/bin/systemctl poweroff --no-block
 WantedBy=multi-user.target
 TEXT
 ln -s /etc/systemd/system/try.service "$root/etc/systemd/system/multi-user.target.wants/"
-timeout 300 systemd-nspawn -q -D "$root" --register=no --keep-unit --private-network -b \
+timeout 420 systemd-nspawn -q -D "$root" --register=no --keep-unit --private-network -b \
   </dev/null >"$root/try/boot.log" 2>&1 || :
 cat "$root/try/said"
 tail -n 1 "$root/try/said" | grep -qx 'package: all right'

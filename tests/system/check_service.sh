@@ -9,5 +9,9 @@ trap 'rm -rf "$copy"' EXIT
 sed 's#^ExecStart=/usr/bin/mpmd#ExecStart=/bin/true#' "$service" >"$copy/mpmd.service"
 said=$(systemd-analyze verify --man=no "$copy/mpmd.service" 2>&1 | grep mpmd.service || :)
 [ -z "$said" ] || { printf '%s\n' "$said" >&2; exit 1; }
+# What fails at once, in two seconds at most, reaches the limit of starts with the pauses between.
+setting() { sed -n "s/^$1=//p" "$service"; }
+[ $(($(setting StartLimitBurst) * ($(setting RestartSec) + 2))) -le "$(setting StartLimitIntervalSec)" ] ||
+  { echo "a start that always fails would be tried for ever" >&2; exit 1; }
 # A key that systemd does not know is only told of; one that it does counts.
 systemd-analyze security --offline=yes --threshold=20 "$copy/mpmd.service" | tail -n 1
