@@ -54,6 +54,32 @@ tests:
         exp_alerts:
           - exp_labels: {severity: critical}
             exp_annotations: {summary: "no monitor of model-plant mismatch answers"}
+  # Of two monitors one goes after ten minutes, as the target of another job does.
+  - interval: 1m
+    input_series:
+      - {series: 'up{job="mpm",instance="a"}', values: '1x40'}
+      - {series: 'up{job="mpm",instance="b"}', values: '1x10 0x30'}
+      - {series: 'up{job="node",instance="c"}', values: '1x10 0x30'}
+      - {series: 'mpm_build_info{job="mpm",instance="a"}', values: '1x40'}
+      - {series: 'mpm_build_info{job="mpm",instance="b"}', values: '1x10 _x30'}
+    alert_rule_test:
+      - {eval_time: 10m, alertname: MpmDown, exp_alerts: []}
+      - eval_time: 20m
+        alertname: MpmDown
+        exp_alerts:
+          - exp_labels: {severity: critical, job: mpm, instance: b}
+            exp_annotations: {summary: "b: the monitor does not answer"}
+  # The only one goes: that is told once.
+  - interval: 1m
+    input_series:
+      - {series: 'up{job="mpm",instance="a"}', values: '1x10 0x30'}
+      - {series: 'mpm_build_info{job="mpm",instance="a"}', values: '1x10 _x30'}
+    alert_rule_test:
+      - eval_time: 20m
+        alertname: MpmDown
+        exp_alerts:
+          - exp_labels: {severity: critical, job: mpm, instance: a}
+            exp_annotations: {summary: "a: the monitor does not answer"}
   # Two that stand by for one another; the one that speaks goes after ten minutes, and nobody goes on.
   - interval: 1m
     input_series:
