@@ -166,6 +166,10 @@ AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most
     sqlite3_busy_timeout(database_, kBusyMs);
     if (access == Access::kAppend) {
       run("PRAGMA journal_mode=WAL");
+      // What stands beside the file stays when nobody writes any more: who may only read could not
+      // make it, and could not read without.
+      int stays = 1;
+      sqlite3_file_control(database_, "main", SQLITE_FCNTL_PERSIST_WAL, &stays);
       run("PRAGMA synchronous=FULL");
       run(kSchema);
       run(std::string("INSERT OR IGNORE INTO settings VALUES('version', '") + kVersion + "')");

@@ -86,6 +86,7 @@ echo "reloaded: not with a bad file"
 
 systemctl stop mpmd
 [ "$(systemctl show -p Result --value mpmd)" = success ] || fail "a stop is a failure"
+runuser -u ann -- mpm journal >/try/journal.log 2>&1 || fail "no journal after a stop: $(cat /try/journal.log)"
 tries() { systemctl show -p NRestarts --value mpmd; }
 once() {  # WHAT
   ! systemctl start mpmd >/dev/null 2>&1 || fail "starts with $1"

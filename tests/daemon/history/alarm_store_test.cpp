@@ -167,6 +167,28 @@ TEST_CASE("what was appended is there after a kill") {
   CHECK(store.verify().problem.empty());
 }
 
+TEST_CASE("who may only read reads also when nobody writes any more") {
+  Journal journal;
+  journal.open().append({entry(1, "raised"), entry(2, "cleared")});
+  // Of a group: whose, depends on who runs the test; root may write everywhere.
+  for (const char* name : {"", "/alarms.sqlite", "/alarms.sqlite-shm", "/alarms.sqlite-wal"})
+    REQUIRE(::chmod((journal.folder.file(".") + name).c_str(), *name == 0 ? 0555 : 0444) == 0);
+  const uid_t user = ::geteuid(), nobody = 65534;
+  if (user == 0) REQUIRE(::seteuid(nobody) == 0);
+  StoreCheck check;
+  std::string error;
+  try {
+    check = journal.open(AlarmStore::Access::kRead).verify();
+  } catch (const std::exception& failure) {
+    error = failure.what();
+  }
+  if (user == 0) REQUIRE(::seteuid(user) == 0);
+  REQUIRE(::chmod(journal.folder.file(".").c_str(), 0755) == 0);
+  CHECK(error.empty());
+  CHECK(check.entries == 2);
+  CHECK(check.problem.empty());
+}
+
 TEST_CASE("others may not read the journal, and what is none is refused") {
   const Journal journal;
   CHECK_THROWS_WITH(journal.open(AlarmStore::Access::kRead),
