@@ -41,10 +41,12 @@ inline constexpr std::size_t kSetsTried = 4;  ///< on the data themselves
 inline constexpr double kFullTimes[] = {5.0, 15.0, 45.0};  ///< samples: starts of all inputs
 inline constexpr double kFullDeadTimes[] = {1.0, 4.0};     ///< samples
 inline constexpr std::size_t kFullsKept = 2;
-inline constexpr double kHopelessSets = 9.0;   ///< logs of the rows in BIC behind the best
-inline constexpr int kSetSteps = 12;           ///< of Gauss-Newton on the factor
-inline constexpr double kSetDamping = 1e-3;    ///< to the size of a column
-inline constexpr double kSetConverged = 0.05;  ///< variances
+inline constexpr std::ptrdiff_t kLaterDeadTimes = 2;  ///< of the grid, beyond the one found
+inline constexpr double kLeastSharedGain = 0.02;      ///< of what makes it up
+inline constexpr double kHopelessSets = 9.0;          ///< logs of the rows in BIC behind the best
+inline constexpr int kSetSteps = 12;                  ///< of Gauss-Newton on the factor
+inline constexpr double kSetDamping = 1e-3;           ///< to the size of a column
+inline constexpr double kSetConverged = 0.05;         ///< variances
 
 // Prediction errors (prediction_error.hpp).
 inline constexpr int kNoiseOrder = 10;

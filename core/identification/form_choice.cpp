@@ -110,8 +110,8 @@ std::optional<Choice> by_output_error(const Material& material,
   }
   const NoiseAssumption noise = output_error(*best);
   const std::vector<PredictionErrorFit> grown = grown_structures(
-      material.first, cv, simplest_structure(material.first, cv, search, std::move(starts), noise),
-      noise);
+      material.first, cv, search,
+      simplest_structure(material.first, cv, search, std::move(starts), noise), noise);
   Choice choice = best_unseen(material, cv, grown, noise);
   choice.output_error = true;
   return choice;
@@ -142,7 +142,7 @@ Choice choose(const Material& material, const std::vector<ChannelHint>& hints,
   PredictionErrorFit simplest =
       simplest_structure(material.all, cv, search, search.best_sets(), usual);
   const std::vector<PredictionErrorFit> grown = grown_structures(
-      material.first, cv,
+      material.first, cv, search,
       fit_prediction_error(material.first, cv, std::move(simplest.channels), noise, kMostSteps),
       noise);
   Choice choice = best_unseen(material, cv, grown, noise);

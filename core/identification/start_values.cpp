@@ -104,6 +104,10 @@ StartSearch::StartSearch(const HighOrderModel& model, const std::vector<ChannelH
     if (hints[i].no_relation) continue;
     Choices& choices = choices_[i];
     choices.shapes = grid(model, hints[i], sample_time_s);
+    choices.dead_times =
+        std::count_if(choices.shapes.begin(), choices.shapes.end(), [&](const ChannelShape& shape) {
+          return shape.time_constant == choices.shapes.front().time_constant;
+        });
     MatrixXd coefficients(own, static_cast<Index>(choices.shapes.size()));
     for (Index c = 0; c < coefficients.cols(); ++c)
       coefficients.col(c) = coefficients_of(choices.shapes[static_cast<std::size_t>(c)], model);
@@ -336,6 +340,83 @@ std::optional<std::vector<ChannelShape>> StartSearch::enlarged(
   }
   if (!most || !(before - most->left > kWorthTrying * model_.variance)) return std::nullopt;
   return std::move(most->channels);
+}
+
+StartSearch::Shared StartSearch::solved(const std::vector<ChannelShape>& channels,
+                                        std::vector<Pair> pairs) const {
+  MatrixXd all(model_.factor.rows(), 2 * static_cast<Index>(pairs.size()));
+  for (std::size_t c = 0; c < pairs.size(); ++c) {
+    const MatrixXd& columns = choices_[static_cast<std::size_t>(channels[c].input)].columns;
+    all.col(2 * static_cast<Index>(c)) = columns.col(pairs[c].slow);
+    all.col(2 * static_cast<Index>(c) + 1) = columns.col(pairs[c].fast);
+  }
+  Shared result{std::move(pairs), Eigen::ColPivHouseholderQR<MatrixXd>(all).solve(right_), 0.0};
+  result.left = (right_ - all * result.parts).squaredNorm();
+  return result;
+}
+
+std::optional<std::vector<ChannelShape>> StartSearch::with_shared_lags(
+    const std::vector<ChannelShape>& channels) const {
+  std::optional<Shared> best;
+  for (const ChannelShape& shape : channels)
+    if (integrates(shape.form) || shape.sign != 0) return std::nullopt;
+  if (channels.empty()) return std::nullopt;
+  const auto choices = [&](std::size_t c) -> const Choices& {
+    return choices_[static_cast<std::size_t>(channels[c].input)];
+  };
+  Index times = std::numeric_limits<Index>::max();
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    times = std::min(times, static_cast<Index>(choices(c).shapes.size()) / choices(c).dead_times);
+  const auto pairs_of = [&](Index slow, Index fast, const std::vector<Index>& dead) {
+    std::vector<Pair> pairs;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      pairs.push_back(
+          {slow * choices(c).dead_times + dead[c], fast * choices(c).dead_times + dead[c]});
+    return pairs;
+  };
+  // Dead times as they were found, then each in turn where it is best beside the others.
+  std::vector<Index> nearest(channels.size(), 0);
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    for (Index d = 1; d < choices(c).dead_times; ++d) {
+      const auto away = [&](Index which) {
+        return std::abs(choices(c).shapes[static_cast<std::size_t>(which)].dead_time -
+                        channels[c].dead_time);
+      };
+      if (away(d) < away(nearest[c])) nearest[c] = d;
+    }
+  for (Index slow = 1; slow < times; ++slow)
+    for (Index fast = 0; fast < slow; ++fast) {
+      std::vector<Index> dead = nearest;
+      Shared now = solved(channels, pairs_of(slow, fast, dead));
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        const Index latest = std::min(choices(c).dead_times, nearest[c] + kLaterDeadTimes);
+        for (Index d = 0; d < latest; ++d) {
+          std::vector<Index> other = dead;
+          other[c] = d;
+          Shared tried = solved(channels, pairs_of(slow, fast, other));
+          if (tried.left < now.left) now = std::move(tried), dead = std::move(other);
+        }
+      }
+      if (!best || now.left < best->left) best = std::move(now);
+    }
+  if (!best) return std::nullopt;
+  std::vector<ChannelShape> result = channels;
+  for (std::size_t c = 0; c < result.size(); ++c) {
+    const auto at = [&](Index which) { return choices(c).shapes[static_cast<std::size_t>(which)]; };
+    const ChannelShape slow = at(best->pairs[c].slow), fast = at(best->pairs[c].fast);
+    const double part = best->parts(2 * static_cast<Index>(c)),
+                 rest = best->parts(2 * static_cast<Index>(c) + 1);
+    ChannelShape& shape = result[c];
+    shape.form = ChannelForm::kSecondOrderLead;
+    shape.gain = part + rest;
+    if (!(std::abs(shape.gain) > kLeastSharedGain * (std::abs(part) + std::abs(rest))))
+      return std::nullopt;
+    shape.time_constant = slow.time_constant;
+    shape.second = fast.time_constant;
+    shape.lead = (part * fast.time_constant + rest * slow.time_constant) / shape.gain;
+    shape.dead_time = slow.dead_time;
+  }
+  return result;
 }
 
 double gain_sd(const HighOrderModel& model, int input, double time_constant) {

@@ -27,11 +27,31 @@ class StartSearch {
   /// it.
   [[nodiscard]] std::optional<std::vector<ChannelShape>> enlarged(
       const std::vector<ChannelShape>& channels) const;
+  /// The same inputs with two lags that all of them share, and a lead each: what levels, or
+  /// temperatures, that act on one another have in common. Given the lags and dead times it is
+  /// linear, so the best of a grid is the best there is, however far first-order channels are from
+  /// it. Nothing where none fits, or a sign that the user gave.
+  [[nodiscard]] std::optional<std::vector<ChannelShape>> with_shared_lags(
+      const std::vector<ChannelShape>& channels) const;
 
  private:
+  /// First-order channels of gain 1 of two speeds, by their places in `Choices`: the same dead
+  /// time.
+  struct Pair {
+    Eigen::Index slow = 0, fast = 0;
+  };
+  struct Shared {
+    std::vector<Pair> pairs;  ///< one per channel
+    Eigen::VectorXd parts;    ///< gains: slow and fast of each channel
+    double left = 0.0;        ///< squared error
+  };
+  [[nodiscard]] Shared solved(const std::vector<ChannelShape>& channels,
+                              std::vector<Pair> pairs) const;
+
   struct Choices {
     std::vector<ChannelShape> shapes;  ///< of gain 1
     Eigen::MatrixXd columns;           ///< of the factor, one per shape
+    Eigen::Index dead_times = 1;       ///< so many shapes in a row have one time constant
   };
   struct Found {
     Eigen::Index which = 0;

@@ -137,6 +137,47 @@ std::vector<ChannelShape> slow_ones_integrating(const std::vector<ChannelShape>&
   return changed;
 }
 
+bool too_slow(const PredictionErrorFit& fit, const IdentificationData& data) {
+  return std::any_of(fit.channels.begin(), fit.channels.end(), [&](const ChannelShape& shape) {
+    return slowest_time(shape) > kSlowestShare * longest_run(data);
+  });
+}
+
+/// The next simpler forms of one with a lead.
+std::vector<ChannelShape> simpler(const ChannelShape& shape) {
+  std::vector<ChannelShape> result;
+  if (shape.form == ChannelForm::kSecondOrderLead) {
+    result.push_back(shape);
+    result.back().form = ChannelForm::kSecondOrder;
+    result.back().lead = 0.0;
+  }
+  if (shape.form == ChannelForm::kSecondOrderLead || shape.form == ChannelForm::kSecondOrder)
+    for (const double time_constant : {shape.time_constant, shape.second}) {
+      result.push_back(shape);
+      result.back().form = ChannelForm::kFirstOrder;
+      result.back().time_constant = time_constant;
+    }
+  return result;
+}
+
+/// With simpler forms, one at a time, as long as that pays (BIC).
+PredictionErrorFit simplified(const IdentificationData& data, int cv, PredictionErrorFit fit,
+                              const NoiseAssumption& noise) {
+  for (;;) {
+    std::optional<PredictionErrorFit> best;
+    for (std::size_t c = 0; c < fit.channels.size(); ++c)
+      for (const ChannelShape& shape : simpler(fit.channels[c])) {
+        std::vector<ChannelShape> changed = fit.channels;
+        changed[c] = shape;
+        PredictionErrorFit other =
+            fit_prediction_error(data, cv, std::move(changed), noise, kTrialSteps);
+        if (bic(other) < bic(fit) && (!best || bic(other) < bic(*best))) best = std::move(other);
+      }
+    if (!best) return fit;
+    fit = fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps);
+  }
+}
+
 PredictionErrorFit without(const IdentificationData& data, int cv, const PredictionErrorFit& fit,
                            std::size_t which, const NoiseAssumption& noise) {
   std::vector<ChannelShape> rest = fit.channels;
@@ -201,6 +242,7 @@ PredictionErrorFit simplest_structure(const IdentificationData& data, int cv,
 }
 
 std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data, int cv,
+                                                 const StartSearch& search,
                                                  PredictionErrorFit simplest,
                                                  const NoiseAssumption& noise) {
   std::vector<PredictionErrorFit> grown = {std::move(simplest)};
@@ -228,6 +270,13 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
     if (!best) break;
     // What was wrong there hid what is wrong elsewhere: next, every form is tried again.
     grown.push_back(fit_prediction_error(data, cv, std::move(best->channels), noise, kMostSteps));
+  }
+  std::optional<std::vector<ChannelShape>> shared = search.with_shared_lags(grown.front().channels);
+  if (shared && shared->size() > 1) {
+    PredictionErrorFit fit = simplified(
+        data, cv, fit_prediction_error(data, cv, std::move(*shared), noise, kMostSteps), noise);
+    if (!too_slow(fit, data) && bic(fit) + kWorthRicher <= bic(grown.back()))
+      grown.push_back(std::move(fit));
   }
   return grown;
 }

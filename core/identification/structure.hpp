@@ -16,9 +16,12 @@ namespace mpm {
                                                     const NoiseAssumption& noise);
 
 /// Forms that become richer where that pays (BIC), one at a time: the first entry is `simplest`,
-/// each other one has one form changed.
+/// each other one has one form changed. Where all of them with lags that they share
+/// (`StartSearch::with_shared_lags`), and what of that the data need, are better than the last,
+/// these are one more.
 [[nodiscard]] std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
-                                                               int cv, PredictionErrorFit simplest,
+                                                               int cv, const StartSearch& search,
+                                                               PredictionErrorFit simplest,
                                                                const NoiseAssumption& noise);
 
 /// Without channels that the data do not need: none is left of which the likelihood ratio does not

@@ -6,8 +6,10 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <climits>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "config/failure_text.hpp"
@@ -17,6 +19,8 @@ namespace mpm::host {
 namespace {
 
 constexpr std::size_t kLongestHolder = 300;
+constexpr std::chrono::milliseconds kPause{50};
+constexpr int kTries = 60;  // three seconds
 // For who may look into the folder to see who it is.
 constexpr mode_t kMode = 0640;
 
@@ -44,7 +48,13 @@ LockFile::LockFile(const std::string& path)
     problem_ = path + ": " + config::failure_text(errno);
     return;
   }
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+  // One that was told to stop may still be about it.
+  int failed = flock(descriptor_, LOCK_EX | LOCK_NB);
+  for (int tries = 0; failed != 0 && errno == EWOULDBLOCK && tries < kTries; ++tries) {
+    std::this_thread::sleep_for(kPause);
+    failed = flock(descriptor_, LOCK_EX | LOCK_NB);
+  }
+  if (failed != 0) {
     const int error = errno;
     const std::string who = holder(descriptor_);
     close(std::exchange(descriptor_, -1));

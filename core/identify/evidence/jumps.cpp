@@ -63,7 +63,7 @@ void JumpTally::add(const JumpTally& other) {
 JumpTally leave_out_jumps(Recording& recording) {
   const SignalCounts counts = counts_of(recording);
   JumpTally left_out{std::vector<Index>(static_cast<std::size_t>(counts.mv), 0),
-                   std::vector<Index>(static_cast<std::size_t>(counts.cv), 0)};
+                     std::vector<Index>(static_cast<std::size_t>(counts.cv), 0)};
   Frame frame(counts);
   for (const Run& run : runs_of(recording)) {
     Screen screen(counts, Screen::Looks::kFar);
