@@ -2,7 +2,9 @@
 
 #include <arpa/inet.h>
 
+#include <cerrno>
 #include <charconv>
+#include <system_error>
 
 namespace mpm::http {
 
@@ -15,6 +17,21 @@ bool is_ip_address(const std::string& host) {
 std::string Address::url() const {
   const bool six = host.find(':') != std::string::npos;
   return "http://" + (six ? "[" + host + "]" : host) + ":" + std::to_string(port) + "/";
+}
+
+std::string bind_problem(int error) {
+  switch (error) {
+    case EADDRINUSE:
+      return "the port is taken";
+    case EADDRNOTAVAIL:
+      return "the address is none of this machine";
+    case EACCES:
+      return "this user may not take that port (permission denied)";
+    case 0:
+      return "the port is taken, or the address is none of this machine";
+    default:
+      return std::generic_category().message(error);
+  }
 }
 
 std::optional<Address> parse_address(const std::string& text) {

@@ -19,6 +19,9 @@ struct Address {
 /// none: which interface a name means is not to be guessed.
 [[nodiscard]] std::optional<Address> parse_address(const std::string& text);
 
+/// Why nobody can listen there: `error` is an errno.
+[[nodiscard]] std::string bind_problem(int error);
+
 /// The address as a number, IPv4 or IPv6.
 [[nodiscard]] bool is_ip_address(const std::string& host);
 

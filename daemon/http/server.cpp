@@ -1,10 +1,17 @@
 #include "daemon/http/server.hpp"
 
 #include <httplib.h>
+#include <netdb.h>
+#include <poll.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -12,6 +19,7 @@
 
 #include "daemon/http/assets.hpp"
 #include "daemon/http/event_stream.hpp"
+#include "daemon/http/intake.hpp"
 #include "daemon/http/worker_queue.hpp"
 
 namespace mpm::http {
@@ -19,26 +27,142 @@ namespace {
 
 constexpr std::size_t kWorkers = 8;  // beside the threads of the streams
 constexpr std::size_t kMostWaiting = 64;
-constexpr std::size_t kMostBody = 16'384;        // bytes: a command and a comment
-constexpr std::chrono::seconds kReadTimeout{5};  // between two bytes
 constexpr std::chrono::seconds kWriteTimeout{5};
-constexpr std::chrono::seconds kIdle{2};  // a browser opens connections that it may not need
+// The kernel's queue of connections that nobody has accepted yet; the library's own is five.
+constexpr int kBacklog = 128;
 
 // No inline script or style, nothing from elsewhere, nobody's frame.
 constexpr const char* kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' "
     "data:; frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// The library's interface to our threads.
-class Tasks : public httplib::TaskQueue {
+/// What goes with each answer.
+const httplib::Headers& headers() {
+  static const httplib::Headers all{
+      {"Content-Security-Policy", kPagePolicy},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Permissions-Policy", "camera=(), microphone=(), geolocation=()"},
+      {"Cache-Control", "no-store"}};
+  return all;
+}
+
+/// What the library has accepted is handed to the intake at once, in its thread.
+class AtOnce : public httplib::TaskQueue {
  public:
-  Tasks() : queue_(kWorkers + Server::kMostStreams, kMostWaiting) {}
-  void enqueue(std::function<void()> job) override { queue_.add(std::move(job)); }
-  void shutdown() override { queue_.finish(); }
+  void enqueue(std::function<void()> job) override { job(); }
+  void shutdown() override {}
+};
+
+/// A request that is there already, to be read, and its connection, to be written to.
+class Exchange : public httplib::Stream {
+ public:
+  Exchange(int socket, const std::string& head) : socket_(socket), head_(head) {}
+
+  bool is_readable() const override { return read_ < head_.size(); }
+  bool is_writable() const override {
+    pollfd polled{socket_, POLLOUT, 0};
+    const auto wait = std::chrono::milliseconds(kWriteTimeout).count();
+    if (poll(&polled, 1, static_cast<int>(wait)) <= 0) return false;
+    char next = 0;  // who has gone has ended what he says
+    return recv(socket_, &next, 1, MSG_PEEK | MSG_DONTWAIT) != 0;
+  }
+  ssize_t read(char* to, std::size_t size) override {
+    const std::size_t count = head_.copy(to, size, read_);
+    read_ += count;
+    return static_cast<ssize_t>(count);
+  }
+  ssize_t write(const char* from, std::size_t size) override {
+    return ::send(socket_, from, size, MSG_NOSIGNAL);
+  }
+  void get_remote_ip_and_port(std::string& ip, int& port) const override {
+    name(getpeername, ip, port);
+  }
+  void get_local_ip_and_port(std::string& ip, int& port) const override {
+    name(getsockname, ip, port);
+  }
+  socket_t socket() const override { return socket_; }
 
  private:
-  WorkerQueue queue_;
+  void name(int (*ask)(int, sockaddr*, socklen_t*), std::string& ip, int& port) const {
+    sockaddr_storage place{};
+    socklen_t length = sizeof place;
+    std::array<char, NI_MAXHOST> host{};
+    std::array<char, NI_MAXSERV> service{};
+    auto* address = reinterpret_cast<sockaddr*>(&place);
+    if (ask(socket_, address, &length) != 0 ||
+        getnameinfo(address, length, host.data(), host.size(), service.data(), service.size(),
+                    NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+      return;
+    ip = host.data();
+    port = std::atoi(service.data());
+  }
+
+  int socket_;
+  const std::string& head_;
+  std::size_t read_ = 0;
 };
+
+/// The library, of which we use how it accepts connections, reads headers and writes answers: it
+/// reads requests without bounds.
+class Front : public httplib::Server {
+ public:
+  std::function<void(int socket)> accepted;
+
+  /// Answers, and ends the connection. Whatever is thrown ends this connection only.
+  void answer(int socket, RawRequest& request) {
+    try {
+      Exchange exchange(socket, request.head);
+      bool closed = false;
+      (void)process_request(exchange, true, closed, [&request](httplib::Request& given) {
+        given.body = std::move(request.body);
+        given.headers.erase("Expect");  // answered by the intake
+      });
+    } catch (...) {
+    }
+    shutdown(socket, SHUT_RDWR);
+    close(socket);
+  }
+  void deepen_backlog() { (void)::listen(svr_sock_, kBacklog); }
+
+ private:
+  bool process_and_close_socket(socket_t socket) override {
+    try {
+      accepted(socket);
+    } catch (...) {
+      close(socket);
+    }
+    return true;
+  }
+};
+
+const char* phrase(int status) {
+  switch (status) {
+    case 400:
+      return "Bad Request";
+    case 408:
+      return "Request Timeout";
+    case 411:
+      return "Length Required";
+    case 413:
+      return "Payload Too Large";
+    case 431:
+      return "Request Header Fields Too Large";
+    default:
+      return "Service Unavailable";
+  }
+}
+
+/// A reply to what the library never sees.
+std::string whole_text(const Reply& reply) {
+  std::string text = "HTTP/1.1 " + std::to_string(reply.status) + " " + phrase(reply.status);
+  for (const auto& [name, value] : headers()) text += "\r\n" + name + ": " + value;
+  return text + "\r\nContent-Type: " + reply.type +
+         "\r\nContent-Length: " + std::to_string(reply.body.size()) +
+         "\r\nConnection: close\r\n\r\n" + reply.body;
+}
 
 std::string lower(std::string text) {
   for (char& letter : text)
@@ -98,6 +222,7 @@ struct Server::Parts {
   }
 
   void set_up();
+  bool hand_over(int socket, RawRequest request);
   void answer(const httplib::Request& given, httplib::Response& response);
   void send_asset(const Asset& asset, const httplib::Request& given, httplib::Response& response);
   void stream(const Request& request, httplib::Response& response);
@@ -109,44 +234,55 @@ struct Server::Parts {
   std::atomic<std::uint64_t> requests = 0, refused = 0;
   Api api;
   std::string run = run_name();
-  httplib::Server server;
+  Front server;
+  WorkerQueue workers{kWorkers + kMostStreams, kMostWaiting};
+  std::unique_ptr<Intake> intake;
   std::thread listener;
 };
 
 void Server::Parts::set_up() {
-  server.new_task_queue = [] { return new Tasks; };
+  server.new_task_queue = [] { return new AtOnce; };
+  server.accepted = [this](int socket) { intake->add(socket); };
+  intake = std::make_unique<Intake>(
+      Intake::Limits{},
+      [this](int socket, RawRequest request) { return hand_over(socket, std::move(request)); },
+      [this](int status, const char* why) {
+        ++requests;
+        ++refused;
+        return whole_text(error_reply(status, why));
+      });
   // The library's own would let a second monitor share the port unseen.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
   server.set_tcp_nodelay(true);
-  server.set_keep_alive_max_count(1);  // a connection at rest would hold a thread
-  server.set_keep_alive_timeout(kIdle.count());
-  server.set_read_timeout(kReadTimeout);
   server.set_write_timeout(kWriteTimeout);
-  server.set_payload_max_length(kMostBody);
-  server.set_default_headers({{"Content-Security-Policy", kPagePolicy},
-                              {"X-Content-Type-Options", "nosniff"},
-                              {"Referrer-Policy", "no-referrer"},
-                              {"Cross-Origin-Resource-Policy", "same-origin"},
-                              {"Cross-Origin-Opener-Policy", "same-origin"},
-                              {"Permissions-Policy", "camera=(), microphone=(), geolocation=()"},
-                              {"Cache-Control", "no-store"}});
-  const auto handler = [this](const httplib::Request& given, httplib::Response& response) {
-    answer(given, response);
-  };
-  constexpr const char* kAll = ".*";
-  server.Get(kAll, handler);
-  server.Post(kAll, handler);
-  server.Put(kAll, handler);
-  server.Patch(kAll, handler);
-  server.Delete(kAll, handler);
-  server.Options(kAll, handler);
+  server.set_default_headers(headers());
+  // All is answered before the library looks for whom to ask, and so before it reads a body.
+  server.set_pre_routing_handler(
+      [this](const httplib::Request& given, httplib::Response& response) {
+        answer(given, response);
+        return httplib::Server::HandlerResponse::Handled;
+      });
+  // Of the errors that the library finds.
+  server.set_error_handler([this](const httplib::Request&, httplib::Response& response) {
+    if (response.has_header("Content-Type")) return;
+    ++refused;
+    reply(error_reply(response.status, response.status == 414
+                                           ? "the first line is longer than 8192 bytes"
+                                           : "the request cannot be read"),
+          response);
+  });
   server.set_exception_handler(
       [this](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
         reply(error_reply(500, "the monitor could not answer this"), response);
       });
+}
+
+bool Server::Parts::hand_over(int socket, RawRequest request) {
+  return workers.add(
+      [this, socket, request = std::move(request)]() mutable { server.answer(socket, request); });
 }
 
 void Server::Parts::answer(const httplib::Request& given, httplib::Response& response) {
@@ -205,13 +341,14 @@ void Server::Parts::stream(const Request& request, httplib::Response& response) 
 Server::Server(const Address& address, Board& board, Api::Parts parts)
     : parts_(std::make_unique<Parts>(address, board, std::move(parts))) {
   parts_->set_up();
+  errno = 0;
   Address& own = parts_->address;
   const bool bound = own.port == 0 ? (own.port = parts_->server.bind_to_any_port(own.host)) > 0
                                    : parts_->server.bind_to_port(own.host, own.port);
   if (!bound)
     throw std::runtime_error("cannot listen on " + address.host + ":" +
-                             std::to_string(address.port) +
-                             ": the port is taken, or the address is none of this machine");
+                             std::to_string(address.port) + ": " + bind_problem(errno));
+  parts_->server.deepen_backlog();
 }
 
 void Server::start() {
@@ -225,6 +362,8 @@ Server::~Server() {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   parts_->server.stop();
   if (parts_->listener.joinable()) parts_->listener.join();
+  parts_->intake.reset();  // it hands over what the workers then answer
+  parts_->workers.finish();
 }
 
 const Address& Server::address() const { return parts_->address; }

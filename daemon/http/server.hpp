@@ -9,8 +9,8 @@
 namespace mpm::http {
 
 /// Serves page, API and event stream. Connections are few and short: each carries one request but
-/// the event streams, of which there is a bounded number; requests are small, and who reads or
-/// writes slowly is dropped.
+/// the event streams, of which there is a bounded number; requests are small and there at once
+/// (`Intake`), and who reads no answer is dropped.
 class Server {
  public:
   static constexpr std::size_t kMostStreams = 32;

@@ -11,11 +11,12 @@ WorkerQueue::WorkerQueue(std::size_t threads, std::size_t most_waiting)
 
 WorkerQueue::~WorkerQueue() { finish(); }
 
-void WorkerQueue::add(std::function<void()> job) {
-  MutexLock lock(mutex_);
-  while (jobs_.size() >= most_waiting_) changed_.wait(lock);
+bool WorkerQueue::add(std::function<void()> job) {
+  const MutexLock lock(mutex_);
+  if (jobs_.size() >= most_waiting_) return false;
   jobs_.push_back(std::move(job));
-  changed_.notify_all();
+  changed_.notify_one();
+  return true;
 }
 
 void WorkerQueue::run() {
@@ -27,7 +28,6 @@ void WorkerQueue::run() {
       if (jobs_.empty()) return;
       job = std::move(jobs_.front());
       jobs_.pop_front();
-      changed_.notify_all();
     }
     job();
   }

@@ -10,8 +10,7 @@
 
 namespace mpm::http {
 
-/// Threads that serve connections, and a bounded number of those that wait for one: who accepts
-/// them waits too, and the kernel refuses what comes then.
+/// Threads that answer requests, and a bounded number of those that wait for one.
 class WorkerQueue {
  public:
   WorkerQueue(std::size_t threads, std::size_t most_waiting);
@@ -19,8 +18,8 @@ class WorkerQueue {
   WorkerQueue& operator=(const WorkerQueue&) = delete;
   ~WorkerQueue();
 
-  /// Waits where the queue is full.
-  void add(std::function<void()> job);
+  /// False where the queue is full.
+  [[nodiscard]] bool add(std::function<void()> job);
   /// Ends the threads after what they have to do; nothing may be added any more.
   void finish();
 

@@ -1,6 +1,7 @@
 #include "daemon/http/address.hpp"
 
 #include <catch2/catch.hpp>
+#include <cerrno>
 
 namespace mpm::http {
 namespace {
@@ -26,6 +27,12 @@ TEST_CASE("what is no address is refused") {
     CAPTURE(text);
     CHECK_FALSE(parse_address(text));
   }
+}
+
+TEST_CASE("why nobody can listen is told apart") {
+  CHECK(bind_problem(EADDRINUSE) == "the port is taken");
+  CHECK(bind_problem(EADDRNOTAVAIL) == "the address is none of this machine");
+  CHECK(bind_problem(EACCES) == "this user may not take that port (permission denied)");
 }
 
 }  // namespace

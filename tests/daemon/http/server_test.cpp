@@ -82,10 +82,57 @@ TEST_CASE("large and broken requests are refused") {
   CHECK_THAT(bench.ask("POST /api/v1/commands", "Content-Length: 1000000\r\n",
                        std::string(1'000'000, 'x')),
              Contains("HTTP/1.1 413"));
-  CHECK_THAT(bench.ask("GET /" + std::string(20'000, 'x')), Contains("HTTP/1.1 414"));
+  CHECK_THAT(bench.ask("GET /" + std::string(9'000, 'x')), Contains("HTTP/1.1 414"));
   const Connection connection(bench.server.address().port);
   connection.say("nonsense\r\n\r\n");
   CHECK_THAT(connection.hear(), Contains("HTTP/1.1 400"));
+}
+
+TEST_CASE(
+    "what is refused unseen is refused with an error in JSON, and as a browser is to take it") {
+  const Bench bench;
+  const auto error = [&](const std::string& line, const std::string& more,
+                         const std::string& body) {
+    const std::string answer = bench.ask(line, more, body);
+    CHECK_THAT(answer, Contains("X-Content-Type-Options: nosniff"));
+    const std::size_t at = answer.find("\r\n\r\n");
+    REQUIRE(at != std::string::npos);
+    CHECK(Json::parse(answer.substr(at))["error"].is_string());
+    return answer.substr(9, 3);
+  };
+  CHECK(error("GET /", "X: " + std::string(20'000, 'a') + "\r\n", "") == "431");
+  CHECK(error("POST /api/v1/commands", "Content-Length: 20000\r\n", "") == "413");
+  CHECK(error("POST /api/v1/commands", "Content-Length: x\r\n", "") == "400");
+  CHECK(error("POST /api/v1/commands", "Transfer-Encoding: chunked\r\n", "0\r\n\r\n") == "411");
+  // A body of no length is none: it is not waited for.
+  CHECK(error("POST /api/v1/commands", "", "") == "403");
+  CHECK(error("BREW /", "", "") == "400");
+}
+
+TEST_CASE("headers without end are refused, on however many connections") {
+  const Bench bench;
+  std::vector<Connection> open;
+  for (int k = 0; k < 100; ++k) {
+    open.emplace_back(bench.server.address().port);
+    open.back().say("GET / HTTP/1.1\r\nHost: localhost\r\n");
+  }
+  std::string line;
+  for (int k = 0; k < 1000; ++k) line += "X" + std::to_string(k) + ": aaaaaaaaaaaa\r\n";
+  for (const Connection& each : open) each.say(line);
+  for (const Connection& each : open) CHECK_THAT(each.hear("}"), Contains("HTTP/1.1 431"));
+  CHECK_THAT(bench.ask("GET /healthz"), Contains("HTTP/1.1 200"));
+}
+
+TEST_CASE("who has not said all he asks holds up nobody") {
+  const Bench bench;
+  std::vector<Connection> open;
+  for (int k = 0; k < 300; ++k) {  // more than there are threads, and more than wait in all
+    open.emplace_back(bench.server.address().port);
+    open.back().say(k % 2 == 0 ? "GET / HTTP/1.1\r\nHost: loc"
+                               : "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\n");
+  }
+  CHECK_THAT(bench.ask("GET /healthz"), Contains("HTTP/1.1 200"));
+  CHECK_THAT(open.back().hear("}"), Contains("HTTP/1.1 408"));
 }
 
 TEST_CASE("streams are told of news, are counted, and there is a most of them") {
@@ -126,8 +173,8 @@ TEST_CASE("a port that is taken is not shared") {
   test::SampleBoard other;
   Api::Parts parts;
   parts.board = &other.board;
-  CHECK_THROWS_AS(Server(bench.server.address(), other.board, std::move(parts)),
-                  std::runtime_error);
+  CHECK_THROWS_WITH(Server(bench.server.address(), other.board, std::move(parts)),
+                    Contains("the port is taken") && !Contains("none of this machine"));
 }
 
 }  // namespace
