@@ -32,6 +32,7 @@ std::variant<AlarmCommand, std::string> CommandGate::admit(const CommandRecord& 
   admitted_[record.id] = record.time_ns;
   const std::optional<AlarmAction> action = from_string<AlarmAction>(record.action);
   if (!action) return "there is no action '" + printable(record.action) + "'";
+  if (record.user.empty()) return "user is missing: who does this is to be known later";
   AlarmCommand command;
   command.unit = record.unit;
   command.mv = printable(record.mv);

@@ -11,6 +11,7 @@ const host::CommandToken kToken("0123456789abcdef");
 CommandRecord signed_by(const host::CommandToken& token, CommandRecord record = {}) {
   if (record.id.empty()) record.id = "1";
   if (record.action.empty()) record.action = "acknowledge";
+  if (record.user.empty()) record.user = "ann";
   if (record.time_ns == 0) record.time_ns = kNow;
   record.proof = token.proof(signed_text(record));
   return record;
@@ -42,6 +43,14 @@ TEST_CASE("who knows the token gives a command, and it comes as it was given") {
   CHECK(command.once);
   CHECK(command.user == "ann");
   CHECK(command.comment == "line\\nfeed");
+}
+
+TEST_CASE("a command of nobody is refused") {
+  CommandGate gate(kToken);
+  CommandRecord record = signed_by(kToken);
+  record.user = "";
+  record.proof = kToken.proof(signed_text(record));
+  CHECK_THAT(refused(gate, record), Contains("user is missing"));
 }
 
 TEST_CASE("without a token nobody gives commands, with another one neither") {
