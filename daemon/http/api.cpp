@@ -20,7 +20,7 @@ namespace mpm::http {
 namespace {
 
 constexpr double kSecond = 1e9;
-constexpr std::size_t kMostEvents = 5000;
+constexpr int kMostEvents = 5000;
 
 Reply json_reply(const Json& json, int status = 200) {
   Reply reply;
@@ -58,6 +58,15 @@ std::string header(const Request& request, const char* name) {
   return found == request.headers.end() ? "" : found->second;
 }
 
+bool is_within(int value, int least, int most) { return value >= least && value <= most; }
+
+/// A method that is not for what is asked for.
+Reply method_reply(const std::string& text, const char* allowed) {
+  Reply reply = error_reply(405, text);
+  reply.headers["Allow"] = allowed;
+  return reply;
+}
+
 std::string text_of(const std::map<std::string, std::string>& query, const char* key) {
   const auto found = query.find(key);
   return found == query.end() ? "" : found->second;
@@ -81,7 +90,8 @@ std::optional<Reply> Api::refusal(const Request& request) const {
                        "this server is not known by the name in the Host header; --http-name "
                        "says what else it is called");
   if (request.method == "GET" || request.method == "HEAD") return std::nullopt;
-  if (request.method != "POST") return error_reply(405, "only GET, HEAD and POST are answered");
+  if (request.method != "POST")
+    return method_reply("only GET, HEAD and POST are answered", "GET, HEAD, POST");
   if (!Guard::is_own(header(request, "origin"), header(request, "sec-fetch-site"),
                      header(request, "host")))
     return error_reply(403, "requests of other sites' pages are refused");
@@ -94,7 +104,7 @@ Reply Api::answer(const Request& request) const {
   if (!target) return error_reply(400, "the path cannot be read");
   if (request.method == "POST") {
     if (target->path == std::vector<std::string>{"api", "v1", "commands"}) return command(request);
-    return error_reply(405, "only /api/v1/commands takes a POST");
+    return method_reply("only /api/v1/commands takes a POST", "GET, HEAD");
   }
   return get(target->path, target->query);
 }
@@ -110,7 +120,7 @@ Reply Api::get(const std::vector<std::string>& path, const Query& query) const {
   if (path.size() == 3 && path[2] == "journal") return journal(query);
   if (path.size() == 3 && path[2] == "system") return system();
   if (path.size() == 3 && path[2] == "commands")
-    return error_reply(405, "commands are given with POST");
+    return method_reply("commands are given with POST", "POST");
   return error_reply(404, "there is nothing of this name");
 }
 
@@ -157,6 +167,11 @@ Reply Api::cv(const UnitStore& store, int cv, const std::string& what, const Que
     return error_reply(400,
                        "from and until are seconds since 1970, span is seconds, points "
                        "is a number");
+  if (series.span_s.value_or(1.0) <= 0.0) return error_reply(400, "span is to be more than 0 s");
+  if (series.from_s && series.until_s && *series.from_s > *series.until_s)
+    return error_reply(400, "from is to be before until");
+  if (!is_within(series.points, SeriesQuery::kFewestPoints, SeriesQuery::kMostPoints))
+    return error_reply(400, "points is to be from 10 to 2000");
   return json_reply(series_json(store, cv, series));
 }
 
@@ -168,9 +183,13 @@ Reply Api::journal(const Query& query) const {
   events.unit = text_of(query, "unit");
   events.mv = text_of(query, "mv");
   events.cv = text_of(query, "cv");
+  if (bad) return error_reply(400, "since and until are seconds since 1970");
+  if (events.since_ns && events.until_ns && *events.since_ns > *events.until_ns)
+    return error_reply(400, "since is to be before until");
   const int most = number_of<int>(query, "most", bad).value_or(static_cast<int>(events.most));
-  if (bad || most < 1) return error_reply(400, "since and until are seconds since 1970");
-  events.most = std::min(static_cast<std::size_t>(most), kMostEvents);
+  if (bad || !is_within(most, 1, kMostEvents))
+    return error_reply(400, "most is to be a whole number from 1 to 5000");
+  events.most = static_cast<std::size_t>(most);
   const EventSource& source = parts_.events != nullptr ? *parts_.events : parts_.board->events();
   return json_reply({{"events", source.query(events)}});
 }

@@ -87,6 +87,42 @@ TEST_CASE("what is not there is said not to be") {
   }
 }
 
+TEST_CASE("a question that cannot be meant is refused, and told what is wrong with it") {
+  const Bench bench;
+  const std::string series = "/api/v1/units/column/cvs/AI-201/series?";
+  const auto error = [&bench](const std::string& target) {
+    const Reply reply = bench.api.answer(get(target));
+    CHECK(reply.status == 400);
+    return Json::parse(reply.body).value("error", "");
+  };
+  for (const char* points : {"points=9", "points=2001", "points=-1", "points=99999"})
+    CHECK(error(series + points) == "points is to be from 10 to 2000");
+  CHECK(bench.status(get(series + "points=10")) == 200);
+  CHECK(bench.status(get(series + "points=2000")) == 200);
+  CHECK(error(series + "span=-1") == "span is to be more than 0 s");
+  CHECK(error(series + "span=0") == "span is to be more than 0 s");
+  CHECK(error(series + "from=2&until=1") == "from is to be before until");
+  for (const char* most : {"abc", "0", "-1", "5001", "1.5"})
+    CHECK(error("/api/v1/journal?most=" + std::string(most)) ==
+          "most is to be a whole number from 1 to 5000");
+  CHECK(error("/api/v1/journal?since=x") == "since and until are seconds since 1970");
+  CHECK(error("/api/v1/journal?since=2&until=1") == "since is to be before until");
+}
+
+TEST_CASE("who asks in the wrong way is told the right one") {
+  const Bench bench;
+  const auto allowed = [&bench](const std::string& method, const std::string& target) {
+    Request request = get(target);
+    request.method = method;
+    const Reply reply = bench.api.answer(request);
+    CHECK(reply.status == 405);
+    return reply.headers.at("Allow");
+  };
+  CHECK(allowed("GET", "/api/v1/commands") == "POST");
+  CHECK(allowed("POST", "/api/v1/units") == "GET, HEAD");
+  CHECK(allowed("DELETE", "/api/v1/units") == "GET, HEAD, POST");
+}
+
 TEST_CASE("who is not meant does not answer") {
   const Bench bench;
   Request request = get("/api/v1/units");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/alarm/alarm_command.hpp"
+#include "core/alarm/calibration.hpp"
 #include "daemon/http/api.hpp"
 #include "daemon/http/assets.hpp"
 #include "tests/daemon/http/sample_board.hpp"
@@ -139,6 +140,9 @@ TEST_CASE("a command and its answers are as the file says") {
   const Json& schema = openapi()["components"]["schemas"]["Command"];
   const Json& words = schema["properties"]["command"]["enum"];
   CHECK(words.size() == words_of(AlarmAction{}).size());
+  CHECK(schema["properties"]["duration_s"]["maximum"] == calibration::kMostShelf);
+  for (const char* status : {"405", "408", "411", "413", "421", "431", "503"})
+    CHECK(openapi()["paths"]["/api/v1/commands"]["post"]["responses"].contains(status));
   for (const bool once : {true, false})
     for (const Json& word : words) {
       const Json command = {{"unit", "column"}, {"mv", "FIC-101"}, {"cv", "AI-201"},
