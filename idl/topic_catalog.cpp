@@ -24,6 +24,7 @@ constexpr KnownTopic input(const char* name) {
   return known<mpm_Sample>(name, sample_reader_qos, sample_writer_qos, true);
 }
 
+Qos no_writer(WriterPace) { return role_reader_qos(); }
 Qos layout_writer(WriterPace) { return layout_qos(); }
 Qos command_writer(WriterPace) { return command_qos(); }
 
@@ -49,11 +50,14 @@ constexpr auto topics(const std::tuple<Record...>*) {
                               output_writer<Record>)...};
 }
 
+constexpr KnownTopic kRole = known<mpm_Role>(kRoleTopic, role_reader_qos, no_writer);
 constexpr std::array kTopics = topics(static_cast<const OutputRecords*>(nullptr));
 
 }  // namespace
 
 std::span<const KnownTopic> known_topics() { return kTopics; }
+
+const KnownTopic& role_topic() { return kRole; }
 
 const KnownTopic* find_known_topic(std::string_view name) {
   const auto found = std::find_if(kTopics.begin(), kTopics.end(),

@@ -21,6 +21,8 @@ struct KnownTopic {
 
 /// All topics of mpm.idl, the inputs first.
 [[nodiscard]] std::span<const KnownTopic> known_topics();
+/// mpm/role. It is none of the above: it may be heard, but who played it would speak for a monitor.
+[[nodiscard]] const KnownTopic& role_topic();
 /// Null for any other topic.
 [[nodiscard]] const KnownTopic* find_known_topic(std::string_view name);
 

@@ -61,6 +61,14 @@ Json json_of(const mpm_Layout& sample) {
           {"engineering_units", idl::texts_of(sample.engineering_units)}};
 }
 
+Json json_of(const mpm_Role& sample) {
+  return {{"unit", text(sample.unit)},
+          {"host", text(sample.host)},
+          {"process", sample.process},
+          {"active", sample.active},
+          {"since_ns", sample.since_ns}};
+}
+
 std::string yaml_text(const Json& json) {
   std::string lines;
   append(json, "", lines);

@@ -32,6 +32,7 @@ std::string line(const std::string& name, std::size_t name_width, const std::str
 Survey::Survey(const idl::Participant& participant) : discovery_(participant) {
   for (const idl::KnownTopic& topic : idl::known_topics())
     readers_.emplace_back(participant, topic);
+  readers_.emplace_back(participant, idl::role_topic());
   for (const idl::RawReader& reader : readers_) wait_set_.attach(reader.readable());
 }
 

@@ -161,6 +161,28 @@ TEST_CASE("a monitor stands by: kill the one that speaks, and no alarm is lost o
   CHECK(cell.seen_by_newcomer("u2").mv == "u2");
 }
 
+TEST_CASE("who speaks can be read on the bus") {
+  Cell cell("standby-role");
+  cell.start("a");
+  cell.await("a");
+  const auto mpm = [&cell](const std::vector<std::string>& words) {
+    std::vector<std::string> all{"mpm"};
+    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), {"--domain", std::to_string(cell.options.domain), "--partition",
+                           cell.options.partition});
+    REQUIRE(run(all, cell.folder.file("out"), cell.folder.file("err")) == 0);
+    return read_file(cell.folder.file("out"));
+  };
+  const std::string line = mpm({"echo", "mpm/role", "--once", "--json", "--duration", "10"});
+  CHECK_THAT(line, Catch::Matchers::Contains(R"({"topic":"mpm/role",)") &&
+                       Catch::Matchers::Contains(R"("sample":{"unit":"toy","host":")") &&
+                       Catch::Matchers::Contains(R"("active":true)"));
+  CHECK_THAT(
+      mpm({"topics", "--json"}),
+      Catch::Matchers::Contains(
+          R"("topic":"mpm/role","type":"mpm::Role","writers":1,"readers":1,"units":["toy"])"));
+}
+
 TEST_CASE("one that knows nothing yet lets stand what stood, as people left it") {
   Cell cell("standby-cold");
   cell.start("a");

@@ -136,6 +136,8 @@ Echo find_output(const idl::KnownTopic& topic, const std::tuple<Record...>*) {
 }
 
 int echo(const EchoOptions& options) {
+  const auto json_of = [](const auto& sample) { return bus::json_of(sample); };
+  if (options.topic == idl::kRoleTopic) return echo<mpm_Role>(options, idl::role_topic(), json_of);
   const idl::KnownTopic* topic = idl::find_known_topic(options.topic);
   if (topic == nullptr) {
     std::cerr << "mpm echo: error: '" << options.topic
@@ -144,7 +146,6 @@ int echo(const EchoOptions& options) {
   }
   if (const Echo output = find_output(*topic, static_cast<const idl::OutputRecords*>(nullptr)))
     return output(options, *topic);
-  const auto json_of = [](const auto& sample) { return bus::json_of(sample); };
   if (topic->type == &mpm_Layout_desc) return echo<mpm_Layout>(options, *topic, json_of);
   return echo<mpm_Sample>(options, *topic, json_of);
 }
