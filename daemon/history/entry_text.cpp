@@ -1,6 +1,7 @@
 #include "daemon/history/entry_text.hpp"
 
 #include <array>
+#include <string_view>
 
 #include "core/text/printable.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -10,6 +11,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::size_t kLongestText = 1000;
+constexpr std::string_view kSuppressed = "suppressed";
 
 std::string quoted(std::string text) {
   if (!text.empty() && std::string("=+-@\t\r").find(text.front()) != std::string::npos)
@@ -27,6 +29,8 @@ std::string entry_text(const AlarmEntry& entry) {
                      printable(entry.unit) + "  ";
   text += entry.cv.empty() ? "controller" : printable(entry.mv) + " -> " + printable(entry.cv);
   text += "  " + printable(entry.what);
+  if (entry.what == kSuppressed && entry.standing.suppressed_by_design && entry.user.empty())
+    text += " by design: the controller is off or the data are bad";
   if (!entry.user.empty()) {
     text += " by " + printable(entry.user);
     if (!entry.host.empty()) text += " on " + printable(entry.host);

@@ -19,6 +19,8 @@ Json event_json(const history::AlarmEntry& entry) {
           {"to", entry.what},
           {"text", entry.message},
           {"alarm_state", to_string(entry.standing.word())},
+          {"suppressed", entry.standing.suppressed},
+          {"suppressed_by_design", entry.standing.suppressed_by_design},
           {"notification_class", to_string(entry.notification_class)},
           {"priority", to_string(entry.priority)},
           {"client_user_id", entry.user},

@@ -94,6 +94,12 @@ bool is_normal(const Json& alarm) {
                               : alarm["to"] == std::string(to_string(AlarmChange::kCleared));
 }
 
+/// Silenced by nobody but the plant, with nothing there to be silent about: no alarm.
+bool is_idle(const ControlRoomView& view, bool active) {
+  return view.suppressed_by_design && !view.suppressed && !view.out_of_service &&
+         view.shelving_state == Shelving::kUnshelved && !active && view.acknowledged;
+}
+
 /// Neither shelved nor suppressed nor out of service: it calls for somebody.
 bool calls(const Json& alarm) {
   const auto state = alarm.find("alarm_state");
@@ -228,19 +234,17 @@ Json first_calls(const Json& alarms) {
   return first;
 }
 
-std::size_t silenced_alarms(const Json& alarms) {
-  return static_cast<std::size_t>(
-      std::count_if(alarms.begin(), alarms.end(), [](const Json& alarm) { return !calls(alarm); }));
+/// Those of channels that call, or do not; that of the controller stands for them, and counts where
+/// it is the last.
+std::size_t count(const Json& alarms, bool calling) {
+  std::size_t of_channels = 0, of_controller = 0;
+  for (const Json& alarm : alarms)
+    if (calls(alarm) == calling)
+      ++(alarm["cv"].get_ref<const std::string&>().empty() ? of_controller : of_channels);
+  return std::max(of_channels, of_controller);
 }
 
-/// Of channels; that of the controller stands for them, and counts where it is the last.
-std::size_t calling_alarms(const Json& alarms) {
-  const auto of_channels = std::count_if(alarms.begin(), alarms.end(), [](const Json& alarm) {
-    return calls(alarm) && !alarm["cv"].get_ref<const std::string&>().empty();
-  });
-  const bool any = std::any_of(alarms.begin(), alarms.end(), calls);
-  return std::max(static_cast<std::size_t>(of_channels), std::size_t{any ? 1U : 0U});
-}
+std::size_t calling_alarms(const Json& alarms) { return count(alarms, true); }
 
 }  // namespace
 
@@ -264,11 +268,13 @@ Json overview_json(const UnitStore& store) {
   const std::size_t calling = calling_alarms(alarms);
   return {{"unit", unit.unit},
           {"snapshot", snapshot->id},
+          {"speaks", snapshot->speaks},
           {"attention", attention(*snapshot, calling)},
+          {"sample_time_s", unit.sample_time_s},
           {"time_ns", snapshot->health.source_time_ns},
           {"health", {{"state", snapshot->health.state}, {"detail", snapshot->health.detail}}},
           {"alarms", calling},
-          {"silenced_alarms", silenced_alarms(alarms)},
+          {"silenced_alarms", count(alarms, false)},
           {"first_alarms", first_calls(alarms)},
           {"match", snapshot->health.matching},
           {"mismatch", snapshot->health.mismatching},
@@ -300,6 +306,7 @@ Json unit_json(const UnitStore& store) {
   performance.erase("record");
   return {{"unit", unit.unit},
           {"snapshot", snapshot->id},
+          {"speaks", snapshot->speaks},
           {"attention", attention(*snapshot, calling_alarms(alarms))},
           {"sample_time_s", unit.sample_time_s},
           {"time_ns", snapshot->health.source_time_ns},
@@ -318,9 +325,12 @@ Json alarms_json(const UnitStore& store) {
   std::vector<Json> standing;
   for (const AlarmStateRecord& alarm : snapshot->alarms) {
     Json json = alarm_json(store, *snapshot, alarm);
-    if (!is_normal(json)) standing.push_back(std::move(json));
+    if (!is_normal(json) && !is_idle(alarm.view, alarm.to != AlarmChange::kCleared))
+      standing.push_back(std::move(json));
   }
-  if (Json json = controller_json(snapshot->controller); !is_normal(json))
+  const ControllerAlarmRecord& controller = snapshot->controller;
+  if (Json json = controller_json(controller);
+      !is_normal(json) && !is_idle(controller.view, controller.state == AlarmState::kActive))
     standing.insert(standing.begin(), std::move(json));
   std::stable_sort(standing.begin(), standing.end(), [](const Json& a, const Json& b) {
     return a["time_ns"].get<std::int64_t>() > b["time_ns"].get<std::int64_t>();

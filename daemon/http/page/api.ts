@@ -13,11 +13,12 @@ export interface Alarm {
   unit: string; mv: string; cv: string; to: string; time_ns: number; text: string;
   cause?: string | null; cause_text?: string; cause_confidence?: number; state?: State;
   alarm_state?: string; priority?: string; severity?: number; message?: string; comment?: string;
+  suppressed?: boolean; suppressed_by_design?: boolean;
   notification_class?: string; client_user_id?: string; active_time_ns?: number; ack_time_ns?: number;
   shelving_state?: string; unshelve_time_ns?: number; guidance?: string; display_url?: string;
 }
 export interface Card {
-  unit: string; snapshot: number; attention: number; time_ns: number;
+  unit: string; snapshot: number; speaks: boolean; attention: number; sample_time_s: number; time_ns: number;
   health: { state: string; detail: string };
   alarms: number; silenced_alarms: number; first_alarms: Alarm[];
   match: number; mismatch: number; undetermined: number;
@@ -36,7 +37,7 @@ export interface Channel {
 export interface Trouble { severity: string; text: string }
 export interface Health extends Record<string, unknown> { state: string; detail: string; frames: number }
 export interface Unit {
-  unit: string; snapshot: number; attention: number; sample_time_s: number; time_ns: number;
+  unit: string; snapshot: number; speaks: boolean; attention: number; sample_time_s: number; time_ns: number;
   inputs: Input[]; cvs: Cv[]; channels: Channel[]; alarms: Alarm[]; health: Health; troubles: Trouble[]; kpi: Kpi;
 }
 export interface Reaches { mean: Values; min: Values; max: Values }
@@ -70,7 +71,7 @@ export interface Diagnosis {
 }
 export interface Event {
   record: string; unit: string; mv: string; cv: string; to: string; time_ns: number; cause_text?: string;
-  text?: string; message?: string; client_user_id?: string; comment?: string;
+  text?: string; message?: string; client_user_id?: string; comment?: string; suppressed?: boolean; suppressed_by_design?: boolean;
 }
 export interface SystemUnit extends Record<string, unknown> {
   unit: string; state: string; detail: string; time_ns: number; troubles: Trouble[]; samples_per_second: number;

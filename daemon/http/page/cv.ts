@@ -2,8 +2,8 @@
 import { get, part, unitPath, type Correlation, type Correlations, type Limits, type Series, type Unit, type Values } from './api';
 import { h } from './dom';
 import { figure, type Figure, type Line, type Plot } from './draw.js';
-import { stateChip, unitLink } from './parts';
-import { moment, number, percent, withUnit } from './text';
+import { stateChip, time, unitLink } from './parts';
+import { number, withUnit, zone, zoneText } from './text';
 
 const SPANS: [string, number][] = [['10 min', 600], ['1 h', 3600], ['8 h', 28800], ['1 d', 86400], ['7 d', 604800], ['30 d', 2592000], ['90 d', 7776000]];
 const kPoints = 600;
@@ -110,7 +110,8 @@ export class CvPage {
     const off = cv && cv.measured !== null && cv.prediction !== null ? cv.measured - cv.prediction : null;
     const value = (name: string, text: string) => h('div', { class: 'kpi' }, h('dt', {}, name), h('dd', {}, h('span', { class: 'value' }, text)));
     const engineering = cv?.unit ?? '';
-    const shown = this.chosen ? `${moment(series.from * 1e9)} to ${moment(series.until * 1e9)}` : series.last ? `up to ${moment(series.last * 1e9)}` : '';
+    const last = (this.chosen ? series.until : series.last ?? 0) * 1e9;
+    const shown = this.chosen ? [time(series.from * 1e9), ' to ', time(last)] : last ? ['up to ', time(last)] : [];
     return h('div', {},
       h('div', { class: 'head' }, h('h1', { tabindex: -1 }, h('a', { href: unitLink(this.unit) }, this.unit), ' / ', this.cv),
         h('p', { class: 'note' }, cv?.description ?? '')),
@@ -121,7 +122,7 @@ export class CvPage {
         ...SPANS.map(([name, seconds]) => h('button', { type: 'button', 'data-do': 'span', 'data-span': seconds,
           'aria-pressed': !this.chosen && this.span === seconds ? 'true' : 'false' }, name)),
         this.chosen ? h('button', { type: 'button', class: 'main', 'data-do': 'span', 'data-span': this.span }, 'Show the latest') : null,
-        h('span', { class: 'note' }, shown)),
+        h('span', { class: 'note' }, ...shown, last ? `; plots in ${zone === 'UTC' ? 'UTC' : `${zone}, ${zoneText(last)}`}` : '')),
       series.times.length > 1 ? null : h('p', { class: 'note' }, 'Nothing was measured in this time.'),
       this.plots,
       h('p', { class: 'note screen' }, 'Drag over a plot to zoom, which fetches that stretch anew; double click, or 0 on the keyboard, shows the latest again; arrow keys move the cursor.'),
@@ -137,7 +138,7 @@ function excitation(each: Correlation): HTMLElement {
   const error = each.smallest_error;
   const known = error !== null && error > 0;
   const text = !each.excited && !known ? 'has not moved enough to tell anything'
-    : known ? `an error of the gain of ${percent(error)} would show` : 'moves enough';
+    : known ? `an error of the gain of ${number(100 * error, 2)} % would show` : 'moves enough';
   return h('span', { class: 'excitation' }, h('meter', { min: 0, max: kMost, value: known ? Math.max(0, kMost - error) : each.excited ? kMost : 0, 'aria-label': `Excitation by ${each.mv}` }),
     h('span', {}, ` Excitation: ${text}`));
 }

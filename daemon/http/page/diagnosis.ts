@@ -2,7 +2,7 @@
 import { get, unitPath, type Diagnosis, type Finding, type Rival } from './api';
 import { h } from './dom';
 import { time, unitLink } from './parts';
-import { number } from './text';
+import { interval, number } from './text';
 
 const NAMES: Record<string, [string, number]> = { // and what an unchanged model has
   gain_ratio: ['Gain, plant / model', 1], time_constant_ratio: ['Time constant, plant / model', 1], dead_time_error: ['Dead time, plant − model, s', 0],
@@ -21,7 +21,7 @@ function numberTable(channels: Numbers[], names: string[]): HTMLElement {
   const row = (each: Numbers) => h('tr', {}, h('th', { scope: 'row' }, `${each.mv}\u00a0→\u00a0${each.cv}`), ...names.map(key => {
     const value = each.parameters[key], range = each.interval[key], name = NAMES[key]?.[0] ?? key, changed = isChanged(each, key);
     if (value === undefined) return cell('–', name, 'number');
-    return cell(`${number(value, 3)}${range ? ` (${number(range[0], 3)} to ${number(range[1], 3)})` : ''}${changed ? ' ▲' : ''}`, name, changed ? 'number changed' : 'number');
+    return cell(`${number(value, 3)}${range ? ` (${interval(range[0], range[1])})` : ''}${changed ? ' ▲' : ''}`, name, changed ? 'number changed' : 'number');
   }));
   return h('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': `Old model and new, ${channels.length} channels` }, h('table', { class: 'wide' },
     h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Channel'), ...names.map(key => h('th', { scope: 'col', class: 'number' }, NAMES[key]?.[0] ?? key)))),

@@ -1,7 +1,7 @@
 // Alarm events, chosen by unit, CV and time.
 import { get, type Card, type Event } from './api';
 import { h } from './dom';
-import { title } from './alarm';
+import { BY_DESIGN, isByDesign, title } from './alarm';
 import { cvLink, time, unitLink } from './parts';
 
 const SINCE: [string, number][] = [['last hour', 3600], ['last day', 86400], ['last week', 604800], ['all that is kept', 0]];
@@ -40,7 +40,7 @@ export async function journal(): Promise<HTMLElement> {
       h('thead', {}, h('tr', {}, ...['Time', 'Event', 'Unit', 'Channel', 'What'].map(each => h('th', { scope: 'col' }, each)))),
       h('tbody', {}, ...events.map(each => h('tr', { 'data-key': `${each.unit} ${each.mv} ${each.cv} ${each.time_ns} ${each.to}` },
         h('td', { 'data-label': 'Time' }, time(each.time_ns)),
-        h('td', { 'data-label': 'Event', class: `event ${each.to}` }, WORDS[each.to] ?? sentence(each.to.replaceAll('_', ' '))),
+        h('td', { 'data-label': 'Event', class: `event ${each.to}` }, WORDS[each.to] ?? sentence(each.to.replaceAll('_', ' ')), each.to === 'suppressed' && !each.client_user_id && isByDesign(each) ? ` ${BY_DESIGN}` : ''),
         h('td', { 'data-label': 'Unit' }, h('a', { href: unitLink(each.unit) }, each.unit)),
         h('td', { 'data-label': 'Channel' }, each.cv ? h('a', { href: cvLink(each.unit, each.cv) }, title(each)) : title(each)),
         h('td', { 'data-label': 'What' }, each.message || each.cause_text || each.text || '–',

@@ -1,7 +1,7 @@
 // What several pages show.
 import type { Card, Channel, Kpi, State, Trend } from './api';
 import { h, svg } from './dom';
-import { healthOf, moment, percent, STATES, utc, inUtc } from './text';
+import { healthOf, moment, percent, span, STATES, utc, inUtc } from './text';
 
 export const unitLink = (unit: string) => `#/unit/${encodeURIComponent(unit)}`;
 export const cvLink = (unit: string, cv: string) => `${unitLink(unit)}/cv/${encodeURIComponent(cv)}`;
@@ -10,6 +10,26 @@ export const cvLink = (unit: string, cv: string) => `${unitLink(unit)}/cv/${enco
 export function time(ns: number | null | undefined): HTMLElement {
   return h('span', { class: 'time' }, h('span', {}, moment(ns)),
     !inUtc && ns ? h('span', { class: 'utc' }, ` (${utc(ns)})`) : null);
+}
+
+const kSilentSamples = 10, kLeastSilence = 5; // s; as in daemon/live/unit_health
+
+/// When the last sample was taken, and how far that is from now where it should not be: the monitor's
+/// own measure of silence.
+export function lastSample(unit: { time_ns: number; sample_time_s: number }): HTMLElement {
+  if (!unit.time_ns) return h('p', { class: 'note' }, 'no sample yet');
+  const age = Date.now() / 1e3 - unit.time_ns / 1e9;
+  const allowed = Math.max(kLeastSilence, kSilentSamples * unit.sample_time_s);
+  return h('p', { class: 'note' }, 'last sample ', time(unit.time_ns),
+    Math.abs(age) > allowed ? h('strong', { class: 'old' }, ` △ ${span(Math.abs(age))} ${age > 0 ? 'ago' : 'ahead of this clock'}`) : null);
+}
+
+/// Of a monitor that only looks on, first of all.
+export function standby(unit: { speaks: boolean; health: { detail: string } }): HTMLElement | null {
+  if (unit.speaks) return null;
+  const [first = '', ...speaker] = unit.health.detail.split('; ');
+  return h('p', { class: 'standby', role: 'note' }, h('strong', {}, first === 'stands by' ? 'This monitor stands by' : 'This monitor stands by for another one'),
+    speaker.length ? `; ${speaker.join('; ')}.` : '.', ' It takes no commands.');
 }
 
 /// No colour where all is well.

@@ -3,13 +3,20 @@ import { number } from './draw.js';
 
 export { number };
 
+/// So many digits that the two can be told apart.
+export function interval(low: number, high: number): string {
+  const kFewest = 3, kMost = 7;
+  let digits = kFewest;
+  while (digits < kMost && low !== high && number(low, digits) === number(high, digits)) ++digits;
+  return `${number(low, digits)} to ${number(high, digits)}`;
+}
+
 export const percent = (share: number | null | undefined, digits = 0): string =>
   share === null || share === undefined || !Number.isFinite(share) ? '–' : `${(100 * share).toFixed(digits)} %`;
 
 export const withUnit = (value: number | null, unit: string): string => `${number(value)}${unit && value !== null ? ` ${unit}` : ''}`;
 
 const two = (value: number) => String(value).padStart(2, '0');
-const kDay = 86_400_000;
 const kMonths = ['Jan', 'Feb', 'Mar', 'Apr', 'May', 'Jun', 'Jul', 'Aug', 'Sep', 'Oct', 'Nov', 'Dec'];
 
 export const zone = Intl.DateTimeFormat().resolvedOptions().timeZone || 'UTC';
@@ -35,6 +42,12 @@ export function utc(ns: number | null | undefined): string {
   return `${other}${utcClock(date)} UTC`;
 }
 
+/// "UTC+1", as of that moment.
+export function zoneText(ns: number): string {
+  const minutes = -new Date(ns / 1e6).getTimezoneOffset(), size = Math.abs(minutes);
+  return minutes ? `UTC${minutes > 0 ? '+' : '−'}${Math.floor(size / 60)}${size % 60 ? `:${two(size % 60)}` : ''}` : 'UTC';
+}
+
 export const nowText = () => clock(new Date());
 export const nowUtc = () => `${utcClock(new Date())} UTC`;
 
@@ -43,8 +56,6 @@ export function span(seconds: number): string {
     if (seconds >= 2 * size) return `${Math.round(seconds / size)} ${name}`;
   return `${Math.max(0, Math.round(seconds))} s`;
 }
-
-export const isOld = (ns: number) => Date.now() - ns / 1e6 > kDay;
 
 export const HEALTH: Record<string, { word: string; sign: string; name: string }> = {
   normal: { word: 'Normal', sign: '', name: 'ok' },

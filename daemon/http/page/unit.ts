@@ -1,8 +1,8 @@
 // One unit: matrix, alarms, what is open.
 import { get, unitPath, type Channel, type Unit } from './api';
-import { alarmRow, tabOf, TABS, type Tab } from './alarm';
+import { alarmRow, PRIORITIES, tabOf, TABS, type Tab } from './alarm';
 import { h } from './dom';
-import { cvLink, healthChip, kpiStrip, legend, shortText, stateChip, time, unitLink } from './parts';
+import { cvLink, healthChip, kpiStrip, lastSample, legend, shortText, standby, stateChip, unitLink } from './parts';
 import { healthOf, STATES, withUnit } from './text';
 
 let tab: Tab = 'active';
@@ -55,8 +55,10 @@ function alarms(unit: Unit): HTMLElement {
         tabindex: name === tab ? 0 : -1, 'data-do': 'tab', 'data-tab': name }, `${text} (${count})`);
     })),
     h('div', { role: 'tabpanel', id: 'alarm-panel', 'aria-labelledby': `tab-${tab}`, tabindex: 0 },
-      rows.length ? h('ul', { class: 'alarm-list' }, ...rows.map(each => alarmRow(each, unit.unit)))
-        : h('p', { class: 'note' }, tab === 'active' ? 'No alarm is active.' : 'None.')));
+      rows.length ? h('ul', { class: 'alarm-list' }, ...rows.map(each => alarmRow(each, unit.unit, unit.speaks)))
+        : h('p', { class: 'note' }, tab === 'active' ? 'No alarm is active.' : 'None.'),
+      rows.some(each => each.priority) ? h('p', { class: 'note' }, PRIORITIES) : null,
+      rows.length && !unit.speaks ? h('p', { class: 'note' }, 'They are acted on at the monitor that speaks.') : null));
 }
 
 export async function unitPage(name: string): Promise<HTMLElement> {
@@ -64,12 +66,12 @@ export async function unitPage(name: string): Promise<HTMLElement> {
   const troubles = unit.troubles.filter(each => each.text);
   return h('div', {},
     h('div', { class: 'head' }, h('h1', { tabindex: -1 }, unit.unit), healthChip(unit.health.state),
-      h('p', { class: 'note' }, unit.time_ns ? 'last sample ' : 'no sample yet', unit.time_ns ? time(unit.time_ns) : null),
-      h('a', { class: 'button', href: `${unitLink(unit.unit)}/diagnosis` }, 'Diagnosis')),
+      lastSample(unit), h('a', { class: 'button', href: `${unitLink(unit.unit)}/diagnosis` }, 'Diagnosis')),
+    standby(unit),
     troubles.length ? h('ul', { class: 'troubles' }, ...troubles.map(each => h('li', { class: healthOf(each.severity).name },
       h('span', { 'aria-hidden': 'true' }, `${healthOf(each.severity).sign} `), h('strong', {}, `${healthOf(each.severity).word}: `), each.text)))
       : null,
-    unit.health.detail.startsWith('stands by') || (!troubles.length && unit.health.state === 'function_check') ? h('p', { class: 'note' }, unit.health.detail) : null,
+    unit.speaks && !troubles.length && unit.health.state === 'function_check' ? h('p', { class: 'note' }, unit.health.detail) : null,
     kpiStrip(unit.kpi),
     h('div', { class: 'columns' },
       h('section', { 'aria-labelledby': 'matrix' }, h('h2', { id: 'matrix' }, 'Model against plant'), matrix(unit), legend(unit.channels.map(each => each.state))),

@@ -28,6 +28,12 @@ TEST_CASE("an entry is a line that people read") {
   plain.mv = plain.cv = plain.user = plain.comment = plain.message = "";
   plain.what = "active";
   CHECK(entry_text(plain) == "2026-03-01 06:00:00 UTC  shell  controller  active");
+  plain.what = "suppressed";
+  plain.standing.suppressed_by_design = true;
+  CHECK(
+      entry_text(plain) ==
+      "2026-03-01 06:00:00 UTC  shell  controller  suppressed by design: the controller is off or "
+      "the data are bad");
   AlarmEntry hostile = entry();
   hostile.comment = "a\n2026-03-01 forged";
   CHECK(entry_text(hostile).find('\n') == std::string::npos);

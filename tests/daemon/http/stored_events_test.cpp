@@ -33,6 +33,7 @@ TEST_CASE("the journal's entries are events, the youngest first, as many as are 
   CHECK(all[0]["to"] == "shelved");
   CHECK(all[0]["cv"] == "");
   CHECK(all[0]["client_user_id"] == "ann");
+  CHECK(all[0]["suppressed_by_design"] == false);
   CHECK(all[1]["record"] == "diagnosis");
   CHECK(all[2]["text"] == "gain +41 %");
   EventQuery query;

@@ -86,6 +86,46 @@ TEST_CASE("alarms that are normal are not listed") {
   CHECK(alarms[0]["text"].get<std::string>().find("gain +41 %") == 0);
 }
 
+TEST_CASE("what the plant silences is an alarm only where it would call") {
+  test::SampleBoard sample;
+  sample.show(true);
+  for (AlarmStateRecord& alarm : sample.alarms) {
+    alarm.view.alarm_state = AlarmWord::kSuppressed;
+    alarm.view.suppressed_by_design = true;
+  }
+  sample.controller.view.alarm_state = AlarmWord::kSuppressed;
+  sample.controller.view.suppressed_by_design = true;
+  sample.controller.state = AlarmState::kActive;
+  sample.alarms[1].view.shelving_state = Shelving::kTimed;  // by somebody, who may undo it
+  const auto look = [&sample] {
+    sample.feed().on_view({sample.channels, sample.alarms, sample.controller, sample.health,
+                           sample.troubles, sample.performance});
+    sample.fetch();
+    return alarms_json(sample.store());
+  };
+  const Json alarms = look();
+  CHECK(alarms.size() == 3);  // of the unit, the one that stands, and the shelved one
+  CHECK(std::count_if(alarms.begin(), alarms.end(),
+                      [](const Json& alarm) { return alarm["to"] == "active"; }) == 2);
+  CHECK(alarms[0]["suppressed_by_design"] == true);
+  CHECK(overview_json(sample.store())["silenced_alarms"] == 2);
+  CHECK(overview_json(sample.store())["alarms"] == 0);
+  sample.alarms[1].view.shelving_state = Shelving::kUnshelved;
+  CHECK(look().size() == 2);
+  CHECK(overview_json(sample.store())["silenced_alarms"] == 1);
+}
+
+TEST_CASE("who stands by says so") {
+  test::SampleBoard sample;
+  sample.show(false);
+  CHECK(unit_json(sample.store())["speaks"] == true);
+  sample.feed().on_view({sample.channels, sample.alarms, sample.controller, sample.health,
+                         sample.troubles, sample.performance, false});
+  sample.fetch();
+  CHECK(unit_json(sample.store())["speaks"] == false);
+  CHECK(overview_json(sample.store())["speaks"] == false);
+}
+
 TEST_CASE("correlations come with what chance leaves") {
   test::SampleBoard sample;
   sample.show(true);

@@ -125,7 +125,8 @@ try {
     { ...day, mv: "u1", cv: "y1", alarm_state: "acknowledged", priority: "medium", client_user_id: "ann", comment: "seen" },
     { ...day, mv: "u2", cv: "y1", alarm_state: "returned_unacknowledged", priority: "low" },
     { ...day, mv: "u1", cv: "y2", alarm_state: "shelved", unshelve_time_ns: kUntil },
-    { ...day, mv: "u2", cv: "y2", alarm_state: "suppressed" },
+    { ...day, mv: "u2", cv: "y2", alarm_state: "suppressed", suppressed: true },
+    { ...day, mv: "u3", cv: "y1", alarm_state: "suppressed", suppressed_by_design: true },
     { ...day, mv: "u3", cv: "y2", alarm_state: "out_of_service" }];
   let ordered;
   await page.route("**/api/v1/units/shell", async (route) => {
@@ -136,11 +137,14 @@ try {
     ordered = route.request().postDataJSON();
     return route.fulfill({ json: { accepted: true, text: "shelved" } });
   });
-  for (const [tab, count] of [["active", 3], ["shelved", 1], ["suppressed", 1], ["out_of_service", 1]]) {
+  for (const [tab, count] of [["active", 3], ["shelved", 1], ["suppressed", 2], ["out_of_service", 1]]) {
     await page.click(`#tab-${tab}`);
     await page.waitForFunction((wanted) => document.querySelectorAll(".alarm").length === wanted, count);
     await check(page, `alarms_${tab}`);
   }
+  await page.click("#tab-suppressed");
+  await page.waitForSelector("text=Suppressed by design: the controller is off or the data are bad");
+  assert.equal(await page.locator("[data-command=unsuppress]").count(), 1, "no command ends what is so by design");
   await page.click("#tab-active");
   await page.click("[data-command=shelve] >> nth=0");
   await page.selectOption("dialog [name=duration]", "14400");
@@ -151,6 +155,24 @@ try {
   assert.deepEqual(ordered, { unit: "shell", mv: "", cv: "", command: "shelve", user: "ann", comment: "the analyser is being calibrated", duration_s: 14400 });
   await page.unrouteAll({ behavior: "wait" });
   say("alarms in all their states");
+
+  // A monitor that stands by, and whose last sample is a day old.
+  await page.route("**/api/v1/units/shell", async (route) => {
+    const response = await route.fetch(), unit = await response.json();
+    await route.fulfill({ response, json: { ...unit, alarms: kept, speaks: false, time_ns: (Date.now() - 90_000_000) * 1e6,
+      health: { ...unit.health, detail: "stands by; mpmd (process 4711 on host b) speaks" } } });
+  });
+  await page.reload();
+  await page.waitForSelector(".standby");
+  assert.match(await page.locator(".standby").textContent(), /This monitor stands by; mpmd \(process 4711 on host b\) speaks\. It takes no commands\./);
+  assert.equal(await page.locator("[data-command]").count(), 0, "it would refuse them all");
+  assert.match(await page.locator(".old").textContent(), /25 h ago/);
+  await check(page, "standby");
+  await page.unrouteAll({ behavior: "wait" });
+  await page.reload();
+  await page.waitForSelector("[data-command]");
+  assert.equal(await page.locator(".standby").count(), 0);
+  say("one that stands by");
   assert.ok(await page.evaluate(() => localStorage.length === 0), "nothing outlives the tab");
   await page.reload();
   await page.waitForSelector(".alarm");
@@ -166,6 +188,7 @@ try {
   await page.goto(`${running.url}#/unit/shell/cv/y3`);
   await page.waitForSelector(".plots canvas");
   await page.waitForSelector(".lags canvas");
+  assert.match(await page.locator(".tools .note").textContent(), /UTC\).*plots in Europe\/Vienna, UTC\+[12]$/);
   assert.equal(await page.locator(".plots canvas").count(), 5);
   assert.equal(await page.locator(".lags canvas").count(), 3);
   await page.waitForTimeout(1200);
