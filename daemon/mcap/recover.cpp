@@ -53,11 +53,21 @@ class Recovery {
     return options;
   }
 
+  /// What goes on is told once, with how often it came.
   void problem(std::uint64_t offset, const std::string& what) {
-    if (report_.problems.size() < kMostProblems)
-      report_.problems.push_back("byte " + std::to_string(offset) + ": " + what);
-    else if (report_.problems.size() == kMostProblems)
-      report_.problems.emplace_back("and more");
+    if (what == last_problem_ && !report_.problems.empty()) {
+      ++repeated_;
+      report_.problems.back() = first_ + ", and " + std::to_string(repeated_) +
+                                " more of the kind up to byte " + std::to_string(offset);
+      return;
+    }
+    if (report_.problems.size() > kMostProblems) return;
+    last_problem_ = what;
+    repeated_ = 0;
+    first_ = report_.problems.size() == kMostProblems
+                 ? "and more"
+                 : "byte " + std::to_string(offset) + ": " + what;
+    report_.problems.push_back(first_);
   }
 
   void take(const RecordHead& head) {
@@ -198,6 +208,8 @@ class Recovery {
   std::map<ChannelId, ChannelId> channels_;  // old to new
   bool in_summary_ = false;
   RecoverReport report_;
+  std::string first_, last_problem_;  // as told, and without its place
+  std::uint64_t repeated_ = 0;
 };
 
 }  // namespace

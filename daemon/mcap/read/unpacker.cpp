@@ -35,7 +35,7 @@ std::string unpack_with(Decompress&& decompress, ByteView packed, std::uint64_t 
     used += step.given;
     frame_done = step.frame_done;
     if (step.error != nullptr)
-      problem = step.error;
+      problem = std::string("cannot be unpacked (") + step.error + ")";
     else if (used > size)
       problem = "unpacks to more than the " + std::to_string(size) + " bytes it names";
     else if (step.taken == 0 && step.given == 0)
@@ -44,7 +44,7 @@ std::string unpack_with(Decompress&& decompress, ByteView packed, std::uint64_t 
   }
   out.resize(std::min<std::uint64_t>(used, size));
   if (!problem.empty()) return problem;
-  if (!frame_done || !packed.empty()) return "its packed data are cut off";
+  if (!frame_done || !packed.empty()) return "has packed data that are cut off";
   if (used != size)
     return "unpacks to " + std::to_string(used) + " bytes, not the " + std::to_string(size) +
            " it names";

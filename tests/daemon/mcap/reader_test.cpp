@@ -1,6 +1,7 @@
 #include <rapidcheck.h>
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
@@ -339,6 +340,24 @@ TEST_CASE("What is wrong with a file is told with its byte") {
     file.bytes().push_back(std::byte{0});
     expect(file, "something follows the end");
   }
+}
+
+TEST_CASE("A chunk that cannot be unpacked is told so") {
+  TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  HandMade file;
+  file.begin_chunk();
+  file.schema(1, "S");
+  file.end_chunk("lz4", 0, 0, false);
+  file.end();
+  const std::array magic = {std::byte{0x04}, std::byte{0x22}, std::byte{0x4D}, std::byte{0x18}};
+  const auto frame =
+      std::search(file.bytes().begin(), file.bytes().end(), magic.begin(), magic.end());
+  REQUIRE(frame != file.bytes().end());
+  *frame = std::byte{0x05};
+  file.save(path);
+  CHECK_THAT(error_of(path),
+             Catch::Matchers::Contains("a chunk cannot be unpacked (ERROR_frameType_unknown)"));
 }
 
 TEST_CASE("A bomb of zeros stops at the size it names") {

@@ -115,6 +115,21 @@ TEST_CASE("One bit wrong in a chunk is found") {
   CHECK(report.lost_bytes > 0);
 }
 
+TEST_CASE("What goes wrong again and again is told once") {
+  TemporaryFolder folder;
+  const std::string path = folder.file("a.mcap");
+  std::string bytes = make_file(path, mcap::Compression::kZstd);
+  mcap::InputFile file(path);
+  mcap::RecordStream records(file);
+  while (const auto head = records.next())
+    if (head->op == mcap::Op::kChunk) bytes[head->content() + 24] ^= 1;  // of its CRC
+  write_file(path, bytes);
+  const mcap::RecoverReport report = mcap::recover(path, folder.file("mended.mcap"));
+  CHECK(report.messages == 0);
+  REQUIRE(report.problems.size() == 1);
+  CHECK_THAT(report.problems[0], Catch::Matchers::Contains(" more of the kind up to byte "));
+}
+
 TEST_CASE("What comes behind a damaged length is found again") {
   TemporaryFolder folder;
   const std::string path = folder.file("a.mcap"), damaged_path = folder.file("damaged.mcap");
