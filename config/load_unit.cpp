@@ -133,6 +133,12 @@ LoadUnitsResult load_units(const std::vector<std::string>& paths) {
     if (files.empty())
       result.findings.push_back({path, 0, 0, Severity::kError, "", why_none(path)});
     for (const std::string& file : files) {
+      // Of a folder nobody has named it: a pipe would be waited for without end.
+      std::error_code failure;
+      if (file != path && std::filesystem::is_other(file, failure)) {
+        result.findings.push_back({file, 0, 0, Severity::kError, "", "is no file"});
+        continue;
+      }
       LoadResult one = load_unit(file);
       result.findings.insert(result.findings.end(), one.findings.begin(), one.findings.end());
       if (!one.config.unit.empty()) {

@@ -1,5 +1,6 @@
 #include "config/yaml_value.hpp"
 
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
@@ -371,6 +372,10 @@ std::optional<Value> parse_yaml(const std::string& text, Report& report) {
     report.add(Severity::kError, mark_of(text, at), "", "is no UTF-8; save the file as UTF-8");
     return std::nullopt;
   }
+  if (const std::size_t at = text.find('\0'); at != std::string::npos) {
+    report.add(Severity::kError, mark_of(text, at), "", "a zero byte: this is no text file");
+    return std::nullopt;
+  }
   try {
     check_documents(text, report);
     const YAML::Node root = YAML::Load(text);
@@ -382,6 +387,8 @@ std::optional<Value> parse_yaml(const std::string& text, Report& report) {
     return Value(root, root.Mark(), "", report);
   } catch (const TooLong& list) {
     report.add(Severity::kError, list.mark, "", "has more values than anything here takes");
+  } catch (const YAML::DeepRecursion& error) {  // which says "bad file"
+    report.add(Severity::kError, error.mark, "", "is nested too deeply");
   } catch (const YAML::Exception& error) {
     report.add(Severity::kError, error.mark.is_null() ? start : error.mark, "",
                syntax_error(text, error));

@@ -249,6 +249,8 @@ TEST_CASE("Mistakes in the head of a file are told at their place") {
        "`signals:`"},
       {"", "u.yaml:1:1: error: the file is empty"},
       {"# nothing\n", "u.yaml:1:1: error: the file is empty"},
+      {std::string("unit: t\n\0\0", 10), "u.yaml:2:1: error: a zero byte: this is no text file"},
+      {std::string(3000, '['), "u.yaml:1:1: error: is nested too deeply"},
       {"unit: [1, 2\nfoo: }\n",
        "u.yaml:2:4: error: not valid YAML: end of sequence flow not found"},
       {"unit: t\nsignals:\n mv: u1\n  cv: y1\n",

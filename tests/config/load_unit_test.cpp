@@ -337,6 +337,16 @@ TEST_CASE("What may not be read is told with the reason and the user") {
   }
 }
 
+TEST_CASE("What is no file in a folder of unit files is refused, not waited for") {
+  const TemporaryFolder folder;
+  (void)folder.write("a.yaml", kSmall);
+  const std::string pipe = folder.path() + "/b.yaml";
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  const LoadUnitsResult result = load_units({folder.path()});
+  REQUIRE(result.findings.size() == 1);
+  CHECK(format(result.findings[0]) == pipe + ": error: is no file");
+}
+
 TEST_CASE("A folder stands for its unit files, sorted") {
   const TemporaryFolder folder;
   const std::string b = folder.write("b.yaml", kSmall);
