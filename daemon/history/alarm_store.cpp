@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "core/text/netstring.hpp"
@@ -145,6 +147,20 @@ Cells cells_at(sqlite3_stmt* row) {
   return cells;
 }
 
+/// In words, for SQLite has one for all: what there is instead of a file that may be read.
+void check_readable(const std::string& path) {
+  struct stat there {};
+  if (stat(path.c_str(), &there) == 0) {
+    if (S_ISDIR(there.st_mode))
+      throw std::runtime_error(path + ": is a folder; the journal is a file, as alarms.sqlite");
+    if (!S_ISREG(there.st_mode)) throw std::runtime_error(path + ": is no file");
+  }
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0)
+    throw std::runtime_error(path + ": cannot be read: " + std::generic_category().message(errno));
+  ::close(file);
+}
+
 }  // namespace
 
 void AlarmStore::CloseStatement::operator()(sqlite3_stmt* statement) const {
@@ -153,6 +169,7 @@ void AlarmStore::CloseStatement::operator()(sqlite3_stmt* statement) const {
 
 AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most)
     : path_(path), most_(most) {
+  if (access == Access::kRead) check_readable(path);
   if (access == Access::kAppend)  // before anything is in it
     if (const int made =
             ::open(path.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, S_IRUSR | S_IWUSR | S_IRGRP);
@@ -174,6 +191,7 @@ AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most
       run(kSchema);
       run(std::string("INSERT OR IGNORE INTO settings VALUES('version', '") + kVersion + "')");
     }
+    if (access == Access::kRead) check_is_journal();
     const Statement version = prepare("SELECT value FROM settings WHERE key = 'version'");
     if (sqlite3_step(version.get()) != SQLITE_ROW || text_at(version.get(), 0) != kVersion)
       throw std::runtime_error(path + ": is no journal of alarms of this version");
@@ -186,6 +204,19 @@ AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most
 }
 
 AlarmStore::~AlarmStore() { sqlite3_close(database_); }
+
+void AlarmStore::check_is_journal() const {
+  sqlite3_stmt* statement = nullptr;
+  const int found =
+      sqlite3_prepare_v2(database_, "SELECT value FROM settings", -1, &statement, nullptr);
+  sqlite3_finalize(statement);
+  if (found == SQLITE_ERROR || found == SQLITE_NOTADB)  // there is no such table, or none at all
+    throw std::runtime_error(path_ + ": is no journal of alarms");
+  if (found == SQLITE_CANTOPEN)
+    throw std::runtime_error(path_ +
+                             ": cannot be read: SQLite keeps files beside it, and this user may "
+                             "not write there");
+}
 
 void AlarmStore::fail(const std::string& doing) const {
   throw std::runtime_error(path_ + ": " + doing + ": " + sqlite3_errmsg(database_));

@@ -76,6 +76,7 @@ class AlarmStore {
   void select(const AlarmQuery& query, const std::string& order,
               const std::function<void(const AlarmEntry&)>& visit) const;
   [[nodiscard]] Statement prepare(const std::string& sql) const;
+  void check_is_journal() const;
   [[noreturn]] void fail(const std::string& doing) const;
   void insert(sqlite3_stmt* statement, const AlarmEntry& entry);
 

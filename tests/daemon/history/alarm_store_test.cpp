@@ -192,7 +192,7 @@ TEST_CASE("who may only read reads also when nobody writes any more") {
 TEST_CASE("others may not read the journal, and what is none is refused") {
   const Journal journal;
   CHECK_THROWS_WITH(journal.open(AlarmStore::Access::kRead),
-                    Catch::Matchers::Contains("cannot be opened"));
+                    Catch::Matchers::Contains("cannot be read"));
   (void)journal.open();
   struct stat status {};
   REQUIRE(::stat(journal.path.c_str(), &status) == 0);

@@ -20,11 +20,23 @@ TEST_CASE("mpm journal tells what happened, by time and by CV") {
 }
 
 TEST_CASE("a journal that is not there, and a time that is none, are told") {
-  const Journal journal;
+  Journal journal;
   CHECK(journal.run({"journal", "--since", "yesterday"}) == 2);
   write_file(journal.path, "no data base, though somebody may think so and give it all the same");
-  CHECK(journal.run({"journal"}) == 2);
-  CHECK_THAT(read_file(journal.folder.file("err")), Catch::Matchers::StartsWith("mpm: error: "));
+  const auto error = [&journal](const std::string& path) {
+    journal.path = path;
+    CHECK(journal.run({"journal"}) == 2);
+    return read_file(journal.folder.file("err"));
+  };
+  const std::string own = journal.path;
+  CHECK(error(own) == "mpm: error: " + own + ": is no journal of alarms\n");
+  CHECK(error("/tmp") ==
+        "mpm: error: /tmp: is a folder; the journal is a file, as alarms.sqlite\n");
+  CHECK(error("/dev/zero") == "mpm: error: /dev/zero: is no file\n");
+  CHECK(error("/nowhere/alarms.sqlite") ==
+        "mpm: error: /nowhere/alarms.sqlite: cannot be read: No such file or directory\n");
+  write_file(own, "");
+  CHECK(error(own) == "mpm: error: " + own + ": is no journal of alarms\n");
 }
 
 }  // namespace
