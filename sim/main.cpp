@@ -13,6 +13,7 @@
 
 #include "config/cli/color.hpp"
 #include "config/cli/command_tree.hpp"
+#include "config/cli/decimals.hpp"
 #include "config/cli/help_format.hpp"
 #include "config/cli/slips.hpp"
 #include "config/load_unit.hpp"
@@ -176,6 +177,7 @@ int parse_and_run(int argc, char** argv) {
   app.set_version_flag("--version", idl::version_text("mpmsim"));
   cli::add_no_color(app);
   cli::add_self_description(app, idl::version_text("mpmsim"));
+  cli::read_decimals(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "config/cli/decimals.hpp"
 #include "config/cli/help_format.hpp"
 #include "config/cli/slips.hpp"
 #include "daemon/app/commands/commands.hpp"
@@ -55,6 +56,7 @@ int run(int argc, char** argv) {
       "  mpm record --config unit.yaml --output monday.mcap    what goes over the bus\n"
       "  mpm COMMAND --help    the options of a command, with examples\n"
       "Exit codes: 0 done, 1 found what was to be told, 2 failed, 3 bad usage or input");
+  cli::read_decimals(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -18,6 +18,7 @@
 
 #include "config/cli/color.hpp"
 #include "config/cli/command_tree.hpp"
+#include "config/cli/decimals.hpp"
 #include "config/cli/help_format.hpp"
 #include "config/cli/slips.hpp"
 #include "config/load_unit.hpp"
@@ -381,6 +382,7 @@ int parse_and_run(int argc, char** argv) {
   app.formatter(std::make_shared<cli::HelpFormat>());
   Options options;
   declare(app, options);
+  cli::read_decimals(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
