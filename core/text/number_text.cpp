@@ -34,6 +34,10 @@ std::string number_text(double value, int digits) {
 }
 
 std::string interval_text(double low, double high, int digits) {
+  constexpr int kMostDigits = 7;
+  while (digits < kMostDigits && low != high &&
+         number_text(low, digits) == number_text(high, digits))
+    ++digits;
   return number_text(low, digits) + " to " + number_text(high, digits);
 }
 

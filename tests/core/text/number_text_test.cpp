@@ -28,6 +28,9 @@ TEST_CASE("numbers read as people write them") {
 TEST_CASE("intervals and shares read as people write them") {
   CHECK(interval_text(0.72, 0.78) == "0.72 to 0.78");
   CHECK(interval_text(-4.0, 1.23456, 2) == "-4 to 1.2");
+  CHECK(interval_text(1.4998, 1.5003) == "1.4998 to 1.5003");
+  CHECK(interval_text(1.5, 1.5) == "1.5 to 1.5");
+  CHECK(interval_text(1.0, 1.0 + 1e-12) == "1 to 1");
   CHECK(percent_text(0.25) == "25 %");
   CHECK(percent_text(0.004) == "0.4 %");
   CHECK(percent_text(0.1234) == "12 %");

@@ -13,6 +13,7 @@ const stickingOut = (page) => page.evaluate(() => {
     return range.getBoundingClientRect().right;
   };
   const matrix = document.querySelector("#matrix"), found = [];
+  if (matrix.parentElement.scrollHeight > matrix.parentElement.clientHeight) found.push("the matrix, up and down");
   if (matrix.parentElement.scrollWidth > matrix.parentElement.clientWidth) found.push("the matrix");
   for (const cell of matrix.querySelectorAll("td, th"))
     if (!cell.querySelector(".heard") && right(cell) > cell.getBoundingClientRect().right) found.push(cell.textContent);
