@@ -29,6 +29,8 @@ struct Monitor::State {
   /// As after construction, but for the alarms, which stay until new samples say something of
   /// them, and for what the data themselves look like.
   void begin_anew();
+  /// One CV: what was learnt of it says nothing of what follows.
+  void begin_anew(int cv);
 
   /// One CV: whether its data serve, and its alarms.
   struct Cv {
@@ -169,8 +171,8 @@ void Monitor::State::archive(Archive& a) {
 
 void Monitor::State::take_frame(const Frame& frame) {
   if (reader.missing() > 0) pass_gap(reader.missing());
-  for (const int cv : reader.begun())
-    if (reader.samples() > 1) detector.start_afresh(cv, 0);
+  for (const int cv : reader.turned())
+    if (reader.samples() > 1) begin_anew(cv);
   follow_compression();
   count_bad(frame);
   take_sample(frame);
@@ -200,10 +202,13 @@ void Monitor::State::follow_compression() {
   for (int j = 0; j < counts.cv; ++j) {
     const bool was = std::exchange(of(j).compressed, reader.screen().compressed(j) ||
                                                          reader.screen().compressed_input(j) >= 0);
-    if (!was || of(j).compressed) continue;
-    detector.start_afresh(j, 0);
-    of(j).settled = 0;
+    if (was && !of(j).compressed) begin_anew(j);
   }
+}
+
+void Monitor::State::begin_anew(int cv) {
+  detector.start_afresh(cv, 0);
+  of(cv).settled = 0;
 }
 
 void Monitor::State::pass_gap(std::int64_t missing) {
@@ -440,6 +445,9 @@ const ChannelNonlinearity& Monitor::nonlinearity(int cv, int input) const {
 AlarmState Monitor::alarm(int cv, int input) const { return state_->of(cv).alarms.state(input); }
 Eigen::Ref<const Eigen::VectorXd> Monitor::partial_correlations(int cv, int input) const {
   return state_->correlation.values(cv, input);
+}
+bool Monitor::replaced(int cv) const {
+  return state_->reader.screen().ceased(cv) && !state_->reader.predictions().given(cv);
 }
 int Monitor::first_lag() const { return state_->settings.first_lag; }
 int Monitor::last_lag() const { return state_->settings.last_lag; }

@@ -59,8 +59,9 @@ struct MonitorCounters {
 /// each 20 samples at most, whether the plant bends (`Curvature`).
 class Monitor {
  public:
-  /// `may_predict[j]`: CV j's model prediction may come with the frames. As long as none came, it
-  /// is simulated from `model`; with the first one the CV begins anew.
+  /// `may_predict[j]`: CV j's model prediction may come with the frames. Where none does
+  /// (`Screen::predicted`), it is simulated from `model`; each time that this changes the CV begins
+  /// anew.
   Monitor(const ModelSpec& model, const SignalCounts& counts, const std::vector<bool>& may_predict,
           const MonitorSettings& settings, const AlarmSettings& alarms);
   Monitor(Monitor&&) noexcept;
@@ -98,6 +99,8 @@ class Monitor {
   /// Signals that verdicts need and that have had no usable value for long, as of the frames that
   /// have left the screen.
   [[nodiscard]] std::vector<LostSignal> lost() const;
+  /// Predictions of the CV came with the frames, and do no longer: they are simulated.
+  [[nodiscard]] bool replaced(int cv) const;
   /// How many more samples the CV's verdicts need at least, if all of them serve; 0 = none.
   [[nodiscard]] double samples_needed(int cv) const;
 

@@ -37,12 +37,23 @@ double Predictions::residual(int cv, const Frame& frame) const {
   const SignalBlock& predicted = frame[SignalKind::kPrediction];
   if (measured.usable(cv)) {
     if (given(cv)) {
-      if (predicted.usable(cv)) return measured.values(cv) - predicted.values(cv);
+      if (predicted.usable(cv) && !settling(cv)) return measured.values(cv) - predicted.values(cv);
     } else if (started_ && !settling(cv)) {
       return measured.values(cv) - model_.output()(cv);
     }
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+// No row may have residuals of either origin: those of one are long gone when the other one's
+// begin, or are made so.
+void Predictions::turn(std::size_t cv) {
+  const bool simulated = !given_[cv] && started_ && settling_[cv] == 0;
+  given_[cv] = !given_[cv];
+  if (given_[cv])
+    settling_[cv] = simulated ? kHeldSamples + 1 : 0;
+  else
+    settling_[cv] = started_ ? settling_samples_ : 0;
 }
 
 void Predictions::begin(const Frame& frame, const UnitInputs& inputs) {
@@ -68,7 +79,8 @@ void Predictions::advance(const UnitInputs& inputs) {
     if (!inputs.values().allFinite()) return;
     model_.reset_steady(inputs.values());
     started_ = true;
-    std::fill(settling_.begin(), settling_.end(), starting_samples_);
+    for (std::size_t j = 0; j < given_.size(); ++j)
+      if (!given_[j]) settling_[j] = starting_samples_;
   }
   model_.advance(inputs.held());
 }

@@ -19,9 +19,9 @@ namespace mpm {
 /// Whether some CV's prediction is simulated from the first sample on and for good.
 [[nodiscard]] bool simulates_some(const std::vector<bool>& may_predict);
 
-/// Each CV's prediction: what comes with the frames or, as long as none came, what the model makes
-/// of the inputs. Where the control system says what its model predicts, no simulation is asked.
-/// No allocation after construction.
+/// Each CV's prediction: what comes with the frames or, where none does (`Screen::predicted`), what
+/// the model makes of the inputs. Where the control system says what its model predicts, no
+/// simulation is asked. No allocation after construction.
 class Predictions {
  public:
   /// `may_predict[j]`: CV j's may come with the frames; `acts`: see `channels_of`;
@@ -34,14 +34,15 @@ class Predictions {
   [[nodiscard]] bool simulates() const { return simulates_; }
   /// Comes with the frames.
   [[nodiscard]] bool given(int cv) const { return given_[static_cast<std::size_t>(cv)]; }
-  /// Is simulated, but cannot be trusted yet.
+  /// Comes from elsewhere than it did, or is simulated, and cannot be trusted yet.
   [[nodiscard]] bool settling(int cv) const { return settling_[static_cast<std::size_t>(cv)] > 0; }
   /// Measured minus predicted; NaN where the prediction is not known, or the measurement is not.
   [[nodiscard]] double residual(int cv, const Frame& frame) const;
 
-  /// Where a CV's first one came with the screen's frames, it is given from now on: `begins(cv)`.
-  template <class Begins>
-  void follow(const Screen& screen, Begins begins);
+  /// Where they have begun or ceased to come with the screen's frames: `turns(cv)`, of which all
+  /// statistics are to begin anew.
+  template <class Turns>
+  void follow(const Screen& screen, Turns turns);
   /// Before the residuals of a frame are read. What disturbs in the model keeps to the clock of the
   /// data, over gaps too. An input that was unknown for long moved unseen: what is simulated from
   /// it is wrong until it has forgotten that.
@@ -60,6 +61,7 @@ class Predictions {
 
  private:
   void distrust(int input);
+  void turn(std::size_t cv);
 
   LinearModel model_;
   std::vector<bool> may_predict_;
@@ -72,19 +74,20 @@ class Predictions {
   std::vector<std::int64_t> settling_;  // samples until a simulated one can be trusted
 };
 
-template <class Begins>
-void Predictions::follow(const Screen& screen, Begins begins) {
+template <class Turns>
+void Predictions::follow(const Screen& screen, Turns turns) {
   simulates_ = false;
   for (std::size_t j = 0; j < given_.size(); ++j) {
     const int cv = static_cast<int>(j);
-    if (!given_[j] && screen.predicted(cv)) {
-      given_[j] = true;
-      settling_[j] = 0;
-      begins(cv);
-    }
     // Without any model only the control system can predict.
+    const bool given = screen.predicted(cv) || (given_[j] && !has_model_);
+    if (given != given_[j]) {
+      turn(j);
+      turns(cv);
+    }
     simulates_ = simulates_ || (!given_[j] && (has_model_ || !may_predict_[j]));
   }
+  started_ = started_ && simulates_;
 }
 
 }  // namespace mpm

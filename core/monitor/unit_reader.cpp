@@ -17,6 +17,12 @@ int answering_samples(const LinearModel& model, const DerivedSettings& derived) 
                                    dead_time + calibration::simulation::kBeginsToAnswer));
 }
 
+// A CV that has been unknown for so long has no verdict any more (`CvQuality`): only then is less
+// lost than won where all begins anew.
+int turning_samples(const DerivedSettings& derived) {
+  return std::max(derived.settling_samples, static_cast<int>(calibration::bad_data::kShareSamples));
+}
+
 }  // namespace
 
 UnitReader::UnitReader(const LinearModel& model, const SignalCounts& counts,
@@ -28,14 +34,15 @@ UnitReader::UnitReader(const LinearModel& model, const SignalCounts& counts,
                        const std::vector<bool>& may_predict, const DerivedSettings& settings,
                        const std::vector<bool>& acts)
     : screen_(counts, may_predict, acts,
-              static_cast<int>(std::ceil(model.longest_dead_time_samples()))),
+              static_cast<int>(std::ceil(model.longest_dead_time_samples())),
+              turning_samples(settings)),
       inputs_(counts, settings.remembered * calibration::input_motion::kMemoryShare),
       predictions_(
           model, may_predict, acts,
           simulates_some(may_predict) ? settings.starting_samples : settings.settling_samples,
           settings.settling_samples),
       residuals_(counts.cv) {
-  begun_.reserve(static_cast<std::size_t>(counts.cv));
+  turned_.reserve(static_cast<std::size_t>(counts.cv));
 }
 
 const Frame* UnitReader::next() {
@@ -47,8 +54,8 @@ const Frame* UnitReader::next() {
     residuals_.skip(missing_);
     predictions_.skip(missing_, inputs_);
   }
-  begun_.clear();
-  if (predictions_.simulates()) predictions_.follow(screen_, [&](int cv) { begun_.push_back(cv); });
+  turned_.clear();
+  predictions_.follow(screen_, [&](int cv) { turned_.push_back(cv); });
   inputs_.read(*frame);
   predictions_.begin(*frame, inputs_);
   residuals_.read(*frame, predictions_);
@@ -69,7 +76,7 @@ void UnitReader::tell(const Frame& frame, JudgedFrame& judged) const {
 }
 
 void UnitReader::archive(Archive& a) {
-  // not archived: missing_, begun_ (of each frame anew)
+  // not archived: missing_, turned_ (of each frame anew)
   a(screen_, inputs_, predictions_, residuals_, samples_, interval_);
 }
 

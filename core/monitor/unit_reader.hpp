@@ -38,8 +38,8 @@ class UnitReader {
   [[nodiscard]] const Frame* next();
   /// Intervals missing before that frame.
   [[nodiscard]] std::int64_t missing() const { return missing_; }
-  /// CVs whose prediction came for the first time.
-  [[nodiscard]] const std::vector<int>& begun() const { return begun_; }
+  /// CVs whose predictions come with the frames from this one on, or do no longer.
+  [[nodiscard]] const std::vector<int>& turned() const { return turned_; }
   /// Frames read since all began, or began anew.
   [[nodiscard]] std::int64_t samples() const { return samples_; }
   /// What its CVs read; `judged` has room for them.
@@ -64,7 +64,7 @@ class UnitReader {
   UnitResiduals residuals_;
   std::int64_t samples_ = 0, interval_ = 0;  // read; of the last one
   std::int64_t missing_ = 0;
-  std::vector<int> begun_;
+  std::vector<int> turned_;
 };
 
 }  // namespace mpm

@@ -74,12 +74,13 @@ bool Screen::Repeats::at_end() const {
 }
 
 Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::vector<bool> acts,
-               int dead_time, Looks looks)
+               int dead_time, int turning, Looks looks)
     : counts_(counts),
       may_predict_(std::move(may_predict)),
-      predicted_(static_cast<std::size_t>(counts.cv), false),
+      predicted_(static_cast<std::size_t>(counts.cv)),
       acts_(std::move(acts)),
       dead_time_(dead_time),
+      turning_(turning),
       looks_(looks),
       since_rest_(static_cast<std::size_t>(counts.inputs()), 0),
       ring_(kHeld, Frame(counts)),
@@ -99,6 +100,8 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
   }
 }
 
+void Screen::Predicted::archive(Archive& a) { a(comes, came, against); }
+
 void Screen::Jumps::archive(Archive& a) { a(scale, samples, home, since_home, spikes); }
 
 void Screen::Range::archive(Archive& a) {
@@ -107,7 +110,7 @@ void Screen::Range::archive(Archive& a) {
 }
 
 void Screen::archive(Archive& a) {
-  // not archived: counts_, may_predict_, acts_, dead_time_, looks_ (construction)
+  // not archived: counts_, may_predict_, acts_, dead_time_, turning_, looks_ (construction)
   // not archived: all_mvs_rest_, longest_out_, anew_ (each frame says it anew)
   a(predicted_, inputs_matter_, since_rest_, ring_, marked_);
   a.within(position_, 0, kHeld - 1);
@@ -136,7 +139,7 @@ void Screen::push(const Frame& frame) {
   for (int j = 0; j < counts_.cv; ++j)
     if (measured.usable(j)) compression_[static_cast<std::size_t>(j)].take(measured.values(j));
   if (inputs_matter_) follow_compression_of_inputs();
-  if (inputs_matter_) follow_predictions(frame[SignalKind::kPrediction]);
+  follow_predictions(frame[SignalKind::kPrediction]);
   follow_inputs();
   if (looks_ == Looks::kAll) screen_repeats();
   if (looks_ == Looks::kAll && pushed_ > kDelay)
@@ -181,11 +184,15 @@ int Screen::compressed_input(int cv) const {
 void Screen::follow_predictions(const SignalBlock& predictions) {
   for (int j = 0; j < counts_.cv; ++j) {
     const auto s = static_cast<std::size_t>(j);
-    if (predicted_[s] || !may_predict_[s] || !predictions.usable(j)) continue;
-    predicted_[s] = true;
-    jumps_[s] = Jumps{};  // from now on of the residual
+    Predicted& predicted = predicted_[s];
+    const bool comes = may_predict_[s] && predictions.usable(j);
+    predicted.against = comes == predicted.comes ? 0 : predicted.against + 1;
+    if (predicted.against < (predicted.came ? turning_ : 1)) continue;
+    predicted = {comes, true, 0};
+    jumps_[s] = Jumps{};  // from now on of the residual, or of the measurement
   }
-  inputs_matter_ = std::find(predicted_.begin(), predicted_.end(), false) != predicted_.end();
+  inputs_matter_ = std::any_of(predicted_.begin(), predicted_.end(),
+                               [](const Predicted& predicted) { return !predicted.comes; });
 }
 
 void Screen::follow_inputs() {

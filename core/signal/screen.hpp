@@ -52,13 +52,13 @@ class Screen {
   enum class Looks { kAll, kFar };
 
   /// `may_predict[j]`: a prediction of CV j may come with the frames. `acts[input * cvs + cv]`: the
-  /// model has that channel; `dead_time`: its longest, samples.
+  /// model has that channel; `dead_time`: its longest, samples. `turning`: see `predicted`.
   Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::vector<bool> acts,
-         int dead_time, Looks looks = Looks::kAll);
+         int dead_time, int turning, Looks looks = Looks::kAll);
   /// Where no prediction will come.
   Screen(const SignalCounts& counts, Looks looks)
       : Screen(counts, std::vector<bool>(static_cast<std::size_t>(counts.cv), false),
-               std::vector<bool>(static_cast<std::size_t>(counts.cv * counts.inputs()), true), 0,
+               std::vector<bool>(static_cast<std::size_t>(counts.cv * counts.inputs()), true), 0, 1,
                looks) {}
 
   void push(const Frame& frame);
@@ -70,8 +70,16 @@ class Screen {
   /// Whether with the last frame it turned out that what was learnt of some signal was of wild
   /// values, or that it lives elsewhere from now on: statistics over both are worth nothing.
   [[nodiscard]] bool anew() const { return anew_; }
-  /// Whether a prediction of the CV has come at all.
-  [[nodiscard]] bool predicted(int cv) const { return predicted_[static_cast<std::size_t>(cv)]; }
+  /// Whether predictions of the CV come: from the first one on, until none has come in `turning`
+  /// frames in a row, and again once they have come in as many.
+  [[nodiscard]] bool predicted(int cv) const {
+    return predicted_[static_cast<std::size_t>(cv)].comes;
+  }
+  /// They came, and do no longer.
+  [[nodiscard]] bool ceased(int cv) const {
+    const Predicted& predicted = predicted_[static_cast<std::size_t>(cv)];
+    return predicted.came && !predicted.comes;
+  }
   /// A historian has compressed the CV.
   [[nodiscard]] bool compressed(int cv) const {
     return compression_[static_cast<std::size_t>(cv)].kind() != Compression::Kind::kNone;
@@ -132,6 +140,13 @@ class Screen {
     return static_cast<std::size_t>((position_ + kHeld - frames) % kHeld);
   }
   [[nodiscard]] Frame& ago(int frames) { return ring_[place(frames)]; }
+  /// Whether predictions of one CV come.
+  struct Predicted {
+    bool comes = false;
+    bool came = false;  // ever
+    int against = 0;    // frames in a row that say otherwise
+    void archive(Archive& a);
+  };
   void follow_predictions(const SignalBlock& predictions);
   void follow_inputs();
   void follow_compression_of_inputs();
@@ -151,9 +166,10 @@ class Screen {
 
   SignalCounts counts_;
   std::vector<bool> may_predict_;
-  std::vector<bool> predicted_;
+  std::vector<Predicted> predicted_;  // per CV
   std::vector<bool> acts_;
   int dead_time_;
+  int turning_;
   Looks looks_;
   bool inputs_matter_ = true;
   bool all_mvs_rest_ = true;

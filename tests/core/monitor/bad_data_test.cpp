@@ -22,6 +22,31 @@ TEST_CASE("inputs that are moved now and then are not frozen in between") {
     for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
 }
 
+TEST_CASE(
+    "where predictions cease the model makes them, finds what is wrong, and they are back later") {
+  Experiment experiment;
+  experiment.gain_ratio = GENERATE(1.0, 1.6);
+  experiment.from = 4500;
+  Monitor monitor = experiment.monitor();
+  bool off = false;  // said of any other channel
+  experiment.run(8000, [&](Frame frame) {
+    const std::int64_t k = frame.interval;
+    if (k >= 2000 && k < 6000) frame[SignalKind::kPrediction].quality.assign(2, Quality::kBad);
+    monitor.push(frame);
+    for (const AlarmTransition& change : monitor.transitions())
+      off = off || change.cv != 0 || change.input != 1 || k < experiment.from;
+    if (k == 2060) CHECK(monitor.channel(0, 0).reason == Reason::kBadData);
+    if (k == 2060) CHECK_FALSE(monitor.replaced(0));
+    if (k == 4400 || k == 7900) CHECK(monitor.channel(1, 0).verdict == Verdict::kMatch);
+    if (k == 4400) CHECK(monitor.replaced(0));
+    if (k == 6010) CHECK(monitor.replaced(0));
+    if (k == 7900) CHECK_FALSE(monitor.replaced(0));
+    if (k == 5900 || k == 7900)
+      CHECK((monitor.alarm(0, 1) == AlarmState::kActive) == (experiment.gain_ratio > 1.0));
+  });
+  CHECK_FALSE(off);
+}
+
 TEST_CASE("an input that is missing is named where a CV cannot be simulated without it") {
   Experiment experiment;
   experiment.predictions = false;

@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-constexpr int kSettling = 20;
+constexpr int kSettling = 20, kTurning = 30;
 
 ModelSpec first_order() {
   return test::channel_model(1, 1, {{0, 0, TransferFunction{2.0, {4.0}, 0, 1, false}}});
@@ -21,7 +21,7 @@ struct Unit {
   Unit()
       : model(first_order()),
         plant(first_order()),
-        screen(counts, {true}, {true}, 0),
+        screen(counts, {true}, {true}, 0, kTurning),
         inputs(counts, 100.0),
         predictions(model, {true}, {true}, kSettling, kSettling),
         residuals(1) {}
@@ -39,7 +39,7 @@ struct Unit {
     set(SignalKind::kCv, plant.output()(0) + 1.0);
     set(SignalKind::kPrediction, predicted);
     screen.push(frame);
-    if (predictions.simulates()) predictions.follow(screen, [&](int) { ++begun; });
+    predictions.follow(screen, [&](int) { ++turned; });
     inputs.read(frame);
     predictions.begin(frame, inputs);
     residuals.read(frame, predictions);
@@ -55,7 +55,7 @@ struct Unit {
   Predictions predictions;
   UnitResiduals residuals;
   double held = 0.0;
-  int begun = 0;
+  int turned = 0;
 };
 
 const double kNone = std::nan("");
@@ -71,20 +71,64 @@ TEST_CASE("as long as no prediction comes it is simulated, once the model has se
   // What the plant began with differs from what was assumed: exp(-5) of it is left, and less.
   CHECK(unit.residuals.values()(0) == Approx(1.0).margin(1e-3));
   CHECK(unit.residuals.unknown_run(0) == 0);
-  CHECK(unit.begun == 0);
+  CHECK(unit.turned == 0);
 }
 
-TEST_CASE("the first prediction that comes takes over for good") {
+TEST_CASE("the first prediction that comes takes over, apart from what was simulated") {
   Unit unit;
   for (int k = 0; k < 40; ++k) unit.step(k % 5 - 2.0, kNone);
   unit.step(1.0, unit.plant.output()(0) - 0.5);
-  CHECK(unit.begun == 1);
+  CHECK(unit.turned == 1);
   CHECK(unit.predictions.given(0));
   CHECK_FALSE(unit.predictions.simulates());
+  // As many unknown ones as close all windows.
+  for (int k = 0; k < 6; ++k) {
+    CHECK(std::isnan(unit.residuals.values()(0)));
+    unit.step(1.0, unit.plant.output()(0) - 0.5);
+  }
   CHECK(unit.residuals.values()(0) == Approx(1.5));
   unit.step(1.0, kNone);
   CHECK(std::isnan(unit.residuals.values()(0)));
   CHECK(unit.residuals.held()(0) == Approx(1.5));
+}
+
+TEST_CASE(
+    "predictions that have ceased are simulated after a while, and not once they last again") {
+  Unit unit;
+  const auto given = [&](int k) { unit.step(k % 5 - 2.0, unit.plant.output()(0) - 0.5); };
+  const auto none = [&](int k) { unit.step(k % 5 - 2.0, kNone); };
+  for (int k = 0; k < 40; ++k) given(k);
+  CHECK(unit.turned == 1);
+  CHECK_FALSE(unit.predictions.simulates());
+  CHECK(unit.residuals.values()(0) == Approx(1.5));
+
+  for (int k = 0; k < kTurning - 1; ++k) none(k);
+  given(0);  // one that comes is enough to go on with
+  for (int k = 0; k < kTurning - 1; ++k) none(k);
+  CHECK(unit.predictions.given(0));
+  none(0);
+  CHECK(unit.turned == 2);
+  CHECK_FALSE(unit.predictions.given(0));
+  for (int k = 0; k < kSettling; ++k) {
+    CHECK(std::isnan(unit.residuals.values()(0)));
+    none(k);
+  }
+  for (int k = 0; k < 40; ++k) none(k);
+  CHECK(unit.residuals.values()(0) == Approx(1.0).margin(1e-3));
+
+  for (int k = 0; k < kTurning - 1; ++k) given(k);
+  none(0);
+  for (int k = 0; k < kTurning - 1; ++k) {
+    given(k);
+    CHECK(unit.residuals.values()(0) == Approx(1.0).margin(1e-3));  // simulated still
+  }
+  given(0);
+  CHECK(unit.turned == 3);
+  for (int k = 0; k < 6; ++k) {
+    CHECK(std::isnan(unit.residuals.values()(0)));
+    given(k);
+  }
+  CHECK(unit.residuals.values()(0) == Approx(1.5));
 }
 
 TEST_CASE("an input that was unknown for long moved unseen: its simulation is not trusted") {

@@ -39,7 +39,7 @@ struct Unit {
       reader.tell(*out, judged);
       read.push_back(judged);
       missing += reader.missing();
-      begun += reader.begun().size();
+      turned += reader.turned().size();
     }
   }
 
@@ -47,7 +47,7 @@ struct Unit {
   UnitReader reader;
   std::vector<JudgedFrame> read;
   std::int64_t missing = 0;
-  std::size_t begun = 0;
+  std::size_t turned = 0;
 };
 
 TEST_CASE("a reader tells the residual of each frame, once it has left the screen, over gaps too") {
@@ -58,7 +58,7 @@ TEST_CASE("a reader tells the residual of each frame, once it has left the scree
   CHECK(unit.read.front().interval == 1);
   CHECK(unit.read.back().interval == 100 - Screen::kDelay);
   CHECK(unit.missing == 7);
-  CHECK(unit.begun == 1);  // with the first prediction
+  CHECK(unit.turned == 1);  // with the first prediction
   CHECK(unit.reader.samples() == static_cast<std::int64_t>(unit.read.size()));
   for (const JudgedFrame& judged : unit.read) {
     CHECK(judged.readings[0].residual == Approx(0.25).margin(1e-12));

@@ -45,12 +45,12 @@ int rejected(const std::vector<bool>& passed) {
 }
 
 TEST_CASE("what a process gives passes the screen") {
-  Screen screen(kCounts, {true}, {true}, 0);
+  Screen screen(kCounts, {true}, {true}, 0, 30);
   CHECK(rejected(usable(screen, [](int, Frame&) {})) == 0);
   // A coarse sensor repeats itself. Until it is known to be coarse a
   // few are lost.
   for (const double resolution : {0.02, 0.1}) {
-    Screen coarse(kCounts, {true}, {true}, 0);
+    Screen coarse(kCounts, {true}, {true}, 0, 30);
     CAPTURE(resolution);
     CHECK(rejected(usable(
               coarse, [](int, Frame&) {}, resolution)) < 20);
@@ -62,7 +62,7 @@ TEST_CASE(
   // Counted here: of 999 values those that equal the one before.
   for (const double resolution : {0.02, 0.1}) {
     CAPTURE(resolution);
-    Screen screen(kCounts, {true}, {true}, 0);
+    Screen screen(kCounts, {true}, {true}, 0, 30);
     double last = 0.0;
     int same = 0;
     usable(
@@ -76,7 +76,7 @@ TEST_CASE(
     CHECK(same > 80);
     CHECK(screen.repeated_share(0) == Approx(same / 999.0).margin(0.06));
   }
-  Screen fine(kCounts, {true}, {true}, 0);
+  Screen fine(kCounts, {true}, {true}, 0, 30);
   usable(fine, [](int k, Frame& frame) {
     if (k > 300) frame[SignalKind::kCv].values(0) = 0.25;
   });
@@ -84,7 +84,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a frozen sensor is caught from its first repetition on, and let go at once") {
-  Screen screen(kCounts, {true}, {true}, 0);
+  Screen screen(kCounts, {true}, {true}, 0, 30);
   double stuck = 0.0;
   const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
     if (k == 500) stuck = frame[SignalKind::kCv].values(0);
@@ -97,7 +97,7 @@ TEST_CASE("a frozen sensor is caught from its first repetition on, and let go at
 // As values with few digits do by chance.
 TEST_CASE("a value that comes twice is no frozen sensor, one that comes three times is") {
   for (const int times : {2, 3}) {
-    Screen screen(kCounts, {true}, {true}, 0);
+    Screen screen(kCounts, {true}, {true}, 0, 30);
     double first = 0.0;
     const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
       double& value = frame[SignalKind::kCv].values(0);
@@ -111,7 +111,7 @@ TEST_CASE("a value that comes twice is no frozen sensor, one that comes three ti
 }
 
 TEST_CASE("values at the end of an instrument's range are caught") {
-  Screen screen(kCounts, {true}, {true}, 0);
+  Screen screen(kCounts, {true}, {true}, 0, 30);
   int clipped = 0;
   const std::vector<bool> passed = usable(screen, [&](int, Frame& frame) {
     double& value = frame[SignalKind::kCv].values(0);
@@ -124,7 +124,7 @@ TEST_CASE("values at the end of an instrument's range are caught") {
 }
 
 TEST_CASE("spikes of one and two samples are caught, steps are not") {
-  Screen screen(kCounts, {true}, {true}, 0);
+  Screen screen(kCounts, {true}, {true}, 0, 30);
   const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
     double& value = frame[SignalKind::kCv].values(0);
     if (k == 300) value += 3.0;
@@ -138,7 +138,7 @@ TEST_CASE("spikes of one and two samples are caught, steps are not") {
 
 // As where one MV's move is made up for by another's: it turns within two samples, but not at once.
 TEST_CASE("a process that turns around quickly gives no spike") {
-  Screen screen(kCounts, {false}, {true}, 0);
+  Screen screen(kCounts, {false}, {true}, 0, 30);
   const std::vector<double> turn = {0.1, 0.25, 0.5, 0.8, 1.1, 0.95, 0.7, 0.5, 0.3, 0.15, 0.05};
   const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
     const auto since = static_cast<std::size_t>(k % 100);
@@ -149,7 +149,7 @@ TEST_CASE("a process that turns around quickly gives no spike") {
 
 TEST_CASE("a controller in manual is no frozen sensor") {
   for (const bool predicted : {true, false}) {
-    Screen screen(kCounts, {predicted}, {true}, 0);
+    Screen screen(kCounts, {predicted}, {true}, 0, 30);
     int lost = 0;
     const std::vector<bool> passed = usable(screen, [&](int k, Frame& frame) {
       if (k < 400) return;
@@ -163,7 +163,7 @@ TEST_CASE("a controller in manual is no frozen sensor") {
 }
 
 TEST_CASE("the screen allocates nothing per frame") {
-  Screen screen(kCounts, {true}, {true}, 0);
+  Screen screen(kCounts, {true}, {true}, 0, 30);
   Frame frame(kCounts);
   const std::uint64_t before = test::allocation_count();
   for (int k = 0; k < 100; ++k) {
@@ -178,7 +178,7 @@ TEST_CASE("the screen allocates nothing per frame") {
 // The usual difference is then mostly 0, and a step of the sensor many times that.
 TEST_CASE("a step of a sensor that mostly repeats is no spike") {
   for (const bool with_prediction : {false, true}) {
-    Screen screen(kCounts, {with_prediction}, {true}, 0);
+    Screen screen(kCounts, {with_prediction}, {true}, 0, 30);
     double noise = 0.0;
     for (int k = 0; k < 4000; ++k) {
       Frame frame(kCounts);
