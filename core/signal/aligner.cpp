@@ -114,6 +114,7 @@ void Aligner::Window::archive(Archive& a) {
 void Aligner::archive(Archive& a) {
   // not archived: counts_, settings_, sink_, needed_, welcome_ (construction)
   a(silent_, current_, candidate_, back_, back_frames_, offset_, last_emitted_, counters_);
+  a.time(last_time_ns_);
 }
 
 void Aligner::expire() {
@@ -232,13 +233,25 @@ void Aligner::settle_next(Window& window) {
 
 void Aligner::emit(Slot& slot) {
   const std::int64_t interval = slot.interval + offset_;
-  if (counters_.frames > 0)
-    counters_.missing += static_cast<std::uint64_t>(interval - last_emitted_ - 1);
+  if (counters_.frames > 0) counters_.missing += missing_before(interval, slot.frame);
   ++counters_.frames;
   if ((slot.present & needed_) != needed_) ++counters_.incomplete;
   last_emitted_ = interval;
+  last_time_ns_ = slot.frame.source_time_ns;
   slot.frame.interval = interval;
   sink_(slot.frame);
+}
+
+std::uint64_t Aligner::missing_before(std::int64_t interval, const Frame& frame) const {
+  const auto left_out = static_cast<double>(interval - last_emitted_ - 1);
+  // Times may be anything: no difference of extremes.
+  const double elapsed_s =
+      1e-9 * (static_cast<double>(frame.source_time_ns) - static_cast<double>(last_time_ns_));
+  if (settings_.sample_time_s <= 0.0 || frame.source_time_ns == last_time_ns_)  // it has no clock
+    return static_cast<std::uint64_t>(left_out);
+  const double room = std::floor(std::max(0.0, elapsed_s / settings_.sample_time_s));
+  return static_cast<std::uint64_t>(
+      std::min(left_out, room + calibration::alignment::kMaxLateness));
 }
 
 bool Aligner::complete(std::int64_t interval) const {

@@ -31,6 +31,9 @@ struct AlignerSettings {
   /// Kinds that frames take along besides those that they need: awaited while they come, missed by
   /// nobody where they do not.
   std::array<bool, kSignalKindCount> welcome{};
+  /// Of more intervals than the source times had room for none is missing: the numbers leapt. 0:
+  /// the numbers are believed.
+  double sample_time_s = 0.0;
 };
 
 /// What became of the blocks and intervals so far.
@@ -135,6 +138,7 @@ class Aligner {
   void settle_next(Window& window);
   [[nodiscard]] bool complete(std::int64_t interval) const;
   void emit(Slot& slot);
+  [[nodiscard]] std::uint64_t missing_before(std::int64_t interval, const Frame& frame) const;
   void advance();
   void take_over();
   [[nodiscard]] bool past_lateness(std::int64_t interval) const;
@@ -153,6 +157,7 @@ class Aligner {
   int back_frames_ = 0;            // complete there since then
   std::int64_t offset_ = 0;        // emitted minus received interval number
   std::int64_t last_emitted_ = 0;  // valid if counters_.frames > 0
+  std::int64_t last_time_ns_ = 0;  // likewise, source time
   AlignerCounters counters_;
 };
 
