@@ -219,7 +219,10 @@ void AlarmStore::check_is_journal() const {
 }
 
 void AlarmStore::fail(const std::string& doing) const {
-  throw std::runtime_error(path_ + ": " + doing + ": " + sqlite3_errmsg(database_));
+  const std::string why = path_ + ": " + doing + ": " + sqlite3_errmsg(database_);
+  const int code = sqlite3_errcode(database_);
+  if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB) throw DamagedStore(why);
+  throw std::runtime_error(why);
 }
 
 void AlarmStore::run(const std::string& sql) const {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -40,10 +41,17 @@ struct StoreCheck {
   std::string problem;
 };
 
+/// What is in the file is no journal, or no longer: no later try will do better.
+class DamagedStore : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// The journal of all alarms of a daemon, one SQLite file: entries are added and never changed; of
 /// more than `kMostEntries` the oldest go. An entry that was appended survives whatever becomes of
 /// the process or the machine. Each carries a SHA-256 over itself and the one before: what was
-/// changed afterwards, or is missing between two, shows. Throws std::runtime_error.
+/// changed afterwards, or is missing between two, shows. Throws std::runtime_error,
+/// or DamagedStore.
 class AlarmStore {
  public:
   static constexpr std::int64_t kMostEntries = 1'000'000;

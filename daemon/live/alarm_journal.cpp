@@ -1,10 +1,15 @@
 #include "daemon/live/alarm_journal.hpp"
 
 #include <chrono>
+#include <ctime>
 #include <exception>
+#include <filesystem>
 #include <set>
+#include <stdexcept>
+#include <system_error>
 #include <utility>
 
+#include "daemon/files/times/time_text.hpp"
 #include "daemon/live/sample_log.hpp"
 
 namespace mpm::live {
@@ -17,7 +22,7 @@ constexpr std::chrono::seconds kRetry{1};
 
 AlarmJournal::AlarmJournal(const std::string& path) : path_(path) {
   try {
-    store_.emplace(path_, history::AlarmStore::Access::kAppend);
+    open();
   } catch (const std::exception& error) {
     problem_ = error.what();
   }
@@ -49,12 +54,48 @@ void AlarmJournal::push(history::AlarmEntry entry) {
   changed_.notify_all();
 }
 
-std::vector<history::AlarmEntry> AlarmJournal::before(const std::string& unit) const {
+std::vector<history::AlarmEntry> AlarmJournal::before(const std::string& unit) {
   try {  // a reader of its own: the store is the thread's
     return history::AlarmStore(path_, history::AlarmStore::Access::kRead).last_of_each(unit);
-  } catch (const std::exception&) {
-    return {};  // `problem` tells
+  } catch (const history::DamagedStore& error) {
+    {
+      const MutexLock lock(mutex_);
+      damage_ = error.what();
+    }
+    changed_.notify_all();
+  } catch (const std::exception&) {  // `problem` tells
   }
+  return {};
+}
+
+std::string AlarmJournal::put_aside() const {
+  const MutexLock lock(mutex_);
+  return put_aside_;
+}
+
+void AlarmJournal::open() {
+  try {
+    store_.emplace(path_, history::AlarmStore::Access::kAppend);
+  } catch (const history::DamagedStore& error) {
+    put_aside(error.what());
+    store_.emplace(path_, history::AlarmStore::Access::kAppend);
+  }
+}
+
+// With what SQLite keeps beside it: all of it may be wanted by who mends it.
+void AlarmJournal::put_aside(const std::string& why) {
+  store_.reset();
+  const std::string name =
+      path_ + ".damaged-" + files::formatted_utc(std::time(nullptr), "%Y%m%dT%H%M%SZ");
+  for (const char* part : {"", "-wal", "-shm"}) {
+    std::error_code failed;
+    if (!std::filesystem::exists(path_ + part, failed)) continue;
+    std::filesystem::rename(path_ + part, name + part, failed);
+    if (failed) throw std::runtime_error(why + "; it cannot be put aside: " + failed.message());
+  }
+  const MutexLock lock(mutex_);
+  put_aside_ = "the journal of alarms is damaged (" + why + "): it is kept as " + name +
+               ", and a new one was begun";
 }
 
 std::string AlarmJournal::problem() const {
@@ -77,15 +118,23 @@ void AlarmJournal::sync_samples(const std::vector<history::AlarmEntry>& entries)
 void AlarmJournal::run() {
   MutexLock lock(mutex_);
   while (true) {
-    while (!stopped_ && waiting_.empty()) changed_.wait(lock);
-    if (waiting_.empty()) return;
+    while (!stopped_ && waiting_.empty() && damage_.empty()) changed_.wait(lock);
+    if (waiting_.empty() && damage_.empty()) return;
     std::vector<history::AlarmEntry> batch = std::exchange(waiting_, {});
+    const std::string damage = std::exchange(damage_, {});
     lock.unlock();
     std::string problem;
     try {
-      if (!store_) store_.emplace(path_, history::AlarmStore::Access::kAppend);
+      if (!damage.empty()) put_aside(damage);
+      if (!store_) open();
       sync_samples(batch);
-      store_->append(batch);
+      try {
+        store_->append(batch);
+      } catch (const history::DamagedStore& error) {
+        put_aside(error.what());
+        open();
+        store_->append(batch);
+      }
     } catch (const std::exception& error) {
       problem = error.what();
     }

@@ -14,7 +14,8 @@
 namespace mpm::live {
 
 /// Writes what happens to alarms into their journal, in a thread of its own: a disk that is slow or
-/// full delays no sample. What cannot be written now waits, up to a limit.
+/// full delays no sample. What cannot be written now waits, up to a limit. A file that is damaged
+/// is put aside under another name, and a new one begun.
 class AlarmJournal {
  public:
   /// Makes or opens the file; where that cannot be done now it is tried again and again.
@@ -30,13 +31,17 @@ class AlarmJournal {
   void rest_on(const std::string& unit, const std::string& folder);
   void push(history::AlarmEntry entry);
   /// How the alarms of a unit stood when they were last written of; nothing where nobody can tell.
-  [[nodiscard]] std::vector<history::AlarmEntry> before(const std::string& unit) const;
+  [[nodiscard]] std::vector<history::AlarmEntry> before(const std::string& unit);
   /// Why nothing can be written; empty: all is well.
   [[nodiscard]] std::string problem() const;
+  /// What was put aside and why, in words; empty: nothing was.
+  [[nodiscard]] std::string put_aside() const;
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
   void run();
+  void open();
+  void put_aside(const std::string& why);
   void sync_samples(const std::vector<history::AlarmEntry>& entries) const;
 
   std::string path_;
@@ -47,6 +52,8 @@ class AlarmJournal {
   std::vector<history::AlarmEntry> waiting_ MPM_GUARDED_BY(mutex_);
   std::uint64_t lost_ MPM_GUARDED_BY(mutex_) = 0;
   std::string problem_ MPM_GUARDED_BY(mutex_);
+  std::string put_aside_ MPM_GUARDED_BY(mutex_);
+  std::string damage_ MPM_GUARDED_BY(mutex_);  // that a reader found; the thread is to see to it
   bool stopped_ MPM_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };

@@ -75,8 +75,38 @@ void UnitAlarms::keep(AlarmJournal& journal, std::int64_t wall_ns) {
           .message = before.message;
       refresh(alarm);
     }
+  if (recalled_) stand_unknown(wall_ns);
   desk_.tick({source_time_ns_, wall_ns});  // what was shelved until a time that has passed
   settle(wall_ns, nullptr);
+}
+
+// A journal that was lost silences nothing.
+void UnitAlarms::stand_unknown(std::int64_t wall_ns) {
+  std::uint64_t count = 0;
+  std::int64_t since_ns = source_time_ns_;
+  for (int i = 0; i < desk_.channels(); ++i) {
+    const AlarmStateRecord& alarm = alarms_[static_cast<std::size_t>(i)];
+    if (alarm.to != AlarmChange::kActive || desk_.active(i)) continue;
+    stand(i, alarm.source_time_ns, wall_ns);
+    since_ns = std::min(since_ns, alarm.source_time_ns);
+    ++count;
+  }
+  if (count == 0) return;
+  spdlog::warn("{}: of {} that stand{} the journal says nothing: announced as unacknowledged",
+               unit_, counted(count, "alarm"), count == 1 ? "s" : "");
+  if (desk_.standing_channels() > 0 && !desk_.active(AlarmDesk::kController))
+    stand(AlarmDesk::kController, since_ns, wall_ns);
+}
+
+void UnitAlarms::stand(int alarm, std::int64_t since_ns, std::int64_t wall_ns) {
+  AlarmStanding standing = desk_.standing(alarm);
+  standing.annunciation = Annunciation::kUnacknowledged;
+  standing.active_time_ns = since_ns;
+  const bool controller = alarm == AlarmDesk::kController;
+  const AlarmDesk::Channel name = controller ? AlarmDesk::Channel{} : desk_.channel(alarm);
+  (void)desk_.resume(name.mv, name.cv, standing);
+  refresh(alarm);
+  journal_->push(entry(alarm, std::string(to_string(AlarmOccurrence::kActive)), wall_ns));
 }
 
 AlarmStateRecord* UnitAlarms::find(const std::string& mv, const std::string& cv) {

@@ -35,7 +35,8 @@ class UnitAlarms {
   /// What frames have made of them; instead of `recall` of these frames.
   void archive(Archive& a);
   /// From now on what happens is kept there. What people did before holds again, and where frames
-  /// were recalled so does which alarms stand.
+  /// were recalled so does which alarms stand; one that stands by the frames, and of which the
+  /// journal says nothing, stands as if nobody had seen it.
   void keep(AlarmJournal& journal, std::int64_t wall_ns);
   /// How all of them stand, which clears what a daemon before this one left behind. False where it
   /// could not be published.
@@ -71,6 +72,10 @@ class UnitAlarms {
   }
   [[nodiscard]] const std::vector<AlarmStateRecord>& channels() const { return alarms_; }
   [[nodiscard]] const ControllerAlarmRecord& controller() const { return controller_; }
+  /// As AlarmJournal::put_aside.
+  [[nodiscard]] std::string journal_put_aside() const {
+    return journal_ == nullptr ? "" : journal_->put_aside();
+  }
   /// Why the journal cannot be written; empty: it can, or there is none.
   [[nodiscard]] std::string journal_problem() const {
     return journal_ == nullptr ? "" : journal_->problem();
@@ -81,6 +86,8 @@ class UnitAlarms {
   void note(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& changes,
             const std::vector<std::string>& texts);
   bool settle(std::int64_t wall_ns, const AlarmCommand* command);
+  void stand_unknown(std::int64_t wall_ns);
+  void stand(int alarm, std::int64_t since_ns, std::int64_t wall_ns);
   void note_acts(int alarm, const AlarmStanding& told, std::int64_t wall_ns);
   [[nodiscard]] bool known(const AlarmRecord& change) const;
   [[nodiscard]] bool clear_held(std::size_t i);

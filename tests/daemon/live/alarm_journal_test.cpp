@@ -2,8 +2,10 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <filesystem>
 #include <thread>
 
 #include "tests/system/process.hpp"
@@ -33,7 +35,7 @@ TEST_CASE("all that was pushed is written before the journal goes") {
     CHECK(journal.problem().empty());
   }
   CHECK(entries(path) == 1000);
-  const AlarmJournal journal(path);
+  AlarmJournal journal(path);
   REQUIRE(journal.before("shell").size() == 1);
   CHECK(journal.before("shell")[0].what == "999");
   CHECK(journal.before("shell")[0].standing.out_of_service);
@@ -54,6 +56,37 @@ TEST_CASE("what cannot be written waits until it can, and that is said meanwhile
   for (int i = 0; i < 100 && entries(path) < 2; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   CHECK(entries(path) == 2);
+}
+
+TEST_CASE("a damaged file is put aside, and a new one begun, whenever the damage is found") {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("alarms.sqlite");
+  const bool at_start = GENERATE(true, false);
+  {
+    AlarmJournal journal(path);
+    for (int i = 0; i < 1000; ++i) journal.push(entry(i));
+  }
+  std::string bytes = test::read_file(path);
+  // All of it, or all but what opening looks at.
+  const std::size_t from = at_start ? 0 : 3 * 4096;
+  REQUIRE(bytes.size() > from);
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end(), 'x');
+  test::write_file(path, bytes);
+  {
+    AlarmJournal journal(path);
+    CHECK(journal.before("shell").empty());
+    journal.push(entry(1));
+    for (int i = 0; i < 100 && journal.put_aside().empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    CHECK(journal.put_aside().find("the journal of alarms is damaged (") == 0);
+    CHECK(journal.problem().empty());
+  }
+  CHECK(entries(path) == 1);
+  int kept = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder.file("")))
+    kept += file.path().filename().string().starts_with("alarms.sqlite.damaged-") &&
+            test::read_file(file.path()) == bytes;
+  CHECK(kept == 1);
 }
 
 TEST_CASE("what waits for a disk that stays away does not fill the memory") {
