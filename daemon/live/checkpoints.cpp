@@ -25,8 +25,13 @@ bool Checkpoints::take_back() {
   archive_(away);
   states_.expect(constructed.size());
   for (const std::uint64_t file : states_.find(log_.files())) {
-    const std::optional<std::vector<std::byte>> bytes = states_.read(file);
-    if (!bytes) continue;
+    std::string why;
+    const std::optional<std::vector<std::byte>> bytes = states_.read(file, why);
+    if (!bytes) {
+      spdlog::log(why == StateFiles::kBelongsElsewhere ? spdlog::level::info : spdlog::level::warn,
+                  "{}: {} is not used: {}", unit_, states_.path(file), why);
+      continue;
+    }
     try {
       Archive back{std::span(*bytes)};
       archive_(back);
@@ -35,7 +40,7 @@ bool Checkpoints::take_back() {
       taken_back_ = file;
       break;
     } catch (const std::runtime_error& error) {
-      spdlog::warn("{}: state {}: {}", unit_, file, error.what());
+      spdlog::warn("{}: {} is not used: {}", unit_, states_.path(file), error.what());
       Archive back{std::span(constructed)};
       archive_(back);
     }

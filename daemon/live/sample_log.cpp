@@ -170,6 +170,11 @@ bool SampleLog::read(File& file, const Visit& visit, std::string& why) {
 std::string SampleLog::recall(const Visit& visit, std::uint64_t from, const Visit& earlier) {
   std::string why, ignored_why;
   files_.clear();
+  std::error_code unreadable;
+  if (fs::exists(folder_, unreadable)) {
+    (void)fs::directory_iterator(folder_, unreadable);
+    if (unreadable) why = folder_ + " cannot be read: " + unreadable.message();
+  }
   const Visit ignore = [](const BlockView*) {};
   const Visit& before = earlier ? earlier : ignore;
   // Of another meaning is what was before the unit file changed: what follows is a new beginning.

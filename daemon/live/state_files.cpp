@@ -4,7 +4,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -87,8 +89,14 @@ std::string write_state(const std::string& folder, const std::string& belongs, s
 }
 
 std::optional<std::vector<std::byte>> read_state(const std::string& folder,
-                                                 const std::string& belongs, std::uint64_t number) {
+                                                 const std::string& belongs, std::uint64_t number,
+                                                 std::string& why) {
+  errno = 0;
   std::ifstream stream(path_of(folder, number), std::ios::binary);
+  if (!stream) {
+    why = std::string("it cannot be read: ") + std::strerror(errno);
+    return std::nullopt;
+  }
   const std::string all((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   std::string_view rest = all;
   const auto cut = [&rest](std::string_view expected) {
@@ -97,10 +105,13 @@ std::optional<std::vector<std::byte>> read_state(const std::string& folder,
     return true;
   };
   const std::size_t sum_size = sum_of("").size();
+  why = "it is damaged";
   if (!cut(kMagic) || rest.size() < sum_size) return std::nullopt;
   const std::string_view sum = rest.substr(0, sum_size);
   rest.remove_prefix(sum_size);
-  if (sum_of(rest) != sum || !cut(head_of(number, belongs))) return std::nullopt;
+  if (sum_of(rest) != sum) return std::nullopt;
+  why = StateFiles::kBelongsElsewhere;
+  if (!cut(head_of(number, belongs))) return std::nullopt;
   const auto bytes = std::as_bytes(std::span(rest));
   return std::vector<std::byte>(bytes.begin(), bytes.end());
 }
@@ -123,9 +134,11 @@ std::vector<std::uint64_t> StateFiles::find(const std::vector<std::uint64_t>& fi
   return found;
 }
 
-std::optional<std::vector<std::byte>> StateFiles::read(std::uint64_t file) const {
-  return read_state(folder_, belongs_, file);
+std::optional<std::vector<std::byte>> StateFiles::read(std::uint64_t file, std::string& why) const {
+  return read_state(folder_, belongs_, file, why);
 }
+
+std::string StateFiles::path(std::uint64_t file) const { return path_of(folder_, file); }
 
 bool StateFiles::poll() {
   if (!writing_.valid()) return true;

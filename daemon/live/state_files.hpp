@@ -25,8 +25,12 @@ class StateFiles {
   /// is kept, newest first. States of other files go, and what a killed process was writing. To be
   /// called before anything is kept.
   [[nodiscard]] std::vector<std::uint64_t> find(const std::vector<std::uint64_t>& files);
-  /// Nothing where it is damaged, or does not belong here.
-  [[nodiscard]] std::optional<std::vector<std::byte>> read(std::uint64_t file) const;
+  /// Why a state is not used that is whole.
+  static constexpr const char* kBelongsElsewhere = "it is of another program or unit file";
+  /// Nothing where it is damaged, cannot be read, or does not belong here, and `why`.
+  [[nodiscard]] std::optional<std::vector<std::byte>> read(std::uint64_t file,
+                                                           std::string& why) const;
+  [[nodiscard]] std::string path(std::uint64_t file) const;
   /// Has what `fill` appends written, beside the file that it names; nothing where it names none.
   /// Where the one before is still being written, that must do. Returns whether it will be.
   bool keep(const std::function<std::optional<std::uint64_t>(std::vector<std::byte>&)>& fill);

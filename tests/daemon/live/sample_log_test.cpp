@@ -281,6 +281,14 @@ TEST_CASE("a folder that cannot be made is a problem told, and no more") {
   CHECK_FALSE(recall(folder.file("file") + "/samples").lines.empty());
 }
 
+TEST_CASE("a folder that cannot be read is told") {
+  const test::TemporaryFolder folder;
+  test::write_file(folder.file("samples"), "a file of that name");
+  SampleLog log(folder.file("samples"), "a", 64);
+  const std::string why = log.recall([](const BlockView*) {});
+  CHECK(why == folder.file("samples") + " cannot be read: Not a directory");
+}
+
 TEST_CASE("a file is never written to through a link") {
   const test::TemporaryFolder folder;
   const std::string place = folder.file("samples");

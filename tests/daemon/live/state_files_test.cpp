@@ -49,6 +49,11 @@ void await(StateFiles& states) {
   while (!states.poll()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
+std::optional<Bytes> read(const StateFiles& states, std::uint64_t file) {
+  std::string why;
+  return states.read(file, why);
+}
+
 std::set<std::string> names_in(const std::string& folder) {
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder))
@@ -65,14 +70,14 @@ TEST_CASE("the last two states are kept, and come back as they were") {
   StateFiles states(place, "a");
   CHECK(states.find(log) == std::vector<std::uint64_t>{10, 9});
   CHECK(states.oldest() == 9);
-  CHECK(states.read(10) == some_bytes(10));
-  CHECK(states.read(9) == some_bytes(9));
-  CHECK_FALSE(states.read(8));
+  CHECK(read(states, 10) == some_bytes(10));
+  CHECK(read(states, 9) == some_bytes(9));
+  CHECK_FALSE(read(states, 8));
   CHECK(names_in(place) == std::set<std::string>{"state-000000000009", "state-000000000010"});
 
   keep(place, "a", 11, {});
-  REQUIRE(states.read(11));
-  CHECK(states.read(11)->empty());
+  REQUIRE(read(states, 11));
+  CHECK(read(states, 11)->empty());
 }
 
 TEST_CASE("a state whose file of the log has gone goes too") {
@@ -100,11 +105,25 @@ TEST_CASE("a state of another program or unit is not used") {
   const test::TemporaryFolder folder;
   const std::string place = folder.file("");
   keep(place, "a", 8, some_bytes(8));
-  CHECK_FALSE(StateFiles(place, "b").read(8));
-  CHECK_FALSE(StateFiles(place, "").read(8));
+  CHECK_FALSE(read(StateFiles(place, "b"), 8));
+  CHECK_FALSE(read(StateFiles(place, ""), 8));
   // Nor is one under another's number.
   fs::rename(path(folder, 8), path(folder, 9));
-  CHECK_FALSE(StateFiles(place, "a").read(9));
+  CHECK_FALSE(read(StateFiles(place, "a"), 9));
+}
+
+TEST_CASE("why a state is not used is told") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("");
+  keep(place, "a", 8, some_bytes(8));
+  std::string why;
+  CHECK_FALSE(StateFiles(place, "a").read(9, why));
+  CHECK(why == "it cannot be read: No such file or directory");
+  CHECK_FALSE(StateFiles(place, "b").read(8, why));
+  CHECK(why == StateFiles::kBelongsElsewhere);
+  test::write_file(path(folder, 8), "mpm state 1\nhalf");
+  CHECK_FALSE(StateFiles(place, "a").read(8, why));
+  CHECK(why == "it is damaged");
 }
 
 // CRC-32 finds every burst of up to 32 bits.
@@ -120,14 +139,14 @@ TEST_CASE("a damaged state is not used") {
     damaged[at] =
         static_cast<char>(static_cast<unsigned char>(damaged[at]) ^ (1U << (random() % 8)));
     test::write_file(path(folder, 8), damaged);
-    if (states.read(8)) FAIL("byte " << at << " was damaged");
+    if (read(states, 8)) FAIL("byte " << at << " was damaged");
     test::write_file(path(folder, 8), whole.substr(0, at));
-    if (states.read(8)) FAIL("all from byte " << at << " on was lost");
+    if (read(states, 8)) FAIL("all from byte " << at << " on was lost");
   }
   test::write_file(path(folder, 8), std::string(whole.size(), '\0'));
-  CHECK_FALSE(states.read(8));
+  CHECK_FALSE(read(states, 8));
   test::write_file(path(folder, 8), whole);
-  CHECK(states.read(8));
+  CHECK(read(states, 8));
 }
 
 TEST_CASE("what names no file is not written, and costs the one before nothing") {
@@ -144,8 +163,8 @@ TEST_CASE("what names no file is not written, and costs the one before nothing")
   CHECK(names_in(place) == std::set<std::string>{"state-000000000008"});
   begin(states, 10, {});  // nothing of 9 is left
   await(states);
-  REQUIRE(states.read(10));
-  CHECK(states.read(10)->empty());
+  REQUIRE(read(states, 10));
+  CHECK(read(states, 10)->empty());
 }
 
 TEST_CASE("what cannot be written is told, and the state before stays") {
@@ -159,7 +178,7 @@ TEST_CASE("what cannot be written is told, and the state before stays") {
   await(states);
   CHECK(states.problem().find(place) != std::string::npos);
   fs::rename(folder.file("away"), place);
-  CHECK(states.read(8) == some_bytes(8));
+  CHECK(read(states, 8) == some_bytes(8));
   begin(states, 10, some_bytes(10));
   await(states);
   CHECK(states.problem().empty());
@@ -167,7 +186,7 @@ TEST_CASE("what cannot be written is told, and the state before stays") {
   begin(states, 11, some_bytes(11));
   await(states);
   CHECK(states.oldest() == 10);
-  CHECK(states.read(10) == some_bytes(10));
+  CHECK(read(states, 10) == some_bytes(10));
 }
 
 }  // namespace

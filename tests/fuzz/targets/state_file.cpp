@@ -33,7 +33,8 @@ void read(const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
   live::StateFiles states(folder(), "small");
   require(states.find({1}) == std::vector<std::uint64_t>{1}, "the state is not found");
-  const auto state = states.read(1);
+  std::string why;
+  const auto state = states.read(1, why);
   require(!state || state->size() < text.size(), "more was read than there is");
   std::filesystem::remove(path);
 }
