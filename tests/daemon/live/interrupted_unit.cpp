@@ -109,7 +109,8 @@ std::vector<Frame> frames_of(const Ordeal& ordeal) {
     frame[SignalKind::kDv].values = u.tail(counts.dv);
     frame[SignalKind::kCv].values = y;
     for (int j = 0; j < counts.cv; ++j) {
-      const bool comes = ordeal.predicted && (j > 0 || k >= ordeal.first_prediction);
+      const bool comes = ordeal.predicted && (j > 0 || k >= ordeal.first_prediction) &&
+                         (k < ordeal.none_from || k >= ordeal.none_until);
       frame[SignalKind::kPrediction].values(j) = comes ? predicted(j) : kUnknown;
       frame[SignalKind::kSetpoint].values(j) = uniform(stream(ordeal, 4, j), k / 60);
     }

@@ -23,15 +23,16 @@ struct Ordeal {
   int samples = 2000;
   std::uint64_t seed = 1;
   int change_from = 0,
-      change_until = 0;      ///< the gain of the first channel is 1.8 times the model's
-  double bend = 0.0;         ///< CV 0 has that share of its own square besides
-  double follows = 0.0;      ///< CV 0 has so much of the auxiliary signal in it
-  bool predicted = true;     ///< predictions come
-  int first_prediction = 0;  ///< they come from then on
-  bool troubles = false;     ///< gaps, bad and missing values, spikes, values that stand, wild ones
-  bool shuffled = false;     ///< blocks late, twice and out of order, and a restart of the numbers
-  double quantum = 0.0;      ///< of the last CV's readings
-  int held_until = 0;        ///< the last CV's values come through a historian's deadband
+      change_until = 0;               ///< the gain of the first channel is 1.8 times the model's
+  double bend = 0.0;                  ///< CV 0 has that share of its own square besides
+  double follows = 0.0;               ///< CV 0 has so much of the auxiliary signal in it
+  bool predicted = true;              ///< predictions come
+  int first_prediction = 0;           ///< they come from then on
+  int none_from = 0, none_until = 0;  ///< but not then
+  bool troubles = false;  ///< gaps, bad and missing values, spikes, values that stand, wild ones
+  bool shuffled = false;  ///< blocks late, twice and out of order, and a restart of the numbers
+  double quantum = 0.0;   ///< of the last CV's readings
+  int held_until = 0;     ///< the last CV's values come through a historian's deadband
   int rest_from = 0, rest_until = 0;  ///< the controller is off
 };
 

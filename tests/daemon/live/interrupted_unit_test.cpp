@@ -71,6 +71,11 @@ std::vector<test::Ordeal> ordeals() {
                        .samples = 900,
                        .first_prediction = 250,
                        .troubles = true});
+  all.push_back(Ordeal{.name = "predictions that cease",
+                       .config = small_unit("", "p"),
+                       .samples = 2400,
+                       .none_from = 500,
+                       .none_until = 1500});
   all.push_back(Ordeal{.name = "changes",
                        .config = small_unit("", "p"),
                        .samples = 3000,
