@@ -53,7 +53,9 @@ std::size_t KeyLimit::most(std::size_t names) {
 }
 
 bool KeyLimit::takes(const void* sample, const dds_sample_info_t& info) {
-  if (units_ != nullptr && names_ > 0 && !units_->takes(name_at(sample, 0))) return false;
+  if (units_ != nullptr && names_ > 0 &&
+      !units_->takes(name_at(sample, 0), info.publication_handle))
+    return false;
   bool fits = true;
   for (std::size_t i = 0; i < names_; ++i) fits = fits && name_at(sample, i).size() <= kLongestName;
   if (fits && info.view_state != DDS_VST_NEW) return true;

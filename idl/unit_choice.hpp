@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -18,12 +19,13 @@ class UnitChoice {
   /// What was not taken.
   struct Refused {
     std::uint64_t samples = 0;
-    std::set<std::string, std::less<>> units;  ///< printable; the first few
+    /// Printable, the first few; each with a writer of it, as in SampleInfo.
+    std::map<std::string, std::uint64_t> units;
   };
 
   explicit UnitChoice(const std::vector<std::string>& units) : units_(units.begin(), units.end()) {}
   /// False, and remembered, where the unit is none of these.
-  [[nodiscard]] bool takes(std::string_view unit);
+  [[nodiscard]] bool takes(std::string_view unit, std::uint64_t writer);
   /// What was refused since the last call.
   [[nodiscard]] Refused refused();
 

@@ -13,6 +13,11 @@ namespace {
 // Source times that are off by less are jitter: controllers are not held to the second.
 constexpr double kSmallestClockStepS = 60.0;
 constexpr double kClockStepSamples = 10.0;
+// A clock runs as this machine's where its offset stays the same for so long, but for so much.
+constexpr std::chrono::seconds kSteady{10};
+constexpr double kSteadySamples = 3.0;
+constexpr double kUnsteadyS = 1.0;
+constexpr double kUnsteadySamples = 0.1;
 // Beyond this distance nothing was left out: another counter.
 constexpr std::int64_t kFar = 100'000;
 // As far as a number goes back when samples come in another order (core/signal/aligner).
@@ -43,6 +48,26 @@ bool is_timely(double steps, double elapsed_s, double sample_time_s) {
 }
 
 }  // namespace
+
+double clock_limit_s(double sample_time_s) {
+  return std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s);
+}
+
+std::optional<double> InputStream::clock_offset_s(double sample_time_s) const {
+  if (!offset_ || !last_) return std::nullopt;
+  const std::chrono::duration<double> steady = *last_ - offset_->since;
+  if (steady < kSteady || steady.count() < kSteadySamples * sample_time_s) return std::nullopt;
+  return offset_->s;
+}
+
+void InputStream::follow_clock(const Arrival& arrival, double sample_time_s,
+                               Clock::time_point now) {
+  if (arrival.wall_ns == 0) return;
+  const double s =
+      1e-9 * (static_cast<double>(arrival.source_time_ns) - static_cast<double>(arrival.wall_ns));
+  if (!offset_ || std::abs(s - offset_->s) > kUnsteadyS + kUnsteadySamples * sample_time_s)
+    offset_ = Offset{s, now};
+}
 
 int InputStream::Recent::left_out() const { return intervals - std::popcount(came); }
 
@@ -129,6 +154,7 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
   if (writer.samples == 0) begin(arrival, sample_time_s, now);
   newest_ = arrival;
   remember(arrival, sample_time_s);
+  follow_clock(arrival, sample_time_s, now);
   if (writer.samples > 0) {
     // Numbers may be anything: no difference of extremes.
     const double steps =
@@ -144,7 +170,7 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
           Jump{now, writer.interval, arrival.interval, is_timely(steps, elapsed, sample_time_s)};
     const double step_s = elapsed - steps * sample_time_s;
     const bool dated = arrival.source_time_ns != writer.source_time_ns;  // else it has no clock
-    const double limit_s = std::max(kSmallestClockStepS, kClockStepSamples * sample_time_s);
+    const double limit_s = clock_limit_s(sample_time_s);
     // Where as much time went by here, the control system stood still and its clock is right.
     const double here_s = std::chrono::duration<double>(now - writer.last).count();
     // A counter that jumps says nothing of the clock.

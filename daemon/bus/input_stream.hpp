@@ -15,7 +15,11 @@ struct Arrival {
   std::int64_t source_time_ns = 0;
   std::size_t values = 0;     ///< how many it has
   std::size_t qualities = 0;  ///< 0 = all good
+  std::int64_t wall_ns = 0;   ///< when it came, UTC; 0: not known
 };
+
+/// Source times that are off by more are told.
+[[nodiscard]] double clock_limit_s(double sample_time_s);
 
 /// One topic of one unit as it arrives. Remembers a few numbers per writer, whatever comes.
 class InputStream {
@@ -87,6 +91,9 @@ class InputStream {
   /// The last sample had an interval number that is not taken.
   [[nodiscard]] bool beyond() const { return beyond_; }
   [[nodiscard]] const std::optional<ClockStep>& clock_step() const { return clock_step_; }
+  /// How far the source times are ahead of this machine's clock, where they have gone on with it
+  /// for a while.
+  [[nodiscard]] std::optional<double> clock_offset_s(double sample_time_s) const;
   /// Two writers that both sent something while the other did, and within the last `recently`; the
   /// one that came first is the first. Nulls if there is none. `is_there(handle)`: it has not left.
   template <class IsThere>
@@ -106,7 +113,13 @@ class InputStream {
 
  private:
   Writer& writer_of(std::uint64_t handle, Clock::time_point now);
+  struct Offset {
+    double s = 0.0;
+    Clock::time_point since;
+  };
+
   void remember(const Arrival& arrival, double sample_time_s);
+  void follow_clock(const Arrival& arrival, double sample_time_s, Clock::time_point now);
   void begin(const Arrival& arrival, double sample_time_s, Clock::time_point now);
 
   std::array<Writer, kMostWriters> writers_;
@@ -116,6 +129,7 @@ class InputStream {
   bool beyond_ = false;
   std::optional<Jump> jump_;
   std::optional<ClockStep> clock_step_;
+  std::optional<Offset> offset_;
 };
 
 }  // namespace mpm::bus

@@ -20,8 +20,10 @@ const char* to_string(Severity severity) {
 }
 
 std::string troubles_in(const std::string& detail, std::uint32_t active_alarms) {
-  for (const std::string& first : {counted(active_alarms, "alarm"), std::string(kNoCompleteData),
-                                   std::string(kNothingDetermined)}) {
+  const std::string alarms = counted(active_alarms, "alarm");
+  if (detail.ends_with("; " + alarms)) return detail.substr(0, detail.size() - alarms.size() - 2);
+  for (const std::string& first :
+       {alarms, std::string(kNoCompleteData), std::string(kNothingDetermined)}) {
     if (detail == first) return "";
     if (detail.starts_with(first + "; ")) return detail.substr(first.size() + 2);
   }

@@ -49,6 +49,11 @@ bool counters_differ(const std::vector<Trouble>& troubles) {
   });
 }
 
+// Who has left says nothing more. Only a list that knows somebody knows who is not there.
+bool is_there(const Surroundings& around, std::uint64_t handle) {
+  return around.endpoints.empty() || find_writer(around, handle) != nullptr;
+}
+
 double apart(std::int64_t a, std::int64_t b) {
   return std::abs(static_cast<double>(a) - static_cast<double>(b));
 }
@@ -92,6 +97,7 @@ namespace {
 
 constexpr const char* kUnknownKind = "unknown kind";
 constexpr std::size_t kLongestKind = 40;
+constexpr std::size_t kMostWrongLayouts = 32;  // whoever writes more fills no memory
 
 /// Nothing for a word that is none of a layout's kinds.
 std::optional<SignalKind> kind_of(const char* word) {
@@ -102,29 +108,39 @@ std::optional<SignalKind> kind_of(const char* word) {
 
 }  // namespace
 
-// The last word on each kind counts: a gateway may have been put right.
-void UnitInputs::hear(const mpm_Layout& layout) {
+// Each writer's last word on each kind counts: it may have been put right.
+void UnitInputs::hear(const mpm_Layout& layout, std::uint64_t writer) {
   if (!expected_.file) return;
   const std::optional<SignalKind> kind = kind_of(layout.kind);
-  if (kind && !config::is_layout_of(*expected_.file, *kind, idl::texts_of(layout.tags)))
-    wrong_layouts_[layout.kind] = "tags or their order";
-  else if (kind && layout.sample_time_s != expected_.sample_time_s)
-    wrong_layouts_[layout.kind] = "sample time";
-  else if (kind)
-    wrong_layouts_.erase(layout.kind);
-  else
-    wrong_layouts_[kUnknownKind] =
-        "'" + printable(layout.kind == nullptr ? "" : layout.kind, kLongestKind) + "'";
+  std::string wrong;
+  if (!kind)
+    wrong = "'" + printable(layout.kind == nullptr ? "" : layout.kind, kLongestKind) + "'";
+  else if (!config::is_layout_of(*expected_.file, *kind, idl::texts_of(layout.tags)))
+    wrong = "tags or their order";
+  else if (layout.sample_time_s != expected_.sample_time_s)
+    wrong = "sample time";
+  const std::pair<std::string, std::uint64_t> place(kind ? layout.kind : kUnknownKind, writer);
+  if (wrong.empty())
+    wrong_layouts_.erase(place);
+  else if (wrong_layouts_.size() < kMostWrongLayouts || wrong_layouts_.count(place) > 0)
+    wrong_layouts_[place] = wrong;
 }
 
-void UnitInputs::forget_layout(const char* kind) {
-  wrong_layouts_.erase(kind_of(kind) ? kind : kUnknownKind);
+void UnitInputs::forget_layout(const char* kind, std::uint64_t writer) {
+  wrong_layouts_.erase({kind_of(kind) ? kind : kUnknownKind, writer});
 }
 
-void UnitInputs::add_layouts(std::vector<Trouble>& troubles) const {
+void UnitInputs::add_layouts(const Surroundings& around, std::vector<Trouble>& troubles) const {
+  std::map<std::string, std::string> by_writer;  // its name: what it says
+  for (const auto& [place, what] : wrong_layouts_) {
+    const auto& [kind, writer] = place;
+    if (!is_there(around, writer)) continue;
+    std::string& text = by_writer[writer_name(around, writer)];
+    text += (text.empty() ? "" : ", ") + kind + " (" + what + ")";
+  }
   std::string text;
-  for (const auto& [kind, what] : wrong_layouts_)
-    text += (text.empty() ? "" : ", ") + kind + (what.empty() ? "" : " (" + what + ")");
+  for (const auto& [name, what] : by_writer)
+    text += (text.empty() ? "" : "; ") + what + " of " + name;
   if (!text.empty())
     troubles.push_back(
         {"layout", Severity::kOutOfSpecification, "layout differs from the unit file: " + text});
@@ -140,8 +156,9 @@ bool UnitInputs::silent(SignalKind kind, Clock::time_point now) const {
 }
 
 bool UnitInputs::wants_endpoints(Clock::time_point now) const {
+  if (!wrong_layouts_.empty()) return true;
   return std::any_of(idl::kTopicKinds.begin(), idl::kTopicKinds.end(), [&](SignalKind kind) {
-    return (needed(kind) && silent(kind, now)) ||
+    return (needed(kind) && silent(kind, now)) || clock_off(kind, now) ||
            stream(kind).rivals(now, expected_.silence, [](std::uint64_t) { return true; }).first !=
                nullptr;
   });
@@ -152,9 +169,10 @@ std::vector<Trouble> UnitInputs::troubles(const Surroundings& around, Clock::tim
   add_silence(around, now, troubles);
   add_rivals(around, now, troubles);
   add_contents(now, troubles);
-  add_layouts(troubles);
+  add_layouts(around, troubles);
   add_gaps(now, troubles);
   add_events(now, troubles);
+  add_clock_offset(around, now, troubles);
   sort_by_severity(troubles);
   return troubles;
 }
@@ -175,10 +193,17 @@ std::string UnitInputs::why_silent(SignalKind kind, const Surroundings& around,
       refused.push_back(name + " does not match: " + config::join(endpoint.mismatch));
   }
   if (!refused.empty()) return "its writer " + config::join(refused);
-  if (!stopped.empty()) return stopped + " has stopped writing it, or was killed";
+  if (!stopped.empty()) {
+    for (const auto& [unit, writer] : around.strangers)
+      if (writer_name(around, writer) == stopped)
+        return stopped + " writes unit '" + unit + "', which no unit file describes, and not '" +
+               expected_.unit + "'";
+    return stopped + " has stopped writing it, or was killed";
+  }
   if (writers.empty()) return "nobody writes it on " + around.place;
   if (!around.strangers.empty() && !stream(kind).started()) {
-    const std::vector<std::string> names(around.strangers.begin(), around.strangers.end());
+    std::vector<std::string> names;
+    for (const auto& [unit, writer] : around.strangers) names.push_back(unit);
     return "samples come of unit '" + config::join(names) + "' only";
   }
   // Other units' samples come: perhaps under a wrong name.
@@ -210,6 +235,7 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
     std::vector<std::string> reasons;
     reasons.reserve(quiet.size());
     for (const SignalKind kind : quiet) reasons.push_back(why_silent(kind, around, now));
+    any_started = any_started || recalled_;
     std::string text = any_started
                            ? "no data for " + std::to_string(whole_seconds(now - last)) + " s"
                            : "no data has come";
@@ -230,8 +256,9 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
         stream(kind).started()
             ? " for " + std::to_string(whole_seconds(now - *stream(kind).last())) + " s"
             : "";
-    // Frames come all the same, without it; where no prediction ever came it is simulated.
-    const bool simulated = kind == SignalKind::kPrediction && !stream(kind).started();
+    // Frames come all the same, without it; where no prediction ever came it is simulated. Of one
+    // that a process before this one had, or that has stopped, the monitor itself tells.
+    const bool simulated = kind == SignalKind::kPrediction && !stream(kind).started() && !recalled_;
     troubles.push_back({"silent " + topic_of(kind), Severity::kOutOfSpecification,
                         "nothing on " + topic_of(kind) + since + " (" +
                             why_silent(kind, around, now) + ")" +
@@ -241,16 +268,13 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
 
 void UnitInputs::add_rivals(const Surroundings& around, Clock::time_point now,
                             std::vector<Trouble>& troubles) const {
-  // Who has left says nothing more. Only a list that knows somebody knows who is not there.
-  const auto is_there = [&around](std::uint64_t handle) {
-    return around.endpoints.empty() || find_writer(around, handle) != nullptr;
-  };
+  const auto there = [&around](std::uint64_t handle) { return is_there(around, handle); };
   std::vector<std::string> topics;
   const InputStream::Writer* first = nullptr;
   const InputStream::Writer* second = nullptr;
   bool same = true;
   for (const SignalKind kind : idl::kTopicKinds) {
-    const auto [a, b] = stream(kind).rivals(now, expected_.silence, is_there);
+    const auto [a, b] = stream(kind).rivals(now, expected_.silence, there);
     if (a == nullptr) continue;
     topics.push_back(topic_of(kind));
     first = first == nullptr ? a : first;
@@ -406,6 +430,33 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
                             (step.size_s > 0.0 ? "forward" : "back") + " by " + size +
                             " at interval " + interval + " on " + config::join(topics),
                         interval});
+  }
+}
+
+bool UnitInputs::clock_off(SignalKind kind, Clock::time_point now) const {
+  const InputStream& input = stream(kind);
+  if (!needed(kind) || !input.started() || input.beyond() || silent(kind, now)) return false;
+  const std::optional<double> offset_s = input.clock_offset_s(expected_.sample_time_s);
+  return offset_s && std::abs(*offset_s) > clock_limit_s(expected_.sample_time_s);
+}
+
+// Where the source's clock runs as this machine's does, and shows another time. What is replayed or
+// simulated at another speed has no clock.
+void UnitInputs::add_clock_offset(const Surroundings& around, Clock::time_point now,
+                                  std::vector<Trouble>& troubles) const {
+  std::map<std::string, double> offsets_s;  // by process, of its topics the one that is off most
+  for (const SignalKind kind : idl::kTopicKinds) {
+    if (!clock_off(kind, now)) continue;
+    double& off_s = offsets_s[writer_name(around, stream(kind).newest().writer)];
+    const double offset_s = *stream(kind).clock_offset_s(expected_.sample_time_s);
+    if (std::abs(offset_s) > std::abs(off_s)) off_s = offset_s;
+  }
+  for (const auto& [process, off_s] : offsets_s) {
+    char size[32];
+    std::snprintf(size, sizeof size, "%.0f s ", std::abs(off_s));
+    troubles.push_back({"clock offset", Severity::kMaintenanceRequired,
+                        "the source times of " + process + " are " + size +
+                            (off_s > 0.0 ? "ahead of" : "behind") + " this machine's clock"});
   }
 }
 

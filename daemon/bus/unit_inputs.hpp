@@ -3,8 +3,8 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/unit_config.hpp"
@@ -38,7 +38,8 @@ struct Surroundings {
   std::string place;                     ///< "domain 3, partition 'a'"
   std::string self;                      ///< this process, as idl::name_of
   std::vector<idl::Endpoint> endpoints;  ///< of others; an outdated list only costs a name
-  std::set<std::string> strangers;       ///< units whose samples come though no unit file has them
+  /// Units whose samples come though no unit file has them, each with a writer of it.
+  std::map<std::string, std::uint64_t> strangers;
 };
 /// Null where it is not known.
 [[nodiscard]] const idl::Endpoint* find_writer(const Surroundings& around, std::uint64_t handle);
@@ -57,11 +58,15 @@ class UnitInputs {
       : expected_(std::move(expected)), start_(now) {}
 
   void push(SignalKind kind, const Arrival& arrival, Clock::time_point now);
-  /// What the control system says its values are, or the last that said so of `kind` has left.
-  void hear(const mpm_Layout& layout);
-  void forget_layout(const char* kind);
+  /// What the control system says its values are, or that `writer` says it of `kind` no more.
+  void hear(const mpm_Layout& layout, std::uint64_t writer);
+  void forget_layout(const char* kind, std::uint64_t writer);
   /// This process stood still until now: what was missed meanwhile is no fault of the inputs.
   void stood_still(Clock::time_point now) { resumed_ = now; }
+  /// Only now, after a long start, is anything taken.
+  void begin(Clock::time_point now) { start_ = now; }
+  /// A process before this one has had samples: that none come is no beginning.
+  void recall() { recalled_ = true; }
   /// The worst first. What only happens once is told for a minute.
   [[nodiscard]] std::vector<Trouble> troubles(const Surroundings& around,
                                               Clock::time_point now) const;
@@ -83,15 +88,19 @@ class UnitInputs {
                    std::vector<Trouble>& troubles) const;
   void add_rivals(const Surroundings& around, Clock::time_point now,
                   std::vector<Trouble>& troubles) const;
-  void add_layouts(std::vector<Trouble>& troubles) const;
+  void add_layouts(const Surroundings& around, std::vector<Trouble>& troubles) const;
   void add_gaps(Clock::time_point now, std::vector<Trouble>& troubles) const;
   void add_contents(Clock::time_point now, std::vector<Trouble>& troubles) const;
   void add_events(Clock::time_point now, std::vector<Trouble>& troubles) const;
+  [[nodiscard]] bool clock_off(SignalKind kind, Clock::time_point now) const;
+  void add_clock_offset(const Surroundings& around, Clock::time_point now,
+                        std::vector<Trouble>& troubles) const;
 
   ExpectedInputs expected_;
   Clock::time_point start_;
   std::optional<Clock::time_point> resumed_;
-  std::map<std::string, std::string> wrong_layouts_;  // by kind: what differs
+  bool recalled_ = false;
+  std::map<std::pair<std::string, std::uint64_t>, std::string> wrong_layouts_;  // kind, writer
   std::array<InputStream, kSignalKindCount> streams_;
 };
 

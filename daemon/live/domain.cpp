@@ -13,6 +13,7 @@ constexpr int kBatch = 64;  // samples
 constexpr std::chrono::seconds kLookPeriod{1};
 constexpr std::chrono::seconds kMemoryOfStrangers{10};
 constexpr std::size_t kMostStrangers = 8;
+constexpr std::chrono::hours kStrangerIsNews{1};  // once it has been away for so long
 // No control room gives more; whoever floods the bus fills no journal.
 constexpr int kMostCommands = 50;
 constexpr std::chrono::seconds kCommandPeriod{10};
@@ -34,6 +35,7 @@ Domain::Domain(const idl::DomainOptions& options, const std::vector<std::string>
       replies_(participant_),
       outputs_(participant_),
       gate_(gate),
+      unknown_log_(kStrangerIsNews),
       command_limit_(kMostCommands, kCommandPeriod) {
   if (rank) others_.emplace(participant_, &spoken_of_, *rank);
   around_.place = bus::place_text(options);
@@ -61,9 +63,9 @@ void Domain::poll(Clock::time_point now) {
     const auto it = units_.find(std::string_view(layout.unit));
     if (it == units_.end()) return;
     if (info.valid)
-      it->second->hear(layout);
+      it->second->hear(layout, info.writer);
     else
-      it->second->forget_layout(layout.kind);
+      it->second->forget_layout(layout.kind, info.writer);
   });
   samples_.take([&](const idl::SampleView& sample) {
     if (others_)
@@ -138,14 +140,14 @@ void Domain::take_commands(Clock::time_point now) {
 void Domain::report_unknown(Clock::time_point now) {
   const idl::UnitChoice::Refused refused = sampled_.refused();
   unknown_unit_ += refused.samples;
-  for (const std::string& unit : refused.units) {
-    if (around_.strangers.size() < kMostStrangers) around_.strangers.insert(unit);
-    if (!unknown_limit_.admit(now)) continue;
-    spdlog::warn("samples of unit '{}', which no unit file describes; ignored{}", unit,
-                 unknown_limit_.held_back() == 0
-                     ? ""
-                     : fmt::format(" ({} more like this before)", unknown_limit_.held_back()));
-  }
+  for (const auto& [unit, writer] : refused.units)
+    if (around_.strangers.size() < kMostStrangers) around_.strangers.insert_or_assign(unit, writer);
+  std::vector<bus::Trouble> names;
+  for (const auto& [unit, writer] : around_.strangers)
+    names.push_back({"unknown unit", bus::Severity::kMaintenanceRequired,
+                     "samples of unit '" + unit + "', which no unit file describes; ignored",
+                     unit});
+  for (const TroubleLog::Line& line : unknown_log_.update(names, now, 0)) spdlog::warn(line.text);
 }
 
 void Domain::hear_other_monitors(Clock::time_point now) {

@@ -11,6 +11,7 @@
 #include "config/unit_config.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/command_gate.hpp"
+#include "daemon/live/trouble_log.hpp"
 #include "daemon/live/unit_pipeline.hpp"
 #include "idl/discovery.hpp"
 #include "idl/output_writers.hpp"
@@ -82,7 +83,8 @@ class Domain {
   bus::Surroundings around_;
   Clock::time_point next_look_{}, next_forgetting_{}, next_roles_{};
   std::uint64_t unknown_unit_ = 0;
-  host::RateLimiter unknown_limit_, command_log_limit_;
+  TroubleLog unknown_log_;
+  host::RateLimiter command_log_limit_;
   host::RateLimiter command_limit_;
 };
 

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/suggest.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
+#include "daemon/files/times/time_text.hpp"
 #include "daemon/live/lost_troubles.hpp"
+#include "idl/topics.hpp"
 
 namespace mpm::live {
 namespace {
@@ -22,6 +25,13 @@ constexpr std::chrono::seconds kLeastPause{1};
 constexpr std::chrono::seconds kStandstill{5};
 constexpr std::chrono::seconds kTold{60};
 constexpr std::size_t kMostInDetail = 3;
+constexpr std::size_t kMostTags = 3;
+constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+
+std::int64_t wall_ns() {
+  const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
+  return wall.count();
+}
 
 Clock::duration samples_or(double sample_time_s, int samples, std::chrono::seconds at_least) {
   return std::max<Clock::duration>(at_least,
@@ -43,7 +53,9 @@ UnitHealth::UnitHealth(const config::UnitConfig& unit, Clock::time_point now)
 }
 
 void UnitHealth::go_on(Clock::time_point now) {
-  if (now - now_ > kStandstill) {
+  if (!std::exchange(goes_on_, true)) {
+    inputs_.begin(now);
+  } else if (now - now_ > kStandstill) {
     stood_still_ = now;
     stood_still_for_ = now - now_;
     inputs_.stood_still(now);
@@ -54,8 +66,22 @@ void UnitHealth::go_on(Clock::time_point now) {
 void UnitHealth::push(const idl::SampleView& sample) {
   inputs_.push(sample.kind,
                {sample.writer, sample.interval, sample.source_time_ns, sample.values.size(),
-                sample.quality.size()},
+                sample.quality.size(), wall_ns()},
                now_);
+}
+
+void UnitHealth::recall(const AlignerCounters& aligner) {
+  record_.incomplete = aligner.incomplete;
+  if (aligner.frames > 0) inputs_.recall();
+}
+
+void UnitHealth::missed(std::uint64_t intervals, std::int64_t from_ns, std::int64_t until_ns) {
+  const auto text = [](std::int64_t time_ns) {
+    return files::formatted_utc(time_ns / kSecond, "%Y-%m-%dT%H:%M:%SZ");
+  };
+  missed_at_ = now_;
+  missed_ = "this monitor was away from " + text(from_ns) + " to " + text(until_ns) + ": " +
+            counted(intervals, "interval") + (intervals == 1 ? " is" : " are") + " missing";
 }
 
 void UnitHealth::move_to(std::int64_t interval, std::int64_t source_time_ns) {
@@ -93,6 +119,7 @@ const HealthRecord& UnitHealth::judge(const Found& found, std::int64_t wall_s) {
   record_.restarts = aligner.restarts;
   count(found.monitor.channels());
   troubles_ = find_troubles(found);
+  keep_while_paused();
   trouble_text_ = bus::joined_text(troubles_, kMostInDetail);
   for (const TroubleLog::Line& line : trouble_log_.update(troubles_, now_, wall_s))
     spdlog::log(line.begins ? spdlog::level::warn : spdlog::level::info, "{}: {}", unit_.unit,
@@ -112,12 +139,13 @@ std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
       (all.empty() || all.front().severity == Severity::kMaintenanceRequired))
     all.push_back({"incomplete", Severity::kOutOfSpecification, "data incomplete"});
   std::vector<LostSignal> lost = found.monitor.monitor().lost();
-  std::erase_if(lost, [this](const LostSignal& signal) {  // its topic pauses, which will be told
-    const std::optional<Clock::time_point> last = inputs_.stream(signal.kind).last();
-    return signal.cause == LossCause::kNoValue && last &&
-           now_ - *last > samples_or(unit_.sample_time_s, kPause, kLeastPause);
+  std::erase_if(lost, [this](const LostSignal& signal) {  // which will be told
+    return signal.cause == LossCause::kNoValue && pauses(signal.kind);
   });
   for (bus::Trouble& trouble : lost_troubles(unit_, lost, all)) all.push_back(std::move(trouble));
+  add_simulated(found.monitor, all);
+  if (missed_at_ && now_ - *missed_at_ < kTold)
+    all.push_back({"away", Severity::kOutOfSpecification, missed_, missed_});
   if (stood_still_ && now_ - *stood_still_ < kTold)
     all.push_back(
         {"standstill", Severity::kOutOfSpecification,
@@ -128,6 +156,45 @@ std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
   all.insert(all.end(), found.others.begin(), found.others.end());
   sort_by_severity(all);
   return all;
+}
+
+// Predictions that came and do no longer. Where none ever came, their silence says so.
+void UnitHealth::add_simulated(report::UnitMonitor& monitor,
+                               std::vector<bus::Trouble>& troubles) const {
+  std::vector<std::string> tags;
+  for (std::size_t j = 0; j < unit_.cv.size(); ++j)
+    if (!unit_.cv[j].prediction.empty() && monitor.monitor().replaced(static_cast<int>(j)))
+      tags.push_back(unit_.cv[j].tag);
+  if (tags.empty()) return;
+  std::string text = config::join({tags.begin(), tags.begin() + std::min(tags.size(), kMostTags)});
+  if (tags.size() > kMostTags) text += " and " + counted(tags.size() - kMostTags, "other");
+  troubles.push_back({"simulated", bus::Severity::kOutOfSpecification,
+                      "the unit file's model predicts " + text + ": no predictions come"});
+}
+
+// Its silence is not told yet.
+bool UnitHealth::pauses(SignalKind kind) const {
+  const std::optional<Clock::time_point> last = inputs_.stream(kind).last();
+  return last && now_ - *last > samples_or(unit_.sample_time_s, kPause, kLeastPause);
+}
+
+// Less is known of a unit whose samples pause, which makes nothing better: what was told stands
+// until the silence is told, or they come again.
+void UnitHealth::keep_while_paused() {
+  const bool pause =
+      std::any_of(idl::kTopicKinds.begin(), idl::kTopicKinds.end(), [this](SignalKind kind) {
+        return inputs_.expected().needed[static_cast<std::size_t>(kind)] && pauses(kind) &&
+               now_ - *inputs_.stream(kind).last() < inputs_.expected().silence;
+      });
+  if (!pause) {
+    while_data_came_ = troubles_;
+    return;
+  }
+  for (const bus::Trouble& before : while_data_came_)
+    if (std::none_of(troubles_.begin(), troubles_.end(),
+                     [&](const bus::Trouble& now) { return now.key == before.key; }))
+      troubles_.push_back(before);
+  bus::sort_by_severity(troubles_);
 }
 
 // The worst of what NE 107 has a word for.
@@ -143,7 +210,7 @@ void UnitHealth::decide() {
       in_trouble && troubles_.front().severity > bus::Severity::kMaintenanceRequired;
   const bool waiting = record_.frames == 0, alarmed = record_.active_alarms > 0;
   if (serious || (in_trouble && !waiting && !alarmed))
-    set(to_string(troubles_.front().severity), trouble_text_);
+    set(to_string(troubles_.front().severity), trouble_text_ + (alarmed ? "; " + alarms : ""));
   else if (waiting)
     set("function_check", bus::kNoCompleteData + besides);
   else if (alarmed)

@@ -26,18 +26,24 @@ class UnitHealth {
 
   UnitHealth(const config::UnitConfig& unit, Clock::time_point now);
 
-  /// The event loop goes on, which it does five times a second at least. Before all others.
+  /// The event loop goes on, which it does five times a second at least. Before all others; the
+  /// first time after a start, however long that took.
   void go_on(Clock::time_point now);
   void push(const idl::SampleView& sample);
   /// What the control system says its values are, or that nobody says it of `kind` any more.
-  void hear(const mpm_Layout& layout) { inputs_.hear(layout); }
-  void forget_layout(const char* kind) { inputs_.forget_layout(kind); }
+  void hear(const mpm_Layout& layout, std::uint64_t writer) { inputs_.hear(layout, writer); }
+  void forget_layout(const char* kind, std::uint64_t writer) {
+    inputs_.forget_layout(kind, writer);
+  }
   /// The record is of that sample from now on.
   void move_to(std::int64_t interval, std::int64_t source_time_ns);
   /// How things stand without a look at what is wrong.
   void count(const std::vector<ChannelRecord>& channels);
-  /// What a process before this one missed is no news.
-  void recall(const AlignerCounters& aligner) { record_.incomplete = aligner.incomplete; }
+  /// What a process before this one took, and what it missed is no news.
+  void recall(const AlignerCounters& aligner);
+  /// Between that and what this process takes, of these source times, so many intervals are
+  /// missing.
+  void missed(std::uint64_t intervals, std::int64_t from_ns, std::int64_t until_ns);
 
   /// What there is to be judged at one moment.
   struct Found {
@@ -62,18 +68,25 @@ class UnitHealth {
 
  private:
   [[nodiscard]] std::vector<bus::Trouble> find_troubles(const Found& found) const;
+  void add_simulated(report::UnitMonitor& monitor, std::vector<bus::Trouble>& troubles) const;
+  [[nodiscard]] bool pauses(SignalKind kind) const;
+  void keep_while_paused();
   void decide();
 
   const config::UnitConfig& unit_;
   bus::UnitInputs inputs_;
   TroubleLog trouble_log_;
   std::vector<bus::Trouble> troubles_;
+  std::vector<bus::Trouble> while_data_came_;  // the last of them
   std::string trouble_text_;
   HealthRecord record_;
   Clock::time_point now_;
+  bool goes_on_ = false;
   std::optional<Clock::time_point> stood_still_;  // when this process went on
   Clock::duration stood_still_for_{};
   std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
+  std::optional<Clock::time_point> missed_at_;
+  std::string missed_;
 };
 
 }  // namespace mpm::live

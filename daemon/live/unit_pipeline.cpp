@@ -24,6 +24,9 @@ namespace {
 
 constexpr std::chrono::seconds kHealthPeriod{1};
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
+// Lines a minute of what health tells besides, and of what it does not.
+constexpr int kMostOfToldLines = 1;
+constexpr int kMostLines = 3;
 // Of those without the token, to be kept: enough to see who tries, too few to fill a journal.
 constexpr int kMostRefusals = 60;
 constexpr std::chrono::minutes kRefusalPeriod{1};
@@ -72,6 +75,9 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       now_(now),
       last_frame_(now),
       next_health_(now),
+      refused_limit_(kMostOfToldLines),
+      beyond_limit_(kMostOfToldLines),
+      restart_limit_(kMostLines),
       refusal_limit_(kMostRefusals, kRefusalPeriod) {
   for (const config::InputSignal& aux : config.aux)
     for (const config::CalculatedSignal& signal : config.calc)
@@ -102,6 +108,7 @@ void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
   go_on(now);
   if (!aligner_.pending()) last_frame_ = now;  // patience counts from here
   health_.push(sample);
+  if (absence_ && !absence_->until_ns) absence_->until_ns = sample.source_time_ns;
   const AlignerCounters before = aligner_.counters();
   const BlockView block{sample.kind, sample.interval, sample.source_time_ns, sample.values,
                         sample.quality};
@@ -137,8 +144,17 @@ void UnitPipeline::report(const idl::SampleView& sample, const AlignerCounters& 
                  sample.interval, health_.record().interval, others(restart_limit_));
 }
 
+// Frames that were begun before it may still come first.
+void UnitPipeline::note_absence(const Frame& frame) {
+  if (!absence_->until_ns || frame.source_time_ns < *absence_->until_ns) return;
+  const std::uint64_t missing = aligner_.counters().missing - absence_->missing;
+  if (missing > 0) health_.missed(missing, absence_->from_ns, frame.source_time_ns);
+  absence_.reset();
+}
+
 void UnitPipeline::on_frame(const Frame& frame) {
   last_frame_ = now_;
+  if (absence_) note_absence(frame);
   health_.move_to(frame.interval, frame.source_time_ns);
   monitor_.push(frame);
 
@@ -193,7 +209,7 @@ void UnitPipeline::recall_frame(const Frame& frame) {
 void UnitPipeline::archive(Archive& a) {
   // not archived: config_, outputs_, calculator_, patience_, observer_ (construction)
   // not archived: samples_, journal_, checkpoints_ (the disk)
-  // not archived: recalling_, calculated_ (empty between calls)
+  // not archived: recalling_, calculated_ (empty between calls), absence_ (this process's)
   // not archived: health_ (made of the others, and of what is around this process)
   // not archived: now_, last_frame_, next_health_, refused_limit_, beyond_limit_, output_limit_,
   // restart_limit_, refusal_limit_ (the clock)
@@ -228,6 +244,8 @@ std::string UnitPipeline::recall(const UnitSamples& samples) {
       checkpoints_->recall(into(aligner_), observer_ != nullptr ? into(earlier) : nullptr);
   recalling_ = false;
   health_.recall(aligner_.counters());
+  if (aligner_.counters().frames > 0)
+    absence_ = Absence{aligner_.counters().missing, health_.record().source_time_ns, std::nullopt};
   const std::uint64_t frames = aligner_.counters().frames;
   if (frames > 0) alarms_.recall(monitor_.channels(), {}, {});
   if (diagnosis_) diagnosis_->repeat();
@@ -436,6 +454,8 @@ std::vector<bus::Trouble> UnitPipeline::keeping_troubles() const {
   if (diagnosis_ && !diagnosis_->file_problem().empty())
     add("reports", "reports of diagnoses cannot be kept: " + diagnosis_->file_problem());
   add_file("journal of alarms", alarms_.journal_problem());
+  if (const std::string aside = alarms_.journal_put_aside(); !aside.empty())
+    add("journal of alarms put aside", aside);
   if (checkpoints_) add_file("log of samples for a restart", checkpoints_->problem());
   return found;
 }

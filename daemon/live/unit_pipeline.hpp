@@ -91,8 +91,10 @@ class UnitPipeline {
 
   void push(const idl::SampleView& sample, Clock::time_point now);
   /// What the control system says its values are, or that nobody says it of `kind` any more.
-  void hear(const mpm_Layout& layout) { health_.hear(layout); }
-  void forget_layout(const char* kind) { health_.forget_layout(kind); }
+  void hear(const mpm_Layout& layout, std::uint64_t writer) { health_.hear(layout, writer); }
+  void forget_layout(const char* kind, std::uint64_t writer) {
+    health_.forget_layout(kind, writer);
+  }
   /// As Neighbours::hear.
   void hear_other_monitor(std::uint64_t writer, std::string name, Clock::time_point now) {
     neighbours_.hear(writer, std::move(name), now);
@@ -125,6 +127,7 @@ class UnitPipeline {
   void archive(Archive& a);
   [[nodiscard]] std::vector<std::string> alarm_texts();
   void go_on(Clock::time_point now);
+  void note_absence(const Frame& frame);
   void report(const idl::SampleView& sample, const AlignerCounters& before);
   /// Over what there is of the window.
   [[nodiscard]] PerformanceRecord performance();
@@ -142,6 +145,13 @@ class UnitPipeline {
   std::optional<history::Journal> journal_;
   std::optional<Checkpoints> checkpoints_;
   bool recalling_ = false;
+  /// Between what another process took before this one and what this one takes.
+  struct Absence {
+    std::uint64_t missing = 0;             // before it
+    std::int64_t from_ns = 0;              // source time
+    std::optional<std::int64_t> until_ns;  // likewise, of the first sample
+  };
+  std::optional<Absence> absence_;  // until it is over, and told
   report::UnitMonitor monitor_;
   UnitAlarms alarms_;
   PerformanceWindow performance_;

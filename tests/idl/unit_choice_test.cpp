@@ -34,8 +34,12 @@ TEST_CASE("names of units that nobody watches fill no memory, and are counted") 
   unit = "toy";
   REQUIRE(writer.write(sample_of(unit)));
   int taken = 0;
+  std::uint64_t handle = 0;
   REQUIRE(eventually([&] {
-    reader.take([&](const mpm_Sample& sample) { taken += std::string(sample.unit) == "toy"; });
+    reader.take_with_info([&](const mpm_Sample& sample, const SampleInfo& info) {
+      taken += std::string(sample.unit) == "toy";
+      handle = info.writer;
+    });
     return taken > 0;
   }));
 
@@ -52,7 +56,8 @@ TEST_CASE("names of units that nobody watches fill no memory, and are counted") 
   const UnitChoice::Refused refused = chosen.refused();
   CHECK(refused.samples == kNames);
   CHECK(refused.units.size() == 8);
-  CHECK(refused.units.count("stranger0") == 1);
+  REQUIRE(refused.units.count("stranger0") == 1);
+  CHECK(refused.units.at("stranger0") == handle);
   CHECK(chosen.refused().samples == 0);
 }
 

@@ -100,6 +100,8 @@ TEST_CASE(
   const Json said = Json::parse(read_file(folder.file("out")));
   CHECK(any_text(said["troubles"], "nothing on mpm/dv (nobody writes it on domain"));
   CHECK(any_text(said["troubles"], "RELIABILITY (best effort offered, reliable requested)"));
+  // What the monitor says of them is not told twice.
+  CHECK_FALSE(any_text(said["troubles"], " says out_of_specification: "));
   CHECK(said["units"][0]["monitors"][0]["program"] == "mpmd");
   CHECK(said["units"][0]["monitors"][0]["pid"] == std::to_string(daemon.pid()));
   CHECK(said["units"][0]["topics"][0]["writers"][0]["samples"] > 0);

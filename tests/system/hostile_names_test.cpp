@@ -57,6 +57,26 @@ TEST_CASE("a name on the bus neither forges a line of the log nor fills the memo
   CHECK(told);
 }
 
+TEST_CASE("a unit that nobody watches is named once, however often its samples come") {
+  Bench bench("hostile_often");
+  const Frame frame(SignalCounts{1, 0, 1, 0});
+  const idl::UnitPublisher often = stranger(bench, "often"), other = stranger(bench, "other");
+  REQUIRE(often.wait_for_readers(std::chrono::seconds(20)));
+  REQUIRE(other.wait_for_readers(std::chrono::seconds(20)));
+  for (int i = 0; i < 20; ++i) {
+    static_cast<void>(often.publish(frame));
+    if (i == 15) static_cast<void>(other.publish(frame));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  REQUIRE(bench.observe([&] { return bench.health().unknown_unit >= 42; }));
+  std::vector<std::string> told;
+  for (const std::string& line : lines_of(read_file(bench.folder.file("mpmd.err"))))
+    if (line.find("samples of unit '") != std::string::npos) told.push_back(line);
+  REQUIRE(told.size() == 2);
+  CHECK(told[0].find("'often', which no unit file describes; ignored") != std::string::npos);
+  CHECK(told[1].find("'other'") != std::string::npos);
+}
+
 TEST_CASE("long names of units that stay on the bus do not fill the memory") {
   Bench bench("hostile_stay");
   const Frame frame(SignalCounts{1, 0, 1, 0});

@@ -234,6 +234,58 @@ TEST_CASE("an alarm that stands over a restart is neither cleared nor raised ane
   CHECK(corner.alarms().empty());
 }
 
+TEST_CASE(
+    "what a monitor missed while it was away is told, and that its data do not come is worse") {
+  Corner corner("restart-away");
+  Plant plant(3.0);
+  corner.play(plant, 300);
+  corner.kill();
+  for (int i = 0; i < 40; ++i) (void)plant.next();
+  corner.bench.outputs.clear();
+  corner.start();
+  corner.play(plant, 20);
+  const auto told = [&](const std::string& words) {
+    return corner.bench.observe(
+        [&] { return corner.bench.health().detail.find(words) != std::string::npos; });
+  };
+  CHECK(told("this monitor was away from "));
+  CHECK(told(": 40 intervals are missing"));
+  corner.kill_and_start();
+  CHECK(told("no data for "));
+  CHECK(corner.bench.health().state == "failure");
+}
+
+TEST_CASE("a journal of alarms that is lost or damaged silences no alarm over a restart") {
+  const bool damaged = GENERATE(false, true);
+  Corner corner("restart-journal");
+  Plant plant(3.0);
+  corner.play(plant, kFrames);
+  REQUIRE(corner.bench.observe([&] { return corner.standing("u1").to == AlarmChange::kActive; }));
+  const AlarmStateRecord before = corner.standing("u1");
+  const auto journal = [&](const std::string& end) {
+    return corner.folder.file("state") + "/alarms.sqlite" + end;
+  };
+  corner.kill();
+  for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(journal(end));
+  if (damaged) write_file(journal(""), std::string(5000, 'x'));
+  corner.bench.outputs.clear();
+  corner.start();
+  // Before any sample comes.
+  REQUIRE(corner.bench.observe([&] {
+    return !corner.standing("u1").unit.empty() &&
+           !corner.bench.seen<ControllerAlarmRecord>().empty();
+  }));
+  CHECK(corner.standing("u1").view.alarm_state == AlarmWord::kUnacknowledged);
+  CHECK(corner.standing("u1").view.active_time_ns == before.source_time_ns);
+  CHECK(corner.bench.seen<ControllerAlarmRecord>().back().state == AlarmState::kActive);
+  corner.play(plant, 5);
+  CHECK(corner.alarms().empty());
+  const std::string log = read_file(corner.folder.file("err"));
+  CHECK(log.find("of 1 alarm that stands the journal says nothing") != std::string::npos);
+  CHECK((log.find("the journal of alarms is damaged") != std::string::npos) == damaged);
+  CHECK(read_file(journal("")).find("SQLite format 3") == 0);
+}
+
 // Both what is judged again and what a state stands for.
 TEST_CASE("the page shows what a monitor before it took") {
   Corner corner("restart-page", "", {"--http", "0"});

@@ -3,11 +3,14 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "config/suggest.hpp"
 #include "core/text/printable.hpp"
@@ -38,9 +41,13 @@ std::optional<SignalKind> kind_of(const char* name, const char* (*name_of)(Signa
   return std::nullopt;
 }
 
-double clock_offset_s(std::int64_t source_time_ns) {
+std::int64_t wall_ns() {
   const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
-  return 1e-9 * (static_cast<double>(wall.count()) - static_cast<double>(source_time_ns));
+  return wall.count();
+}
+
+double clock_offset_s(std::int64_t source_time_ns) {
+  return 1e-9 * (static_cast<double>(wall_ns()) - static_cast<double>(source_time_ns));
 }
 
 // Whom nobody hears.
@@ -94,11 +101,11 @@ void Examination::listen(std::chrono::milliseconds longest) {
   });
 }
 
-Examination::Unit* Examination::unit_of(const char* name) {
+Examination::Unit* Examination::unit_of(const char* name, std::uint64_t writer) {
   if (name == nullptr || *name == '\0') return nullptr;
   if (const auto it = units_.find(name); it != units_.end()) return &it->second;
   if (!open_) {
-    if (strangers_.size() < kMostUnits) strangers_.insert(printable(name));
+    if (strangers_.size() < kMostUnits) strangers_.emplace(printable(name), writer);
     return nullptr;
   }
   if (units_.size() >= kMostUnits) return nullptr;
@@ -113,13 +120,13 @@ void Examination::hear(const std::string& topic, const idl::RawSample& sample) {
   if (const auto kind = kind_of(topic.c_str(), idl::sample_topic)) {
     if (const mpm_Sample* input = samples_.decode(sample.cdr)) hear(*kind, *input, sample.writer);
   } else if (topic == idl::kLayoutTopic) {
-    if (const mpm_Layout* layout = layouts_.decode(sample.cdr)) hear(*layout);
+    if (const mpm_Layout* layout = layouts_.decode(sample.cdr)) hear(*layout, sample.writer);
   } else if (topic == idl::kHealthTopic) {
     const mpm_Health* health = health_.decode(sample.cdr);
     if (health == nullptr || health->unit == nullptr) return;
     // The monitor of another unit is no stranger.
     if (!open_ && units_.find(health->unit) == units_.end()) return;
-    if (Unit* unit = unit_of(health->unit))
+    if (Unit* unit = unit_of(health->unit, sample.writer))
       unit->monitors[sample.writer] = {health->state == nullptr ? "" : health->state,
                                        health->detail == nullptr ? "" : health->detail,
                                        health->active_alarms, Clock::now()};
@@ -127,12 +134,12 @@ void Examination::hear(const std::string& topic, const idl::RawSample& sample) {
 }
 
 void Examination::hear(SignalKind kind, const mpm_Sample& sample, std::uint64_t writer) {
-  Unit* unit = unit_of(sample.unit);
+  Unit* unit = unit_of(sample.unit, writer);
   if (unit == nullptr) return;
   const Clock::time_point now = Clock::now();
   unit->inputs.push(kind,
                     {writer, sample.interval, sample.source_time_ns, sample.values._length,
-                     sample.quality._length},
+                     sample.quality._length, wall_ns()},
                     now);
   Stream& stream = unit->streams[{kind, writer}];
   if (stream.last != Clock::time_point{}) stream.periods_s.add(seconds(now - stream.last));
@@ -141,15 +148,15 @@ void Examination::hear(SignalKind kind, const mpm_Sample& sample, std::uint64_t 
 }
 
 // With a file it is compared; a unit that no file describes is what its control system says.
-void Examination::hear(const mpm_Layout& layout) {
+void Examination::hear(const mpm_Layout& layout, std::uint64_t writer) {
   if (!open_) {
     const auto known = units_.find(layout.unit == nullptr ? "" : layout.unit);
-    if (known != units_.end()) known->second.inputs.hear(layout);
+    if (known != units_.end()) known->second.inputs.hear(layout, writer);
     return;
   }
   const auto kind = layout.kind == nullptr ? std::nullopt : kind_of(layout.kind, idl::kind_name);
   if (!kind) return;
-  Unit* unit = unit_of(layout.unit);
+  Unit* unit = unit_of(layout.unit, writer);
   if (unit == nullptr) return;
   ExpectedInputs expected = unit->inputs.expected();
   expected.sample_time_s = layout.sample_time_s;
@@ -216,6 +223,34 @@ void add_clock_offsets(UnitFindings& findings) {
                        std::abs(off_s), off_s > 0.0 ? "behind" : "ahead of")});
 }
 
+// The same trouble with other numbers is no other one: the doctor looks a moment later.
+std::string without_numbers(std::string text) {
+  std::erase_if(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+  return text;
+}
+
+/// What a monitor says, without what was found here.
+std::string not_told(const std::string& said, const std::vector<Trouble>& troubles) {
+  constexpr std::string_view kBetween = "; ";
+  std::string left;
+  for (std::size_t from = 0; from < said.size();) {
+    const std::size_t end = std::min(said.find(kBetween, from), said.size());
+    const std::string part = said.substr(from, end - from);
+    from = end + kBetween.size();
+    const bool told =
+        std::any_of(troubles.begin(), troubles.end(), [&part](const Trouble& trouble) {
+          return without_numbers(trouble.text).find(without_numbers(part)) != std::string::npos;
+        });
+    if (!told) left += std::string(left.empty() ? "" : kBetween) + part;
+  }
+  return left;
+}
+
+bool has_trouble(const UnitFindings& findings, const std::string& key) {
+  return std::any_of(findings.troubles.begin(), findings.troubles.end(),
+                     [&key](const Trouble& trouble) { return trouble.key == key; });
+}
+
 }  // namespace
 
 UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& around,
@@ -238,7 +273,10 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
   add_clock_offsets(findings);
   if (unit.described) {
     const std::vector<Trouble> troubles = unit.inputs.troubles(around, now);
-    findings.troubles.insert(findings.troubles.end(), troubles.begin(), troubles.end());
+    std::copy_if(troubles.begin(), troubles.end(), std::back_inserter(findings.troubles),
+                 [&](const Trouble& trouble) {
+                   return trouble.key != "clock offset" || !has_trouble(findings, trouble.key);
+                 });
     add_unwritten(troubles, findings);
   }
   std::map<std::string, idl::Process> sharers;  // monitors of which one speaks
@@ -266,7 +304,8 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
              idl::name_of(findings.monitors[1].process)});
   // It knows more than the bus shows, of its disk for example. Alarms are what it is there for.
   for (const MonitorFindings& monitor : findings.monitors) {
-    const std::string said = troubles_in(monitor.detail, monitor.active_alarms);
+    const std::string said =
+        not_told(troubles_in(monitor.detail, monitor.active_alarms), findings.troubles);
     if (!said.empty())
       findings.troubles.push_back(
           {"monitor says", Severity::kMaintenanceRequired,
@@ -296,9 +335,10 @@ Findings Examination::findings() const {
       findings.troubles.push_back(std::move(trouble));
   }
   sort_by_severity(findings.troubles);
-  if (!strangers_.empty())
-    findings.notes.push_back("samples of other units go by: " +
-                             config::join({strangers_.begin(), strangers_.end()}));
+  std::vector<std::string> strangers;
+  for (const auto& [unit, writer] : strangers_) strangers.push_back(unit);
+  if (!strangers.empty())
+    findings.notes.push_back("samples of other units go by: " + config::join(strangers));
   if (open_ && units_.empty() && !around.endpoints.empty())
     findings.notes.emplace_back("no unit's samples went by and no monitor spoke");
   return findings;

@@ -45,10 +45,10 @@ class Examination {
   };
   static constexpr std::size_t kWindow = 10000;
 
-  Unit* unit_of(const char* name);
+  Unit* unit_of(const char* name, std::uint64_t writer);
   void hear(const std::string& topic, const idl::RawSample& sample);
   void hear(SignalKind kind, const mpm_Sample& sample, std::uint64_t writer);
-  void hear(const mpm_Layout& layout);
+  void hear(const mpm_Layout& layout, std::uint64_t writer);
   [[nodiscard]] UnitFindings findings_of(const Unit& unit, const Surroundings& around,
                                          Clock::time_point now) const;
   [[nodiscard]] TopicFindings topic_of(const Unit& unit, SignalKind kind,
@@ -60,7 +60,7 @@ class Examination {
   Clock::duration silence_;
   bool open_;  // to units that nobody named
   std::map<std::string, Unit> units_;
-  std::set<std::string> strangers_;
+  std::map<std::string, std::uint64_t> strangers_;  // as in Surroundings
   idl::CdrDecoder<mpm_Sample> samples_;
   idl::CdrDecoder<mpm_Layout> layouts_;
   idl::CdrDecoder<mpm_Health> health_;

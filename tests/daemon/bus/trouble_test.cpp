@@ -29,6 +29,7 @@ TEST_CASE("alarms and missing data are no troubles of a monitor, what follows th
   CHECK(troubles_in("nothing determined yet", 0).empty());
   CHECK(troubles_in("5 alarms; the journal cannot be written: a; b", 5) ==
         "the journal cannot be written: a; b");
+  CHECK(troubles_in("nothing on mpm/dv; a; 2 alarms", 2) == "nothing on mpm/dv; a");
   CHECK(troubles_in("no complete data yet; nothing on mpm/dv", 0) == "nothing on mpm/dv");
   CHECK(troubles_in("the journal cannot be written: a", 0) == "the journal cannot be written: a");
   CHECK(troubles_in("", 0).empty());

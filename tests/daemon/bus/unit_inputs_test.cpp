@@ -4,6 +4,9 @@
 #include <limits>
 #include <optional>
 
+#include "config/load_unit.hpp"
+#include "idl/layout_sample.hpp"
+
 namespace mpm::bus {
 namespace {
 
@@ -74,7 +77,7 @@ TEST_CASE("a topic that never comes is named, with who should write it") {
   CHECK(scene.text() ==
         "nothing on mpm/dv (gateway (process 12 on host plant1) has not written it for 6 s: "
         "stopped, or killed)");
-  scene.around.strangers = {"tyo"};
+  scene.around.strangers = {{"tyo", 99}};
   CHECK(scene.text() == "nothing on mpm/dv (samples come of unit 'tyo' only)");
   scene.around.strangers.clear();
   scene.around.endpoints.back().mismatch = {
@@ -124,7 +127,7 @@ TEST_CASE("a unit of which nothing comes says where it listens and whose samples
         "no data has come (mpm/mv ...: nobody writes it on domain 3, partition 'plant-a')");
   for (const char* topic : {"mpm/mv", "mpm/dv", "mpm/cv"})
     scene.add_writer(topic, kGateway, "gateway");
-  scene.around.strangers = {"Toy"};
+  scene.around.strangers = {{"Toy", 99}};
   CHECK(scene.text() == "no data has come (mpm/mv ...: samples come of unit 'Toy' only)");
 }
 
@@ -363,6 +366,82 @@ TEST_CASE("a clock that steps by an hour is told, whatever time it shows") {
   CHECK(scene.text() == std::string("the clock of the control system stepped ") +
                             (step_s > 0 ? "forward" : "back") +
                             " by 3600 s at interval 10 on mpm/mv, mpm/dv, mpm/cv");
+}
+
+TEST_CASE("a clock that runs as this machine's and shows another time is told for its process") {
+  const double speed = GENERATE(1.0, 1.2);  // another one: what is replayed or simulated
+  const std::int64_t off_s = GENERATE(-88'845, -50);
+  Scene scene;
+  for (int k = 0; k < 30; ++k) {
+    for (const SignalKind kind : {kMv, kDv, kCv}) {
+      const auto count = static_cast<std::size_t>(scene.inputs->expected().counts.of(kind));
+      const std::int64_t wall_ns = 1'700'000'000 * kSecond + k * kSecond;
+      scene.inputs->push(
+          kind,
+          {kGateway, k,
+           wall_ns + off_s * kSecond + static_cast<std::int64_t>((speed - 1.0) * k * kSecond),
+           count, 0, wall_ns},
+          scene.now);
+    }
+    scene.now += seconds(1);
+  }
+  if (speed > 1.0 || off_s == -50) {
+    CHECK(scene.text().empty());
+    return;
+  }
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kMaintenanceRequired);
+  CHECK(scene.text() ==
+        "the source times of gateway (process 12 on host plant1) are 88845 s behind this machine's "
+        "clock");
+  CHECK(scene.inputs->wants_endpoints(scene.now));
+}
+
+TEST_CASE("a gateway that writes on under another name is told from one that stopped") {
+  Scene scene;
+  scene.add_writer("mpm/dv", kGateway, "gateway");
+  for (int k = 0; k < 6; ++k) scene.second({kMv, kDv, kCv}, k);
+  scene.around.strangers = {{"toyy", kGateway}, {"other", 99}};
+  scene.now += seconds(5);
+  CHECK(scene.text() ==
+        "no data for 6 s (mpm/mv ...: gateway (process 12 on host plant1) writes unit 'toyy', "
+        "which no unit file describes, and not 'toy')");
+}
+
+TEST_CASE("a wrong layout is that of its writer, until it is put right or has left") {
+  Scene scene;
+  config::LoadResult loaded = config::load_unit_text(
+      "unit: toy\nsample_time: 1\nsignals: {mv: [u], cv: [y, z]}\n"
+      "model: {channels: [{cv: y, mv: u, gain: 2, time_constants: [5]}]}\n",
+      "toy.yaml");
+  REQUIRE(loaded.ok());
+  ExpectedInputs expected = scene.inputs->expected();
+  expected.file = loaded.config;
+  expected.needed = {};
+  scene.inputs->expect(expected);
+  const std::string unit = "toy";
+  const SignalLayout right{{"y", "z"}, {}}, wrong{{"z", "y"}, {}};
+  const auto hear = [&](const SignalLayout& layout, std::uint64_t writer) {
+    scene.inputs->hear(idl::LayoutSample(unit, "cv", 1.0, layout).get(), writer);
+  };
+  hear(right, kGateway);
+  CHECK_FALSE(scene.inputs->wants_endpoints(scene.now));
+  hear(wrong, kOtherGateway);
+  hear(right, kGateway);        // another one's word changes nothing
+  CHECK(scene.text().empty());  // it is not there
+  CHECK(scene.inputs->wants_endpoints(scene.now));
+  scene.add_writer("mpm/layout", kOtherGateway, "stranger");
+  CHECK(scene.text() ==
+        "layout differs from the unit file: cv (tags or their order) of stranger (process 12 on "
+        "host plant1)");
+  scene.around.endpoints.pop_back();
+  CHECK(scene.text().empty());
+  scene.add_writer("mpm/layout", kOtherGateway, "stranger");
+  hear(right, kOtherGateway);
+  CHECK(scene.text().empty());
+  hear(wrong, kOtherGateway);
+  scene.inputs->forget_layout("cv", kOtherGateway);
+  CHECK(scene.text().empty());
 }
 
 TEST_CASE("samples that cannot become frames say why") {

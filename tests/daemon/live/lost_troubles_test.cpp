@@ -59,6 +59,10 @@ TEST_CASE("a topic that does not come is one trouble, not its signals' too") {
                       {{"jump", Severity::kOutOfSpecification,
                         "no intervals came between 9 and 99 on mpm/dv", "9 99"}})
             .empty());
+  CHECK(lost_troubles(toy(), {lost[0]},
+                      {{"clock", Severity::kOutOfSpecification,
+                        "the clock of the control system stepped back by 60 s on mpm/dv", "9"}})
+            .size() == 1);
   CHECK(lost_troubles(toy(), lost, {{"no data", Severity::kFailure, "no data"}}).empty());
 }
 

@@ -1,6 +1,7 @@
 #include "daemon/live/unit_health.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "config/load_unit.hpp"
 
@@ -98,6 +99,54 @@ TEST_CASE("what a process before this one missed is no news") {
   toy.health.recall(toy.aligner);
   for (int s = 1; s < 5; ++s) have_come(toy, s);
   CHECK(toy.judge(5).detail == bus::kNothingDetermined);
+}
+
+TEST_CASE("what a process before this one had, and what was missed in between, is told") {
+  Toy toy(1.0);
+  toy.aligner.frames = 5;
+  toy.health.recall(toy.aligner);
+  for (int s = 0; s < 10; ++s) CHECK(toy.judge(s).state == "function_check");
+  const HealthRecord silent = toy.judge(10);
+  CHECK(silent.state == "failure");
+  CHECK(silent.detail.find("no data for 10 s") == 0);
+  constexpr std::int64_t kTime = 1'700'000'000'000'000'000;
+  for (int s = 11; s < 14; ++s) have_come(toy, s);
+  toy.health.missed(401, kTime, kTime + 9'000'000'000);
+  CHECK(toy.judge(14).detail ==
+        "this monitor was away from 2023-11-14T22:13:20Z to 2023-11-14T22:13:29Z: 401 intervals "
+        "are missing");
+  CHECK(toy.judge(14).state == "out_of_specification");
+  for (int s = 15; s < 75; ++s) have_come(toy, s);
+  CHECK(toy.judge(75).detail == bus::kNothingDetermined);
+}
+
+TEST_CASE("a signal that is bad stays so while nothing comes, until that is told") {
+  Toy toy(1.0);
+  int s = 1;
+  for (; s < 100; ++s) {
+    have_come(toy, s);
+    Frame frame(toy.loaded.config.counts());
+    for (SignalBlock& block : frame.blocks)
+      block.quality.assign(block.quality.size(), Quality::kGood);
+    frame.interval = s;
+    frame[SignalKind::kMv].values(0) = s % 7;
+    frame[SignalKind::kCv].values(0) = std::nan("");
+    frame[SignalKind::kCv].quality[0] = Quality::kBad;
+    toy.monitor.push(frame);
+  }
+  CHECK(toy.judge(s).detail.find("y is bad since") == 0);
+  for (; s < 109; ++s) {
+    CAPTURE(s);
+    CHECK(toy.judge(s).detail.find("y is bad since") == 0);
+  }
+  CHECK(toy.judge(109).state == "failure");
+  CHECK(toy.judge(109).detail.find("no data for 10 s") == 0);
+}
+
+TEST_CASE("a start that took long is no standstill") {
+  Toy toy(1.0);
+  CHECK(toy.judge(9).detail == bus::kNoCompleteData);  // nor is anything silent yet
+  CHECK(toy.judge(39).detail.find("the monitor itself stood still for 30 s") != std::string::npos);
 }
 
 TEST_CASE("a standstill of the monitor itself is told for a minute, and blames nobody else") {
