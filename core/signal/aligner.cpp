@@ -245,13 +245,13 @@ void Aligner::emit(Slot& slot) {
 std::uint64_t Aligner::missing_before(std::int64_t interval, const Frame& frame) const {
   const auto left_out = static_cast<double>(interval - last_emitted_ - 1);
   // Times may be anything: no difference of extremes.
-  const double elapsed_s =
-      1e-9 * (static_cast<double>(frame.source_time_ns) - static_cast<double>(last_time_ns_));
-  if (settings_.sample_time_s <= 0.0 || frame.source_time_ns == last_time_ns_)  // it has no clock
+  const double elapsed_ns =
+      static_cast<double>(frame.source_time_ns) - static_cast<double>(last_time_ns_);
+  if (settings_.sample_time_ns <= 0.0 || elapsed_ns == 0.0)  // it has no clock
     return static_cast<std::uint64_t>(left_out);
-  const double room = std::floor(std::max(0.0, elapsed_s / settings_.sample_time_s));
-  return static_cast<std::uint64_t>(
-      std::min(left_out, room + calibration::alignment::kMaxLateness));
+  const double room = std::floor(std::max(0.0, elapsed_ns / settings_.sample_time_ns));
+  const bool leapt = left_out > room + calibration::alignment::kMaxLateness;  // times jitter
+  return static_cast<std::uint64_t>(leapt ? room : left_out);
 }
 
 bool Aligner::complete(std::int64_t interval) const {

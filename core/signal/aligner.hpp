@@ -33,7 +33,7 @@ struct AlignerSettings {
   std::array<bool, kSignalKindCount> welcome{};
   /// Of more intervals than the source times had room for none is missing: the numbers leapt. 0:
   /// the numbers are believed.
-  double sample_time_s = 0.0;
+  double sample_time_ns = 0.0;
 };
 
 /// What became of the blocks and intervals so far.

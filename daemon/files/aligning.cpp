@@ -27,7 +27,7 @@ std::array<bool, kSignalKindCount> needed_kinds(const config::UnitConfig& unit) 
 
 AlignerSettings aligner_settings(const config::UnitConfig& unit) {
   AlignerSettings settings;
-  settings.sample_time_s = unit.sample_time_s;
+  settings.sample_time_ns = 1e9 * unit.sample_time_s;
   for (const std::string& tag : measured_tags_of(unit, SignalKind::kSetpoint))
     if (!tag.empty()) settings.welcome[static_cast<std::size_t>(SignalKind::kSetpoint)] = true;
   return settings;

@@ -209,7 +209,8 @@ void UnitPipeline::recall_frame(const Frame& frame) {
 void UnitPipeline::archive(Archive& a) {
   // not archived: config_, outputs_, calculator_, patience_, observer_ (construction)
   // not archived: samples_, journal_, checkpoints_ (the disk)
-  // not archived: recalling_, calculated_ (empty between calls), absence_ (this process's)
+  // not archived: recalling_, calculated_ (empty between calls)
+  // not archived: absence_ (before this process)
   // not archived: health_ (made of the others, and of what is around this process)
   // not archived: now_, last_frame_, next_health_, refused_limit_, beyond_limit_, output_limit_,
   // restart_limit_, refusal_limit_ (the clock)
