@@ -27,6 +27,8 @@ namespace {
 
 constexpr std::uintmax_t kLargestFile = 16U << 20U;
 constexpr std::size_t kLongestShown = 40;
+// No plant has more, in whatever unit, and its square is a number still.
+constexpr double kLargest = 1e30;
 
 std::string shown(std::string_view text) { return "'" + printable(text, kLongestShown) + "'"; }
 
@@ -209,6 +211,10 @@ std::optional<double> Value::number(const Range& range) const {
   }
   if (!whole || status != std::errc()) {
     error("must be a number, not " + kind());
+    return std::nullopt;
+  }
+  if (std::abs(value) > kLargest) {
+    error("must be between -1e30 and 1e30, in whatever unit, not " + yaml_text(value));
     return std::nullopt;
   }
   if (!range.contains(value)) {

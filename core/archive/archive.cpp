@@ -4,13 +4,9 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/archive/calibration.hpp"
+
 namespace mpm {
-namespace {
-
-// Copied within a tenth of a millisecond or two.
-constexpr std::size_t kPiece = 1 << 20;
-
-}  // namespace
 
 void Archive::refuse(const std::string& what) const {
   throw std::runtime_error("what was put away does not fit here: " + what + ", " +
@@ -29,7 +25,7 @@ void Archive::append(const std::byte* from, std::size_t count) {
   while (count > 0) {
     if (stop_ && before_look_ == 0) {
       if (stop_()) throw Stopped{};
-      before_look_ = kPiece;
+      before_look_ = calibration::archive::kPiece;
     }
     const std::size_t piece = stop_ ? std::min(count, before_look_) : count;
     out_->insert(out_->end(), from, from + piece);

@@ -53,7 +53,9 @@ TEST_CASE("a unit that takes longer than its samples is told") {
 
 // Its pole rounds to 1. A run of mpm detect took 198 MB; estimates are good to a factor of two.
 TEST_CASE("what a channel costs that takes for ever is a number") {
-  const LoadResult loaded = load_unit_text(unit(1, 1, "time_constants: [1e300]"), "slow.yaml");
+  LoadResult loaded = load_unit_text(unit(1, 1, "time_constants: [1e30]"), "slow.yaml");
+  auto& dynamics = std::get<TransferFunction>(loaded.config.model.channels[0].dynamics);
+  dynamics.time_constants_s = {1e300};  // as no file may have it
   const MonitorCost cost = monitor_cost(loaded.config.model, loaded.config.monitor);
   CHECK(cost.bytes > 99e6);
   CHECK(cost.bytes < 396e6);
@@ -72,7 +74,7 @@ TEST_CASE("a slow channel in alarm does not cost more than a fast unit") {
 
 // 5 time constants of 1e9 samples are no int any more.
 TEST_CASE("a channel however slow can be monitored") {
-  for (const char* slow : {"1e5", "1e9", "1e15", "1e300"}) {
+  for (const char* slow : {"1e5", "1e9", "1e15", "1e30"}) {
     CAPTURE(slow);
     const LoadResult loaded =
         load_unit_text(unit(1, 1, "time_constants: [" + std::string(slow) + "]"), "slow.yaml");

@@ -127,9 +127,8 @@ TEST_CASE("Every mistake in a section is told at its place") {
        "5000 "
        "samples"},
       {"model:\n  state_space: {A: 0.5, B: [[1e308, 2]], C: 1}\n",
-       "u.yaml:7:20: error: model.state_space.A: has a response that no number can hold within "
-       "5000 "
-       "samples"},
+       "u.yaml:7:30: error: model.state_space.B[0][0]: must be between -1e30 and 1e30, in whatever "
+       "unit, not 1e+308"},
       {"model:\n  state_space: {A: 0.5, B: [[1, 2]]}\n",
        "u.yaml:7:16: error: model.state_space: `C` is missing"},
       {"model:\n  channels: [{cv: y1, mv: u1, gain: 2}]\n  state_space: {A: 0, B: [[1, 2]], C: "
