@@ -145,9 +145,8 @@ void declare(CLI::App& app, Options& options) {
       "  mpmd --config /etc/mpm/units --http 8080 --token-file /etc/mpm/token\n"
       "  mpmd --config /etc/mpm/units --standby\n"
       "  mpmd --config /etc/mpm/units --check\n"
-      "Exit codes: 0 done, 1 --check found errors, 2 failed (a port or a folder is taken ...), 3 "
-      "bad "
-      "usage, unit file, key or token");
+      "Exit codes: 0 done, 1 --check found errors, 2 failed (a port or a folder is\n"
+      "taken ...), 3 bad usage, unit file, key or token");
 }
 
 std::string cost_text(const config::UnitConfig& unit) {

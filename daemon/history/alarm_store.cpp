@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cerrno>
+#include <filesystem>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -161,6 +162,29 @@ void check_readable(const std::string& path) {
   ::close(file);
 }
 
+/// The file as SQLite is to open it. Beside one that was written ahead it makes files of its own,
+/// even to read: who may not, reads it as one that nobody writes to, where that is so.
+std::string as_opened(const std::string& path, AlarmStore::Access access) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(path).parent_path();
+  std::error_code failed;
+  if (access == AlarmStore::Access::kAppend || fs::exists(path + "-wal", failed) ||
+      ::faccessat(AT_FDCWD, folder.empty() ? "." : folder.c_str(), W_OK, AT_EACCESS) == 0)
+    return path;
+  std::string uri = "file:";
+  for (const char letter : path) {
+    if (letter == '?')
+      uri += "%3f";
+    else if (letter == '#')
+      uri += "%23";
+    else if (letter == '%')
+      uri += "%25";
+    else
+      uri += letter;
+  }
+  return uri + "?immutable=1";
+}
+
 }  // namespace
 
 void AlarmStore::CloseStatement::operator()(sqlite3_stmt* statement) const {
@@ -177,16 +201,14 @@ AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most
       ::close(made);
   const int flags =
       access == Access::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
-  const int opened = sqlite3_open_v2(path.c_str(), &database_, flags, nullptr);
+  const std::string file = as_opened(path, access);
+  const int opened = sqlite3_open_v2(file.c_str(), &database_,
+                                     flags | (file == path ? 0 : SQLITE_OPEN_URI), nullptr);
   try {
     if (opened != SQLITE_OK) fail("cannot be opened");
     sqlite3_busy_timeout(database_, kBusyMs);
     if (access == Access::kAppend) {
       run("PRAGMA journal_mode=WAL");
-      // What stands beside the file stays when nobody writes any more: who may only read could not
-      // make it, and could not read without.
-      int stays = 1;
-      sqlite3_file_control(database_, "main", SQLITE_FCNTL_PERSIST_WAL, &stays);
       run("PRAGMA synchronous=FULL");
       run(kSchema);
       run(std::string("INSERT OR IGNORE INTO settings VALUES('version', '") + kVersion + "')");

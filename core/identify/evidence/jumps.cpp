@@ -18,6 +18,7 @@ namespace {
 // Enough for the screen to know a signal.
 constexpr Index kMirrored = 2 * calibration::extent::kFirstValues;
 constexpr std::int64_t kNoRow = -1;
+constexpr std::size_t kLongestGlitch = 2;  // rows
 
 SignalCounts counts_of(const Recording& recording) {
   SignalCounts counts;
@@ -35,13 +36,53 @@ void take(const MatrixXd& values, Index row, SignalBlock& block) {
   }
 }
 
-void leave_out(const SignalBlock& judged, Index row, MatrixXd& values,
-               std::vector<Index>& left_out) {
-  for (int i = 0; i < judged.size(); ++i) {
-    if (judged.quality[static_cast<std::size_t>(i)] != Quality::kImplausible) continue;
-    values(row, i) = std::numeric_limits<double>::quiet_NaN();
-    ++left_out[static_cast<std::size_t>(i)];
+/// Per signal: the rows that the screen has marked, ascending.
+using Marks = std::vector<std::vector<Index>>;
+
+void note(const SignalBlock& judged, Index row, Marks& marks) {
+  for (int i = 0; i < judged.size(); ++i)
+    if (judged.quality[static_cast<std::size_t>(i)] == Quality::kImplausible)
+      marks[static_cast<std::size_t>(i)].push_back(row);
+}
+
+struct Extremes {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+};
+
+Extremes extremes_without(const Eigen::Ref<const Eigen::VectorXd>& values,
+                          const std::vector<Index>& marked) {
+  Extremes all;
+  auto mark = marked.begin();
+  for (Index k = 0; k < values.size(); ++k) {
+    if (mark != marked.end() && *mark == k) {
+      ++mark;
+    } else if (std::isfinite(values(k))) {
+      all.low = std::min(all.low, values(k));
+      all.high = std::max(all.high, values(k));
+    }
   }
+  return all;
+}
+
+/// How many. A test pulse lasts longer than what an instrument makes up, but where no process goes;
+/// and of a signal that otherwise stands still it is all that there is.
+Index leave_out(const std::vector<Index>& marked, Eigen::Ref<Eigen::VectorXd> values) {
+  const auto [low, high] = extremes_without(values, marked);
+  if (!(high > low)) return 0;
+  const double farthest = calibration::extent::kTooFar * (high - low);
+  Index count = 0;
+  for (std::size_t first = 0, next = 0; first < marked.size(); first = next) {
+    bool absurd = true;
+    for (next = first;
+         next < marked.size() && marked[next] == marked[first] + static_cast<Index>(next - first);
+         ++next)
+      absurd =
+          absurd && std::max(low - values(marked[next]), values(marked[next]) - high) > farthest;
+    if (next - first > kLongestGlitch && !absurd) continue;
+    for (std::size_t k = first; k < next; ++k, ++count)
+      values(marked[k]) = std::numeric_limits<double>::quiet_NaN();
+  }
+  return count;
 }
 
 }  // namespace
@@ -51,19 +92,9 @@ Index JumpTally::total() const {
          std::accumulate(cvs.begin(), cvs.end(), Index{0});
 }
 
-void JumpTally::add(const JumpTally& other) {
-  const auto sum = [](std::vector<Index>& mine, const std::vector<Index>& others) {
-    mine.resize(std::max(mine.size(), others.size()), 0);
-    for (std::size_t i = 0; i < others.size(); ++i) mine[i] += others[i];
-  };
-  sum(inputs, other.inputs);
-  sum(cvs, other.cvs);
-}
-
 JumpTally leave_out_jumps(Recording& recording) {
   const SignalCounts counts = counts_of(recording);
-  JumpTally left_out{std::vector<Index>(static_cast<std::size_t>(counts.mv), 0),
-                     std::vector<Index>(static_cast<std::size_t>(counts.cv), 0)};
+  Marks inputs(static_cast<std::size_t>(counts.mv)), cvs(static_cast<std::size_t>(counts.cv));
   Frame frame(counts);
   for (const Run& run : runs_of(recording)) {
     Screen screen(counts, Screen::Looks::kFar);
@@ -71,8 +102,8 @@ JumpTally leave_out_jumps(Recording& recording) {
       while (const Frame* judged = screen.next()) {
         const auto row = static_cast<Index>(judged->interval);
         if (judged->interval == kNoRow) continue;
-        leave_out((*judged)[SignalKind::kMv], row, recording.inputs, left_out.inputs);
-        leave_out((*judged)[SignalKind::kCv], row, recording.cvs, left_out.cvs);
+        note((*judged)[SignalKind::kMv], row, inputs);
+        note((*judged)[SignalKind::kCv], row, cvs);
       }
     };
     const auto push = [&](Index k, std::int64_t interval) {
@@ -89,6 +120,11 @@ JumpTally leave_out_jumps(Recording& recording) {
     for (Index k = 0; k < run.count; ++k) push(k, run.first + k);
     for (Index k = 1; k <= mirrored; ++k) push(run.count - 1 - k, kNoRow);
   }
+  JumpTally left_out;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    left_out.inputs.push_back(leave_out(inputs[i], recording.inputs.col(static_cast<Index>(i))));
+  for (std::size_t j = 0; j < cvs.size(); ++j)
+    left_out.cvs.push_back(leave_out(cvs[j], recording.cvs.col(static_cast<Index>(j))));
   return left_out;
 }
 

@@ -11,13 +11,13 @@ namespace mpm {
 struct JumpTally {
   std::vector<Eigen::Index> inputs, cvs;  ///< how many of each
   [[nodiscard]] Eigen::Index total() const;
-  void add(const JumpTally& other);
 };
 
 /// Makes unknown (NaN) what of the inputs and CVs goes far beyond all that the signal has been and
-/// is back within a few samples, or is absurdly far away: one such value would be fitted before all
-/// others. The monitor's `Screen`, run by run. What stands still stays, for causes are told by it;
-/// so does what only jumps, as a fast process does.
+/// is back within two samples, or is absurdly far away for some more: one such value would be
+/// fitted before all others. The monitor's `Screen`, run by run. What stands still stays, for
+/// causes are told by it; so do a test signal's pulses, and what only jumps, as a fast process
+/// does.
 JumpTally leave_out_jumps(Recording& recording);
 
 }  // namespace mpm

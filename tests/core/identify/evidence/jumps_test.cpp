@@ -81,12 +81,21 @@ TEST_CASE("a level that is another one after a border is no jump, nor is a step 
   CHECK(leave_out_jumps(step).total() == 0);
 }
 
-TEST_CASE("tallies of several recordings add up") {
-  JumpTally all{{1, 0}, {2}};
-  all.add({{3, 4}, {5}});
-  CHECK(all.inputs == std::vector<Index>{4, 4});
-  CHECK(all.cvs == std::vector<Index>{7});
-  CHECK(all.total() == 15);
+TEST_CASE("pulses of a test stay, whatever the input did before; a wild stretch does not") {
+  Recording pulses = sound();
+  pulses.inputs.col(0).setZero();
+  for (const Index at : {Index{10}, Index{100}, Index{250}})
+    pulses.inputs.col(0).segment(at, 4).setConstant(1.0);
+  pulses.inputs.col(1) = 0.01 * test::white(9, kRows);
+  pulses.inputs.col(1).segment(300, 5).setConstant(2.0);
+  CHECK(leave_out_jumps(pulses).total() == 0);
+  Recording single = sound();  // rests but for one row
+  single.inputs.col(0).setZero();
+  single.inputs(200, 0) = 1.0;
+  CHECK(leave_out_jumps(single).total() == 0);
+  Recording wild = sound();
+  wild.cvs.col(0).segment(120, 6).setConstant(1e12);
+  CHECK(leave_out_jumps(wild).cvs == std::vector<Index>{6});
 }
 
 }  // namespace mpm
