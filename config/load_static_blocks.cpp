@@ -8,7 +8,9 @@ namespace mpm::config {
 namespace {
 
 std::optional<Saturation> read_saturation(const Value& value) {
-  const std::vector<double> limits = value.numbers();
+  // What has no limit on one side is written with one of 1e300 (core/identify/causes/priors.hpp).
+  constexpr Range kNoLimits{.low = -1e300, .high = 1e300};
+  const std::vector<double> limits = value.numbers(kNoLimits);
   if (limits.size() != value.items().size()) return std::nullopt;
   if (limits.size() != 2) {
     value.error("must be [low, high]");

@@ -213,7 +213,8 @@ std::optional<double> Value::number(const Range& range) const {
     error("must be a number, not " + kind());
     return std::nullopt;
   }
-  if (std::abs(value) > kLargest) {
+  const bool bounded = std::isfinite(range.low) && std::isfinite(range.high);
+  if (std::abs(value) > kLargest && !bounded) {
     error("must be between -1e30 and 1e30, in whatever unit, not " + yaml_text(value));
     return std::nullopt;
   }
