@@ -97,6 +97,7 @@ namespace {
 
 constexpr const char* kUnknownKind = "unknown kind";
 constexpr std::size_t kLongestKind = 40;
+constexpr double kOtherTimesS = 30.0 * 86'400.0;  // no clock that is set by hand is so far off
 constexpr std::size_t kMostWrongLayouts = 32;  // whoever writes more fills no memory
 
 /// Nothing for a word that is none of a layout's kinds.
@@ -437,11 +438,12 @@ bool UnitInputs::clock_off(SignalKind kind, Clock::time_point now) const {
   const InputStream& input = stream(kind);
   if (!needed(kind) || !input.started() || input.beyond() || silent(kind, now)) return false;
   const std::optional<double> offset_s = input.clock_offset_s(expected_.sample_time_s);
-  return offset_s && std::abs(*offset_s) > clock_limit_s(expected_.sample_time_s);
+  return offset_s && std::abs(*offset_s) > clock_limit_s(expected_.sample_time_s) &&
+         std::abs(*offset_s) < kOtherTimesS;
 }
 
 // Where the source's clock runs as this machine's does, and shows another time. What is replayed or
-// simulated at another speed has no clock.
+// simulated, at another speed or in other years, has no clock.
 void UnitInputs::add_clock_offset(const Surroundings& around, Clock::time_point now,
                                   std::vector<Trouble>& troubles) const {
   std::map<std::string, double> offsets_s;  // by process, of its topics the one that is off most

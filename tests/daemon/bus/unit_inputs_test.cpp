@@ -370,7 +370,7 @@ TEST_CASE("a clock that steps by an hour is told, whatever time it shows") {
 
 TEST_CASE("a clock that runs as this machine's and shows another time is told for its process") {
   const double speed = GENERATE(1.0, 1.2);  // another one: what is replayed or simulated
-  const std::int64_t off_s = GENERATE(-88'845, -50);
+  const std::int64_t off_s = GENERATE(-88'845, -50, -1'700'000'000);  // the last: simulated
   Scene scene;
   for (int k = 0; k < 30; ++k) {
     for (const SignalKind kind : {kMv, kDv, kCv}) {
@@ -385,7 +385,7 @@ TEST_CASE("a clock that runs as this machine's and shows another time is told fo
     }
     scene.now += seconds(1);
   }
-  if (speed > 1.0 || off_s == -50) {
+  if (speed > 1.0 || off_s != -88'845) {
     CHECK(scene.text().empty());
     return;
   }
