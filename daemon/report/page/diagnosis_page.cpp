@@ -165,6 +165,8 @@ Json refused_json(const DiagnosisRun& run) {
                    (finding.refused.empty() ? "its repair did not carry over to unseen data"
                                             : finding.refused) +
                    ".");
+  for (const Finding& finding : run.diagnosis.small)
+    json.push_back(named(finding) + "too small to matter.");
   if (run.diagnosis.suspect)
     json.push_back(
         named(*run.diagnosis.suspect) +
