@@ -98,7 +98,7 @@ namespace {
 constexpr const char* kUnknownKind = "unknown kind";
 constexpr std::size_t kLongestKind = 40;
 constexpr double kOtherTimesS = 30.0 * 86'400.0;  // no clock that is set by hand is so far off
-constexpr std::size_t kMostWrongLayouts = 32;  // whoever writes more fills no memory
+constexpr std::size_t kMostWrongLayouts = 32;     // whoever writes more fills no memory
 
 /// Nothing for a word that is none of a layout's kinds.
 std::optional<SignalKind> kind_of(const char* word) {

@@ -158,6 +158,36 @@ void judge_together(const Problem& problem, const SearchResult& found, const Jud
   }
 }
 
+/// A disturbance was judged beside others that have gone since. In every CV what is left of them is
+/// judged once more together, and the weakest goes until the free run is no worse than with none.
+void judge_disturbances_together(const Problem& problem, const SearchResult& found,
+                                 const Judges& judges, Selection& selection) {
+  const ModelSpec& model = problem.model();
+  const std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    for (;;) {
+      const std::vector<bool> in = repaired(selection);
+      std::vector<bool> without = in;
+      std::optional<std::size_t> weakest;
+      for (const std::size_t i : selection.order) {
+        const Effect& effect = found.named[i].effect;
+        if (!in[i] || effect.certain || cause_of(effect).acts_through_channels() ||
+            effect.place.cv != cv)
+          continue;
+        without[i] = false;
+        if (!weakest) weakest = i;
+      }
+      if (!weakest) break;
+      const CvScore score =
+          Errors(cv, extend(problem, found, in, keep, judges.open),
+                 extend(problem, found, without, keep, judges.open), judges.unseen)
+              .free_run(judges.unseen.seed());
+      if (score.rmse_after <= score.rmse_before) break;
+      selection.fates[*weakest] = Fate::kNoBetter;
+    }
+  }
+}
+
 /// Of what is repaired, the other repair without which `i` would be none; null where there is none.
 std::optional<std::size_t> needed_by(std::size_t i, const Problem& problem,
                                      const SearchResult& found, const Judges& judges,
@@ -241,6 +271,7 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     if (found.named[i].effect.place.aux >= judges.aux)
       selection.fates[i] = selection.fates[i] == Fate::kRepaired ? Fate::kNoBetter : Fate::kRefused;
   judge_together(problem, found, judges, selection);
+  judge_disturbances_together(problem, found, judges, selection);
   // Beside all that stayed.
   const std::vector<bool> in = repaired(selection);
   for (const std::size_t i : selection.order) {

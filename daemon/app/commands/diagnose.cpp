@@ -1,5 +1,7 @@
 #include "daemon/app/commands/commands.hpp"
 
+#include <unistd.h>
+
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -19,10 +21,12 @@
 #include "daemon/files/output_folder.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/host/signals.hpp"
+#include "daemon/host/terminal.hpp"
 #include "daemon/report/closed_loop/compare_loops.hpp"
 #include "daemon/report/closed_loop/run_mpmsim.hpp"
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
 #include "daemon/report/report_files.hpp"
+#include "daemon/report/terminal/terminal_text.hpp"
 #include "daemon/report/unit_performance.hpp"
 #include "idl/version.hpp"
 
@@ -157,12 +161,16 @@ std::string add_closed_loop(const report::LoopPlan& loops, const config::UnitCon
 
 void print(const DiagnoseOptions& options, const report::DiagnosisRun& run,
            const std::string& json) {
-  if (options.json)
+  if (options.json) {
     std::cout << json << std::flush;
-  else if (!options.quiet)
-    std::cout << to_text(run) << "\n  written to " << options.out
-              << ": report.html, report.json, extended.yaml\n"
+  } else if (!options.quiet) {
+    const std::string text = to_text(run) + "\n  written to " + options.out +
+                             ": report.html, report.json, extended.yaml\n";
+    std::cout << (host::is_terminal(STDOUT_FILENO)
+                      ? report::sentences_wrapped(text, host::terminal_width(STDOUT_FILENO))
+                      : text)
               << std::flush;
+  }
 }
 
 // 0, 1 if something was found and that was to fail, 2 if it was stopped or the simulator failed.

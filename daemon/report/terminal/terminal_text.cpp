@@ -75,4 +75,18 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t wid
   return lines + line + '\n';
 }
 
+std::string sentences_wrapped(const std::string& text, std::size_t width) {
+  std::string lines;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    const std::string line = text.substr(from, end - from);
+    from = end + 1;
+    const std::size_t indent = std::min(line.find_first_not_of(' '), line.size());
+    const bool row = line.find("  ", indent) != std::string::npos;
+    lines += row || columns_of(line) <= width ? line + '\n'
+                                              : wrapped(line.substr(indent), indent, width);
+  }
+  return lines;
+}
+
 }  // namespace mpm::report

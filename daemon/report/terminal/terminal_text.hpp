@@ -28,5 +28,8 @@ struct Layout {
 /// In lines no wider than `width` where its words allow, each ended: the first begins after
 /// `indent` blanks, those after it two further. A number and its % stay together.
 [[nodiscard]] std::string wrapped(const std::string& text, std::size_t indent, std::size_t width);
+/// A whole text, each sentence of it `wrapped` behind its own indent; rows of a table, which have
+/// two blanks in a row, stay as they are.
+[[nodiscard]] std::string sentences_wrapped(const std::string& text, std::size_t width);
 
 }  // namespace mpm::report

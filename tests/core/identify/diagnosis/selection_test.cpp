@@ -99,6 +99,28 @@ TEST_CASE("what is certain stays and what has no name is no repair") {
   CHECK(extended.output_blocks[0].has_value());
 }
 
+// Shifts by -s and s from the same row, where the truth is 0.49 s: the second one is clearly better
+// beside the first, the first beside the second hardly, and so it goes; the second alone is worse
+// than none, 0.51^2 to 0.49^2.
+TEST_CASE(
+    "a disturbance that was good beside one that has gone goes too where it is worse than none") {
+  Bench bench(1.0, 1.0);
+  constexpr double kShift = 0.2;
+  constexpr Index kOnset = 100;
+  bench.all.cvs.col(0).tail(kRows - kOnset).array() += 0.49 * kShift;
+  const Quantity& size = test::quantity_of(causes::step_disturbance(), "size");
+  for (const auto& [shift, evidence] : {std::pair{kShift, 20.0}, std::pair{-kShift, 80.0}}) {
+    Named named;
+    named.effect = {&causes::step_disturbance(), {0}, {{&size, shift}}};
+    named.effect.onset = kOnset;
+    named.evidence = evidence;
+    bench.found.named.push_back(named);
+    bench.found.fit.effects.push_back(named.effect);
+  }
+  const Selection selection = bench.select_on(bench.all, kRows - kFitted);
+  CHECK(selection.fates == std::vector<Fate>{Fate::kNoBetter, Fate::kNoBetter});
+}
+
 // Two inputs that move alike: 1.5 times the gain of one and 0.4 times that of the other leave an
 // error of a tenth where none was; without either of them it is half as large as the response.
 TEST_CASE("repairs that are better beside each other and worse than none are refused") {

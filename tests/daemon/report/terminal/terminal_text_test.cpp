@@ -13,4 +13,15 @@ TEST_CASE("tags are cut in the middle by characters, not by bytes") {
   CHECK(wrapped("about 41 % of it", 1, 11) == " about 41 %\n   of it\n");
 }
 
+TEST_CASE("sentences of a text are wrapped behind their indent, and tables stay") {
+  const std::string text =
+      "A head that is longer than that.\n\n  1. gain of u\n     y answers u 41 % more than told\n"
+      "    CV     before     after   that is far too wide\n";
+  CHECK(sentences_wrapped(text, 24) ==
+        "A head that is longer\n  than that.\n\n  1. gain of u\n     y answers u 41 %\n"
+        "       more than told\n    CV     before     after   that is far too wide\n");
+  CHECK(sentences_wrapped(text, 80) == text);
+  CHECK(sentences_wrapped("", 80).empty());
+}
+
 }  // namespace mpm::report
