@@ -110,7 +110,7 @@ long Process::resident_kb() const {
 
 std::optional<int> run(const std::vector<std::string>& arguments, const std::string& output,
                        const std::string& errors, const std::string& input) {
-  return Process(arguments, output, errors, {}, input).wait(std::chrono::seconds(60));
+  return Process(arguments, output, errors, {}, input).wait(std::chrono::seconds(180));
 }
 
 }  // namespace mpm::test

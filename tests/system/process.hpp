@@ -52,7 +52,7 @@ class Process {
   pid_t pid_ = 0;
 };
 
-/// Runs to the end (60 s at most); returns the exit code.
+/// Runs to the end (180 s at most: a diagnosis under a sanitizer); returns the exit code.
 [[nodiscard]] std::optional<int> run(const std::vector<std::string>& arguments,
                                      const std::string& output, const std::string& errors,
                                      const std::string& input = "/dev/null");
