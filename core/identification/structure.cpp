@@ -160,6 +160,15 @@ std::vector<ChannelShape> simpler(const ChannelShape& shape) {
   return result;
 }
 
+/// Tried: channel `which` in another form.
+PredictionErrorFit with_form(const IdentificationData& data, int cv, const PredictionErrorFit& fit,
+                             std::size_t which, const ChannelShape& form,
+                             const NoiseAssumption& noise) {
+  std::vector<ChannelShape> changed = fit.channels;
+  changed[which] = form;
+  return fit_prediction_error(data, cv, std::move(changed), noise, kTrialSteps);
+}
+
 /// With simpler forms, one at a time, as long as that pays (BIC).
 PredictionErrorFit simplified(const IdentificationData& data, int cv, PredictionErrorFit fit,
                               const NoiseAssumption& noise) {
@@ -167,10 +176,7 @@ PredictionErrorFit simplified(const IdentificationData& data, int cv, Prediction
     std::optional<PredictionErrorFit> best;
     for (std::size_t c = 0; c < fit.channels.size(); ++c)
       for (const ChannelShape& shape : simpler(fit.channels[c])) {
-        std::vector<ChannelShape> changed = fit.channels;
-        changed[c] = shape;
-        PredictionErrorFit other =
-            fit_prediction_error(data, cv, std::move(changed), noise, kTrialSteps);
+        PredictionErrorFit other = with_form(data, cv, fit, c, shape, noise);
         if (bic(other) < bic(fit) && (!best || bic(other) < bic(*best))) best = std::move(other);
       }
     if (!best) return fit;
@@ -251,10 +257,7 @@ std::vector<PredictionErrorFit> grown_structures(const IdentificationData& data,
     std::optional<PredictionErrorFit> best;
     for (std::size_t c = 0; c < now.channels.size(); ++c)
       for (const ChannelShape& shape : richer(now.channels[c])) {
-        std::vector<ChannelShape> changed = now.channels;
-        changed[c] = shape;
-        PredictionErrorFit fit =
-            fit_prediction_error(data, cv, std::move(changed), noise, kTrialSteps);
+        PredictionErrorFit fit = with_form(data, cv, now, c, shape, noise);
         if (bic(fit) + kWorthRicher > bic(now) ||
             slowest_time(fit.channels[c]) > kSlowestShare * longest_run(data))
           continue;

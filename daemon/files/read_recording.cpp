@@ -8,7 +8,6 @@
 
 #include "config/finding.hpp"
 #include "config/unit_layout.hpp"
-#include "core/identify/evidence/jumps.hpp"
 #include "core/identify/fit/runs.hpp"
 #include "core/text/number_text.hpp"
 
@@ -108,18 +107,6 @@ bool moves(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return high - low > kStill * std::max(std::abs(low), std::abs(high));
 }
 
-std::vector<std::pair<std::string, std::uint64_t>> by_tag(const config::UnitConfig& unit,
-                                                          const JumpTally& jumps) {
-  config::SignalTally tally;
-  const auto mvs = static_cast<std::ptrdiff_t>(unit.counts().mv);
-  tally[static_cast<std::size_t>(SignalKind::kMv)].assign(jumps.inputs.begin(),
-                                                          jumps.inputs.begin() + mvs);
-  tally[static_cast<std::size_t>(SignalKind::kDv)].assign(jumps.inputs.begin() + mvs,
-                                                          jumps.inputs.end());
-  tally[static_cast<std::size_t>(SignalKind::kCv)].assign(jumps.cvs.begin(), jumps.cvs.end());
-  return config::by_tag(unit, tally);
-}
-
 }  // namespace
 
 RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit,
@@ -178,7 +165,7 @@ RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit
   file.bad_tags = config::by_tag(unit, table.unusable());
   for (const auto& [tag, bad] : file.bad_tags) file.bad_values += static_cast<std::int64_t>(bad);
   table.move_to(recording);
-  file.jumps = by_tag(unit, leave_out_jumps(recording));
+  file.jumps = leave_out_jumps(recording);
   const Eigen::Index rows = recording.samples();
   if (!recording.borders.empty()) recording = without_scraps(recording);
   file.scraps = rows - recording.samples();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
+#include "core/identify/evidence/jumps.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "daemon/files/frame_source.hpp"
 #include "daemon/files/times/time_choice.hpp"
@@ -19,8 +20,7 @@ struct RecordingFile {
   std::int64_t out_of_order = 0;  ///< rows whose time did not grow; left out
   std::int64_t bad_values = 0;    ///< of inputs and CVs in the rows that are there
   std::vector<std::pair<std::string, std::uint64_t>> bad_tags;  ///< whose they are
-  /// Values left out because no process gives them (leave_out_jumps()), by tag.
-  std::vector<std::pair<std::string, std::uint64_t>> jumps;
+  JumpTally jumps;               ///< values left out because no process gives them
   std::int64_t long_gaps = 0;    ///< after each a new run begins
   std::int64_t longest_gap = 0;  ///< intervals that a run goes on across
   std::int64_t scraps = 0;       ///< rows of runs too short to tell anything; left out

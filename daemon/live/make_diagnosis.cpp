@@ -10,6 +10,7 @@
 #include "daemon/files/read_recording.hpp"
 #include "daemon/live/named_cause.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
+#include "daemon/report/left_out_text.hpp"
 #include "idl/version.hpp"
 
 namespace mpm::live {
@@ -19,7 +20,9 @@ report::DiagnosisRun prepare(const DiagnosisJob& job) {
   report::DiagnosisRun run;
   run.unit = *job.unit;
   run.recording = job.samples.recording(job.unit->sample_time_s);
-  (void)leave_out_jumps(run.recording);
+  if (std::string text = report::left_out_text(run.unit, leave_out_jumps(run.recording));
+      !text.empty())
+    run.notices.push_back(std::move(text));
   run.program = idl::version_text("mpmd");
   run.command_line = "mpmd, because of the alarm of " + files::time_folder(job.alarm_time_ns);
   run.config_file = job.unit->unit + " as mpmd runs it";

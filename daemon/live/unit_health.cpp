@@ -28,11 +28,6 @@ constexpr std::size_t kMostInDetail = 3;
 constexpr std::size_t kMostTags = 3;
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
-std::int64_t wall_ns() {
-  const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
-  return wall.count();
-}
-
 Clock::duration samples_or(double sample_time_s, int samples, std::chrono::seconds at_least) {
   return std::max<Clock::duration>(at_least,
                                    std::chrono::duration_cast<Clock::duration>(
@@ -63,10 +58,10 @@ void UnitHealth::go_on(Clock::time_point now) {
   now_ = now;
 }
 
-void UnitHealth::push(const idl::SampleView& sample) {
+void UnitHealth::push(const idl::SampleView& sample, std::int64_t wall_ns) {
   inputs_.push(sample.kind,
                {sample.writer, sample.interval, sample.source_time_ns, sample.values.size(),
-                sample.quality.size(), wall_ns()},
+                sample.quality.size(), wall_ns},
                now_);
 }
 

@@ -29,7 +29,8 @@ class UnitHealth {
   /// The event loop goes on, which it does five times a second at least. Before all others; the
   /// first time after a start, however long that took.
   void go_on(Clock::time_point now);
-  void push(const idl::SampleView& sample);
+  /// `wall_ns`: UTC, when it came.
+  void push(const idl::SampleView& sample, std::int64_t wall_ns);
   /// What the control system says its values are, or that nobody says it of `kind` any more.
   void hear(const mpm_Layout& layout, std::uint64_t writer) { inputs_.hear(layout, writer); }
   void forget_layout(const char* kind, std::uint64_t writer) {

@@ -107,7 +107,7 @@ void UnitPipeline::diagnose_with(DiagnosisWorker& worker, int asker) {
 void UnitPipeline::push(const idl::SampleView& sample, Clock::time_point now) {
   go_on(now);
   if (!aligner_.pending()) last_frame_ = now;  // patience counts from here
-  health_.push(sample);
+  health_.push(sample, wall_ns());
   if (absence_ && !absence_->until_ns) absence_->until_ns = sample.source_time_ns;
   const AlignerCounters before = aligner_.counters();
   const BlockView block{sample.kind, sample.interval, sample.source_time_ns, sample.values,

@@ -81,7 +81,7 @@ inline constexpr int kMostLate = 2;
 inline constexpr double kSetpointExplains = 0.3;
 
 /// An error of one channel that the calibrated test finds too small to matter is believed to be
-/// small where its numbers are.
+/// small where its numbers are. Chosen.
 inline constexpr Tolerances kSmall{0.1, 0.2, std::numeric_limits<double>::infinity()};
 
 /// One of so many samples of a CV must be known.

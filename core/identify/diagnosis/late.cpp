@@ -95,7 +95,14 @@ std::vector<Finding> begun_late(const ModelSpec& model, const ModelSpec& tested,
     const auto channels = channels_of(effect, model, ranges.inputs);
     return since.reject(channels, kBeyondDoubt) && !before.reject(channels, kBeyondDoubt);
   };
-  return find_late(model, ranges.inputs, recording, first, settings);
+  std::vector<Finding> late = find_late(model, ranges.inputs, recording, first, settings);
+  // Taken in, so that no other cause is named for it; told only where it may matter.
+  std::erase_if(late, [&](const Finding& finding) {
+    const Place& place = finding.subject.place;
+    return finding.subject.cause->together_with_others() != nullptr &&
+           !since.may_matter({{place.cv, place.input}});
+  });
+  return late;
 }
 
 }  // namespace mpm

@@ -128,64 +128,53 @@ Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
   return worse && fate == Fate::kRepaired ? Fate::kNoBetter : fate;
 }
 
-/// Each may be better beside the others and all of them worse than none: in every CV the channels'
-/// repairs are judged once more together, and the weakest goes until they are better than none.
+/// Each may be better beside the others, some of which have gone since, and what is left of them
+/// worse than none: in every CV those of one kind are judged once more together, and the weakest
+/// gets `fate` until they are better than none. `is_one(effect, cv)`: of that kind, in that CV;
+/// `score(errors)`: what they are judged by.
+template <class IsOne, class Score>
 void judge_together(const Problem& problem, const SearchResult& found, const Judges& judges,
-                    Selection& selection) {
-  const ModelSpec& model = problem.model();
-  const std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
-  for (int cv = 0; cv < model.cv_count; ++cv) {
+                    const IsOne& is_one, const Score& score, Fate fate, Selection& selection) {
+  const int cvs = problem.model().cv_count;
+  const std::vector<bool> keep(static_cast<std::size_t>(cvs), true);
+  for (int cv = 0; cv < cvs; ++cv) {
     for (;;) {
       const std::vector<bool> in = repaired(selection);
       std::vector<bool> without = in;
       std::optional<std::size_t> weakest;
       for (const std::size_t i : selection.order) {
         const Effect& effect = found.named[i].effect;
-        if (!in[i] || effect.certain || !cause_of(effect).acts_through_channels() ||
-            !touches(effect, model, cv))
-          continue;
+        if (!in[i] || effect.certain || !is_one(effect, cv)) continue;
         without[i] = false;
         if (!weakest) weakest = i;
       }
       if (!weakest) break;
-      const Errors errors(cv, extend(problem, found, in, keep, judges.open),
-                          extend(problem, found, without, keep, judges.open), judges.unseen);
-      const CvScore predictions = errors.predictions(judges.unseen.seed());
-      // An effect on several CVs was judged in all of them.
-      if (predictions.rmse_after <= predictions.rmse_before) break;
-      selection.fates[*weakest] = Fate::kRefused;
+      const CvScore gain =
+          score(Errors(cv, extend(problem, found, in, keep, judges.open),
+                       extend(problem, found, without, keep, judges.open), judges.unseen));
+      if (gain.rmse_after <= gain.rmse_before) break;
+      selection.fates[*weakest] = fate;
     }
   }
 }
 
-/// A disturbance was judged beside others that have gone since. In every CV what is left of them is
-/// judged once more together, and the weakest goes until the free run is no worse than with none.
-void judge_disturbances_together(const Problem& problem, const SearchResult& found,
-                                 const Judges& judges, Selection& selection) {
-  const ModelSpec& model = problem.model();
-  const std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    for (;;) {
-      const std::vector<bool> in = repaired(selection);
-      std::vector<bool> without = in;
-      std::optional<std::size_t> weakest;
-      for (const std::size_t i : selection.order) {
-        const Effect& effect = found.named[i].effect;
-        if (!in[i] || effect.certain || cause_of(effect).acts_through_channels() ||
-            effect.place.cv != cv)
-          continue;
-        without[i] = false;
-        if (!weakest) weakest = i;
-      }
-      if (!weakest) break;
-      const CvScore score =
-          Errors(cv, extend(problem, found, in, keep, judges.open),
-                 extend(problem, found, without, keep, judges.open), judges.unseen)
-              .free_run(judges.unseen.seed());
-      if (score.rmse_after <= score.rmse_before) break;
-      selection.fates[*weakest] = Fate::kNoBetter;
-    }
-  }
+/// The channels' repairs by predictions, disturbances by the free run. An effect on several CVs was
+/// judged in all of them.
+void judge_together(const Problem& problem, const SearchResult& found, const Judges& judges,
+                    Selection& selection) {
+  const std::uint64_t seed = judges.unseen.seed();
+  judge_together(
+      problem, found, judges,
+      [&](const Effect& effect, int cv) {
+        return cause_of(effect).acts_through_channels() && touches(effect, problem.model(), cv);
+      },
+      [&](const Errors& errors) { return errors.predictions(seed); }, Fate::kRefused, selection);
+  judge_together(
+      problem, found, judges,
+      [](const Effect& effect, int cv) {
+        return !cause_of(effect).acts_through_channels() && effect.place.cv == cv;
+      },
+      [&](const Errors& errors) { return errors.free_run(seed); }, Fate::kNoBetter, selection);
 }
 
 /// Of what is repaired, the other repair without which `i` would be none; null where there is none.
@@ -271,7 +260,6 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     if (found.named[i].effect.place.aux >= judges.aux)
       selection.fates[i] = selection.fates[i] == Fate::kRepaired ? Fate::kNoBetter : Fate::kRefused;
   judge_together(problem, found, judges, selection);
-  judge_disturbances_together(problem, found, judges, selection);
   // Beside all that stayed.
   const std::vector<bool> in = repaired(selection);
   for (const std::size_t i : selection.order) {

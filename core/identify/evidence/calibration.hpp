@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+
+#include "core/signal/calibration.hpp"
 
 /// Numbers that decide what the data may be asked at all. Chosen by hand where nothing else is
 /// said; what they give together is scored by `mpm_hidden` and tests/foreign.
@@ -28,6 +31,12 @@ inline constexpr Eigen::Index kMostRemembered = 100'000;
 /// rows that each of its columns takes.
 inline constexpr int kMovementOrder = 6;
 inline constexpr double kMovementRowsPerColumn = 4.0;
+
+/// Rows of a run that are mirrored at either end where its first and last values are judged: enough
+/// for the screen to know a signal. What an instrument makes up lasts no longer; a test's pulse
+/// does. Chosen.
+inline constexpr Eigen::Index kMirrored = 2 * calibration::extent::kFirstValues;
+inline constexpr std::size_t kLongestGlitch = 2;  ///< rows
 
 /// Data that hold so many slowest time constants can tell what wanders from what settles.
 inline constexpr double kLongTimeConstants = 20.0;

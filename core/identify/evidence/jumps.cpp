@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/identify/fit/runs.hpp"
+#include "core/identify/evidence/calibration.hpp"
 #include "core/signal/screen.hpp"
 
 namespace mpm {
@@ -15,10 +15,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-// Enough for the screen to know a signal.
-constexpr Index kMirrored = 2 * calibration::extent::kFirstValues;
 constexpr std::int64_t kNoRow = -1;
-constexpr std::size_t kLongestGlitch = 2;  // rows
 
 SignalCounts counts_of(const Recording& recording) {
   SignalCounts counts;

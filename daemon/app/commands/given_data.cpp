@@ -11,6 +11,7 @@
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/report/condensing/condensing_report.hpp"
+#include "daemon/report/left_out_text.hpp"
 #include "daemon/report/unit_reading.hpp"
 #include "daemon/report/worst_tags.hpp"
 
@@ -64,11 +65,8 @@ Recording read(const std::string& file, const config::UnitConfig& unit,
   count(data.out_of_order, "row", " left out, for the time does not grow");
   count(data.bad_values, "value",
         " of inputs and CVs missing or bad" + report::worst_tags(data.bad_tags));
-  std::uint64_t jumps = 0;
-  for (const auto& [tag, number] : data.jumps) jumps += number;
-  count(static_cast<std::int64_t>(jumps), "value",
-        " left out, far beyond all that the signal had been and back at once" +
-            report::worst_tags(data.jumps));
+  if (const std::string text = report::left_out_text(unit, data.jumps); !text.empty())
+    notices.push_back(prefix + text);
   return std::move(data.recording);
 }
 

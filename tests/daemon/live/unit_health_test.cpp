@@ -47,7 +47,7 @@ void have_come(Toy& toy, int s) {
     sample.interval = static_cast<std::int64_t>(toy.aligner.frames);
     sample.source_time_ns = s * std::int64_t{1'000'000'000};
     sample.values = value;
-    toy.health.push(sample);
+    toy.health.push(sample, 0);
   }
   ++toy.aligner.frames;
 }
