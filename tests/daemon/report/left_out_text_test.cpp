@@ -14,7 +14,8 @@ TEST_CASE("values that were left out are told with their tags") {
   unit.cv[0].tag = "y";
   CHECK(left_out_text(unit, {{0, 0}, {0}}).empty());
   CHECK(left_out_text(unit, {{0, 2}, {1}}) ==
-        "3 values left out, far beyond all that the signal had been and back at once, of d (2), y (1)");
+        "3 values left out, far beyond all that the signal had been and back at once, of d (2), y "
+        "(1)");
 }
 
 }  // namespace mpm::report
