@@ -75,7 +75,10 @@ void UnitAlarms::keep(AlarmJournal& journal, std::int64_t wall_ns) {
           .message = before.message;
       refresh(alarm);
     }
-  if (recalled_) stand_unknown(wall_ns);
+  if (recalled_) {
+    stand_unknown(wall_ns);
+    clear_unwritten(wall_ns);
+  }
   desk_.tick({source_time_ns_, wall_ns});  // what was shelved until a time that has passed
   settle(wall_ns, nullptr);
 }
@@ -96,6 +99,16 @@ void UnitAlarms::stand_unknown(std::int64_t wall_ns) {
                unit_, counted(count, "alarm"), count == 1 ? "s" : "");
   if (desk_.standing_channels() > 0 && !desk_.active(AlarmDesk::kController))
     stand(AlarmDesk::kController, since_ns, wall_ns);
+}
+
+// Samples are on the disk before what the journal says of them.
+void UnitAlarms::clear_unwritten(std::int64_t wall_ns) {
+  for (int i = 0; i < desk_.channels(); ++i) {
+    if (!desk_.active(i) || observed_[static_cast<std::size_t>(i)].active) continue;
+    desk_.observe(observed_, {source_time_ns_, wall_ns});
+    settle(wall_ns, nullptr);
+    return;
+  }
 }
 
 void UnitAlarms::stand(int alarm, std::int64_t since_ns, std::int64_t wall_ns) {
@@ -136,13 +149,16 @@ void UnitAlarms::recall(const std::vector<ChannelRecord>& channels,
                         const std::vector<std::string>& texts) {
   recalled_ = true;
   note(channels, changes, texts);
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    observed_[i] = {channels[i].alarm == AlarmState::kActive || held_[i],
+                    meaningful(channels[i].reason)};
   fresh_.assign(fresh_.size(), false);  // `announce` tells all
 }
 
 void UnitAlarms::archive(Archive& a) {
   // not archived: unit_, settings_, outputs_, journal_ (construction)
   // not archived: desk_, controller_ (`keep` has them from the journal)
-  // not archived: observed_, fresh_, said_ (each frame and `announce` say them anew)
+  // not archived: observed_, fresh_, said_ (each frame, `recall` and `announce` say them anew)
   a(alarms_, held_, interval_);
   a.time(source_time_ns_);
   recalled_ = recalled_ || a.reads();

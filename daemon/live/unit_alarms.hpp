@@ -36,7 +36,8 @@ class UnitAlarms {
   void archive(Archive& a);
   /// From now on what happens is kept there. What people did before holds again, and where frames
   /// were recalled so does which alarms stand; one that stands by the frames, and of which the
-  /// journal says nothing, stands as if nobody had seen it.
+  /// journal says nothing, stands as if nobody had seen it; one that stands by the journal alone,
+  /// whose end was not written any more, clears.
   void keep(AlarmJournal& journal, std::int64_t wall_ns);
   /// How all of them stand, which clears what a daemon before this one left behind. False where it
   /// could not be published.
@@ -87,6 +88,7 @@ class UnitAlarms {
             const std::vector<std::string>& texts);
   bool settle(std::int64_t wall_ns, const AlarmCommand* command);
   void stand_unknown(std::int64_t wall_ns);
+  void clear_unwritten(std::int64_t wall_ns);
   void stand(int alarm, std::int64_t since_ns, std::int64_t wall_ns);
   void note_acts(int alarm, const AlarmStanding& told, std::int64_t wall_ns);
   [[nodiscard]] bool known(const AlarmRecord& change) const;

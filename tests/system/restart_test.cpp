@@ -7,6 +7,7 @@
 #include <regex>
 #include <thread>
 
+#include "daemon/history/alarm_store.hpp"
 #include "daemon/report/record_json.hpp"
 #include "tests/daemon/http/connection.hpp"
 #include "tests/system/bench.hpp"
@@ -284,6 +285,48 @@ TEST_CASE("a journal of alarms that is lost or damaged silences no alarm over a 
   CHECK(log.find("of 1 alarm that stands the journal says nothing") != std::string::npos);
   CHECK((log.find("the journal of alarms is damaged") != std::string::npos) == damaged);
   CHECK(read_file(journal("")).find("SQLite format 3") == 0);
+}
+
+// Samples are on the disk before what the journal says of them: killed in between, the journal is
+// as it was before the alarm cleared.
+TEST_CASE("an alarm whose end the journal had no time to keep is cleared over a restart") {
+  namespace fs = std::filesystem;
+  Corner corner("restart-unwritten");
+  Plant wrong(3.0), right(2.0);  // the same moves
+  corner.play(wrong, kFrames);
+  for (int i = 0; i < kFrames; ++i) (void)right.next();
+  REQUIRE(corner.bench.observe([&] { return corner.standing("u1").to == AlarmChange::kActive; }));
+  corner.kill();
+  const fs::path state = corner.folder.file("state"), kept = corner.folder.file("kept");
+  const auto copy_journal = [](const fs::path& from, const fs::path& to) {
+    for (const char* name : {"alarms.sqlite", "alarms.sqlite-wal", "alarms.sqlite-shm"}) {
+      fs::remove(to / name);
+      if (fs::exists(from / name)) fs::copy(from / name, to / name);
+    }
+  };
+  fs::create_directory(kept);
+  copy_journal(state, kept);
+  corner.start();
+  corner.play(right, kFrames);
+  REQUIRE(corner.bench.observe([&] { return corner.standing("u1").to == AlarmChange::kCleared; }));
+  corner.kill();
+  copy_journal(kept, state);
+  corner.bench.outputs.clear();
+  corner.start();
+  // Before any sample comes.
+  REQUIRE(corner.bench.observe([&] {
+    return !corner.standing("u1").unit.empty() &&
+           !corner.bench.seen<ControllerAlarmRecord>().empty();
+  }));
+  CHECK(corner.standing("u1").to == AlarmChange::kCleared);
+  CHECK(corner.standing("u1").view.alarm_state == AlarmWord::kReturned);
+  const history::AlarmStore journal((state / "alarms.sqlite").string(),
+                                    history::AlarmStore::Access::kRead);
+  REQUIRE(idl::eventually([&] {
+    for (const history::AlarmEntry& entry : journal.last_of_each("toy"))
+      if (entry.mv == "u1") return entry.what == "cleared";
+    return false;
+  }));
 }
 
 // Both what is judged again and what a state stands for.
