@@ -70,4 +70,17 @@ TEST_CASE("fixed seeds: what is hidden is found", "[fixed]") {
   CHECK(all >= kLeastRight);
 }
 
+// A dead time of 2 to 3 samples more that begins within the data: in the mean of all rows the test
+// of the channels does not know it to matter, and it was called small.
+TEST_CASE("what begins within the data is judged by the rows since then", "[fixed]") {
+  std::vector<CaseRequest> requests;
+  for (const std::uint64_t seed : {100'002U, 100'003U})
+    requests.push_back(
+        {.effect_class = EffectClass::kOnsetDeadTime, .setting = Setting::kHard, .seed = seed});
+  for (const CaseScore& score : score_all(requests, 2)) {
+    CAPTURE(line_of(score));
+    CHECK(score.cause_right);
+  }
+}
+
 }  // namespace mpm::hidden

@@ -35,6 +35,7 @@ constexpr double kGrace = 8000.0;                // s: twice the memory
 constexpr std::size_t kViewers = 20;
 constexpr double kBetweenEvents = 12.0;  // s, mean
 constexpr double kBetweenMeasures = 1.0;
+constexpr int kMeasuresInMean = 60;
 constexpr int kGrown = 60'000;       // samples: what a process keeps of them it then has
 constexpr double kQuietShare = 0.3;  // at the end nothing ends it: how one process fares for long
 constexpr int kFloodRate = 20'000;
@@ -152,7 +153,7 @@ class Soak {
   int ended_badly_ = 0;
   std::int64_t flooded_ = 0;
   std::ofstream trace_;
-  Slope memory_, disk_;
+  Slope memory_{kMeasuresInMean}, disk_{kMeasuresInMean};
   double most_memory_ = 0.0, most_disk_ = 0.0, processor_s_ = 0.0, flood_rate_ = 0.0;
 };
 
@@ -342,6 +343,8 @@ int Soak::report() {
               most_memory_, memory.slope, memory.error, memory.points);
   std::printf("disk                   %.1f MB at most; %+.3f +- %.3f MB/day (%zu points)\n",
               most_disk_, disk.slope, disk.error, disk.points);
+  std::printf("journal of alarms      %.2f MB, %.3f MB/day (bounded at a million entries)\n",
+              monitor_->alarm_journal_mb(), monitor_->alarm_journal_mb() / days);
   std::printf("log                    %.1f kB, %.2f kB/day of samples\n", log_kb, log_kb / days);
   std::printf(
       "alarms                 %d raised; of %d wrong times %d missed; %zu without a cause; "

@@ -98,7 +98,17 @@ double Monitor::processor_s() const {
 }
 
 double Monitor::disk_mb() const {
-  return (bytes_in(folder_ + "/state") + bytes_in(folder_ + "/journal")) / 1e6;
+  return (bytes_in(folder_ + "/state") + bytes_in(folder_ + "/journal")) / 1e6 - alarm_journal_mb();
+}
+
+double Monitor::alarm_journal_mb() const {
+  double bytes = 0.0;
+  for (const char* part : {"", "-wal", "-shm"}) {
+    std::error_code gone;
+    const auto size = fs::file_size(alarm_journal() + part, gone);
+    if (!gone) bytes += static_cast<double>(size);
+  }
+  return bytes / 1e6;
 }
 
 double Monitor::log_kb() const {

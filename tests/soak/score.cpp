@@ -63,7 +63,17 @@ AlarmScore score(const std::string& alarm_journal, const std::vector<WrongTime>&
   return result;
 }
 
-void Slope::add(int process, double age, double value) { points_.push_back({process, age, value}); }
+void Slope::add(int process, double age, double value) {
+  if (points_.empty() || points_.back().process != process ||
+      points_.back().count == points_in_mean_) {
+    points_.push_back({process, age, value});
+    return;
+  }
+  Point& last = points_.back();
+  last.age += age;
+  last.value += value;
+  ++last.count;
+}
 
 // Within each process, so that its level does not count (Searle 1971, covariance analysis).
 Slope::Estimate Slope::estimate() const {
@@ -74,15 +84,15 @@ Slope::Estimate Slope::estimate() const {
   std::map<int, Mean> means;
   for (const Point& point : points_) {
     Mean& mean = means[point.process];
-    mean.age += point.age;
-    mean.value += point.value;
+    mean.age += point.age / point.count;
+    mean.value += point.value / point.count;
     ++mean.count;
   }
   double age2 = 0.0, both = 0.0, value2 = 0.0;
   for (const Point& point : points_) {
     const Mean& mean = means[point.process];
-    const double age = point.age - mean.age / mean.count;
-    const double value = point.value - mean.value / mean.count;
+    const double age = point.age / point.count - mean.age / mean.count;
+    const double value = point.value / point.count - mean.value / mean.count;
     age2 += age * age;
     both += age * value;
     value2 += value * value;

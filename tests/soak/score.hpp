@@ -27,6 +27,10 @@ struct AlarmScore {
 /// all of them gain per unit of age, by least squares, and its standard error.
 class Slope {
  public:
+  /// So many points of one process in a row count as one, their mean: neighbours are alike, and as
+  /// many as they are they would make the error far too small.
+  explicit Slope(int points_in_mean = 1) : points_in_mean_(points_in_mean) {}
+
   void add(int process, double age, double value);
   struct Estimate {
     double slope = 0.0, error = 0.0;
@@ -37,8 +41,10 @@ class Slope {
  private:
   struct Point {
     int process;
-    double age, value;
+    double age, value;  // sums, of so many
+    int count = 1;
   };
+  const int points_in_mean_;
   std::vector<Point> points_;
 };
 

@@ -58,6 +58,11 @@ TEST_CASE("the slope is that within each process") {
   for (int age = 0; age < 4; ++age) noisy.add(7, age, age == 0 || age == 3 ? -1.0 : 1.0);
   CHECK(noisy.estimate().slope == Approx(0.0).margin(1e-12));
   CHECK(noisy.estimate().error == Approx(std::sqrt(4.0 / 2.0 / 5.0)));
+  Slope alike(3);  // each of these four, three times, and one of another process
+  for (int i = 0; i < 12; ++i) alike.add(7, i / 3, i / 3 == 0 || i / 3 == 3 ? -1.0 : 1.0);
+  alike.add(8, 5.0, 4.0);
+  CHECK(alike.estimate().points == 5);
+  CHECK(alike.estimate().error == Approx(std::sqrt(4.0 / 2.0 / 5.0)));
 }
 
 // The gain that the plant shows, by its answer in the long run.

@@ -58,15 +58,16 @@ std::function<bool(double)> or_give_up(const std::function<bool(double)>& progre
 
 enum class Worth { kFinding, kSmall, kUnproved };
 
+/// Whether the calibrated test says that what an effect does to its channels may matter.
+using MayMatter = std::function<bool(const Effect&)>;
+
 /// An error of a channel that the calibrated test finds too small to matter is small where its own
 /// numbers are; else one of the two is wrong: the test, where predictions gain overwhelmingly.
 Worth worth_of(std::size_t i, const Account& kept, const Judges& judges,
-               const ChannelTests& tests) {
+               const MayMatter& may_matter) {
   const Effect& effect = kept.found.named[i].effect;
   const Problem& problem = *kept.problem;
-  if (!is_error_of_channel(effect) ||
-      tests.may_matter(channels_of(effect, problem.model(), problem.surroundings().model_inputs)))
-    return Worth::kFinding;
+  if (!is_error_of_channel(effect) || may_matter(effect)) return Worth::kFinding;
   if (material_errors(effect, kSmall) == 0) return Worth::kSmall;
   const bool overwhelms = kept.selection.fates[i] == Fate::kRepaired &&
                           kept.selection.sure_gains[i] >= kOverwhelmingGain &&
@@ -77,7 +78,7 @@ Worth worth_of(std::size_t i, const Account& kept, const Judges& judges,
 /// What was named, as findings, and what has no name; most important first, what no repair removes
 /// last.
 void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
-           Diagnosis& diagnosis) {
+           const MayMatter& may_matter, Diagnosis& diagnosis) {
   Problem& problem = *kept.problem;
   const SearchResult& found = kept.found;
   const Selection& selection = kept.selection;
@@ -106,7 +107,7 @@ void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
                                               : why_not_in_model(selection.fates[i]);
     finding.explains = selection.explains[i];
     if (const auto other = selection.with[i]) finding.with = subject_of(found.named[*other].effect);
-    const Worth worth = worth_of(i, kept, judges, tests);
+    const Worth worth = worth_of(i, kept, judges, may_matter);
     if (worth == Worth::kSmall) {
       diagnosis.small.push_back(std::move(finding));
     } else if (worth == Worth::kUnproved) {
@@ -295,7 +296,15 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
     diagnosis.before = free_runs(first, model);
     diagnosis.after = free_runs(first, extended);
   }
-  state(kept, judges, tests, diagnosis);
+  // What began later is less in the mean of all rows than since then.
+  const MayMatter may_matter = [&](const Effect& effect) {
+    const auto channels = channels_of(effect, model, base.input_count);
+    if (effect.onset == 0 || tests.may_matter(channels)) return tests.may_matter(channels);
+    const Index rest = samples - effect.onset;
+    return ChannelTests(tested, part(measured, effect.onset, rest), residuals.bottomRows(rest))
+        .may_matter(channels);
+  };
+  state(kept, judges, tests, may_matter, diagnosis);
   if (!validation)
     for (Finding& late :
          begun_late(extended, tested, recording, measured, diagnosis.fit_samples,

@@ -8,9 +8,9 @@
 #include "core/identify/diagnosis/channel_estimates.hpp"
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/validation.hpp"
-#include "core/identify/evidence/mean_reversion.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
+#include "core/identify/fit/mean_reversion.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {
@@ -79,6 +79,20 @@ bool names_channels_of_wandering(const Explained& explained) {
   });
 }
 
+/// Whether a disturbance is named of a CV that wanders beside it all the same. A bounded noise
+/// takes each piece of a walk for a drift or a shift, and its last level explains what comes next.
+bool cuts_a_walk(const Explained& explained) {
+  const SearchResult& found = explained.found;
+  return std::any_of(found.named.begin(), found.named.end(), [&](const Named& named) {
+    if (!is_disturbance(named.effect)) return false;
+    return std::any_of(found.fit.cvs.begin(), found.fit.cvs.end(), [&](const CvFit& fit) {
+      return touches(named.effect, explained.problem->model(), fit.cv) &&
+             !integrates(explained.problem->model(), fit.cv) &&
+             !comes_back_beside_breaks(fit.residual, disturbances_of(found.fit.effects, fit.cv));
+    });
+  });
+}
+
 }  // namespace
 
 Explained explain(const ModelSpec& model, int model_inputs, const Recording& recording,
@@ -97,7 +111,8 @@ Explained explain(const ModelSpec& model, int model_inputs, const Recording& rec
   const double with_free = log_error(explain_on(kFreeNoise, train), recording, first);
   const double with_bounded = log_error(explain_on(kBoundedNoise, train), recording, first);
   if (!(with_bounded < with_free - (blind ? kSomewhatLess : kClearlyLess))) return explained;
-  return explain_on(kBoundedNoise, recording);
+  Explained bounded = explain_on(kBoundedNoise, recording);
+  return cuts_a_walk(bounded) ? std::move(explained) : std::move(bounded);
 }
 
 }  // namespace mpm

@@ -8,8 +8,8 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/validation.hpp"
-#include "core/identify/evidence/mean_reversion.hpp"
 #include "core/identify/fit/channel_edit.hpp"
+#include "core/identify/fit/mean_reversion.hpp"
 
 namespace mpm {
 

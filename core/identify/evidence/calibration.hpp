@@ -38,7 +38,4 @@ inline constexpr double kMovementRowsPerColumn = 4.0;
 inline constexpr Eigen::Index kMirrored = 2 * calibration::extent::kFirstValues;
 inline constexpr std::size_t kLongestGlitch = 2;  ///< rows
 
-/// Data that hold so many slowest time constants can tell what wanders from what settles.
-inline constexpr double kLongTimeConstants = 20.0;
-
 }  // namespace mpm

@@ -75,6 +75,9 @@ inline constexpr double kSlowestSpanned =
     200.0;  ///< slowest time constants in all rows that are left
 inline constexpr Eigen::Index kFewestMoves = 20;  ///< that show how long an input is held
 
+/// Data that hold so many slowest time constants can tell what wanders from what settles.
+inline constexpr double kLongTimeConstants = 20.0;
+
 /// Of a sample: two moments are the same.
 inline constexpr double kSameMoment = 1e-6;
 

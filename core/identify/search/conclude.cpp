@@ -6,6 +6,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
+#include "core/identify/fit/mean_reversion.hpp"
 #include "core/identify/search/calibration.hpp"
 #include "core/identify/search/odds.hpp"
 #include "core/identify/search/trial.hpp"
@@ -78,6 +79,9 @@ void name_levels(Problem& problem, const std::vector<int>& except, SearchResult&
     const double rows = std::max(1.0, independence({fit}) * data.rows);
     const double sd = std::sqrt(fit.variance / rows) / memory;
     if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd)) continue;
+    // A walk has none, and is somewhere else than at the model's in the mean.
+    if (!comes_back_beside_breaks(fit.residual, disturbances_of(result.fit.effects, fit.cv)))
+      continue;
     if (std::abs(level) <= range_of_new_inputs(problem, result.fit.effects, fit.cv)) continue;
     Named named;
     named.effect = causes::constant_offset(fit.cv, level, noise);

@@ -3,10 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/identify/fit/mean_reversion.hpp"
 #include "core/identify/search/calibration.hpp"
 #include "core/identify/search/odds.hpp"
 
 namespace mpm {
+namespace {
+
+// A function of time alone, beside which its CV wanders all the same: any walk can be cut into
+// such.
+bool cuts_a_walk(const Trial& trial) {
+  return is_disturbance(trial.candidate) &&
+         !std::all_of(trial.fit.cvs.begin(), trial.fit.cvs.end(), [&](const CvFit& fit) {
+           return comes_back_beside_breaks(fit.residual,
+                                           disturbances_of(trial.fit.effects, fit.cv));
+         });
+}
+
+}  // namespace
+
 void Trials::settle(const Fit* fit) {
   {
     const MutexLock lock(mutex_);
@@ -55,7 +70,8 @@ Trial Trials::attempt(const Effect& candidate, int iterations) {
   // What is slow can hide in a noise model that is re-estimated without it: it then takes the noise
   // for a wandering one. So it also counts how the noise model with the cause judges the lack of
   // it.
-  if (cause_of(candidate).may_pass_for_noise() && trial.odds > kWanderingNoise)
+  if (cause_of(candidate).may_pass_for_noise() && trial.odds > kWanderingNoise &&
+      !cuts_a_walk(trial))
     trial.odds = std::max(trial.odds, settled_odds(trial, cvs) - kSettledNoise);
   if (!material(trial)) trial.odds = std::min(trial.odds, 0.0);
   return trial;

@@ -1,5 +1,6 @@
 #include "core/identify/diagnosis/diagnosis.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -132,6 +133,33 @@ TEST_CASE("a dead time that is not there is named, with whatever else is wrong o
             Subject{gain == 1.0 ? &causes::dead_time() : &causes::dynamics(), {0, 0}});
       CHECK(finding.parameters.back().value == Approx(-1.0).margin(0.1));
     }
+}
+
+// A random walk under white noise (IMA) on a CV whose model is right, of a plant whose time
+// constant is a tenth of the data: no piece of it is a drift, a shift or a cycle. Two of twenty may
+// be said to have one (5 % of walks pass for tame; more than two of twenty with a probability of
+// 0.08, and each has to be proposed besides). A drift of 3 in noise that forgets is one.
+TEST_CASE("a random walk is not cut into drifts and shifts") {
+  constexpr Index kLong = 3000;
+  constexpr double kSlow = 300.0;
+  const VectorXd u = test::telegraph(31, kLong, 400);
+  const auto disturbances = [&](const VectorXd& noise) {
+    const VectorXd y = test::first_order(u, 2.0, kSlow, 20) + noise;
+    const Diagnosis diagnosis = diagnose(test::model_of({lag(0, 0, 2.0, kSlow, 20.0)}, 1, 1),
+                                         test::recording_of(u, y), nullptr, {.mv_count = 1});
+    return std::count_if(
+        diagnosis.findings.begin(), diagnosis.findings.end(),
+        [](const Finding& finding) { return !finding.subject.cause->acts_through_channels(); });
+  };
+  int walks = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed)
+    walks += disturbances(0.02 * test::autoregressive(test::normal(700 + seed, kLong), 1.0) +
+                          0.05 * test::normal(800 + seed, kLong)) > 0
+                 ? 1
+                 : 0;
+  CHECK(walks <= 2);
+  const VectorXd drift = VectorXd::LinSpaced(kLong, 0.0, 3.0);
+  CHECK(disturbances(drift + 0.2 * test::normal(900, kLong)) == 1);
 }
 
 TEST_CASE("a sensor that clips is read from its plateau") {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 
 namespace mpm {
 
@@ -10,6 +11,13 @@ namespace mpm {
 /// the walk, averages out. Of what wanders no level can be told; false too where there are too few
 /// rows to say.
 [[nodiscard]] bool comes_back(const Eigen::Ref<const Eigen::VectorXd>& signal);
+
+/// Likewise of a signal from which so many drifts, steps or cycles (0 as 1) were taken off that
+/// were found by looking at it, which makes pieces of a random walk that each come back: rejects,
+/// at 1 %, that it is one. No earlier changes beside the level, so that noise within some blocks is
+/// enough.
+[[nodiscard]] bool comes_back_beside_breaks(const Eigen::Ref<const Eigen::VectorXd>& signal,
+                                            std::size_t breaks);
 
 /// Whether it wanders: it does not come back, and is long enough to tell that from settling, for a
 /// CV of which the slowest time constant takes so many rows.
