@@ -61,6 +61,9 @@ inline constexpr double kReachesOfRise[] = {1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 
 /// A constant offset is one beyond so many s.d. of the noise, and of its own estimate.
 inline constexpr double kOffsetInNoise = 1.5;
 inline constexpr double kOffsetInSd = 6.0;
+/// Of what wanders, one that a random walk from the model's level passes in one of 4000 recordings:
+/// its mean over its s.d. (20 000 walks, drawn).
+inline constexpr double kOffsetInWander = 4.0;
 inline constexpr double kOffsetConfidence = 0.99;  ///< 0..1
 /// A noise that returns to its mean by less than this share a row tells no level.
 inline constexpr double kLeastReturn = 0.02;

@@ -6,6 +6,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/cause.hpp"
+#include "core/identify/diagnosis/channel_estimates.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/report/diagnosis/clock_text.hpp"
 #include "daemon/report/diagnosis/names_of.hpp"
@@ -64,9 +65,12 @@ std::string difference_headline(const DiagnosisRun& run) {
   const bool disturbed = !findings.empty() && run.diagnosis.unexplained.empty() &&
                          run.diagnosis.rejected.empty() &&
                          std::all_of(findings.begin(), findings.end(), from_outside);
-  return "The model of " + run.unit.unit +
-         (disturbed ? " holds, but something that it does not know of disturbs the plant: "
-                    : " does not match the plant: ");
+  const std::string model = "model of " + run.unit.unit;
+  if (!disturbed) return "The " + model + " does not match the plant: ";
+  if (unknown_gains(run.diagnosis.channels) > 0)
+    return "These data do not tell whether the " + model +
+           " matches the plant, but something that it does not know of disturbs it: ";
+  return "The " + model + " holds, but something that it does not know of disturbs the plant: ";
 }
 
 std::string verdict_headline(const DiagnosisRun& run) {

@@ -148,5 +148,19 @@ TEST_CASE("where a random walk happens to be is no shift of its level") {
   CHECK(shifts == 0);
 }
 
+// Noise that forgets within 20 of 600 rows is too slow to be told from a walk; an offset of 8 of
+// its s.d. is none all the same.
+TEST_CASE("a level that is far off is told of slow noise too") {
+  int shifts = 0;
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  for (std::uint64_t seed = 100; seed < 110; ++seed) {
+    const VectorXd slow = test::autoregressive(0.1 * test::normal(seed, kRows), 0.95);  // s.d. 0.32
+    Bench bench(u, (plant(u) + slow).array() + 2.56);
+    name_levels(bench.problem, {}, bench.result);
+    shifts += static_cast<int>(bench.result.named.size());
+  }
+  CHECK(shifts >= 9);
+}
+
 }  // namespace
 }  // namespace mpm

@@ -27,6 +27,29 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+TEST_CASE("a model is said to hold beside a disturbance only where its gains are known") {
+  DiagnosisRun run = sample_run();
+  std::erase_if(run.diagnosis.findings, [](const Finding& finding) {
+    return finding.subject.cause != &causes::step_disturbance();
+  });
+  REQUIRE(run.diagnosis.findings.size() == 1);
+  run.diagnosis.unexplained.clear();
+  run.diagnosis.rejected.clear();
+  run.diagnosis.channels.assign(1, {});
+  Parameter& gain = run.diagnosis.channels[0].gain_ratio;
+  gain.low = 0.9;
+  gain.high = 1.1;
+  CHECK(report::verdict_headline(run) ==
+        "The model of shell holds, but something that it does not know of disturbs the plant: one "
+        "cause was found.");
+  gain.low = 0.2;
+  gain.high = 1.8;
+  CHECK(
+      report::verdict_headline(run) ==
+      "These data do not tell whether the model of shell matches the plant, but something that it "
+      "does not know of disturbs it: one cause was found.");
+}
+
 TEST_CASE("report.json has the keys of its contract") {
   const ordered_json report = ordered_json::parse(report::to_json(sample_run()).dump());
   CHECK(report["unit"] == "shell");
