@@ -73,15 +73,4 @@ double cost_of(std::size_t alternatives) {
   return 2.0 * std::log(static_cast<double>(std::max<std::size_t>(1, alternatives)));
 }
 
-bool is_disturbance(const Effect& effect) {
-  return effect.place.input < 0 && effect.place.aux < 0 &&
-         !cause_of(effect).acts_through_channels();
-}
-
-std::size_t disturbances_of(const std::vector<Effect>& effects, int cv) {
-  return static_cast<std::size_t>(std::count_if(
-      effects.begin(), effects.end(),
-      [&](const Effect& effect) { return effect.place.cv == cv && is_disturbance(effect); }));
-}
-
 }  // namespace mpm

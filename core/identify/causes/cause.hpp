@@ -140,11 +140,6 @@ class Cause : public Edit {
 
 /// The cause whose effect this is: whatever edits a model here is one.
 [[nodiscard]] const Cause& cause_of(const Effect& effect);
-
-/// A drift, a step, a cycle of one CV: a function of time alone.
-[[nodiscard]] bool is_disturbance(const Effect& effect);
-/// How many of these are such, of that CV.
-[[nodiscard]] std::size_t disturbances_of(const std::vector<Effect>& effects, int cv);
 [[nodiscard]] Subject subject_of(const Effect& effect);
 
 /// 2 ln of so many equal alternatives; 0 counts as 1.

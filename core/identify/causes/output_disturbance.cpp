@@ -37,4 +37,19 @@ double OutputDisturbance::onset_s(const Effect& effect, const Surroundings& surr
   return surroundings.start_s + static_cast<double>(effect.onset) * surroundings.sample_time_s;
 }
 
+namespace causes {
+
+bool is_break(const Effect& effect) {
+  return effect.place.input < 0 && effect.place.aux < 0 &&
+         !cause_of(effect).acts_through_channels() && !is_constant_offset(effect);
+}
+
+std::size_t breaks_of(const std::vector<Effect>& effects, int cv) {
+  return static_cast<std::size_t>(std::count_if(
+      effects.begin(), effects.end(),
+      [&](const Effect& effect) { return effect.place.cv == cv && is_break(effect); }));
+}
+
+}  // namespace causes
+
 }  // namespace mpm

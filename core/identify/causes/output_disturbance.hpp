@@ -40,6 +40,10 @@ namespace causes {
 /// A constant offset of a CV, throughout the data, as a step.
 [[nodiscard]] Effect constant_offset(int cv, double level, double noise_sd);
 [[nodiscard]] bool is_constant_offset(const Effect& effect);
+/// A drift, a step, a cycle of one CV: a function of time alone that is more than a level.
+[[nodiscard]] bool is_break(const Effect& effect);
+/// How many of these are such, of that CV.
+[[nodiscard]] std::size_t breaks_of(const std::vector<Effect>& effects, int cv);
 }  // namespace causes
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/channel_estimates.hpp"
 #include "core/identify/diagnosis/extension.hpp"
@@ -79,16 +80,16 @@ bool names_channels_of_wandering(const Explained& explained) {
   });
 }
 
-/// Whether a disturbance is named of a CV that wanders beside it all the same. A bounded noise
+/// Whether a break is named of a CV that wanders beside it all the same. A bounded noise
 /// takes each piece of a walk for a drift or a shift, and its last level explains what comes next.
 bool cuts_a_walk(const Explained& explained) {
   const SearchResult& found = explained.found;
   return std::any_of(found.named.begin(), found.named.end(), [&](const Named& named) {
-    if (!is_disturbance(named.effect)) return false;
+    if (!causes::is_break(named.effect)) return false;
     return std::any_of(found.fit.cvs.begin(), found.fit.cvs.end(), [&](const CvFit& fit) {
       return touches(named.effect, explained.problem->model(), fit.cv) &&
              !integrates(explained.problem->model(), fit.cv) &&
-             !comes_back_beside_breaks(fit.residual, disturbances_of(found.fit.effects, fit.cv));
+             !comes_back_beside_breaks(fit.residual, causes::breaks_of(found.fit.effects, fit.cv));
     });
   });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/fit/mean_reversion.hpp"
 #include "core/identify/search/calibration.hpp"
 #include "core/identify/search/odds.hpp"
@@ -13,10 +14,10 @@ namespace {
 // A function of time alone, beside which its CV wanders all the same: any walk can be cut into
 // such.
 bool cuts_a_walk(const Trial& trial) {
-  return is_disturbance(trial.candidate) &&
+  return causes::is_break(trial.candidate) &&
          !std::all_of(trial.fit.cvs.begin(), trial.fit.cvs.end(), [&](const CvFit& fit) {
            return comes_back_beside_breaks(fit.residual,
-                                           disturbances_of(trial.fit.effects, fit.cv));
+                                           causes::breaks_of(trial.fit.effects, fit.cv));
          });
 }
 
