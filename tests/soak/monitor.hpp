@@ -31,8 +31,8 @@ class Monitor {
   [[nodiscard]] double age_s() const;
   [[nodiscard]] double resident_mb() const;
   [[nodiscard]] double processor_s() const;
-  /// Of journal and state folder now; of all logs so far.
-  [[nodiscard]] double disk_mb() const;  ///< without the journal of alarms
+  /// Of journal and state folder now, without the journal of alarms; of that; of all logs so far.
+  [[nodiscard]] double disk_mb() const;
   [[nodiscard]] double alarm_journal_mb() const;
   [[nodiscard]] double log_kb() const;
   [[nodiscard]] std::string alarm_journal() const { return folder_ + "/state/alarms.sqlite"; }

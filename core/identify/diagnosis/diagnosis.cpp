@@ -299,7 +299,8 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   // What began later is less in the mean of all rows than since then.
   const MayMatter may_matter = [&](const Effect& effect) {
     const auto channels = channels_of(effect, model, base.input_count);
-    if (effect.onset == 0 || tests.may_matter(channels)) return tests.may_matter(channels);
+    const bool in_all = tests.may_matter(channels);
+    if (in_all || effect.onset == 0) return in_all;
     const Index rest = samples - effect.onset;
     return ChannelTests(tested, part(measured, effect.onset, rest), residuals.bottomRows(rest))
         .may_matter(channels);

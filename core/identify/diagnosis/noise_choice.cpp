@@ -87,8 +87,7 @@ bool cuts_a_walk(const Explained& explained) {
   return std::any_of(found.named.begin(), found.named.end(), [&](const Named& named) {
     if (!causes::is_break(named.effect)) return false;
     return std::any_of(found.fit.cvs.begin(), found.fit.cvs.end(), [&](const CvFit& fit) {
-      return touches(named.effect, explained.problem->model(), fit.cv) &&
-             !integrates(explained.problem->model(), fit.cv) &&
+      return fit.cv == named.effect.place.cv && !integrates(explained.problem->model(), fit.cv) &&
              !comes_back_beside_breaks(fit.residual, causes::breaks_of(found.fit.effects, fit.cv));
     });
   });
