@@ -10,10 +10,12 @@ namespace mpm {
 struct CvReading {
   double measured = std::numeric_limits<double>::quiet_NaN();
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< measured minus predicted
+  /// Read before it was known what its signals usually are: it may be wild.
+  bool early = false;
 
   template <class Archive>
   void archive(Archive& a) {
-    a(measured, residual);
+    a(measured, residual, early);
   }
 };
 

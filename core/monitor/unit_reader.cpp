@@ -71,7 +71,7 @@ void UnitReader::tell(const Frame& frame, JudgedFrame& judged) const {
     const int cv = static_cast<int>(j);
     judged.readings[j] = {
         measured.usable(cv) ? measured.values(cv) : std::numeric_limits<double>::quiet_NaN(),
-        residuals_.values()(cv)};
+        residuals_.values()(cv), screen_.learns(cv)};
   }
 }
 

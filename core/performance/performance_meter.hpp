@@ -11,18 +11,13 @@
 namespace mpm {
 
 /// Adds a unit's samples, one by one, to sums of whoever wants them. What is unknown or bad does
-/// not count; what the monitor finds implausible does, but not in predictions, which are told by
-/// its residuals. No allocation after construction.
+/// not count. No allocation after construction.
 class PerformanceMeter {
  public:
   explicit PerformanceMeter(PerformanceSetup setup);
 
   [[nodiscard]] const PerformanceSetup& setup() const { return setup_; }
-  /// Whether a frame is newer than all before; others are left out, as by the monitor.
-  [[nodiscard]] bool takes(const Frame& frame) const {
-    return !begun_ || frame.interval > interval_;
-  }
-  /// Set-points, limits and moves of the next frame.
+  /// Set-points, limits and moves of a frame that is newer than all before.
   void take(const Frame& frame, PerformanceSums& sums);
   /// Predictions: what the monitor read (`Monitor::judged`), of a later interval each time.
   void judge(const JudgedFrame& judged, PerformanceSums& sums);
@@ -30,8 +25,6 @@ class PerformanceMeter {
   /// begin anywhere.
   void begin_run();
 
-  /// Of the last frame.
-  [[nodiscard]] std::int64_t interval() const { return interval_; }
   template <class Archive>
   void archive(Archive& a) {
     // not archived: setup_ (construction)

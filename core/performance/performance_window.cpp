@@ -13,7 +13,8 @@ using calibration::performance::kFewestSamples;
 using calibration::performance::kMostSamples;
 
 PerformanceWindow::PerformanceWindow(PerformanceSetup setup, double samples)
-    : meter_(std::move(setup)),
+    : frames_(setup.counts),
+      meter_(std::move(setup)),
       block_samples_(static_cast<std::int64_t>(std::ceil(
           std::clamp(samples, static_cast<double>(kFewestSamples), kMostSamples) / kBlocks))),
       blocks_(kBlocks, PerformanceSums(meter_.setup())),
@@ -22,15 +23,26 @@ PerformanceWindow::PerformanceWindow(PerformanceSetup setup, double samples)
 std::int64_t PerformanceWindow::samples() const { return kBlocks * block_samples_; }
 
 bool PerformanceWindow::push(const Frame& frame, std::span<const JudgedFrame> judged) {
-  if (!meter_.takes(frame)) return false;
+  if (!frames_.push(frame)) return false;
+  if (frames_.anew()) {
+    meter_.begin_run();
+    for (PerformanceSums& block : blocks_) block.clear();
+  }
+  bool ended = false;
+  while (const Frame* plausible = frames_.next()) ended = take(*plausible) || ended;
+  PerformanceSums& sums = blocks_[static_cast<std::size_t>(block_ % kBlocks)];
+  for (const JudgedFrame& one : judged) meter_.judge(one, sums);
+  return ended;
+}
+
+bool PerformanceWindow::take(const Frame& frame) {
   if (!begun_) first_ = frame.interval;
   begun_ = true;
-  const std::int64_t since = frame.interval - first_, block = since / block_samples_;
+  last_ = frame.interval;
+  const std::int64_t since = last_ - first_, block = since / block_samples_;
   const bool ended = open_ && block != block_;
   slide_to(block);
-  PerformanceSums& sums = blocks_[static_cast<std::size_t>(block % kBlocks)];
-  meter_.take(frame, sums);
-  for (const JudgedFrame& one : judged) meter_.judge(one, sums);
+  meter_.take(frame, blocks_[static_cast<std::size_t>(block % kBlocks)]);
   open_ = (since + 1) % block_samples_ != 0;
   return ended || !open_;
 }
@@ -38,8 +50,8 @@ bool PerformanceWindow::push(const Frame& frame, std::span<const JudgedFrame> ju
 void PerformanceWindow::archive(Archive& a) {
   // not archived: block_samples_ (construction)
   // not archived: total_ (added up whenever it is asked for)
-  a(meter_, blocks_, first_, block_, begun_, open_);
-  a.require(first_ <= meter_.interval() && block_ == (meter_.interval() - first_) / block_samples_,
+  a(frames_, meter_, blocks_, first_, block_, last_, begun_, open_);
+  a.require(first_ <= last_ && block_ == (last_ - first_) / block_samples_,
             "a window of other intervals");
 }
 

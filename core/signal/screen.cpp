@@ -16,8 +16,9 @@ using calibration::spikes::kJump;
 
 namespace {
 
+// The first four, or all of them.
 constexpr std::array kScreened = {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv,
-                                  SignalKind::kPrediction};
+                                  SignalKind::kPrediction, SignalKind::kSetpoint};
 
 bool is_input(SignalKind kind) { return kind == SignalKind::kMv || kind == SignalKind::kDv; }
 
@@ -111,7 +112,7 @@ void Screen::Range::archive(Archive& a) {
 
 void Screen::archive(Archive& a) {
   // not archived: counts_, may_predict_, acts_, dead_time_, turning_, looks_ (construction)
-  // not archived: all_mvs_rest_, longest_out_, anew_ (each frame says it anew)
+  // not archived: all_mvs_rest_, longest_out_, run_ended_, anew_ (each frame says it anew)
   a(predicted_, inputs_matter_, since_rest_, ring_, marked_);
   a.within(position_, 0, kHeld - 1);
   a.within(held_, 0, kHeld);
@@ -126,9 +127,9 @@ void Screen::push(const Frame& frame) {
   held_ = std::min(held_ + 1, kHeld);
   pushed_ = std::min(pushed_ + 1, kDelay + 1);
   longest_out_ = 0;
-  anew_ = false;
+  run_ended_ = anew_ = false;
 
-  for (const SignalKind kind : kScreened) {
+  for (const SignalKind kind : screened()) {
     screen_far(kind);
     const SignalBlock& block = ago(0)[kind];
     for (int i = 0; i < block.size(); ++i)
@@ -144,18 +145,34 @@ void Screen::push(const Frame& frame) {
   if (looks_ == Looks::kAll) screen_repeats();
   if (looks_ == Looks::kAll && pushed_ > kDelay)
     for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
-  for (const SignalKind kind : kScreened) learn_range(kind);
+  for (const SignalKind kind : screened()) learn_range(kind);
 }
 
 const Frame* Screen::next() {
   const int age = held_ - 1;
-  if (age < std::max(kDelay, longest_out_)) return nullptr;
+  const int delay = looks_ == Looks::kAll ? kDelay : 0;
+  if (age < (run_ended_ ? 0 : std::max(delay, longest_out_))) return nullptr;
   --held_;
   const ScreenCounters& marked = marked_[place(age)];
   counters_.frozen += marked.frozen;
   counters_.clipped += marked.clipped;
   counters_.spikes += marked.spikes;
   return &ago(age);
+}
+
+void Screen::end_run() {
+  run_ended_ = true;
+  for (const SignalKind kind : screened()) {
+    auto& ranges = ranges_[static_cast<std::size_t>(kind)];
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      Range& range = ranges[i];
+      if (std::exchange(range.out, 0) > 0) reject_excursion(kind, static_cast<int>(i), range);
+    }
+  }
+}
+
+std::span<const SignalKind> Screen::screened() const {
+  return std::span(kScreened).first(kScreened.size() - (looks_ == Looks::kFar ? 0 : 1));
 }
 
 void Screen::follow_compression_of_inputs() {
@@ -179,6 +196,22 @@ int Screen::compressed_input(int cv) const {
         input_compression_[static_cast<std::size_t>(i)].kind() == Compression::Kind::kHeld)
       return i;
   return -1;
+}
+
+bool Screen::learns(int cv) const {
+  const auto learns_range = [this](SignalKind kind, int index) {
+    const auto& ranges = ranges_[static_cast<std::size_t>(kind)];
+    return !ranges[static_cast<std::size_t>(index)].extent.known();
+  };
+  if (learns_range(SignalKind::kCv, cv)) return true;
+  if (predicted(cv)) return learns_range(SignalKind::kPrediction, cv);
+  for (int i = 0; i < counts_.inputs(); ++i) {
+    if (!acts_[static_cast<std::size_t>(i * counts_.cv + cv)]) continue;
+    if (i < counts_.mv ? learns_range(SignalKind::kMv, i)
+                       : learns_range(SignalKind::kDv, i - counts_.mv))
+      return true;
+  }
+  return false;
 }
 
 void Screen::follow_predictions(const SignalBlock& predictions) {

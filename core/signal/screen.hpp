@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/signal/calibration.hpp"
@@ -48,7 +49,7 @@ class Screen {
   static constexpr int kHeld = kLongestDelay + 2;  ///< frames; no more leave at once
 
   /// What is marked: all that is said above, or only what goes far beyond all that a signal has
-  /// been and comes back.
+  /// been and comes back, in set-points too; then frames wait for nothing else.
   enum class Looks { kAll, kFar };
 
   /// `may_predict[j]`: a prediction of CV j may come with the frames. `acts[input * cvs + cv]`: the
@@ -65,6 +66,9 @@ class Screen {
   /// The next frame that leaves, with its qualities as found; null where there is none. Valid until
   /// the next call.
   [[nodiscard]] const Frame* next();
+  /// No frame follows for now, and those that wait are to leave (`next`): what is far outside in
+  /// them is marked, for nobody will know whether it stays.
+  void end_run();
 
   [[nodiscard]] const ScreenCounters& counters() const { return counters_; }
   /// Whether with the last frame it turned out that what was learnt of some signal was of wild
@@ -87,6 +91,9 @@ class Screen {
   /// An input from which the CV is simulated and which is held until it has left a deadband: the
   /// plant moved, and nobody wrote it down. -1: none. (Lines in an input may be ramps.)
   [[nodiscard]] int compressed_input(int cv) const;
+  /// Whether too few values have come to know the usual range of the CV, or of what its residual is
+  /// made from: its predictions or, where none come, the inputs that act on it.
+  [[nodiscard]] bool learns(int cv) const;
   /// Share of a coarse CV's values that repeat the one before, 0..1; 0 of a fine one.
   [[nodiscard]] double repeated_share(int cv) const;
   /// Spikes of one CV so far.
@@ -156,6 +163,7 @@ class Screen {
   void mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter);
   void screen_spikes(int cv);
   void screen_far(SignalKind kind);
+  [[nodiscard]] std::span<const SignalKind> screened() const;
   [[nodiscard]] bool absurd(SignalKind kind, int index, Range& range);
   void follow_excursion(SignalKind kind, int index, Range& range);
   void reject_excursion(SignalKind kind, int index, Range& range);
@@ -180,6 +188,7 @@ class Screen {
   int held_ = 0;    // frames that have not left
   int pushed_ = 0;  // frames, until there are enough to judge one by those after it
   int longest_out_ = 0;
+  bool run_ended_ = false;
   bool anew_ = false;
   std::vector<std::vector<Repeats>> repeats_;  // per kind
   std::vector<std::vector<Range>> ranges_;     // per kind

@@ -76,6 +76,7 @@ DigestMaker::DigestMaker(const config::UnitConfig& unit)
   for (int i = 0; i < counts.inputs() + counts.cv + counts.aux; ++i)
     mover_tags_.push_back(unit.mover_tag(i));
   cvs_.resize(head_.cvs.size());
+  readings_.resize(head_.cvs.size());
   channels_.resize(head_.channels.size());
   status_.resize(head_.channels.size());
   alarms_.resize(head_.channels.size());
@@ -119,13 +120,14 @@ void DigestMaker::take(const Monitor& monitor) {
 void DigestMaker::take_readings(const Monitor& monitor) {
   for (const JudgedFrame& judged : monitor.judged()) {
     for (std::size_t j = 0; j < cvs_.size(); ++j) {
-      const double residual = judged.readings[j].residual;
-      if (!std::isfinite(residual)) continue;
+      CvReading& reading = readings_[j] = judged.readings[j];
+      if (reading.early) reading = {};  // a digest is written, and not taken back
+      if (!std::isfinite(reading.residual)) continue;
       ++cvs_[j].known;
-      cvs_[j].residual_square += residual * residual;
+      cvs_[j].residual_square += reading.residual * reading.residual;
     }
     predictions_.push(
-        judged.interval, judged.readings,
+        judged.interval, readings_,
         [this](std::size_t cv, std::size_t) -> PredictionSums& { return cvs_[cv].predictions; });
   }
 }

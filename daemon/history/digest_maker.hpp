@@ -52,6 +52,7 @@ class DigestMaker {
   std::vector<ChannelStatus> status_;  // after the last sample
   std::vector<AlarmState> alarms_;
   PredictionErrors predictions_;
+  std::vector<CvReading> readings_;  // of the frame at hand
 };
 
 /// Of the horizon over which a CV's predictions are told: half of what the slowest channel of the

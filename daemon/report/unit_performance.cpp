@@ -74,16 +74,32 @@ nlohmann::ordered_json performance_json(const PerformanceRecord& record) {
 }
 
 PerformanceTally::PerformanceTally(const config::UnitConfig& unit)
-    : unit_(unit), meter_(performance_setup(unit)), sums_(meter_.setup()) {}
+    : unit_(unit), frames_(unit.counts()), meter_(performance_setup(unit)), sums_(meter_.setup()) {}
 
 void PerformanceTally::push(const Frame& frame, std::span<const JudgedFrame> judged) {
-  if (!meter_.takes(frame)) return;
-  meter_.take(frame, sums_);
+  if (!frames_.push(frame)) return;
+  if (frames_.anew()) {
+    meter_.begin_run();
+    sums_.clear();
+  }
+  take();
   for (const JudgedFrame& one : judged) meter_.judge(one, sums_);
 }
 
+void PerformanceTally::take() {
+  while (const Frame* frame = frames_.next()) meter_.take(*frame, sums_);
+}
+
+void PerformanceTally::begin_run() {
+  frames_.end_run();
+  take();
+  meter_.begin_run();
+}
+
 PerformanceRecord PerformanceTally::record() const {
-  return performance_record(unit_, meter_.setup(), sums_);
+  PerformanceTally ended = *this;
+  ended.begin_run();
+  return performance_record(unit_, meter_.setup(), ended.sums_);
 }
 
 }  // namespace mpm::report

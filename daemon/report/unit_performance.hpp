@@ -6,6 +6,7 @@
 #include "config/unit_config.hpp"
 #include "core/monitor/cv_reading.hpp"
 #include "core/performance/performance_meter.hpp"
+#include "core/performance/plausible_frames.hpp"
 #include "core/record/performance_record.hpp"
 
 namespace mpm::report {
@@ -31,11 +32,14 @@ class PerformanceTally {
   /// A frame, and what came to be read of it and of those before (`Monitor::judged`).
   void push(const Frame& frame, std::span<const JudgedFrame> judged);
   /// What follows is another run.
-  void begin_run() { meter_.begin_run(); }
+  void begin_run();
   [[nodiscard]] PerformanceRecord record() const;
 
  private:
+  void take();
+
   config::UnitConfig unit_;
+  PlausibleFrames frames_;
   PerformanceMeter meter_;
   PerformanceSums sums_;
 };

@@ -114,15 +114,6 @@ TEST_CASE("an MV that keeps its value stands, and where all stand the controller
   CHECK(made.sums.acting == 201 + kStill);
 }
 
-TEST_CASE("a frame that is not newer is not taken") {
-  Meter made;
-  made.take(5, 0.0, 0.0, 0.0, 0.0);
-  CHECK_FALSE(made.meter.takes(made_frame(5, 0.0, 0.0, 0.0, 0.0)));
-  CHECK(made.meter.takes(made_frame(6, 0.0, 0.0, 0.0, 0.0)));
-  made.meter.begin_run();
-  CHECK(made.meter.takes(made_frame(1, 0.0, 0.0, 0.0, 0.0)));
-}
-
 TEST_CASE("of nothing no share is told") {
   CHECK(std::isnan(share_of(0, 0)));
   CHECK(share_of(1, 4) == 0.25);

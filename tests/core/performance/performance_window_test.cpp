@@ -98,6 +98,50 @@ TEST_CASE("a frame that is not newer leaves the window alone") {
   CHECK(window.total().samples == 1);
 }
 
+// Where the value is unknown instead, nothing else differs: the range of a signal is that of the
+// others. Waiting for the end of an excursion, a frame may leave after the last of these.
+TEST_CASE("a value that no process gives is in the window as one that is unknown") {
+  const Frames made(1500);
+  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kSetpoint}) {
+    for (const double wild : {1e20, -1e99, 5e4}) {
+      for (const int length : {1, 5}) {
+        CAPTURE(static_cast<int>(kind), wild, length);
+        PerformanceWindow window(test::made_setup(), 4800.0), twin(test::made_setup(), 4800.0);
+        for (std::size_t at = 0; at < made.frames.size(); ++at) {
+          Frame frame = made.frames[at];
+          const std::int64_t k = frame.interval;
+          const bool spoilt = k >= 700 && k < 700 + length;
+          if (spoilt && frame[kind].usable(0)) frame[kind].values(0) = wild;
+          window.push(frame, {});
+          if (spoilt) frame[kind].quality[0] = Quality::kBad;
+          twin.push(frame, {});
+        }
+        check_equal(window.total(), twin.total());
+        CHECK(window.total().cvs[0].error.variance() < 1.0);
+      }
+    }
+  }
+}
+
+TEST_CASE("wild values before a signal is known are forgotten once it is") {
+  const Frames made(1500);
+  PerformanceWindow window(test::made_setup(), 4800.0);
+  for (std::size_t at = 0; at < made.frames.size(); ++at) {
+    Frame frame = made.frames[at];
+    JudgedFrame judged = made.judged[at];
+    if (frame.interval == 12) {
+      for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv}) frame[kind].values(0) = 1e20;
+      judged.readings[0].measured = judged.readings[0].residual = 1e20;
+    }
+    window.push(frame, {&judged, 1});
+  }
+  const PerformanceSums& total = window.total();
+  CHECK(total.samples > 1100);
+  CHECK(total.cvs[0].error.variance() < 1.0);
+  CHECK(total.cvs[0].predictions[0].rmse() < 2.0);
+  CHECK(total.mvs[0].travel < 60.0 * 1500);
+}
+
 TEST_CASE("indices of control performance allocate nothing per sample") {
   const Frames made(1500);
   PerformanceWindow window(test::made_setup(), 100.0);

@@ -9,6 +9,9 @@
 namespace mpm::history {
 namespace {
 
+/// Frames that leave the screen before the thirtieth says what is plausible in them.
+constexpr int kEarly = calibration::extent::kFirstValues - 1 - Screen::kDelay;
+
 double rms(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value * value;
@@ -65,7 +68,8 @@ TEST_CASE("digests have the mean squares of residuals, moves and measurements") 
   CHECK(cv.residual_rms == Approx(rms(e)).epsilon(1e-5));
   CHECK(cv.prediction_rms == Approx(rms(moved)).epsilon(1e-5));
   CHECK(cv.movement_rms == Approx(rms(went)).epsilon(1e-5));
-  CHECK(digests[0].cvs[0].samples == 15 - Screen::kDelay);
+  CHECK(digests[0].cvs[0].samples == 0);
+  CHECK(digests[1].cvs[0].samples == 30 - Screen::kDelay - kEarly);
   CHECK(digests[0].cvs[0].pairs == 0);
   CHECK_FALSE(known(digests[0].cvs[0].prediction_rms));
 
@@ -116,7 +120,30 @@ TEST_CASE("over a gap the horizon is counted in intervals") {
     if (const auto digest = maker.push(monitor)) pairs += digest->cvs[0].pairs;
   }
   if (const auto digest = maker.finish()) pairs += digest->cvs[0].pairs;
-  CHECK(pairs == 100 - horizon);  // all before it, none behind it
+  CHECK(pairs == 100 - kEarly - horizon);  // all before it, none behind it
+}
+
+// A sensor that has just been switched on: nobody knows yet what its signal usually is.
+TEST_CASE("a wild value among a signal's first is in no digest") {
+  const config::UnitConfig unit = test::minute_unit();
+  for (const SignalKind kind : {SignalKind::kCv, SignalKind::kPrediction}) {
+    report::UnitMonitor monitor(unit);
+    DigestMaker maker(unit);
+    test::MinuteFrames frames;
+    int told = 0;
+    for (int k = 0; k < 200; ++k) {
+      Frame frame = frames.next();
+      if (k == 12) frame[kind].values(0) = 1e20;
+      monitor.push(frame);
+      const auto digest = maker.push(monitor);
+      if (!digest) continue;
+      const CvDigest& cv = digest->cvs.at(0);
+      CHECK_FALSE(cv.residual_rms > 100.0);
+      CHECK_FALSE(cv.prediction_rms > 100.0);
+      told += cv.prediction_rms > 0.0 ? 1 : 0;
+    }
+    CHECK(told > 5);
+  }
 }
 
 }  // namespace
