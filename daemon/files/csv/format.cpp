@@ -64,6 +64,7 @@ std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
   std::vector<bool> above;  // which cells of the line before are not empty
   std::vector<std::string> names_above;
   int line_above = 0;
+  char delimiter_above = 0;
   for (int i = 0; i <= kLinesAbove && (i == 0 || lines.next()); ++i) {
     const char delimiter = find_delimiter(lines.text());
     const std::vector<Cell> cells = split_header(lines, delimiter);
@@ -73,7 +74,7 @@ std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
         take_names_above(names_above, *layout);
         return Header{lines.number(), delimiter, *layout, true};
       }
-      if (!names_stand_above(above, *layout))
+      if (delimiter != delimiter_above || !names_stand_above(above, *layout))
         return Header{lines.number(), delimiter, *layout, true};
       return_to(lines, line_above);
       const std::vector<Cell> names = split_header(lines, delimiter);
@@ -86,6 +87,7 @@ std::optional<Header> header_by_name(LineReader& lines, const TagTable* tags) {
       names_above.emplace_back(cell.text);
     }
     line_above = lines.number();
+    delimiter_above = delimiter;
   }
   return std::nullopt;
 }

@@ -80,3 +80,10 @@ TEST_CASE("A date beside a time of its own is only a remark") {
   const Found whole = found("Time,Date,a\n2026-02-01T14:05:00Z,Monday,1\n");
   CHECK(whole.format.layout.time.time == 0);
 }
+
+// The line above was split at another delimiter: its cells are none of the columns below.
+TEST_CASE("Names that stand above are delimited as the line below") {
+  const Found result = found("#\t#\t\t#\nunit,m3/h,timestamp\n1,2,2026-02-01 00:00\n");
+  CHECK(result.line == 2);
+  CHECK(result.format.layout.time.time == 2);
+}
