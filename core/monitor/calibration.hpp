@@ -60,6 +60,29 @@ inline constexpr double kSpikyShare = 0.003;
 inline constexpr double kWarmUps = 2.0;
 }  // namespace bad_data
 
+/// When predictions are taken for corrected by the measurement (`FeedbackCorrection`). Chosen on
+/// loops whose controller's model is another one than the unit file's, with next to no noise, where
+/// nothing is corrected, and on corrected ones whose values have four digits
+/// (tests/core/monitor/feedback_correction_test.cpp).
+namespace feedback_correction {
+inline constexpr int kBlock = 100;     ///< samples that are asked together
+inline constexpr int kBlocksOver = 3;  ///< in a row that no longer say so, until it is over
+/// The measurement itself is what differs from it by less than this share of its own moves, mean
+/// squares; and is no simulation where the bias moves by more than that share.
+inline constexpr double kSame = 1e-8;
+inline constexpr double kMovesShare = 1e-2;
+/// The last residual explains so much of how the bias moves, and leaves so little of what the
+/// bias's own past does not explain; shares of squares.
+inline constexpr double kOfResidual = 1e-5;
+inline constexpr double kLeft = 0.25;
+/// By this share of it predictions are corrected; by this share of that share, at most, the bias's
+/// own past moves it besides; and two blocks agree within this.
+inline constexpr double kSmallest = 0.02;
+inline constexpr double kLargest = 1.1;
+inline constexpr double kSides = 0.2;
+inline constexpr double kAgree = 0.1;
+}  // namespace feedback_correction
+
 /// How an input moves: for the reason of a verdict that is undetermined. Chosen.
 namespace input_motion {
 inline constexpr double kMostOfTheTime = 0.5;  ///< share of the samples

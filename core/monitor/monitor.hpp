@@ -101,6 +101,8 @@ class Monitor {
   [[nodiscard]] std::vector<LostSignal> lost() const;
   /// Predictions of the CV came with the frames, and do no longer: they are simulated.
   [[nodiscard]] bool replaced(int cv) const;
+  /// The predictions of the CV that come are corrected by its measurement: they are simulated.
+  [[nodiscard]] bool corrected(int cv) const;
   /// How many more samples the CV's verdicts need at least, if all of them serve; 0 = none.
   [[nodiscard]] double samples_needed(int cv) const;
 

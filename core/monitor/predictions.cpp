@@ -30,6 +30,7 @@ Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_
       starting_samples_(starting_samples),
       settling_samples_(settling_samples),
       given_(may_predict.size(), false),
+      corrections_(may_predict.size()),
       settling_(may_predict.size(), 0) {}
 
 double Predictions::residual(int cv, const Frame& frame) const {
@@ -57,7 +58,7 @@ void Predictions::turn(std::size_t cv) {
 }
 
 void Predictions::begin(const Frame& frame, const UnitInputs& inputs) {
-  if (simulates_) model_.set_time_s(1e-9 * static_cast<double>(frame.source_time_ns));
+  model_.set_time_s(1e-9 * static_cast<double>(frame.source_time_ns));
   for (int i = 0; i < model_.input_count(); ++i)
     if (inputs.unknown_run(i) > kHeldSamples) distrust(i);
 }
@@ -69,10 +70,23 @@ void Predictions::distrust(int input) {
       settling_[j] = settling_samples_;
 }
 
+void Predictions::compare(const Frame& frame) {
+  if (!started_ || !has_model_) return;
+  const SignalBlock& measured = frame[SignalKind::kCv];
+  const SignalBlock& predicted = frame[SignalKind::kPrediction];
+  for (std::size_t j = 0; j < corrections_.size(); ++j) {
+    const int cv = static_cast<int>(j);
+    if (!may_predict_[j]) continue;
+    if (measured.usable(cv) && predicted.usable(cv))
+      corrections_[j].take(measured.values(cv), predicted.values(cv), model_.output()(cv));
+    else
+      corrections_[j].skip();
+  }
+}
+
 void Predictions::advance(const UnitInputs& inputs) {
   for (std::int64_t& samples : settling_)
     if (samples > 0) --samples;
-  if (!simulates_) return;
   // Where the plant stood before the first sample is unknown: at rest with the first inputs is the
   // least wrong; what is wrong about it decays.
   if (!started_) {
@@ -86,6 +100,7 @@ void Predictions::advance(const UnitInputs& inputs) {
 }
 
 void Predictions::skip(std::int64_t missing, const UnitInputs& inputs) {
+  for (FeedbackCorrection& correction : corrections_) correction.skip();
   if (!started_) return;
   for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, settling_samples_); ++k)
     model_.advance(inputs.held());

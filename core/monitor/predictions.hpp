@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/model/linear_model.hpp"
+#include "core/monitor/feedback_correction.hpp"
 #include "core/monitor/unit_inputs.hpp"
 #include "core/signal/frame.hpp"
 #include "core/signal/screen.hpp"
@@ -19,9 +20,9 @@ namespace mpm {
 /// Whether some CV's prediction is simulated from the first sample on and for good.
 [[nodiscard]] bool simulates_some(const std::vector<bool>& may_predict);
 
-/// Each CV's prediction: what comes with the frames or, where none does (`Screen::predicted`), what
-/// the model makes of the inputs. Where the control system says what its model predicts, no
-/// simulation is asked. No allocation after construction.
+/// Each CV's prediction: what comes with the frames or, where none does (`Screen::predicted`) or
+/// what comes is corrected by the measurement (`FeedbackCorrection`), what the model makes of the
+/// inputs. No allocation after construction.
 class Predictions {
  public:
   /// `may_predict[j]`: CV j's may come with the frames; `acts`: see `channels_of`;
@@ -30,10 +31,12 @@ class Predictions {
   Predictions(const LinearModel& model, const std::vector<bool>& may_predict,
               const std::vector<bool>& acts, int starting_samples, int settling_samples);
 
-  /// Some CV's is simulated.
-  [[nodiscard]] bool simulates() const { return simulates_; }
   /// Comes with the frames.
   [[nodiscard]] bool given(int cv) const { return given_[static_cast<std::size_t>(cv)]; }
+  /// Comes, and is corrected by the measurement: it is simulated instead.
+  [[nodiscard]] bool corrected(int cv) const {
+    return corrections_[static_cast<std::size_t>(cv)].corrected();
+  }
   /// Comes from elsewhere than it did, or is simulated, and cannot be trusted yet.
   [[nodiscard]] bool settling(int cv) const { return settling_[static_cast<std::size_t>(cv)] > 0; }
   /// Measured minus predicted; NaN where the prediction is not known, or the measurement is not.
@@ -47,7 +50,8 @@ class Predictions {
   /// data, over gaps too. An input that was unknown for long moved unseen: what is simulated from
   /// it is wrong until it has forgotten that.
   void begin(const Frame& frame, const UnitInputs& inputs);
-  /// After they were read.
+  /// After they were read: the frame's part, then the inputs' part.
+  void compare(const Frame& frame);
   void advance(const UnitInputs& inputs);
   /// `missing` intervals of which nothing is known.
   void skip(std::int64_t missing, const UnitInputs& inputs);
@@ -56,7 +60,7 @@ class Predictions {
   void archive(Archive& a) {
     // not archived: may_predict_, acts_, has_model_, starting_samples_, settling_samples_
     // (construction)
-    a(model_, simulates_, started_, given_, settling_);
+    a(model_, started_, given_, corrections_, settling_);
   }
 
  private:
@@ -68,26 +72,24 @@ class Predictions {
   std::vector<bool> acts_;
   bool has_model_;
   int starting_samples_, settling_samples_;
-  bool simulates_ = true;
-  bool started_ = false;
+  bool started_ = false;  // the simulation
   std::vector<bool> given_;
+  std::vector<FeedbackCorrection> corrections_;
   std::vector<std::int64_t> settling_;  // samples until a simulated one can be trusted
 };
 
 template <class Turns>
 void Predictions::follow(const Screen& screen, Turns turns) {
-  simulates_ = false;
   for (std::size_t j = 0; j < given_.size(); ++j) {
     const int cv = static_cast<int>(j);
     // Without any model only the control system can predict.
-    const bool given = screen.predicted(cv) || (given_[j] && !has_model_);
+    const bool given =
+        has_model_ ? screen.predicted(cv) && !corrected(cv) : screen.predicted(cv) || given_[j];
     if (given != given_[j]) {
       turn(j);
       turns(cv);
     }
-    simulates_ = simulates_ || (!given_[j] && (has_model_ || !may_predict_[j]));
   }
-  started_ = started_ && simulates_;
 }
 
 }  // namespace mpm

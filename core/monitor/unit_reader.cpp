@@ -59,6 +59,7 @@ const Frame* UnitReader::next() {
   inputs_.read(*frame);
   predictions_.begin(*frame, inputs_);
   residuals_.read(*frame, predictions_);
+  predictions_.compare(*frame);
   predictions_.advance(inputs_);
   ++samples_;
   return frame;

@@ -153,18 +153,27 @@ std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
   return all;
 }
 
-// Predictions that came and do no longer. Where none ever came, their silence says so.
+// Predictions that came and do no longer, or that cannot be used. Where none ever came, their
+// silence says so.
 void UnitHealth::add_simulated(report::UnitMonitor& monitor,
                                std::vector<bus::Trouble>& troubles) const {
-  std::vector<std::string> tags;
-  for (std::size_t j = 0; j < unit_.cv.size(); ++j)
-    if (!unit_.cv[j].prediction.empty() && monitor.monitor().replaced(static_cast<int>(j)))
-      tags.push_back(unit_.cv[j].tag);
-  if (tags.empty()) return;
-  std::string text = config::join({tags.begin(), tags.begin() + std::min(tags.size(), kMostTags)});
-  if (tags.size() > kMostTags) text += " and " + counted(tags.size() - kMostTags, "other");
-  troubles.push_back({"simulated", bus::Severity::kOutOfSpecification,
-                      "the unit file's model predicts " + text + ": no predictions come"});
+  const auto add = [&](const char* key, const char* why, auto&& holds) {
+    std::vector<std::string> tags;
+    for (std::size_t j = 0; j < unit_.cv.size(); ++j)
+      if (!unit_.cv[j].prediction.empty() && holds(static_cast<int>(j)))
+        tags.push_back(unit_.cv[j].tag);
+    if (tags.empty()) return;
+    const std::size_t named = std::min(tags.size(), kMostTags), others = tags.size() - named;
+    tags.resize(named);
+    std::string text = config::join(tags);
+    if (others > 0) text += " and " + counted(others, "other");
+    troubles.push_back({key, bus::Severity::kOutOfSpecification,
+                        "the unit file's model predicts " + text + ": " + why});
+  };
+  const Monitor& unit = monitor.monitor();
+  add("simulated", "no predictions come", [&](int cv) { return unit.replaced(cv); });
+  add("corrected", "the predictions that come are corrected by the measurement",
+      [&](int cv) { return unit.corrected(cv); });
 }
 
 // Its silence is not told yet.

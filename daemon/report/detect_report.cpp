@@ -30,8 +30,11 @@ void DetectReport::take_counters(const Monitor& monitor, const config::UnitConfi
   clipped = counters.implausible.clipped;
   spikes = counters.implausible.spikes;
   bad_tags = config::by_tag(config, counters.bad_of);
-  for (std::size_t cv = 0; cv < config.cv.size(); ++cv)
+  for (std::size_t cv = 0; cv < config.cv.size(); ++cv) {
     samples_needed[config.cv[cv].tag] = monitor.samples_needed(static_cast<int>(cv));
+    if (monitor.corrected(static_cast<int>(cv)))
+      corrected_predictions.push_back(config.cv[cv].prediction);
+  }
 }
 
 nlohmann::ordered_json to_json(const DetectReport& report) {
@@ -46,6 +49,8 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
                               {"spikes", report.spikes},
                               {"channels", nlohmann::ordered_json::array()},
                               {"alarms", nlohmann::ordered_json::array()}};
+  if (!report.corrected_predictions.empty())
+    json["corrected_predictions"] = report.corrected_predictions;
   for (const files::Stretch& stretch : report.used)
     json["used"].push_back(
         {{"from", seconds(stretch.from_ns)}, {"until", seconds(stretch.until_ns)}});

@@ -27,6 +27,8 @@ struct DetectReport {
   std::uint64_t bad_values = 0;
   std::vector<std::pair<std::string, std::uint64_t>> bad_tags;  ///< whose they are
   std::uint64_t frozen = 0, clipped = 0, spikes = 0;            ///< of these: only by their look
+  /// Of CVs whose predictions in the file are corrected by their measurement; not used.
+  std::vector<std::string> corrected_predictions;
   /// From the first row to the last of each stretch, where a part of the file was chosen.
   std::vector<files::Stretch> used;
   std::vector<ChannelRecord> channels;

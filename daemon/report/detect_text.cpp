@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "config/suggest.hpp"
 #include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/report/channel_text.hpp"
@@ -47,6 +48,18 @@ std::string head(const DetectReport& report, const MomentText& moment) {
   look(report.spikes, report.spikes == 1 ? "spike" : "spikes");
   if (!looks.empty()) text += " (" + looks + ")";
   return text + worst_tags(report.bad_tags);
+}
+
+std::string corrected_text(const std::vector<std::string>& predictions, std::size_t width) {
+  if (predictions.empty()) return "";
+  std::vector<std::string> tags;
+  for (const std::string& tag : predictions) tags.push_back(printable(tag));
+  return wrapped("Not used: " + config::join(tags) +
+                     ". What stands there is corrected by the measurement, as a controller's bias "
+                     "update does, and hides what is wrong with a gain; the unit file's model is "
+                     "simulated instead",
+                 0, width) +
+         '\n';
 }
 
 MatrixCell cell_of(const ChannelRecord& channel) {
@@ -188,8 +201,9 @@ std::string to_text(const DetectReport& report, const config::UnitConfig& unit,
   teller.section("Not linear", [](const auto& channel) { return nonlinear_text(channel); });
   teller.section("Undetermined", [&](const auto& channel) { return teller.open(channel); });
   teller.section("Alarms that are over", [&](const auto& channel) { return teller.past(channel); });
-  return wrapped(head(report, moment), 0, layout.width) + '\n' + matrix(report.channels, layout) +
-         teller.text();
+  return wrapped(head(report, moment), 0, layout.width) + '\n' +
+         corrected_text(report.corrected_predictions, layout.width) +
+         matrix(report.channels, layout) + teller.text();
 }
 
 }  // namespace mpm::report

@@ -6,6 +6,7 @@
 #include "core/monitor/unit_residuals.hpp"
 
 #include "tests/core/channel_model.hpp"
+#include "tests/core/counter_noise.hpp"
 
 namespace mpm {
 namespace {
@@ -27,7 +28,7 @@ struct Unit {
         residuals(1) {}
 
   // Measured: the model's own output plus 1. NaN: unknown.
-  void step(double u, double predicted) {
+  void step(double u, double predicted, double noise = 0.0) {
     Frame frame(counts);
     for (SignalBlock& block : frame.blocks)
       std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
@@ -36,13 +37,14 @@ struct Unit {
       if (!std::isfinite(value)) frame[kind].quality[0] = Quality::kBad;
     };
     set(SignalKind::kMv, u);
-    set(SignalKind::kCv, plant.output()(0) + 1.0);
+    set(SignalKind::kCv, plant.output()(0) + 1.0 + noise);
     set(SignalKind::kPrediction, predicted);
     screen.push(frame);
     predictions.follow(screen, [&](int) { ++turned; });
     inputs.read(frame);
     predictions.begin(frame, inputs);
     residuals.read(frame, predictions);
+    predictions.compare(frame);
     predictions.advance(inputs);
     if (std::isfinite(u)) held = u;
     plant.advance(Eigen::VectorXd::Constant(1, held));
@@ -80,7 +82,6 @@ TEST_CASE("the first prediction that comes takes over, apart from what was simul
   unit.step(1.0, unit.plant.output()(0) - 0.5);
   CHECK(unit.turned == 1);
   CHECK(unit.predictions.given(0));
-  CHECK_FALSE(unit.predictions.simulates());
   // As many unknown ones as close all windows.
   for (int k = 0; k < 6; ++k) {
     CHECK(std::isnan(unit.residuals.values()(0)));
@@ -99,7 +100,6 @@ TEST_CASE(
   const auto none = [&](int k) { unit.step(k % 5 - 2.0, kNone); };
   for (int k = 0; k < 40; ++k) given(k);
   CHECK(unit.turned == 1);
-  CHECK_FALSE(unit.predictions.simulates());
   CHECK(unit.residuals.values()(0) == Approx(1.5));
 
   for (int k = 0; k < kTurning - 1; ++k) none(k);
@@ -154,6 +154,33 @@ TEST_CASE("a long gap is distrusted likewise, a short one is not") {
     CHECK(unit.predictions.settling(0) == (missing > 5));
     CHECK(unit.residuals.unknown_run(0) == missing);
   }
+}
+
+// The bias is that of an update in each sample; the noise is what tells it from a model.
+TEST_CASE(
+    "predictions that are corrected by the measurement are simulated instead, while they are") {
+  Unit unit;
+  double bias = 1.0;
+  int k = 0;
+  const auto step = [&](bool corrects) {
+    const double noise = 0.1 * test::uniform(7, k), predicted = unit.plant.output()(0) + bias;
+    if (corrects) bias += 0.8 * (unit.plant.output()(0) + 1.0 + noise - predicted);
+    unit.step(k % 9 - 4.0, predicted, noise);
+    ++k;
+  };
+  while (k < 190) step(true);
+  CHECK(unit.predictions.given(0));
+  while (k < 400) step(true);
+  CHECK(unit.predictions.corrected(0));
+  CHECK_FALSE(unit.predictions.given(0));
+  CHECK(unit.turned == 2);
+  const double noise = 0.1 * test::uniform(7, k - 1);
+  CHECK(unit.residuals.values()(0) == Approx(1.0 + noise).margin(1e-6));
+  // They are believed again once three blocks in a row say otherwise.
+  bias = 0.0;
+  while (k < 900) step(false);
+  CHECK_FALSE(unit.predictions.corrected(0));
+  CHECK(unit.predictions.given(0));
 }
 
 }  // namespace

@@ -154,4 +154,15 @@ TEST_CASE("what warms up says how many samples it still needs") {
       std::string::npos);
 }
 
+TEST_CASE("predictions that are not used are named, with the reason") {
+  DetectReport report = march();
+  CHECK(to_text(report, column(), {200, false}).find("Not used") == std::string::npos);
+  CHECK_FALSE(to_json(report).contains("corrected_predictions"));
+  report.corrected_predictions = {"AI-201.PRED", "AI-202.PRED"};
+  CHECK(to_text(report, column(), {200, false})
+            .find("Not used: AI-201.PRED, AI-202.PRED. What stands there is corrected") !=
+        std::string::npos);
+  CHECK(to_json(report)["corrected_predictions"] == report.corrected_predictions);
+}
+
 }  // namespace mpm::report
