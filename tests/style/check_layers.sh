@@ -76,7 +76,7 @@ alarm archive text
 mismatch archive text signal regression statistics model
 nonlinear archive text regression statistics model signal mismatch
 record text alarm mismatch nonlinear
-monitor archive text signal statistics model alarm mismatch nonlinear
+monitor archive text signal statistics model alarm regression mismatch nonlinear
 identify/fit parallel model
 identify/evidence model signal mismatch monitor identify/fit
 performance archive signal model monitor identify/fit

@@ -45,10 +45,13 @@ LinearModel model_of(const TransferFunction& u, const TransferFunction& d) {
   return LinearModel(test::channel_model(2, 1, {{0, 0, u}, {0, 1, d}}));
 }
 
-double rounded(double value, double step) { return step > 0.0 ? std::round(value / step) * step : value; }
+double rounded(double value, double step) {
+  return step > 0.0 ? std::round(value / step) * step : value;
+}
 
-/// When the predictions were said to be corrected, or not to be any more, after 1500 samples; -1: not.
-/// `share`: by which they are; 0: not at all. `from`: they are from that sample on, `until` that one.
+/// When the predictions were said to be corrected, or not to be any more, after 1500 samples; -1:
+/// not. `share`: by which they are; 0: not at all. `from`: they are from that sample on, `until`
+/// that one.
 struct Outcome {
   int corrected_at = -1, over_at = -1;
   double share = 0.0;
@@ -67,7 +70,8 @@ Outcome run(const Kind& kind, double share, std::uint64_t seed, double step = 0.
   LinearModel plant = model_of(u_plant, kind.other_plant ? near(d_control, random) : d_control);
   FeedbackCorrection asked;
   Outcome outcome;
-  double bias = share > 0.0 && from == 0 ? 50.0 : 0.0, integral = 0.0, noise = 0.0, setpoint = 0.0, u = 0.0, d = 0.0;
+  double bias = share > 0.0 && from == 0 ? 50.0 : 0.0, integral = 0.0, noise = 0.0, setpoint = 0.0,
+         u = 0.0, d = 0.0;
   std::normal_distribution<double> normal;
   for (int k = 0; k < 1500; ++k) {
     noise = 0.7 * noise + kind.noise * normal(random);
@@ -105,8 +109,11 @@ TEST_CASE("predictions of a model are not taken for corrected ones") {
           for (std::uint64_t seed = 1; seed <= 40; ++seed) {
             const Kind kind{noise, seed % 2 == 0, other_file, closed, disturbance};
             ++runs;
-            const bool said = run(kind, 0.0, 1000 + seed, seed % 3 == 0 ? 0.01 : 0.0).corrected_at >= 0;
-            if (said) UNSCOPED_INFO(noise << " " << closed << " " << other_file << " " << disturbance << " " << seed);
+            const bool said =
+                run(kind, 0.0, 1000 + seed, seed % 3 == 0 ? 0.01 : 0.0).corrected_at >= 0;
+            if (said)
+              UNSCOPED_INFO(noise << " " << closed << " " << other_file << " " << disturbance << " "
+                                  << seed);
             wrong += said ? 1 : 0;
           }
   CHECK(wrong == 0);
