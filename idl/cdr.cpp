@@ -62,7 +62,9 @@ bool Cdr::decode(std::span<const std::byte> bytes, void* sample) {
 
   const std::span<const std::byte> body = bytes.subspan(kHeaderBytes);
   const auto size = static_cast<std::uint32_t>(body.size());
-  words_.assign(body.size() / sizeof(std::uint64_t) + 1, 0);
+  // Cyclone 0.10.2 takes a number in a sequence for four bytes where that aligns it (XCDR2): it
+  // may go twice as far as there are bytes.
+  words_.assign(2 * (body.size() / sizeof(std::uint64_t) + 1), 0);
   std::memcpy(words_.data(), body.data(), body.size());
   auto* data = reinterpret_cast<char*>(words_.data());
   // Checks every length and bound, and turns the bytes round; reading trusts it.
@@ -72,7 +74,7 @@ bool Cdr::decode(std::span<const std::byte> bytes, void* sample) {
   dds_istream_t stream;
   dds_istream_init(&stream, end, data, encoding->version);
   dds_stream_read(&stream, static_cast<char*>(sample), type_->m_ops);
-  return true;
+  return stream.m_index <= end;
 }
 
 std::span<const std::byte> Cdr::encode(const void* sample) {

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "core/signal/saturated.hpp"
+#include "idl/cdr.hpp"
 #include "idl/raw_reader.hpp"
 #include "idl/raw_writer.hpp"
 #include "mpm.h"
@@ -158,11 +159,18 @@ struct RawWriter::Impl {
         type(participant, topic.get(), known),
         writer(dds_create_writer(participant.get(), topic.get(), known.writer_qos(pace).get(),
                                  nullptr),
-               std::string("writer of ") + known.name) {}
+               std::string("writer of ") + known.name),
+        reader(known.type),
+        read(known.type->m_size) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() { reader.release(read.data()); }
 
   /// Owned by the caller; null if the bytes are no sample.
   [[nodiscard]] ddsi_serdata* data_of(std::span<const std::byte> cdr, ddsi_serdata_kind kind,
-                                      const SampleChange& change) const {
+                                      const SampleChange& change) {
+    // Cyclone's own check is not enough (Cdr::decode).
+    if (kind == SDK_DATA && !reader.decode(cdr, read.data())) return nullptr;
     const ddsrt_iovec_t bytes{const_cast<std::byte*>(cdr.data()), cdr.size()};
     ddsi_serdata* data = ddsi_serdata_from_ser_iov(type.get(), kind, 1, &bytes, cdr.size());
     if (data == nullptr || !change.any()) return data;
@@ -184,6 +192,8 @@ struct RawWriter::Impl {
   Entity topic;
   SerType type;
   Entity writer;
+  Cdr reader;
+  std::vector<std::byte> read;  // by it
 };
 
 RawWriter::RawWriter(const Participant& participant, const KnownTopic& topic, WriterPace pace)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -101,6 +102,39 @@ TEST_CASE("Damaged samples are refused or read, never worse") {
       CHECK(sample->values._length <= damaged.size() / 8);
     static_cast<void>(layouts.decode(damaged));
   }
+}
+
+// In XCDR2 Cyclone 0.10.2 counts four bytes for each number; the test's sanitizers see what it
+// reads or turns round beyond.
+TEST_CASE("a sequence of more numbers than there are bytes is refused") {
+  idl::CdrDecoder<mpm_Sample> decoder;
+  for (const int id : {6, 7}) {
+    std::vector<std::byte> data = by_hand(id);
+    const std::size_t count = 4 + 8 + 16 + (id == 6 ? 3 : 0);
+    for (int numbers = 2; numbers <= 3; ++numbers) {
+      data[count] = static_cast<std::byte>(numbers);
+      CHECK(decoder.decode(data) == nullptr);
+    }
+  }
+  std::string text = "tag";
+  double value = 1.0;
+  mpm_ChannelStatus status{};
+  status.unit = status.mv = status.cv = status.verdict = status.reason = text.data();
+  status.nonlinear.verdict = status.nonlinear.kind = text.data();
+  status.partial_correlations._buffer = &value;
+  status.partial_correlations._length = status.partial_correlations._maximum = 1;
+  idl::CdrEncoder<mpm_ChannelStatus> encoder;
+  const std::span<const std::byte> bytes = encoder.encode(status);
+  std::vector<std::byte> whole(bytes.begin(), bytes.end());
+  idl::CdrDecoder<mpm_ChannelStatus> channels;
+  CHECK(channels.decode(whole) != nullptr);
+  const std::byte one_of[] = {std::byte{0}, std::byte{0}, std::byte{0},    std::byte{0},
+                              std::byte{0}, std::byte{0}, std::byte{0xF0}, std::byte{0x3F}};
+  const auto number = std::search(whole.begin(), whole.end(), std::begin(one_of), std::end(one_of));
+  REQUIRE(number - whole.begin() > 4);
+  const auto left = static_cast<std::size_t>(whole.end() - number);
+  number[-4] = static_cast<std::byte>(left / 4);
+  CHECK(channels.decode(whole) == nullptr);
 }
 
 // Cyclone gives members that a shorter sample lacks their default. Of a struct it may only where
