@@ -24,14 +24,15 @@ bool accuses(const Effect& effect) {
 
 /// Why a finding goes, for a person; null where it stays.
 const char* why_it_goes(const Effect& effect, const Problem& problem, const Finding& finding,
-                        Fate fate) {
+                        Fate fate, const Compressed& compressed) {
   const Cause& cause = cause_of(effect);
   if (effect.certain || causes::is_unnamed(cause)) return nullptr;
   if (fate == Fate::kRefused) return why_not_in_model(fate);
   if (fate == Fate::kNoBetter && accuses(effect) && !cause.acts_through_channels())
     return why_not_in_model(fate);
   if (cause.contradicted(effect, problem)) return "the measurements themselves speak against it";
-  return cause.may_be_nothing(finding) ? "its interval includes that it does nothing" : nullptr;
+  if (cause.may_be_nothing(finding)) return "its interval includes that it does nothing";
+  return compressed.may_have_made(finding) ? kMadeByCompression : nullptr;
 }
 
 /// Whether what an accusation explains follows a set-point rather, once everything else that was
@@ -132,7 +133,8 @@ Account keep(Explained explained, const Judges& judges, const Witness& witness,
     for (std::size_t i = 0; i < before.named.size(); ++i) {
       const Effect& effect = before.named[i].effect;
       Finding& finding = findings.emplace_back(to_finding(before, i, problem));
-      const char* reason = why_it_goes(effect, problem, finding, kept.selection.fates[i]);
+      const char* reason =
+          why_it_goes(effect, problem, finding, kept.selection.fates[i], judges.compressed);
       out.push_back(reason != nullptr);
       finding.repaired = false;
       finding.refused =

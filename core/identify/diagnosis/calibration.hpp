@@ -107,6 +107,10 @@ inline constexpr double kMoreSurely = 1.5;
 inline constexpr double kStillMoves = 1e-5;
 inline constexpr double kBeyondDoubt = 1e-6;
 
+/// A disturbance of a CV that a historian has compressed is larger than so many of its deadbands.
+/// Chosen: what is taken away is off by one at most, for as long as the signal stays within.
+inline constexpr double kDeadbandsThatTell = 3.0;
+
 /// Horizons of predictions take at most one of so many parts of the rows.
 inline constexpr Eigen::Index kHorizonsInRows = 4;
 

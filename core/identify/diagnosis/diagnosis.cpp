@@ -9,6 +9,7 @@
 #include "core/identify/diagnosis/account.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/clock.hpp"
+#include "core/identify/diagnosis/compressed.hpp"
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/late.hpp"
 #include "core/identify/diagnosis/nameable.hpp"
@@ -37,6 +38,8 @@ using Eigen::VectorXd;
 
 constexpr const char* kReadSeldom =
     "every CV is read only once in several samples: let sample_time be as long";
+constexpr const char* kCompressed =
+    "a historian has compressed a CV, and what it took away can look like errors of the model";
 constexpr const char* kOneReadSeldom =
     "a CV is read only once in several samples and was not judged beside the others: give it a "
     "unit of its own, with a sample_time as long";
@@ -115,7 +118,8 @@ void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
       unproved.push_back(std::move(finding));
       mark_unclear(effect);
     } else if (causes::is_unnamed(cause)) {
-      diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
+      if (effect.place.cv < 0 || !judges.compressed.cv(effect.place.cv))
+        diagnosis.unexplained.push_back(to_unexplained(found, i, problem));
       mark_unclear(effect);
     } else if (not_setpoint != nullptr || (of_setpoint && finding.explains < kSetpointExplains)) {
       unproved.push_back(std::move(finding));
@@ -234,6 +238,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   diagnosis.samples = samples;
   diagnosis.extended = given;
 
+  const Compressed compressed(measured);
   const ModelSpec base = in_channels(given);
   const ModelSpec model = with_aux_inputs(base, recording);
   const MatrixXd residuals = free_run_residuals(model, recording);
@@ -264,7 +269,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
                                (tests.reject({{cv, input}}) ||
                                 (i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside));
                       },
-                      outside};
+                      outside, compressed};
   const Witness witness{tests, [&](const ModelSpec& repaired) {
                           return ChannelTests(tested, measured,
                                               free_run_residuals(repaired, recording));
@@ -309,14 +314,24 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   if (!validation)
     for (Finding& late :
          begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
-                    {settings.mv_count, base.input_count, aux}, outside, search_settings))
-      diagnosis.findings.push_back(std::move(late));
+                    {settings.mv_count, base.input_count, aux}, outside, search_settings)) {
+      const bool made = compressed.may_have_made(late);
+      if (made) late.refused = kMadeByCompression;
+      (made ? diagnosis.refused : diagnosis.findings).push_back(std::move(late));
+    }
   diagnosis.rejected = rejected_channels(base, tests, diagnosis);
+  const std::size_t doubted =
+      std::erase_if(diagnosis.rejected, [&](const Place& at) { return compressed.cv(at.cv); });
   if (!diagnosis.rejected.empty() && std::find(in.begin(), in.end(), true) != in.end())
     keep_rejected(ChannelTests(tested, measured, free_run_residuals(extended, recording)),
                   diagnosis.rejected);
   decide(least_explained(residuals, recording.cvs),
          !sticking_loops(base, settings.mv_count, whole).empty(), diagnosis);
+  if (compressed.any() && diagnosis.verdict != DiagnosisVerdict::kMismatch &&
+      (doubted > 0 || diagnosis.verdict == DiagnosisVerdict::kUndetermined)) {
+    diagnosis.verdict = DiagnosisVerdict::kUndetermined;
+    diagnosis.reason = kCompressed;
+  }
   tell_on_clock(recording, given, diagnosis);
   return diagnosis;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/identify/diagnosis/compressed.hpp"
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/search/search.hpp"
@@ -39,6 +40,7 @@ struct Judges {
   /// Which channels may be corrected a little with what was found.
   OpenChannels open;
   const std::vector<std::optional<double>>& outside_shares;  ///< per input
+  Compressed compressed = {};
 };
 
 /// `tell` is called before each and may throw to end it all. What has no name repairs nothing, what
