@@ -53,6 +53,7 @@ std::string head(const DetectReport& report, const MomentText& moment) {
 std::string corrected_text(const std::vector<std::string>& predictions, std::size_t width) {
   if (predictions.empty()) return "";
   std::vector<std::string> tags;
+  tags.reserve(predictions.size());
   for (const std::string& tag : predictions) tags.push_back(printable(tag));
   return wrapped("Not used: " + config::join(tags) +
                      ". What stands there is corrected by the measurement, as a controller's bias "
