@@ -180,6 +180,12 @@ Request request_of(const httplib::Request& given) {
   return request;
 }
 
+/// The library sends a part that is asked for without a look at where the answer ends: it is not
+/// asked. The request is its own, and not const.
+void ask_for_all(const httplib::Request& given) {
+  const_cast<httplib::Request&>(given).ranges.clear();
+}
+
 /// As it is, without the library's compression, which costs more than the network here.
 void send(httplib::Response& response, const std::string& type,
           std::shared_ptr<const std::string> body) {
@@ -262,11 +268,13 @@ void Server::Parts::set_up() {
   // All is answered before the library looks for whom to ask, and so before it reads a body.
   server.set_pre_routing_handler(
       [this](const httplib::Request& given, httplib::Response& response) {
+        ask_for_all(given);
         answer(given, response);
         return httplib::Server::HandlerResponse::Handled;
       });
   // Of the errors that the library finds.
-  server.set_error_handler([this](const httplib::Request&, httplib::Response& response) {
+  server.set_error_handler([this](const httplib::Request& given, httplib::Response& response) {
+    ask_for_all(given);
     if (response.has_header("Content-Type")) return;
     ++refused;
     reply(error_reply(response.status, response.status == 414

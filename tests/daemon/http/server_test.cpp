@@ -68,6 +68,27 @@ TEST_CASE("a file that a browser has is not sent again") {
   CHECK_THAT(bench.ask("HEAD /"), Contains("Content-Length: "));
 }
 
+// Beyond its end lies the memory of others.
+TEST_CASE("whatever part is asked for, the whole answer comes") {
+  const Bench bench;
+  for (const char* line : {"GET /page.css", "GET /nothing", "GET /api/v1/units"}) {
+    const std::string whole = bench.ask(line);
+    const std::string body = whole.substr(whole.find("\r\n\r\n"));
+    for (const char* range : {"0-5", "3-", "-7", "100000-200000", "0-99999999", "99999999-",
+                              "0-1,5-9", "1-0", "0-5,7-4", "0-5,99999999-1"}) {
+      CAPTURE(line, range);
+      const std::string answer = bench.ask(line, "Range: bytes=" + std::string(range) + "\r\n");
+      CHECK(answer.find("multipart") == std::string::npos);
+      if (answer.starts_with("HTTP/1.1 416")) {
+        CHECK(Json::accept(answer.substr(answer.find("\r\n\r\n") + 4)));
+        continue;
+      }
+      CHECK(answer.substr(0, 12) == whole.substr(0, 12));
+      CHECK(answer.substr(answer.find("\r\n\r\n")) == body);
+    }
+  }
+}
+
 TEST_CASE("a name that is not ours is refused before anything is told") {
   const Bench bench;
   const Connection connection(bench.server.address().port);
