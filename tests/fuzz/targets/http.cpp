@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -48,7 +50,8 @@ std::string answer(int port, std::string_view bytes) {
                               sizeof place)) != 0 &&
          errno == EADDRNOTAVAIL)  // all ports are waiting
     usleep(100'000);
-  require(connected == 0, "the server takes no connection");
+  require(connected == 0,
+          ("the server takes no connection: " + std::string(std::strerror(errno))).c_str());
   const linger at_once{1, 0};  // or all ports are waiting soon
   setsockopt(connection, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
   const timeval patience{20, 0};
