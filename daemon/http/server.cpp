@@ -61,8 +61,8 @@ class Exchange : public httplib::Stream {
  public:
   Exchange(int socket, const std::string& head) : socket_(socket), head_(head) {}
 
-  bool is_readable() const override { return read_ < head_.size(); }
-  bool is_writable() const override {
+  [[nodiscard]] bool is_readable() const override { return read_ < head_.size(); }
+  [[nodiscard]] bool is_writable() const override {
     pollfd polled{socket_, POLLOUT, 0};
     const auto wait = std::chrono::milliseconds(kWriteTimeout).count();
     if (poll(&polled, 1, static_cast<int>(wait)) <= 0) return false;
@@ -83,7 +83,7 @@ class Exchange : public httplib::Stream {
   void get_local_ip_and_port(std::string& ip, int& port) const override {
     name(getsockname, ip, port);
   }
-  socket_t socket() const override { return socket_; }
+  [[nodiscard]] socket_t socket() const override { return socket_; }
 
  private:
   void name(int (*ask)(int, sockaddr*, socklen_t*), std::string& ip, int& port) const {
