@@ -56,12 +56,12 @@ void FeedbackCorrection::end_block() {
   const double share = block_share();
   const bool says = share > 0.0;
   const bool agrees = says && std::abs(share - share_) <= limits::kAgree * share;
-  // Two blocks in a row have to say the same, and two that it is over.
+  // Two blocks in a row have to say the same, or more that it is over.
   if (corrected_)
     agreeing_ = says ? 0 : agreeing_ + 1;
   else
     agreeing_ = agrees ? agreeing_ + 1 : 0;
-  if (says) share_ = share;
+  if (says || !corrected_) share_ = share;
   if (agreeing_ >= (corrected_ ? limits::kBlocksOver : 1)) {
     corrected_ = !corrected_;
     agreeing_ = 0;

@@ -55,7 +55,7 @@ class FeedbackCorrection {
   double moves_ = 0.0;       // squares of the measurement's moves, summed over the block
   double bias_moves_ = 0.0;  // of the bias'
   double residuals_ = 0.0;   // squares
-  double share_ = 0.0;       // of the last block that had one
+  double share_ = 0.0;       // of the last block; while it is corrected, that had one
   int agreeing_ = 0;         // blocks in a row that say the same, up to what is asked
   bool corrected_ = false;
 };
