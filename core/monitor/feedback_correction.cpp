@@ -56,7 +56,7 @@ void FeedbackCorrection::end_block() {
   const double share = block_share();
   const bool says = share > 0.0;
   const bool agrees = says && std::abs(share - share_) <= limits::kAgree * share;
-  // Two blocks in a row have to say the same, or more that it is over.
+  // It begins where two blocks in a row say the same, and is over after some that do not.
   if (corrected_)
     agreeing_ = says ? 0 : agreeing_ + 1;
   else

@@ -66,7 +66,7 @@ class Screen {
   /// The next frame that leaves, with its qualities as found; null where there is none. Valid until
   /// the next call.
   [[nodiscard]] const Frame* next();
-  /// No frame follows for now, and those that wait are to leave (`next`): what is far outside in
+  /// The next frame is of another run, and those that wait are to leave (`next`): what is far in
   /// them is marked, for nobody will know whether it stays.
   void end_run();
 

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "core/model/linear_model.hpp"
@@ -49,15 +48,13 @@ double rounded(double value, double step) {
   return step > 0.0 ? std::round(value / step) * step : value;
 }
 
-/// When the predictions were said to be corrected, or not to be any more, after 1500 samples; -1:
-/// not. `share`: by which they are; 0: not at all. `from`: they are from that sample on, `until`
-/// that one.
+/// When the predictions were said to be corrected, or not to be any more, within 1500 samples; -1:
+/// not. `share`: by which they are; 0: not at all. `step`: what values are rounded to.
 struct Outcome {
   int corrected_at = -1, over_at = -1;
   double share = 0.0;
 };
-Outcome run(const Kind& kind, double share, std::uint64_t seed, double step = 0.0, int from = 0,
-            int until = 1500) {
+Outcome run(const Kind& kind, double share, std::uint64_t seed, double step) {
   std::mt19937_64 random(seed);
   const TransferFunction u_file = channel(random), d_file = channel(random);
   const TransferFunction u_control = kind.other_file ? near(u_file, random) : u_file;
@@ -70,8 +67,8 @@ Outcome run(const Kind& kind, double share, std::uint64_t seed, double step = 0.
   LinearModel plant = model_of(u_plant, kind.other_plant ? near(d_control, random) : d_control);
   FeedbackCorrection asked;
   Outcome outcome;
-  double bias = share > 0.0 && from == 0 ? 50.0 : 0.0, integral = 0.0, noise = 0.0, setpoint = 0.0,
-         u = 0.0, d = 0.0;
+  double bias = share > 0.0 ? 50.0 : 0.0, integral = 0.0, noise = 0.0, setpoint = 0.0, u = 0.0,
+         d = 0.0;
   std::normal_distribution<double> normal;
   for (int k = 0; k < 1500; ++k) {
     noise = 0.7 * noise + kind.noise * normal(random);
@@ -80,7 +77,7 @@ Outcome run(const Kind& kind, double share, std::uint64_t seed, double step = 0.
     asked.take(y, predicted, file.output()(0));
     if (asked.corrected() && outcome.corrected_at < 0) outcome.corrected_at = k;
     if (!asked.corrected() && outcome.corrected_at >= 0 && outcome.over_at < 0) outcome.over_at = k;
-    bias += (k >= from && k < until ? share : 0.0) * (y - predicted);
+    bias += share * (y - predicted);
     if (k % 60 == 0) setpoint = normal(random);
     if (k % 45 == 0) d = normal(random);
     if (kind.closed) {
