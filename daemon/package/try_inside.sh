@@ -42,13 +42,16 @@ echo "read: the journal, by who is in the group mpm"
 
 before=$(pid)
 kill -9 "$before"
+killed=$(date +%s%N)
 comes_back() { systemctl is-active -q mpmd && [ "$(pid)" != "$before" ]; }
 wait_for 10 "restart after kill -9" comes_back
+away=$((($(date +%s%N) - killed) / 1000000))
+[ "$away" -le 2000 ] || fail "away for $away ms after kill -9"
 goes_on() { [ "$(journalctl -u mpmd --no-pager | grep -c 'goes on behind [1-9]')" -ge "$1" ]; }
 wait_for 10 "samples from before" goes_on 1
 stands() { status | grep -q '; 1 alarm$'; }
 wait_for 10 "alarm after kill -9" stands
-echo "killed: back with another process: $(status)"
+echo "killed: back after $away ms: $(status)"
 
 before=$(pid)
 systemctl reload mpmd || fail "cannot be reloaded"
@@ -129,6 +132,7 @@ wait_for 90 "end of tries" given_up
 [ "$(tries)" -ge 10 ] || fail "gives up after $(tries) tries"
 echo "given up: a port that is taken, after $(tries) tries"
 kill "$other"
+wait "$other" || :
 rm -r /run/systemd/system/mpmd.service.d
 systemctl daemon-reload
 systemctl reset-failed mpmd

@@ -11,7 +11,8 @@ said=$(systemd-analyze verify --man=no "$copy/mpmd.service" 2>&1 | grep mpmd.ser
 [ -z "$said" ] || { printf '%s\n' "$said" >&2; exit 1; }
 # What fails at once, in two seconds at most, reaches the limit of starts with the pauses between.
 setting() { sed -n "s/^$1=//p" "$service"; }
-[ $(($(setting StartLimitBurst) * ($(setting RestartSec) + 2))) -le "$(setting StartLimitIntervalSec)" ] ||
+pause=$(setting RestartSec)  # milliseconds
+[ $(($(setting StartLimitBurst) * (${pause%ms} + 2000))) -le $(($(setting StartLimitIntervalSec) * 1000)) ] ||
   { echo "a start that always fails would be tried for ever" >&2; exit 1; }
 # A key that systemd does not know is only told of; one that it does counts.
 systemd-analyze security --offline=yes --threshold=20 "$copy/mpmd.service" | tail -n 1
