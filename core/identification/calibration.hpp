@@ -77,8 +77,15 @@ inline constexpr int kHeldSteps = 3;  ///< of Gauss-Newton
 
 // Which channels, of which form (structure.hpp).
 inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.
-inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
-inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
+
+// What else fits (rival_fits.hpp).
+/// -2 ln likelihood higher, at most: odds of 1 to 150 (Kass and Raftery 1995: very strong).
+inline constexpr double kAsGood = 10.0;
+inline constexpr double kWorthFitting = 30.0;  ///< likewise, on the regression of high order
+/// Time constants to begin from, of the others' median.
+inline constexpr std::array kBesideTimes = {0.5, 1.0, 2.0};
+inline constexpr int kTrialSteps = 6;        ///< of Gauss-Newton
+inline constexpr double kWorthRicher = 4.0;  ///< fall of BIC
 /// Where a channel with lead begins, times the time constant that it had: slow tail, overshoot,
 /// inverse response, a quick answer that mostly goes back, one that goes back further than it came,
 /// a quick answer that creeps on.

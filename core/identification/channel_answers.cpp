@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/identification/calibration.hpp"
+#include "core/identification/rival_fits.hpp"
 #include "core/identification/structure.hpp"
 #include "core/statistics/f_distribution.hpp"
 #include "core/statistics/normal.hpp"
@@ -128,6 +129,36 @@ void state_step(const PredictionErrorFit& fit, std::size_t which, double sample_
   }
 }
 
+/// The gain is no better known than all fits say that the data bear.
+void widen_gain(const Material& material, const std::vector<RivalFit>& rivals,
+                ChannelAnswer& answer) {
+  for (const RivalFit& rival : rivals)
+    for (std::size_t c = 0; c < rival.fit.channels.size(); ++c) {
+      const ChannelShape& shape = rival.fit.channels[c];
+      if (shape.input != answer.input) continue;
+      const double unit = integrates(shape.form) ? 1.0 / material.all.sample_time_s : 1.0;
+      const Interval95 gain =
+          around(unit * shape.gain, unit * known_sd(material, answer.cv, rival.fit, c)(0));
+      if (gain.low < answer.gain.low || gain.high > answer.gain.high)
+        answer.entangled_with = rival.input;
+      answer.gain = {std::min(answer.gain.low, gain.low), std::max(answer.gain.high, gain.high)};
+    }
+}
+
+/// The input that may stand in place of a channel's; -1: none.
+int replacement(const std::vector<RivalFit>& rivals, int input) {
+  const auto found = std::find_if(rivals.begin(), rivals.end(), [&](const RivalFit& rival) {
+    return rival.in_place_of == input;
+  });
+  return found == rivals.end() ? -1 : found->input;
+}
+
+/// s.d. of a gain to the gain, of an interval that need not have it in the middle.
+double relative_sd(const ChannelAnswer& answer) {
+  return 0.5 * (answer.gain.high - answer.gain.low) /
+         (kNormalTwoSided95 * std::abs(answer.dynamics->gain));
+}
+
 double typical_time_constant(const HighOrderModel& model,
                              const std::optional<PredictionErrorFit>& fit) {
   std::vector<double> times;
@@ -138,65 +169,85 @@ double typical_time_constant(const HighOrderModel& model,
   return times[times.size() / 2];
 }
 
+/// Why a channel that was not fitted is not in the model.
+LeftOut reason_of_unfitted(const Material& material, const HighOrderModel& model,
+                           const ChannelHint& hint, double spread, const ChannelAnswer& answer) {
+  const double moves = material.input_spread(answer.input);
+  const auto input = static_cast<std::size_t>(answer.input);
+  const std::optional<double>& outside = material.outside[input];
+  if (moves == 0.0) return LeftOut::kStill;
+  if (hint.no_relation) return LeftOut::kGivenNone;
+  if (!(spread > 0.0)) return LeftOut::kUnknownCv;
+  if (!model.sound) return LeftOut::kTooFewRows;
+  if (outside && *outside < kOnlyFeedback && material.feedback_p_value < kFeedback &&
+      !material.test_signals[input])
+    return LeftOut::kOnlyFeedback;
+  return answer.visible_gain * moves > kMatters * spread ? LeftOut::kHidden : LeftOut::kNoRelation;
+}
+
+/// Whether a fitted channel is in the model, as far as its own numbers say.
+LeftOut reason_of_fitted(const ChannelAnswer& answer, int sign, bool refused) {
+  const double gain = answer.dynamics->gain;
+  if (answer.left_out == LeftOut::kOnlyFeedback) return answer.left_out;
+  if (gain == 0.0 || gain * sign < 0.0) return LeftOut::kWrongSign;
+  if (refused) return LeftOut::kNotConfirmed;
+  if (answer.contribution < kLeastContribution) return LeftOut::kTooSmall;
+  return relative_sd(answer) < kVagueGain ? LeftOut::kIdentified : LeftOut::kVague;
+}
+
 }  // namespace
 
 std::vector<ChannelAnswer> channel_answers(const Material& material, const HighOrderModel& model,
                                            const std::vector<ChannelHint>& hints, int cv,
                                            const std::optional<PredictionErrorFit>& fit,
                                            const NoiseAssumption& noise, bool refused) {
-  std::vector<ChannelAnswer> answers;
+  std::vector<ChannelAnswer> answers(hints.size());
   const double spread =
       spread_of(as_measured(material, cv, material.all.cvs.col(cv)), material.all.known.col(cv));
   const double typical = model.sound ? typical_time_constant(model, fit) : 1.0;
-  std::vector<double> worth;
-  if (fit) worth = worth_of_channels(material.all, cv, *fit, noise);
-  for (std::size_t i = 0; i < hints.size(); ++i) {
-    ChannelAnswer answer;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    ChannelAnswer& answer = answers[i];
     answer.cv = cv;
     answer.input = static_cast<int>(i);
-    const auto input = static_cast<Index>(i);
     answer.visible_gain = model.sound
                               ? kNormalTwoSided95 * 2.0 * gain_sd(model, answer.input, typical)
                               : std::numeric_limits<double>::infinity();
-    const std::optional<double>& outside = material.outside[i];
-    if (material.input_spread(input) == 0.0)
-      answer.left_out = LeftOut::kStill;
-    else if (hints[i].no_relation)
-      answer.left_out = LeftOut::kGivenNone;
-    else if (!(spread > 0.0))
-      answer.left_out = LeftOut::kUnknownCv;
-    else if (!model.sound)
-      answer.left_out = LeftOut::kTooFewRows;
-    else if (outside && *outside < kOnlyFeedback && material.feedback_p_value < kFeedback &&
-             !material.test_signals[i])
-      answer.left_out = LeftOut::kOnlyFeedback;
-    else if (answer.visible_gain * material.input_spread(input) > kMatters * spread)
-      answer.left_out = LeftOut::kHidden;
-    if (fit)
-      for (std::size_t c = 0; c < fit->channels.size(); ++c) {
-        const ChannelShape& shape = fit->channels[c];
-        if (shape.input != answer.input) continue;
-        state_numbers(material, *fit, c, answer);
-        state_step(*fit, c, material.all.sample_time_s, answer);
-        answer.p_value =
-            f_upper_tail(worth[c] / kNumbersOfChannel, kNumbersOfChannel, std::max(1.0, fit->rows));
-        const VectorXd given = response(shape, material.all.inputs.col(input), material.all.runs);
-        answer.contribution = spread_of(given, VectorXd::Ones(given.size())) / spread;
-        if (answer.left_out == LeftOut::kOnlyFeedback) continue;
-        const double relative = std::abs(known_sd(material, cv, *fit, c)(0) / shape.gain);
-        if (shape.gain == 0.0 || shape.gain * hints[i].sign < 0.0)
-          answer.left_out = LeftOut::kWrongSign;
-        else if (refused)
-          answer.left_out = LeftOut::kNotConfirmed;
-        else if (answer.contribution < kLeastContribution)
-          answer.left_out = LeftOut::kTooSmall;
-        else if (!(relative < kVagueGain))
-          answer.left_out = LeftOut::kVague;
-        else
-          answer.left_out = LeftOut::kIdentified;
-        if (answer.left_out == LeftOut::kVague) answer.entangled_with = partner(*fit, c);
-      }
-    answers.push_back(std::move(answer));
+    answer.left_out = reason_of_unfitted(material, model, hints[i], spread, answer);
+  }
+  if (!fit) return answers;
+  std::vector<int> hidden;
+  for (const ChannelAnswer& answer : answers)
+    if (answer.left_out == LeftOut::kHidden &&
+        std::none_of(fit->channels.begin(), fit->channels.end(),
+                     [&](const ChannelShape& shape) { return shape.input == answer.input; }))
+      hidden.push_back(answer.input);
+  const std::vector<double> worth = worth_of_channels(material.all, cv, *fit, noise);
+  const std::vector<RivalFit> rivals = rival_fits(material, model, hints, cv, *fit, noise, hidden);
+  for (std::size_t c = 0; c < fit->channels.size(); ++c) {
+    const ChannelShape& shape = fit->channels[c];
+    ChannelAnswer& answer = answers[static_cast<std::size_t>(shape.input)];
+    state_numbers(material, *fit, c, answer);
+    state_step(*fit, c, material.all.sample_time_s, answer);
+    answer.p_value =
+        f_upper_tail(worth[c] / kNumbersOfChannel, kNumbersOfChannel, std::max(1.0, fit->rows));
+    const double known = relative_sd(answer);
+    widen_gain(material, rivals, answer);
+    const double wider = relative_sd(answer);
+    if (wider > known)
+      for (std::size_t k = 0; k < answer.step.size(); ++k)
+        answer.step_sd[k] = std::hypot(answer.step_sd[k],
+                                       answer.step[k] * std::sqrt(wider * wider - known * known));
+    const VectorXd given = response(shape, material.all.inputs.col(shape.input), material.all.runs);
+    answer.contribution = spread_of(given, VectorXd::Ones(given.size())) / spread;
+    answer.left_out =
+        reason_of_fitted(answer, hints[static_cast<std::size_t>(shape.input)].sign, refused);
+    if (!(known < kVagueGain)) answer.entangled_with = partner(*fit, c);
+    if (const int other = replacement(rivals, shape.input); other >= 0) {
+      if (answer.left_out == LeftOut::kIdentified) answer.left_out = LeftOut::kVague;
+      answer.entangled_with = other;
+      answer.gain = {std::min(0.0, answer.gain.low), std::max(0.0, answer.gain.high)};
+    }
+    if (answer.left_out != LeftOut::kVague) answer.entangled_with = -1;
   }
   return answers;
 }

@@ -198,8 +198,8 @@ ModelSpec levelled_model(const Material& material, const std::vector<CvOutcome>&
 }
 
 /// Channels of a vague gain (slow ones, of which little more than the slope is seen, and those that
-/// mostly go back) stay where the free run of unseen rows is clearly worse without them. Where
-/// feedback moves the inputs, a free run does not tell.
+/// mostly go back) stay where the free run of unseen rows is clearly worse without them, unless not
+/// even the sign is known. Where feedback moves the inputs, a free run does not tell.
 void keep_vague_that_matter(const Material& material, const std::vector<CvOutcome>& outcomes,
                             std::vector<ChannelAnswer>& channels) {
   if (!material.open_loop) return;
@@ -208,7 +208,8 @@ void keep_vague_that_matter(const Material& material, const std::vector<CvOutcom
     std::vector<ChannelAnswer> kept = channels;
     bool any = false;
     for (ChannelAnswer& answer : kept)
-      if (answer.cv == cv && answer.left_out == LeftOut::kVague) {
+      if (answer.cv == cv && answer.left_out == LeftOut::kVague &&
+          answer.gain.low * answer.gain.high > 0.0) {
         answer.left_out = LeftOut::kIdentified;
         any = true;
       }

@@ -74,6 +74,13 @@ std::vector<ChannelShape> grid(const HighOrderModel& model, const ChannelHint& h
   return shapes;
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// An orthonormal basis of what the columns span.
 MatrixXd basis_of(const MatrixXd& columns) {
   if (columns.cols() == 0) return columns;
@@ -267,14 +274,7 @@ StartSearch::Set StartSearch::full(double time_constant, double dead_time) const
     if (!shape.dead_time_known) shape.dead_time = dead_time;
     channels.push_back(shape);
   }
-  MatrixXd all(model_.factor.rows(), static_cast<Index>(channels.size()));
-  for (std::size_t c = 0; c < channels.size(); ++c)
-    all.col(static_cast<Index>(c)) = column(channels[c]);
-  const VectorXd gains = Eigen::ColPivHouseholderQR<MatrixXd>(all).solve(right_);
-  for (std::size_t c = 0; c < channels.size(); ++c)
-    set_number(channels[c], ShapeNumber::kGain, gains(static_cast<Index>(c)), 0.0);
-  Set set = fitted(std::move(channels));
-  return fitted(std::move(set.channels));  // once more: it began far away
+  return fitted_from_gains(std::move(channels));
 }
 
 void StartSearch::shrink(std::vector<Set>& sets) const {
@@ -340,6 +340,40 @@ std::optional<std::vector<ChannelShape>> StartSearch::enlarged(
   }
   if (!most || !(before - most->left > kWorthTrying * model_.variance)) return std::nullopt;
   return std::move(most->channels);
+}
+
+StartSearch::Set StartSearch::fitted_from_gains(std::vector<ChannelShape> channels) const {
+  MatrixXd all(model_.factor.rows(), static_cast<Index>(channels.size()));
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    all.col(static_cast<Index>(c)) = column(channels[c]);
+  const VectorXd gains = Eigen::ColPivHouseholderQR<MatrixXd>(all).solve(right_);
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    set_number(channels[c], ShapeNumber::kGain, gains(static_cast<Index>(c)), 0.0);
+  Set set = fitted(std::move(channels));
+  return fitted(std::move(set.channels));  // once more: it began far away
+}
+
+StartSearch::Start StartSearch::beside(const std::vector<ChannelShape>& channels, int input) const {
+  std::vector<double> times = {}, dead_times = {};
+  for (const ChannelShape& shape : channels) {
+    times.push_back(shape.time_constant);
+    dead_times.push_back(shape.dead_time);
+  }
+  std::optional<Set> best;
+  for (const double ratio : kBesideTimes) {
+    std::vector<ChannelShape> more = channels;
+    ChannelShape shape = choices_[static_cast<std::size_t>(input)].shapes.front();
+    shape.time_constant = std::max(kFastestStart, ratio * median(times));
+    if (!shape.dead_time_known) shape.dead_time = median(dead_times);
+    more.push_back(shape);
+    Set set = fitted_from_gains(std::move(more));
+    if (!best || set.left < best->left) best = std::move(set);
+  }
+  return {std::move(best->channels), best->left / model_.variance};
+}
+
+double StartSearch::cost(const std::vector<ChannelShape>& channels) const {
+  return fitted(channels).left / model_.variance;
 }
 
 StartSearch::Shared StartSearch::solved(const std::vector<ChannelShape>& channels,

@@ -27,6 +27,15 @@ class StartSearch {
   /// it.
   [[nodiscard]] std::optional<std::vector<ChannelShape>> enlarged(
       const std::vector<ChannelShape>& channels) const;
+  /// Channels, and how far they are from the regression: -2 ln likelihood, but for a constant.
+  struct Start {
+    std::vector<ChannelShape> channels;
+    double cost = 0.0;
+  };
+  /// The channels and one of `input` that is about as fast as they are, all numbers fitted anew:
+  /// not what explains most of the rest, but what may take the place of some of them.
+  [[nodiscard]] Start beside(const std::vector<ChannelShape>& channels, int input) const;
+  [[nodiscard]] double cost(const std::vector<ChannelShape>& channels) const;
   /// The same inputs with two lags that all of them share, and a lead each: what levels, or
   /// temperatures, that act on one another have in common. Given the lags and dead times it is
   /// linear, so the best of a grid is the best there is, however far first-order channels are from
@@ -69,6 +78,8 @@ class StartSearch {
   [[nodiscard]] Eigen::VectorXd column(const ChannelShape& shape) const;
   [[nodiscard]] Eigen::MatrixXd columns(const std::vector<ChannelShape>& channels) const;
   [[nodiscard]] Set fitted(std::vector<ChannelShape> channels) const;
+  /// The same from gains that are best for the times given.
+  [[nodiscard]] Set fitted_from_gains(std::vector<ChannelShape> channels) const;
   [[nodiscard]] double bic(const Set& set) const;
   [[nodiscard]] bool better(const Set& a, const Set& b) const { return bic(a) < bic(b); }
   [[nodiscard]] Set full(double time_constant, double dead_time) const;

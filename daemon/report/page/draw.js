@@ -259,7 +259,7 @@ function figure(plot, {keys = true, title = plot.title, height = plot.low ? 110 
   };
   measure();
   const options = {
-    width: 300, height, padding: [6, 10, 0, 0], legend: {show: false}, tzDate: localDate, ms: 1,
+    width: 300, height, padding: [6, 10, 0, 0], legend: {show: false}, tzDate: localDate, ms: 1e-3,
     cursor: {drag: {x: !plot.paths, y: false, setScale: !plot.onZoom},
       bind: plot.onZoom ? {dblclick: () => () => { plot.onZoom(null); return null; }} : {}, points: {show: false}, y: false,
       sync: plot.group ? {key: plot.group, setSeries: false} : undefined},

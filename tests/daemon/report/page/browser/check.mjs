@@ -27,6 +27,13 @@ const unknownTicks = (page) => page.evaluate(() => [...document.querySelectorAll
   .flatMap((each) => each.plot ? each.plot.axes.flatMap((axis) => axis._values || []) : [])
   .filter((text) => text === "–").length);
 
+// How far apart ticks of dates are, in seconds, where that is no whole part of a minute, an hour or a day.
+const oddTimes = (page) => page.evaluate(() => [...document.querySelectorAll("figure")]
+  .filter((each) => each.plot && each.plot.scales.x.time)
+  .map((each) => each.plot.axes[0]._splits[1] - each.plot.axes[0]._splits[0])
+  .filter((step) => [[1, 60], [60, 3600], [3600, 86400]].some(([unit, whole]) =>
+    step >= unit && step < whole && (step % unit !== 0 || whole % step !== 0))));
+
 // Plots that are wider than their figures, and grids with plots that are not in line.
 const tooWide = (page) => page.evaluate(() => [...document.querySelectorAll("figure")]
   .filter((each) => each.plot && each.plot.width > each.getBoundingClientRect().width + 1).length);
@@ -58,6 +65,7 @@ for (const [name, file] of [["diagnosis", diagnosis], ["identification", identif
       await page.evaluate(() => document.querySelectorAll("details").forEach((each) => { each.open = true; }));
       await page.waitForTimeout(150);
       assert.equal(await empty(page), 0, `${what}: empty plots`);
+      assert.deepEqual(await oddTimes(page), [], `${what}: times that are not round`);
       assert.deepEqual(await stickingOut(page), [], what);
       if (width === 1280) assert.equal(await outOfLine(page), 0, `${what}: plots out of line`);
       assert.ok(await overflow(page) <= 0, `${what}: all open, wider than the window`);
