@@ -354,7 +354,9 @@ StartSearch::Set StartSearch::fitted_from_gains(std::vector<ChannelShape> channe
 }
 
 StartSearch::Start StartSearch::beside(const std::vector<ChannelShape>& channels, int input) const {
-  std::vector<double> times = {}, dead_times = {};
+  std::vector<double> times, dead_times;
+  times.reserve(channels.size());
+  dead_times.reserve(channels.size());
   for (const ChannelShape& shape : channels) {
     times.push_back(shape.time_constant);
     dead_times.push_back(shape.dead_time);
