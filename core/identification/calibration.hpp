@@ -79,8 +79,9 @@ inline constexpr int kHeldSteps = 3;  ///< of Gauss-Newton
 inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.
 
 // What else fits (rival_fits.hpp).
-/// -2 ln likelihood higher, at most: odds of 1 to 150 (Kass and Raftery 1995: very strong).
-inline constexpr double kAsGood = 10.0;
+/// -2 ln likelihood higher, at most: odds of 1 to 20, beyond which Kass and Raftery (1995) speak of
+/// strong evidence.
+inline constexpr double kAsGood = 6.0;
 inline constexpr double kWorthFitting = 30.0;  ///< likewise, on the regression of high order
 /// Time constants to begin from, of the others' median.
 inline constexpr std::array kBesideTimes = {0.5, 1.0, 2.0};

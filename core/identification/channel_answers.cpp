@@ -186,13 +186,15 @@ LeftOut reason_of_unfitted(const Material& material, const HighOrderModel& model
 }
 
 /// Whether a fitted channel is in the model, as far as its own numbers say.
-LeftOut reason_of_fitted(const ChannelAnswer& answer, int sign, bool refused) {
+/// `known`: s.d. of the gain to the gain, beside the channels that were chosen.
+LeftOut reason_of_fitted(const ChannelAnswer& answer, double known, int sign, bool refused) {
   const double gain = answer.dynamics->gain;
   if (answer.left_out == LeftOut::kOnlyFeedback) return answer.left_out;
   if (gain == 0.0 || gain * sign < 0.0) return LeftOut::kWrongSign;
   if (refused) return LeftOut::kNotConfirmed;
   if (answer.contribution < kLeastContribution) return LeftOut::kTooSmall;
-  return relative_sd(answer) < kVagueGain ? LeftOut::kIdentified : LeftOut::kVague;
+  const bool sign_known = answer.gain.low * answer.gain.high > 0.0;
+  return known < kVagueGain && sign_known ? LeftOut::kIdentified : LeftOut::kVague;
 }
 
 }  // namespace
@@ -240,7 +242,7 @@ std::vector<ChannelAnswer> channel_answers(const Material& material, const HighO
     const VectorXd given = response(shape, material.all.inputs.col(shape.input), material.all.runs);
     answer.contribution = spread_of(given, VectorXd::Ones(given.size())) / spread;
     answer.left_out =
-        reason_of_fitted(answer, hints[static_cast<std::size_t>(shape.input)].sign, refused);
+        reason_of_fitted(answer, known, hints[static_cast<std::size_t>(shape.input)].sign, refused);
     if (!(known < kVagueGain)) answer.entangled_with = partner(*fit, c);
     if (const int other = replacement(rivals, shape.input); other >= 0) {
       if (answer.left_out == LeftOut::kIdentified) answer.left_out = LeftOut::kVague;

@@ -50,7 +50,7 @@ TEST_CASE("an input in the place of one that moves alike is a rival, of one that
     for (const int fitted : {0, 1}) {
       CAPTURE(seed, fitted);
       double cost = 0.0;
-      const std::vector<RivalFit> alike = rivals_of(two_inputs(seed, 0.002), fitted, cost);
+      const std::vector<RivalFit> alike = rivals_of(two_inputs(seed, 0.001), fitted, cost);
       REQUIRE(alike.size() == 2);
       CHECK(alike[0].in_place_of == -1);
       CHECK(alike[0].fit.channels.size() == 2);
@@ -69,7 +69,7 @@ TEST_CASE("what one of two inputs that move alike does is not laid to the other"
   // alone. Now neither, and the gain is said not to be told from the other one's.
   for (std::uint64_t seed = 4200; seed < 4300; seed += 10) {
     CAPTURE(seed);
-    const Identification found = identify(two_inputs(seed, 0.01), {});
+    const Identification found = identify(two_inputs(seed, 0.003), {});
     CHECK(found.model.channels.empty());
     const bool first = answer_of(found, 0, 0).left_out == LeftOut::kVague;
     const ChannelAnswer& vague = answer_of(found, 0, first ? 0 : 1);
