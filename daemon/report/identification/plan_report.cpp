@@ -2,6 +2,7 @@
 
 #include "core/text/number_text.hpp"
 #include "daemon/report/identification/reasons.hpp"
+#include "daemon/report/page/wording.hpp"
 #include "daemon/report/terminal/terminal_text.hpp"
 
 namespace mpm::report {
@@ -24,10 +25,10 @@ std::string sentence(const IdentificationRun& run, const PlannedTest& test) {
     text += "by +-" + number_text(*test.amplitude) + (unit.empty() ? "" : " " + unit) + ", ";
   }
   if (test.signal == TestSignal::kSteps)
-    text += "steps up, down, up and back, each held for " + number_text(test.hold_s) + " s";
+    text += "steps up, down, up and back, each held for " + duration(test.hold_s);
   else
-    text += "two levels at random, " + number_text(test.hold_s) + " s each on average, for " +
-            number_text(test.duration_s) + " s";
+    text += "two levels at random, " + duration(test.hold_s) + " each on average, for " +
+            duration(test.duration_s);
   return text;
 }
 
@@ -59,7 +60,7 @@ std::string plan_text(const IdentificationRun& run) {
     text += wrapped(sentence(run, test), 2, kReasonWidth);
     together_s += test.duration_s;
   }
-  return text + "  one after the other: " + number_text(together_s) + " s\n";
+  return text + "  one after the other: " + duration(together_s) + "\n";
 }
 
 TestLimits test_limits(const config::UnitConfig& unit) {

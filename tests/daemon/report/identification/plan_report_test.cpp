@@ -11,10 +11,10 @@ TEST_CASE("a plan says input, size, levels and length") {
   run.plan = std::vector<PlannedTest>{{1, {0}, TestSignal::kBinary, 0.5, 20.0, 600.0, 60.0},
                                       {0, {0}, TestSignal::kSteps, {}, 60.0, 240.0, 60.0}};
   const std::string text = report::plan_text(run);
-  CHECK(text.find("v (for y): by +-0.5, two levels at random, 20 s each on average, for 600 s") !=
+  CHECK(text.find("v (for y): by +-0.5, two levels at random, 20 s each on average, for 10 min") !=
         std::string::npos);
   CHECK(text.find("give it limits under `simulation`") != std::string::npos);
-  CHECK(text.find("one after the other: 840 s") != std::string::npos);
+  CHECK(text.find("one after the other: 14 min") != std::string::npos);
   const nlohmann::ordered_json json = report::plan_json(run);
   CHECK(json[0]["amplitude"] == 0.5);
   CHECK(json[1]["amplitude"].is_null());
