@@ -1,9 +1,11 @@
 #include "daemon/live/unit_health.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "config/load_unit.hpp"
+#include "tests/core/counter_noise.hpp"
 
 namespace mpm::live {
 namespace {
@@ -14,9 +16,10 @@ using std::chrono::seconds;
 const UnitHealth::Clock::time_point kStart{seconds(1000)};
 
 struct Toy {
-  explicit Toy(double sample_time_s)
+  explicit Toy(double sample_time_s, const std::string& cv = "y")
       : loaded(config::load_unit_text("unit: toy\nsample_time: " + std::to_string(sample_time_s) +
-                                          "\nsignals: {mv: [u], cv: [y]}\n"
+                                          "\nsignals: {mv: [u], cv: [" + cv +
+                                          "]}\n"
                                           "model: {channels: [{cv: y, mv: u, gain: 2, "
                                           "time_constants: [" +
                                           std::to_string(5 * sample_time_s) + "]}]}\n",
@@ -81,6 +84,34 @@ TEST_CASE("the worst trouble gives the state, and what is told elsewhere is one 
   CHECK(toy.health.troubles().size() == 2);
   CHECK(toy.judge(5, {}, "stands by").detail ==
         "stands by; " + std::string(bus::kNothingDetermined));
+}
+
+TEST_CASE("health says of predictions that are corrected by the measurement who predicts instead") {
+  for (const bool corrects : {false, true}) {
+    CAPTURE(corrects);
+    Toy toy(1.0, "{tag: y, prediction: yp}");
+    double model = 0.0, bias = 0.0;
+    for (int k = 0; k < 600; ++k) {
+      have_come(toy, k);
+      const double u = k % 9 - 4.0, y = model + 1.0 + 0.1 * test::uniform(7, k);
+      Frame frame(toy.loaded.config.counts());
+      for (SignalBlock& block : frame.blocks)
+        std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
+      frame.interval = k;
+      frame.source_time_ns = k * std::int64_t{1'000'000'000};
+      frame[SignalKind::kMv].values(0) = u;
+      frame[SignalKind::kCv].values(0) = y;
+      frame[SignalKind::kPrediction].values(0) = model + bias;
+      toy.monitor.push(frame);
+      if (corrects) bias += 0.8 * (y - model - bias);
+      model += (1.0 - std::exp(-0.2)) * (2.0 * u - model);
+    }
+    const std::string told =
+        "the unit file's model predicts y: the predictions that come are corrected by the "
+        "measurement";
+    CAPTURE(toy.judge(600).detail);
+    CHECK((toy.judge(600).detail.find(told) != std::string::npos) == corrects);
+  }
 }
 
 TEST_CASE("a frame that was not complete is told for two samples") {
