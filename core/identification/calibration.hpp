@@ -77,16 +77,8 @@ inline constexpr int kHeldSteps = 3;  ///< of Gauss-Newton
 
 // Which channels, of which form (structure.hpp).
 inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.
-
-// What else fits (rival_fits.hpp).
-/// -2 ln likelihood higher, at most: odds of 1 to 20, beyond which Kass and Raftery (1995) speak of
-/// strong evidence.
-inline constexpr double kAsGood = 6.0;
-inline constexpr double kWorthFitting = 30.0;  ///< likewise, on the regression of high order
-/// Time constants to begin from, of the others' median.
-inline constexpr std::array kBesideTimes = {0.5, 1.0, 2.0};
-inline constexpr int kTrialSteps = 6;        ///< of Gauss-Newton
-inline constexpr double kWorthRicher = 4.0;  ///< fall of BIC
+inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
+inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
 /// Where a channel with lead begins, times the time constant that it had: slow tail, overshoot,
 /// inverse response, a quick answer that mostly goes back, one that goes back further than it came,
 /// a quick answer that creeps on.
@@ -108,6 +100,16 @@ inline constexpr double kSlowestShare = 0.5;
 /// Of the longest run: so slow, it may as well integrate. Chosen.
 inline constexpr double kMayIntegrateShare = 0.1;
 inline constexpr double kSecondShare = 0.2;  ///< of the time constant: where a second begins
+
+// What else fits (rival_fits.hpp).
+/// -2 ln likelihood higher, at most: odds of 1 to 20, beyond which Kass and Raftery (1995) speak of
+/// strong evidence.
+inline constexpr double kAsGood = 6.0;
+inline constexpr double kWorthFitting = 30.0;  ///< likewise, on the regression of high order
+/// Move of a gain, of itself, that makes another input worth fitting.
+inline constexpr double kMovesGain = 0.02;
+/// Time constants to begin from, of the others' median.
+inline constexpr std::array kBesideTimes = {0.5, 1.0, 2.0};
 
 // Whether feedback moves the inputs (feedback_test.hpp).
 inline constexpr int kFeedbackLags = 6;

@@ -374,8 +374,9 @@ StartSearch::Start StartSearch::beside(const std::vector<ChannelShape>& channels
   return {std::move(best->channels), best->left / model_.variance};
 }
 
-double StartSearch::cost(const std::vector<ChannelShape>& channels) const {
-  return fitted(channels).left / model_.variance;
+StartSearch::Start StartSearch::alone(const std::vector<ChannelShape>& channels) const {
+  Set set = fitted(channels);
+  return {std::move(set.channels), set.left / model_.variance};
 }
 
 StartSearch::Shared StartSearch::solved(const std::vector<ChannelShape>& channels,

@@ -32,10 +32,10 @@ class StartSearch {
     std::vector<ChannelShape> channels;
     double cost = 0.0;
   };
-  /// The channels and one of `input` that is about as fast as they are, all numbers fitted anew:
-  /// not what explains most of the rest, but what may take the place of some of them.
+  /// The channels, all numbers fitted anew; and with one of `input` that is about as fast as they
+  /// are: not what explains most of the rest, but what may take the place of some of them.
   [[nodiscard]] Start beside(const std::vector<ChannelShape>& channels, int input) const;
-  [[nodiscard]] double cost(const std::vector<ChannelShape>& channels) const;
+  [[nodiscard]] Start alone(const std::vector<ChannelShape>& channels) const;
   /// The same inputs with two lags that all of them share, and a lead each: what levels, or
   /// temperatures, that act on one another have in common. Given the lags and dead times it is
   /// linear, so the best of a grid is the best there is, however far first-order channels are from

@@ -61,7 +61,7 @@ TEST_CASE("an input in the place of one that moves alike is a rival, of one that
       CHECK(alike[1].fit.channels[0].gain == Approx(1.0).epsilon(0.05));
     }
   double cost = 0.0;
-  CHECK(rivals_of(two_inputs(4130, 0.5), 0, cost).size() == 1);
+  CHECK(rivals_of(two_inputs(4130, 0.5), 0, cost).empty());
 }
 
 TEST_CASE("what one of two inputs that move alike does is not laid to the other") {
