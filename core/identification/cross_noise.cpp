@@ -189,7 +189,8 @@ CrossNoise cross_noise(const IdentificationData& data) {
     const double most = kMostBrought * spread_of(data.cvs.col(i), known);
     if (!disturbance.allFinite() || !brought.col(i).allFinite() ||
         !(brought.col(i).cwiseAbs().maxCoeff() < most) ||
-        !(disturbance.col(i).cwiseAbs().maxCoeff() < most)) {
+        !(disturbance.col(i).cwiseAbs().maxCoeff() < most) ||
+        spread_of(brought.col(i), known) < kLeastBrought * spread_of(disturbance.col(i), known)) {
       brought.col(i).setZero();
       continue;
     }
