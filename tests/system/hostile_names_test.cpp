@@ -126,7 +126,8 @@ TEST_CASE("what strangers write does not fill the memory of a recorder, and that
   CHECK(recorder.wait(std::chrono::seconds(20)) == 0);
   const std::string said = read_file(bench.folder.file("record.err"));
   INFO(said.substr(0, 5000));
-  CHECK(said.find("not recorded: samples of mpm/mv such as those of '0nnn") != std::string::npos);
+  // The first one that comes: a real-time writer's sample may be late for good.
+  CHECK(said.find("not recorded: samples of mpm/mv such as those of '") != std::string::npos);
   CHECK(said.find("is in one file only") != std::string::npos);
   CHECK(said.size() < 5000);
 }
