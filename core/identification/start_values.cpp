@@ -318,6 +318,7 @@ std::vector<std::vector<ChannelShape>> StartSearch::best_sets() const {
       tried.push_back(std::move(set));
   }
   std::vector<std::vector<ChannelShape>> sets;
+  sets.reserve(tried.size());
   for (Set& set : tried) sets.push_back(std::move(set.channels));
   return sets;
 }
