@@ -29,8 +29,8 @@ inline constexpr int kCrossLags = 8;                ///< of every CV
 inline constexpr double kCrossRowsPerColumn = 4.0;  ///< rows behind each column, at least
 inline constexpr double kCrossPValue = 1e-4;        ///< below which the past of another CV tells
 inline constexpr double kMostBrought = 20.0;        ///< s.d. of a CV: beyond, nothing settles
-inline constexpr double kLeastBrought =
-    0.2;  ///< s.d. of it to that of the noise: else it matters little
+/// s.d. of it to that of the CV's noise, or it is not taken off.
+inline constexpr double kLeastBrought = 0.2;
 
 // Start values (start_values.hpp), in samples.
 inline constexpr double kFastestStart = 0.6;

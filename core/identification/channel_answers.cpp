@@ -129,28 +129,30 @@ void state_step(const PredictionErrorFit& fit, std::size_t which, double sample_
   }
 }
 
-/// The gain is no better known than all fits say that the data bear.
-void widen_gain(const Material& material, const std::vector<RivalFit>& rivals,
-                ChannelAnswer& answer) {
-  for (const RivalFit& rival : rivals)
+/// The gain is no better known than all fits say that the data bear: 0 where another input stands
+/// in its place. Returns an input that it cannot be told from; -1: none.
+int widen_gain(const Material& material, const std::vector<RivalFit>& rivals,
+               ChannelAnswer& answer) {
+  int input = -1, replaced_by = -1;
+  const auto reach = [&](const Interval95& gain) {
+    const bool wider = gain.low < answer.gain.low || gain.high > answer.gain.high;
+    answer.gain = {std::min(answer.gain.low, gain.low), std::max(answer.gain.high, gain.high)};
+    return wider;
+  };
+  for (const RivalFit& rival : rivals) {
+    if (rival.in_place_of == answer.input) {
+      reach({0.0, 0.0});
+      replaced_by = rival.input;
+    }
     for (std::size_t c = 0; c < rival.fit.channels.size(); ++c) {
       const ChannelShape& shape = rival.fit.channels[c];
       if (shape.input != answer.input) continue;
       const double unit = integrates(shape.form) ? 1.0 / material.all.sample_time_s : 1.0;
-      const Interval95 gain =
-          around(unit * shape.gain, unit * known_sd(material, answer.cv, rival.fit, c)(0));
-      if (gain.low < answer.gain.low || gain.high > answer.gain.high)
-        answer.entangled_with = rival.input;
-      answer.gain = {std::min(answer.gain.low, gain.low), std::max(answer.gain.high, gain.high)};
+      const double sd = known_sd(material, answer.cv, rival.fit, c)(0);
+      if (reach(around(unit * shape.gain, unit * sd))) input = rival.input;
     }
-}
-
-/// The input that may stand in place of a channel's; -1: none.
-int replacement(const std::vector<RivalFit>& rivals, int input) {
-  const auto found = std::find_if(rivals.begin(), rivals.end(), [&](const RivalFit& rival) {
-    return rival.in_place_of == input;
-  });
-  return found == rivals.end() ? -1 : found->input;
+  }
+  return replaced_by >= 0 ? replaced_by : input;
 }
 
 /// s.d. of a gain to the gain, of an interval that need not have it in the middle.
@@ -233,7 +235,7 @@ std::vector<ChannelAnswer> channel_answers(const Material& material, const HighO
     answer.p_value =
         f_upper_tail(worth[c] / kNumbersOfChannel, kNumbersOfChannel, std::max(1.0, fit->rows));
     const double known = relative_sd(answer);
-    widen_gain(material, rivals, answer);
+    const int other = widen_gain(material, rivals, answer);
     const double wider = relative_sd(answer);
     if (wider > known)
       for (std::size_t k = 0; k < answer.step.size(); ++k)
@@ -243,13 +245,8 @@ std::vector<ChannelAnswer> channel_answers(const Material& material, const HighO
     answer.contribution = spread_of(given, VectorXd::Ones(given.size())) / spread;
     answer.left_out =
         reason_of_fitted(answer, known, hints[static_cast<std::size_t>(shape.input)].sign, refused);
-    if (!(known < kVagueGain)) answer.entangled_with = partner(*fit, c);
-    if (const int other = replacement(rivals, shape.input); other >= 0) {
-      if (answer.left_out == LeftOut::kIdentified) answer.left_out = LeftOut::kVague;
-      answer.entangled_with = other;
-      answer.gain = {std::min(0.0, answer.gain.low), std::max(0.0, answer.gain.high)};
-    }
-    if (answer.left_out != LeftOut::kVague) answer.entangled_with = -1;
+    if (answer.left_out == LeftOut::kVague)
+      answer.entangled_with = other >= 0 ? other : partner(*fit, c);
   }
   return answers;
 }

@@ -109,6 +109,8 @@ TEST_CASE("what strangers write does not fill the memory of a recorder, and that
   std::vector<idl::UnitPublisher> strangers;
   for (int i = 0; i < 60; ++i) {  // names that no unit file gives, and layouts that none needs
     strangers.push_back(stranger(bench, std::to_string(i) + std::string(9 * kMegabyte / 10, 'n')));
+    // The first one is named: its sample has to come, however busy the machine.
+    if (i == 0) REQUIRE(strangers.back().wait_for_readers(std::chrono::seconds(20)));
     static_cast<void>(strangers.back().publish(frame));
     UnitLayout layout;
     layout.unit = "stranger" + std::to_string(i);
@@ -126,8 +128,7 @@ TEST_CASE("what strangers write does not fill the memory of a recorder, and that
   CHECK(recorder.wait(std::chrono::seconds(20)) == 0);
   const std::string said = read_file(bench.folder.file("record.err"));
   INFO(said.substr(0, 5000));
-  // The first one that comes: a real-time writer's sample may be late for good.
-  CHECK(said.find("not recorded: samples of mpm/mv such as those of '") != std::string::npos);
+  CHECK(said.find("not recorded: samples of mpm/mv such as those of '0nnn") != std::string::npos);
   CHECK(said.find("is in one file only") != std::string::npos);
   CHECK(said.size() < 5000);
 }

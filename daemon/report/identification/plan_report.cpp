@@ -1,22 +1,17 @@
 #include "daemon/report/identification/plan_report.hpp"
 
-#include <array>
-#include <utility>
-
 #include "core/text/number_text.hpp"
+#include "daemon/files/times/time_unit.hpp"
 #include "daemon/report/identification/reasons.hpp"
 #include "daemon/report/terminal/terminal_text.hpp"
 
 namespace mpm::report {
 namespace {
 
-/// "18.1 min": three digits, in the largest unit of which there are two.
+/// "18.1 min": three digits, in the unit that reads best.
 std::string duration(double seconds) {
-  constexpr std::array<std::pair<double, const char*>, 3> kUnits = {
-      {{86400.0, " days"}, {3600.0, " h"}, {60.0, " min"}}};
-  for (const auto& [unit, name] : kUnits)
-    if (seconds >= 2.0 * unit) return number_text(seconds / unit) + name;
-  return number_text(seconds) + " s";
+  const files::TimeUnit unit = files::time_unit_of(seconds);
+  return number_text(seconds / unit.seconds) + " " + unit.name;
 }
 
 std::string cv_list(const IdentificationRun& run, const PlannedTest& test) {

@@ -8,15 +8,15 @@
 #include <utility>
 
 #include "daemon/files/times/time_text.hpp"
+#include "daemon/files/times/time_unit.hpp"
 #include "daemon/report/diagnosis/clock_text.hpp"
 
 namespace mpm::report {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMinute = 60.0, kHour = 3600.0, kDay = 86400.0;
-constexpr double kOfTheNext = 2.0;  ///< so much of a unit of time is read in it
-constexpr int kMostDecimals = 4;    ///< of a number that is read without a power of ten
+constexpr double kMinute = 60.0;
+constexpr int kMostDecimals = 4;  ///< of a number that is read without a power of ten
 constexpr double kLargest = 1e7;
 constexpr double kSmallest = 1e-3;  ///< zeros after the point are counted no further
 
@@ -102,16 +102,8 @@ std::string interval(double value, double low, double high) {
   return fixed_text(low, decimals) + " to " + fixed_text(high, decimals);
 }
 
-TimeUnit time_unit_of(double seconds) {
-  const double size = std::abs(seconds);
-  if (size >= kOfTheNext * kDay) return {"days", kDay};
-  if (size >= kOfTheNext * kHour) return {"h", kHour};
-  if (size >= kOfTheNext * kMinute) return {"min", kMinute};
-  return {"s", 1.0};
-}
-
 std::string duration(double seconds, double low, double high) {
-  const TimeUnit unit = time_unit_of(std::isfinite(seconds) ? seconds : high);
+  const files::TimeUnit unit = files::time_unit_of(std::isfinite(seconds) ? seconds : high);
   if (!std::isfinite(low) || !std::isfinite(high))
     return rounded(seconds / unit.seconds, unit.name);
   return rounded(seconds / unit.seconds, low / unit.seconds, high / unit.seconds, unit.name);
@@ -120,7 +112,7 @@ std::string duration(double seconds, double low, double high) {
 std::string duration(double seconds) { return duration(seconds, kUnknown, kUnknown); }
 
 std::string duration_interval(double seconds, double low, double high) {
-  const TimeUnit unit = time_unit_of(std::isfinite(seconds) ? seconds : high);
+  const files::TimeUnit unit = files::time_unit_of(std::isfinite(seconds) ? seconds : high);
   return interval(seconds / unit.seconds, low / unit.seconds, high / unit.seconds);
 }
 

@@ -22,12 +22,6 @@ namespace mpm::report {
 /// The interval itself, in the same digits: "1.381 to 1.424"; empty where there is none.
 [[nodiscard]] std::string interval(double value, double low, double high);
 
-/// The unit of time in which a duration is read best: s, min, h or days.
-struct TimeUnit {
-  const char* name;
-  double seconds;
-};
-[[nodiscard]] TimeUnit time_unit_of(double seconds);
 /// "14 min" of 840 s, rounded by its interval, whose ends are in s too.
 [[nodiscard]] std::string duration(double seconds, double low, double high);
 [[nodiscard]] std::string duration(double seconds);

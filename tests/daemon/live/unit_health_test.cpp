@@ -109,8 +109,9 @@ TEST_CASE("health says of predictions that are corrected by the measurement who 
     const std::string told =
         "the unit file's model predicts y: the predictions that come are corrected by the "
         "measurement";
-    CAPTURE(toy.judge(600).detail);
-    CHECK((toy.judge(600).detail.find(told) != std::string::npos) == corrects);
+    const std::string detail = toy.judge(600).detail;
+    CAPTURE(detail);
+    CHECK((detail.find(told) != std::string::npos) == corrects);
   }
 }
 
