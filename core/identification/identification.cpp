@@ -293,18 +293,11 @@ Identification nothing_of(const Recording& recording) {
   return result;
 }
 
-}  // namespace
-
-Index needed_rows(Index inputs) {
-  return 4 * kRowsPerUnknown * (kUnknownsPerInput * inputs + kOtherUnknowns) / 3;
-}
-
-Identification identify(const Recording& recording, const IdentificationSettings& settings) {
-  if (recording.samples() < needed_rows(recording.inputs.cols())) return nothing_of(recording);
-  std::vector<Index> read_every;
-  const Recording measured = without_seldom_read(recording, read_every);
+/// All of identify() but for what no CV answers. `read_every` as of without_seldom_read().
+Identification identify_measured(const Recording& measured, const std::vector<Index>& read_every,
+                                 const IdentificationSettings& settings) {
   const Material given = material(measured, settings.open_loop);
-  std::vector<CvOutcome> outcomes(static_cast<std::size_t>(recording.cvs.cols()));
+  std::vector<CvOutcome> outcomes(static_cast<std::size_t>(measured.cvs.cols()));
   const Parallel parallel(settings.threads);
   const Material fitted = by_itself(given);
   parallel.for_each(outcomes.size(), [&](std::size_t cv) {
@@ -317,7 +310,7 @@ Identification identify(const Recording& recording, const IdentificationSettings
   result.input_spread.assign(given.input_spread.begin(), given.input_spread.end());
   for (const CvOutcome& outcome : outcomes)
     result.longest_lag_s =
-        std::max(result.longest_lag_s, outcome.longest_lag * recording.sample_time_s);
+        std::max(result.longest_lag_s, outcome.longest_lag * measured.sample_time_s);
   for (const CvOutcome& outcome : outcomes)
     result.channels.insert(result.channels.end(), outcome.channels.begin(), outcome.channels.end());
   for (ChannelAnswer& channel : result.channels)
@@ -335,6 +328,25 @@ Identification identify(const Recording& recording, const IdentificationSettings
     answer.read_every = read_every[static_cast<std::size_t>(answer.cv)];
     result.cvs.push_back(answer);
   }
+  return result;
+}
+
+}  // namespace
+
+Index needed_rows(Index inputs) {
+  return 4 * kRowsPerUnknown * (kUnknownsPerInput * inputs + kOtherUnknowns) / 3;
+}
+
+Identification identify(const Recording& recording, const IdentificationSettings& settings) {
+  if (recording.samples() < needed_rows(recording.inputs.cols())) return nothing_of(recording);
+  std::vector<Index> read_every;
+  const Recording measured = without_seldom_read(recording, read_every);
+  const std::vector<Pulse> pulses = short_pulses(measured);
+  const Recording calm = without(measured, pulses);
+  Identification result = identify_measured(calm, read_every, settings);
+  const std::vector<Pulse> none = unanswered(result.model, calm, pulses);
+  if (none != pulses) result = identify_measured(without(measured, none), read_every, settings);
+  result.unanswered = none;
   return result;
 }
 

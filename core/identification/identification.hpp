@@ -7,6 +7,7 @@
 #include "core/identification/channel_hint.hpp"
 #include "core/identification/channel_shape.hpp"
 #include "core/identification/damped_pair.hpp"
+#include "core/identify/evidence/unanswered_pulses.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
 
@@ -92,7 +93,8 @@ struct Identification {
   double feedback_p_value = 1.0;
   /// A CV goes with a test signal of its own row: it answers within the row.
   bool within_row = false;
-  double longest_lag_s = 0.0;  ///< that was looked at
+  double longest_lag_s = 0.0;     ///< that was looked at
+  std::vector<Pulse> unanswered;  ///< of inputs: taken as not known, for the plant saw none
 };
 
 /// Rows that an identification with so many inputs takes at least; fewer tell nothing.

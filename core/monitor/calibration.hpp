@@ -83,6 +83,17 @@ inline constexpr double kSides = 0.2;
 inline constexpr double kAgree = 0.1;
 }  // namespace feedback_correction
 
+/// When predictions are taken for those of another model (`ModelAgreement`). Chosen: what a
+/// discretisation, a truncated step response, rounding or a historian's deadband make of a model is
+/// less, a gain that is off by a quarter in the channel that moves the CV most is more.
+namespace model_agreement {
+inline constexpr int kBlock = 500;  ///< samples that are asked together
+inline constexpr int kBlocks = 3;   ///< in a row that have to say the same
+/// s.d. of the difference to that of what the model gives: of another model, and no longer.
+inline constexpr double kOther = 0.2;
+inline constexpr double kSame = 0.1;
+}  // namespace model_agreement
+
 /// How an input moves: for the reason of a verdict that is undetermined. Chosen.
 namespace input_motion {
 inline constexpr double kMostOfTheTime = 0.5;  ///< share of the samples

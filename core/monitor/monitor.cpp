@@ -450,6 +450,10 @@ bool Monitor::replaced(int cv) const {
   return state_->reader.screen().ceased(cv) && !state_->reader.predictions().given(cv);
 }
 bool Monitor::corrected(int cv) const { return state_->reader.predictions().corrected(cv); }
+
+bool Monitor::of_other_model(int cv) const {
+  return state_->reader.predictions().of_other_model(cv);
+}
 int Monitor::first_lag() const { return state_->settings.first_lag; }
 int Monitor::last_lag() const { return state_->settings.last_lag; }
 std::span<const JudgedFrame> Monitor::judged() const {

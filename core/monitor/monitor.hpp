@@ -103,6 +103,8 @@ class Monitor {
   [[nodiscard]] bool replaced(int cv) const;
   /// The predictions of the CV that come are corrected by its measurement: they are simulated.
   [[nodiscard]] bool corrected(int cv) const;
+  /// The predictions of the CV that come, and are used, are not what the model gives.
+  [[nodiscard]] bool of_other_model(int cv) const;
   /// How many more samples the CV's verdicts need at least, if all of them serve; 0 = none.
   [[nodiscard]] double samples_needed(int cv) const;
 

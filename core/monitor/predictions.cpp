@@ -9,6 +9,17 @@ namespace mpm {
 
 using calibration::bad_data::kHeldSamples;
 
+namespace {
+
+std::vector<bool> integrating_cvs(const LinearModel& model) {
+  std::vector<bool> integrating;
+  for (int j = 0; j < model.cv_count(); ++j)
+    integrating.push_back(model.integrating().row(j).any());
+  return integrating;
+}
+
+}  // namespace
+
 std::vector<bool> channels_of(const LinearModel& model, int length) {
   std::vector<bool> acts;
   for (int i = 0; i < model.input_count(); ++i)
@@ -27,10 +38,12 @@ Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_
       may_predict_(may_predict),
       acts_(acts),
       has_model_(std::find(acts.begin(), acts.end(), true) != acts.end()),
+      integrating_(integrating_cvs(model)),
       starting_samples_(starting_samples),
       settling_samples_(settling_samples),
       given_(may_predict.size(), false),
       corrections_(may_predict.size()),
+      agreements_(may_predict.size()),
       settling_(may_predict.size(), 0) {}
 
 double Predictions::residual(int cv, const Frame& frame) const {
@@ -65,6 +78,7 @@ void Predictions::begin(const Frame& frame, const UnitInputs& inputs) {
 
 void Predictions::distrust(int input) {
   const std::size_t cvs = given_.size();
+  simulation_settles_ = settling_samples_;
   for (std::size_t j = 0; j < cvs; ++j)
     if (!given_[j] && acts_[static_cast<std::size_t>(input) * cvs + j])
       settling_[j] = settling_samples_;
@@ -81,18 +95,25 @@ void Predictions::compare(const Frame& frame) {
       corrections_[j].take(measured.values(cv), predicted.values(cv), model_.output()(cv));
     else
       corrections_[j].skip();
+    // An integrator is where it is by what nobody measured.
+    if (simulation_settles_ > 0 || integrating_[j])
+      agreements_[j].skip();
+    else if (predicted.usable(cv))
+      agreements_[j].take(predicted.values(cv), model_.output()(cv));
   }
 }
 
 void Predictions::advance(const UnitInputs& inputs) {
   for (std::int64_t& samples : settling_)
     if (samples > 0) --samples;
+  if (simulation_settles_ > 0) --simulation_settles_;
   // Where the plant stood before the first sample is unknown: at rest with the first inputs is the
   // least wrong; what is wrong about it decays.
   if (!started_) {
     if (!inputs.values().allFinite()) return;
     model_.reset_steady(inputs.values());
     started_ = true;
+    simulation_settles_ = starting_samples_;
     for (std::size_t j = 0; j < given_.size(); ++j)
       if (!given_[j]) settling_[j] = starting_samples_;
   }

@@ -7,6 +7,7 @@
 
 #include "core/model/linear_model.hpp"
 #include "core/monitor/feedback_correction.hpp"
+#include "core/monitor/model_agreement.hpp"
 #include "core/monitor/unit_inputs.hpp"
 #include "core/signal/frame.hpp"
 #include "core/signal/screen.hpp"
@@ -37,6 +38,10 @@ class Predictions {
   [[nodiscard]] bool corrected(int cv) const {
     return corrections_[static_cast<std::size_t>(cv)].corrected();
   }
+  /// Comes, and is not what the model makes of the inputs.
+  [[nodiscard]] bool of_other_model(int cv) const {
+    return given(cv) && agreements_[static_cast<std::size_t>(cv)].differs();
+  }
   /// Comes from elsewhere than it did, or is simulated, and cannot be trusted yet.
   [[nodiscard]] bool settling(int cv) const { return settling_[static_cast<std::size_t>(cv)] > 0; }
   /// Measured minus predicted; NaN where the prediction is not known, or the measurement is not.
@@ -58,9 +63,9 @@ class Predictions {
 
   template <class Archive>
   void archive(Archive& a) {
-    // not archived: may_predict_, acts_, has_model_, starting_samples_, settling_samples_
-    // (construction)
-    a(model_, started_, given_, corrections_, settling_);
+    // not archived: may_predict_, acts_, has_model_, integrating_, starting_samples_,
+    // settling_samples_ (construction)
+    a(model_, started_, given_, corrections_, agreements_, settling_, simulation_settles_);
   }
 
  private:
@@ -71,11 +76,14 @@ class Predictions {
   std::vector<bool> may_predict_;
   std::vector<bool> acts_;
   bool has_model_;
+  std::vector<bool> integrating_;  // per CV
   int starting_samples_, settling_samples_;
   bool started_ = false;  // the simulation
   std::vector<bool> given_;
   std::vector<FeedbackCorrection> corrections_;
+  std::vector<ModelAgreement> agreements_;
   std::vector<std::int64_t> settling_;  // samples until a simulated one can be trusted
+  std::int64_t simulation_settles_ = 0;  // likewise, of all CVs, whether they are used or not
 };
 
 template <class Turns>

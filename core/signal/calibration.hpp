@@ -46,6 +46,16 @@ inline constexpr double kFirstSamples = 30.0;
 inline constexpr double kBound = 3.0;
 }  // namespace spikes
 
+/// Inputs that leave their range for a sample or two (`Screen`).
+namespace pulses {
+/// By more than so many widths of it. Chosen: from about there on a single value of 6000 changed
+/// verdicts of a loop written for it.
+inline constexpr double kAway = 1.0;
+/// More of them than kMost in kSamples are the input's own way. Chosen: one in a hundred.
+inline constexpr double kMost = 10.0;
+inline constexpr double kSamples = 1000.0;
+}  // namespace pulses
+
 /// Values far outside what a signal has ever been (`Extent`, `Screen`). Chosen: an operator's step
 /// is often ten times what a controller did before, and stays; what an instrument or a gateway
 /// makes up is gone within a few samples, as abruptly as it came.

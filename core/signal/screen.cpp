@@ -106,7 +106,7 @@ void Screen::Predicted::archive(Archive& a) { a(comes, came, against); }
 void Screen::Jumps::archive(Archive& a) { a(scale, samples, home, since_home, spikes); }
 
 void Screen::Range::archive(Archive& a) {
-  a(extent, far, former, left, last, taken, rejected);
+  a(extent, far, former, left, last, taken, rejected, pulses);
   a.within(out, 0, kLongestDelay);
 }
 
@@ -143,8 +143,11 @@ void Screen::push(const Frame& frame) {
   follow_predictions(frame[SignalKind::kPrediction]);
   follow_inputs();
   if (looks_ == Looks::kAll) screen_repeats();
-  if (looks_ == Looks::kAll && pushed_ > kDelay)
+  if (looks_ == Looks::kAll && pushed_ > kDelay) {
+    screen_pulses(SignalKind::kMv);
+    screen_pulses(SignalKind::kDv);
     for (int j = 0; j < counts_.cv; ++j) screen_spikes(j);
+  }
   for (const SignalKind kind : screened()) learn_range(kind);
 }
 
@@ -330,6 +333,26 @@ void Screen::screen_spikes(int cv) {
                              : difference;
   jumps.scale +=
       (bounded - jumps.scale) / std::min(jumps.samples, calibration::spikes::kScaleSamples);
+}
+
+// Of two samples at most: what ago(kDelay) and ago(0) enclose.
+void Screen::screen_pulses(SignalKind kind) {
+  for (int i = 0; i < ago(0)[kind].size(); ++i) {
+    Range& range = ranges_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
+    range.pulses -= range.pulses / calibration::pulses::kSamples;
+    if (!(range.extent.width() > 0.0)) continue;
+    const auto away = [&](int frames) {
+      const SignalBlock& block = ago(frames)[kind];
+      return block.usable(i) ? range.extent.beyond(block.values(i)) : -1.0;
+    };
+    int length = 0;
+    while (length < kDelay - 1 && away(length + 1) > calibration::pulses::kAway) ++length;
+    if (length == 0 || away(0) != 0.0 || away(length + 1) != 0.0) continue;
+    range.pulses += 1.0;
+    if (range.pulses > calibration::pulses::kMost) continue;
+    for (int frames = 1; frames <= length; ++frames)
+      mark(kind, i, frames, &ScreenCounters::spikes);
+  }
 }
 
 // Before anything is learnt from it.

@@ -33,6 +33,11 @@ struct ScreenCounters {
 /// wait until it is back, which then was an excursion and none of the process, or has stayed: a
 /// step is taken whole, only later, `kLongestDelay` at most.
 ///
+/// An input that leaves all that it has been by as much again, for a sample or two, and is right
+/// back, is marked too, unless it does so often: the plant may have seen it, but one such value
+/// that only a gateway has made weighs more than thousands of others, and a real one is worth the
+/// rows that it costs.
+///
 /// Inputs may rest: a controller in manual or at a limit holds them, and some move only now and
 /// then. They count as frozen only where `inputs_matter` (predictions are simulated from them),
 /// inside their range, while another MV moves, for longer than they usually rest, and not for long:
@@ -141,6 +146,7 @@ class Screen {
     double last = 0.0;   // value
     bool taken = false;  // some of it has left the screen
     int rejected = 0;    // excursions that came back
+    double pulses = 0.0;  // of an input, lately
     void archive(Archive& a);
   };
   [[nodiscard]] std::size_t place(int frames) const {
@@ -162,6 +168,7 @@ class Screen {
   void screen_repeats(SignalKind kind);
   void mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter);
   void screen_spikes(int cv);
+  void screen_pulses(SignalKind kind);
   void screen_far(SignalKind kind);
   [[nodiscard]] std::span<const SignalKind> screened() const;
   [[nodiscard]] bool absurd(SignalKind kind, int index, Range& range);

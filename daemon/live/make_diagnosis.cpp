@@ -11,6 +11,7 @@
 #include "daemon/live/named_cause.hpp"
 #include "daemon/report/diagnosis/explain.hpp"
 #include "daemon/report/left_out_text.hpp"
+#include "daemon/report/pulses_text.hpp"
 #include "idl/version.hpp"
 
 namespace mpm::live {
@@ -70,6 +71,10 @@ std::optional<DiagnosisOutcome> make_diagnosis(const DiagnosisJob& job, const Re
   run.seed = settings.seed;
   run.diagnosis = diagnose(run.unit.model, run.recording, nullptr, settings);
   if (!go_on()) return std::nullopt;
+  if (std::string text =
+          report::pulses_text(run.unit, run.recording, run.diagnosis.unanswered, nullptr);
+      !text.empty())
+    run.notices.push_back(std::move(text));
   outcome.headline = headline_of(run);
   outcome.causes = causes_of_channels(run);
   try {

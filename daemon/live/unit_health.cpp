@@ -153,11 +153,11 @@ std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
   return all;
 }
 
-// Predictions that came and do no longer, or that cannot be used. Where none ever came, their
+// Predictions that came and do no longer, that cannot be used, or that are another model's. Where none ever came, their
 // silence says so.
 void UnitHealth::add_simulated(report::UnitMonitor& monitor,
                                std::vector<bus::Trouble>& troubles) const {
-  const auto add = [&](const char* key, const char* why, auto&& holds) {
+  const auto add = [&](const char* key, const char* before, const char* behind, auto&& holds) {
     std::vector<std::string> tags;
     for (std::size_t j = 0; j < unit_.cv.size(); ++j)
       if (!unit_.cv[j].prediction.empty() && holds(static_cast<int>(j)))
@@ -168,12 +168,16 @@ void UnitHealth::add_simulated(report::UnitMonitor& monitor,
     std::string text = config::join(tags);
     if (others > 0) text += " and " + counted(others, "other");
     troubles.push_back({key, bus::Severity::kOutOfSpecification,
-                        "the unit file's model predicts " + text + ": " + why});
+                        before + text + behind});
   };
   const Monitor& unit = monitor.monitor();
-  add("simulated", "no predictions come", [&](int cv) { return unit.replaced(cv); });
-  add("corrected", "the predictions that come are corrected by the measurement",
+  constexpr const char* kSimulated = "the unit file's model predicts ";
+  add("simulated", kSimulated, ": no predictions come",
+      [&](int cv) { return unit.replaced(cv); });
+  add("corrected", kSimulated, ": the predictions that come are corrected by the measurement",
       [&](int cv) { return unit.corrected(cv); });
+  add("other_model", "the predictions that come of ", " are not what the unit file's model gives",
+      [&](int cv) { return unit.of_other_model(cv); });
 }
 
 // Its silence is not told yet.

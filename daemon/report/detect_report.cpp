@@ -34,6 +34,8 @@ void DetectReport::take_counters(const Monitor& monitor, const config::UnitConfi
     samples_needed[config.cv[cv].tag] = monitor.samples_needed(static_cast<int>(cv));
     if (monitor.corrected(static_cast<int>(cv)))
       corrected_predictions.push_back(config.cv[cv].prediction);
+    if (monitor.of_other_model(static_cast<int>(cv)))
+      other_predictions.push_back(config.cv[cv].prediction);
   }
 }
 
@@ -51,6 +53,7 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
                               {"alarms", nlohmann::ordered_json::array()}};
   if (!report.corrected_predictions.empty())
     json["corrected_predictions"] = report.corrected_predictions;
+  if (!report.other_predictions.empty()) json["other_predictions"] = report.other_predictions;
   for (const files::Stretch& stretch : report.used)
     json["used"].push_back(
         {{"from", seconds(stretch.from_ns)}, {"until", seconds(stretch.until_ns)}});

@@ -29,6 +29,8 @@ struct DetectReport {
   std::uint64_t frozen = 0, clipped = 0, spikes = 0;            ///< of these: only by their look
   /// Of CVs whose predictions in the file are corrected by their measurement; not used.
   std::vector<std::string> corrected_predictions;
+  /// Of CVs whose predictions are used and are not what the unit file's model gives.
+  std::vector<std::string> other_predictions;
   /// From the first row to the last of each stretch, where a part of the file was chosen.
   std::vector<files::Stretch> used;
   std::vector<ChannelRecord> channels;

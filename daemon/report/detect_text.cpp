@@ -50,17 +50,30 @@ std::string head(const DetectReport& report, const MomentText& moment) {
   return text + worst_tags(report.bad_tags);
 }
 
-std::string corrected_text(const std::vector<std::string>& predictions, std::size_t width) {
+/// Empty where there are none.
+std::string on_predictions(const char* before, const std::vector<std::string>& predictions,
+                           const char* behind, std::size_t width) {
   if (predictions.empty()) return "";
   std::vector<std::string> tags;
   tags.reserve(predictions.size());
   for (const std::string& tag : predictions) tags.push_back(printable(tag));
-  return wrapped("Not used: " + config::join(tags) +
-                     ". What stands there is corrected by the measurement, as a controller's bias "
-                     "update does, and hides what is wrong with a gain; the unit file's model is "
-                     "simulated instead",
-                 0, width) +
-         '\n';
+  return wrapped(before + config::join(tags) + behind, 0, width) + '\n';
+}
+
+std::string corrected_text(const DetectReport& report, std::size_t width) {
+  return on_predictions("Not used: ", report.corrected_predictions,
+                        ". What stands there is corrected by the measurement, as a controller's "
+                        "bias update does, and hides what is wrong with a gain; the unit file's "
+                        "model is simulated instead",
+                        width);
+}
+
+std::string other_text(const DetectReport& report, std::size_t width) {
+  return on_predictions("Of another model: ", report.other_predictions,
+                        ". What stands there is not what the unit file's model gives of the same "
+                        "inputs. The verdicts are on those predictions, mpm diagnose is on the "
+                        "file's model: see which of the two the controller runs",
+                        width);
 }
 
 MatrixCell cell_of(const ChannelRecord& channel) {
@@ -203,7 +216,7 @@ std::string to_text(const DetectReport& report, const config::UnitConfig& unit,
   teller.section("Undetermined", [&](const auto& channel) { return teller.open(channel); });
   teller.section("Alarms that are over", [&](const auto& channel) { return teller.past(channel); });
   return wrapped(head(report, moment), 0, layout.width) + '\n' +
-         corrected_text(report.corrected_predictions, layout.width) +
+         corrected_text(report, layout.width) + other_text(report, layout.width) +
          matrix(report.channels, layout) + teller.text();
 }
 

@@ -24,6 +24,7 @@
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/evidence/free_run_residuals.hpp"
 #include "core/identify/evidence/outside_movement.hpp"
+#include "core/identify/evidence/unanswered_pulses.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/split.hpp"
@@ -225,21 +226,34 @@ Recording without_readbacks(Recording recording) {
   return recording;
 }
 
+/// With the pulses of inputs unknown that the plant did not see; they are added to `pulses`.
+Recording without_unanswered(const ModelSpec& model, const Recording& recording,
+                             std::vector<Pulse>& pulses) {
+  const std::vector<Pulse> all = short_pulses(recording);
+  const std::vector<Pulse> none = unanswered(model, without(recording, all), all);
+  pulses.insert(pulses.end(), none.begin(), none.end());
+  return without(recording, none);
+}
+
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
 Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {
-  const Recording measured = without_readbacks(whole);
+  Diagnosis diagnosis;
+  const ModelSpec base = in_channels(given);
+  const Recording measured =
+      without_unanswered(base, without_readbacks(whole), diagnosis.unanswered);
   Recording recording = with_setpoints(measured);
   std::optional<Recording> validation;
-  if (unseen_runs != nullptr) validation = with_setpoints(*unseen_runs);
+  if (unseen_runs != nullptr) {
+    std::vector<Pulse> unseen_pulses;
+    validation = with_setpoints(without_unanswered(base, *unseen_runs, unseen_pulses));
+  }
   const auto aux = static_cast<int>(measured.aux.cols());
   const Index samples = recording.samples();
-  Diagnosis diagnosis;
   diagnosis.samples = samples;
   diagnosis.extended = given;
 
   const Compressed compressed(measured);
-  const ModelSpec base = in_channels(given);
   const ModelSpec model = with_aux_inputs(base, recording);
   const MatrixXd residuals = free_run_residuals(model, recording);
   diagnosis.reason = why_not_judged(residuals);

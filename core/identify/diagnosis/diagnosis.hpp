@@ -11,6 +11,7 @@
 #include "core/identify/diagnosis/channel_estimates.hpp"
 #include "core/identify/diagnosis/statement.hpp"
 #include "core/identify/diagnosis/validation.hpp"
+#include "core/identify/evidence/unanswered_pulses.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/model/model_spec.hpp"
 
@@ -54,6 +55,7 @@ struct Diagnosis {
   /// Channels that the calibrated test surely rejects and that nothing named or seen is about.
   std::vector<Place> rejected;
   std::vector<InputMovement> inputs;  ///< MVs, then DVs
+  std::vector<Pulse> unanswered;      ///< of inputs: taken as not known, for the plant saw none
   std::vector<ChannelEstimate> channels;
   ModelSpec extended;             ///< equal to the model where nothing was found
   std::vector<int> new_inputs;    ///< aux signals that `extended` takes as inputs after the model's

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 
+#include "core/identify/fit/whitening.hpp"
 #include "core/signal/calibration.hpp"
 
 /// Numbers that decide what the data may be asked at all. Chosen by hand where nothing else is
@@ -36,6 +37,20 @@ inline constexpr double kMovementRowsPerColumn = 4.0;
 /// for the screen to know a signal. What an instrument makes up lasts no longer; a test's pulse
 /// does. Chosen.
 inline constexpr Eigen::Index kMirrored = 2 * calibration::extent::kFirstValues;
-inline constexpr std::size_t kLongestGlitch = 2;  ///< rows
+inline constexpr Eigen::Index kLongestGlitch = 2;  ///< rows
+
+/// Pulses of inputs (unanswered_pulses.hpp). So many times the input's usual move away and back;
+/// back where no more than this share of it is left; and more of them than this share of the rows
+/// are the input's own way. Chosen.
+inline constexpr double kPulseMoves = 8.0;
+inline constexpr double kPulseBack = 0.5;
+inline constexpr double kMostPulses = 0.01;
+/// A CV tells whether it has answered where the s.d. of its answer, to the model's, is less; and it
+/// has where it shows as much: three s.d. at least. Chosen: a gain that is off by three quarters
+/// still shows.
+inline constexpr double kAnswerTold = 1.0 / 12;
+inline constexpr double kAnswered = 0.25;
+inline constexpr NoiseModel kPulseNoise = {};
+inline constexpr int kLongestPulseAnswer = 1000;  ///< samples of it that are looked at
 
 }  // namespace mpm

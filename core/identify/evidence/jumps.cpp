@@ -75,7 +75,7 @@ Index leave_out(const std::vector<Index>& marked, Eigen::Ref<Eigen::VectorXd> va
          ++next)
       absurd =
           absurd && std::max(low - values(marked[next]), values(marked[next]) - high) > farthest;
-    if (next - first > kLongestGlitch && !absurd) continue;
+    if (next - first > std::size_t{kLongestGlitch} && !absurd) continue;
     for (std::size_t k = first; k < next; ++k, ++count)
       values(marked[k]) = std::numeric_limits<double>::quiet_NaN();
   }

@@ -25,6 +25,7 @@
 #include "daemon/report/closed_loop/compare_loops.hpp"
 #include "daemon/report/closed_loop/run_mpmsim.hpp"
 #include "daemon/report/diagnosis/diagnosis_report.hpp"
+#include "daemon/report/pulses_text.hpp"
 #include "daemon/report/report_files.hpp"
 #include "daemon/report/terminal/terminal_text.hpp"
 #include "daemon/report/unit_performance.hpp"
@@ -128,6 +129,12 @@ bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
   };
   run.diagnosis = diagnose(run.unit.model, run.recording,
                            run.validation ? &*run.validation : nullptr, settings);
+  if (const std::string text = report::pulses_text(run.unit, run.recording,
+                                                   run.diagnosis.unanswered, run.zone.get());
+      !text.empty()) {
+    run.notices.push_back(run.data_file + ": " + text);
+    if (!options.quiet) tell_notices({run.notices.back()});
+  }
   return !stopped;
 }
 

@@ -21,6 +21,7 @@
 #include "daemon/report/identification/identification_report.hpp"
 #include "daemon/report/identification/new_unit.hpp"
 #include "daemon/report/identification/plan_report.hpp"
+#include "daemon/report/pulses_text.hpp"
 #include "daemon/report/record_json.hpp"
 #include "daemon/report/report_files.hpp"
 #include "idl/version.hpp"
@@ -94,11 +95,16 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   run.recording = std::move(answer.data.recording);
   run.condensing = answer.data.how;
   run.identification = std::move(answer.identification);
-  if (run.condensing.any()) {
-    run.notices.push_back(run.data_file + ": " +
-                          report::condensing_text(run.condensing, run.recording.samples()));
+  const auto tell = [&](const std::string& notice) {
+    run.notices.push_back(run.data_file + ": " + notice);
     if (!options.quiet) tell_notices({run.notices.back()});
-  }
+  };
+  if (run.condensing.any())
+    tell(report::condensing_text(run.condensing, run.recording.samples()));
+  if (const std::string text = report::pulses_text(
+          run.unit, run.recording, run.identification.unanswered, run.zone.get());
+      !text.empty())
+    tell(text);
   if (options.plan)
     run.plan = test_plan(run.identification, report::test_limits(run.unit), run.unit.counts().mv);
   const bool found = report::found_any(run);

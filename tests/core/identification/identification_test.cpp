@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "tests/core/identification/loop.hpp"
 
@@ -49,6 +50,24 @@ TEST_CASE("identify finds the channels that are there, their numbers, and no oth
   CHECK(found.model.output_origin(1) ==
         Approx(100.0 + 1.5 * found.model.input_origin(1)).margin(0.1));
   CHECK(found.feedback_p_value > 1e-3);
+}
+
+// 1 in 3000 values of an input. Without it the same model, number by number.
+TEST_CASE("a value of an input that only the recorder saw changes no number of a model") {
+  Recording recording = open_loop(3000, 700);
+  recording.inputs(2000, 0) += 60.0;
+  const Identification found = identify(recording, {});
+  REQUIRE(found.unanswered.size() == 1);
+  CHECK(found.unanswered[0].row == 2000);
+  recording.inputs(2000, 0) = std::numeric_limits<double>::quiet_NaN();
+  const Identification unknown = identify(recording, {});
+  CHECK(unknown.unanswered.empty());
+  REQUIRE(found.channels.size() == unknown.channels.size());
+  for (std::size_t c = 0; c < found.channels.size(); ++c) {
+    CHECK(found.channels[c].left_out == unknown.channels[c].left_out);
+    CHECK(found.channels[c].gain.low == unknown.channels[c].gain.low);
+    CHECK(found.channels[c].dead_time_s.high == unknown.channels[c].dead_time_s.high);
+  }
 }
 
 TEST_CASE("one slow step in open loop gives the gain that the free run asks for") {

@@ -115,6 +115,32 @@ TEST_CASE("health says of predictions that are corrected by the measurement who 
   }
 }
 
+TEST_CASE("health says of predictions of another model that they are none of the unit file's") {
+  for (const bool other : {false, true}) {
+    CAPTURE(other);
+    Toy toy(1.0, "{tag: y, prediction: yp}");
+    double model = 0.0;
+    for (int k = 0; k < 2600; ++k) {
+      have_come(toy, k);
+      Frame frame(toy.loaded.config.counts());
+      for (SignalBlock& block : frame.blocks)
+        std::fill(block.quality.begin(), block.quality.end(), Quality::kGood);
+      frame.interval = k;
+      frame.source_time_ns = k * std::int64_t{1'000'000'000};
+      const double u = k % 9 - 4.0;
+      frame[SignalKind::kMv].values(0) = u;
+      frame[SignalKind::kCv].values(0) = model + 0.1 * test::uniform(7, k);
+      frame[SignalKind::kPrediction].values(0) = other ? 1.4 * model : model;
+      toy.monitor.push(frame);
+      model += (1.0 - std::exp(-0.2)) * (2.0 * u - model);
+    }
+    const std::string detail = toy.judge(2600).detail;
+    CAPTURE(detail);
+    CHECK((detail.find("the predictions that come of y are not what the unit file's model gives") !=
+           std::string::npos) == other);
+  }
+}
+
 TEST_CASE("a frame that was not complete is told for two samples") {
   Toy toy(2.0);
   for (int s = 1; s <= 5; s += 2) have_come(toy, s);

@@ -165,4 +165,15 @@ TEST_CASE("predictions that are not used are named, with the reason") {
   CHECK(to_json(report)["corrected_predictions"] == report.corrected_predictions);
 }
 
+TEST_CASE("predictions of another model than the unit file's are named") {
+  DetectReport report = march();
+  CHECK(to_text(report, column(), {200, false}).find("Of another model") == std::string::npos);
+  CHECK_FALSE(to_json(report).contains("other_predictions"));
+  report.other_predictions = {"AI-201.PRED"};
+  CHECK(to_text(report, column(), {200, false})
+            .find("Of another model: AI-201.PRED. What stands there is not what the unit file's "
+                  "model gives") != std::string::npos);
+  CHECK(to_json(report)["other_predictions"] == report.other_predictions);
+}
+
 }  // namespace mpm::report

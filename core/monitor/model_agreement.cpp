@@ -1,0 +1,52 @@
+#include "core/monitor/model_agreement.hpp"
+
+#include <algorithm>
+
+#include "core/archive/archive.hpp"
+#include "core/monitor/calibration.hpp"
+
+namespace mpm {
+
+namespace limits = calibration::model_agreement;
+
+void ModelAgreement::take(double predicted, double simulated) {
+  const double difference = predicted - simulated;
+  if (block_.samples == 0) {
+    block_.difference = difference;
+    block_.simulated = simulated;
+  }
+  const double d = difference - block_.difference, s = simulated - block_.simulated;
+  block_.sum_difference += d;
+  block_.sum_simulated += s;
+  block_.square_difference += d * d;
+  block_.square_simulated += s * s;
+  if (++block_.samples == limits::kBlock) end_block();
+}
+
+// A quiet block is held to what the simulation usually moves by.
+void ModelAgreement::end_block() {
+  const auto variance = [](double sum, double square) {
+    const double mean = sum / limits::kBlock;
+    return std::max(0.0, square / limits::kBlock - mean * mean);
+  };
+  const double moved = variance(block_.sum_simulated, block_.square_simulated);
+  const double differed = variance(block_.sum_difference, block_.square_difference);
+  blocks_ += 1.0;
+  moves_ += (moved - moves_) / blocks_;
+  const double limit = differs_ ? limits::kSame : limits::kOther;
+  const bool other = differed > limit * limit * std::max(moved, moves_);
+  against_ = other == differs_ ? 0 : against_ + 1;
+  if (against_ == limits::kBlocks) {
+    differs_ = !differs_;
+    against_ = 0;
+  }
+  block_ = {};
+}
+
+void ModelAgreement::archive(Archive& a) {
+  a(block_, blocks_, moves_, differs_);
+  a.within(block_.samples, 0, limits::kBlock - 1);
+  a.within(against_, 0, limits::kBlocks - 1);
+}
+
+}  // namespace mpm
