@@ -27,12 +27,35 @@ void check_aux_moves(const Value& list, const UnitConfig& unit, const HiddenPlan
   }
 }
 
+void read_authority(const Value& item, const UnitConfig& unit, HiddenPlant& plant) {
+  const Map map = item.map({"mv", "of", "per_unit", "above", "below"});
+  const std::vector<std::string> inputs = unit.input_tags();
+  Authority authority;
+  const Value* mv = map.require("mv");
+  authority.input = mv != nullptr ? find_signal(*mv, inputs, "mv or dv") : -1;
+  const auto number = [&map](const char* key, double& into) {
+    if (const Value* value = map.find(key)) into = value->number().value_or(into);
+  };
+  number("above", authority.above);
+  number("below", authority.below);
+  const Value* of = map.find("of");
+  if (of != nullptr) {
+    authority.of = find_signal(*of, inputs, "mv or dv");
+    if (map.require("per_unit") != nullptr) number("per_unit", authority.per_unit);
+    if (authority.of >= 0 && authority.of == authority.input)
+      of->error("is the input itself: a curve of its own is a `polynomial` under `input`");
+  } else if (map.find("above") == nullptr && map.find("below") == nullptr) {
+    item.error("needs `of` with `per_unit`, or `above`, `below` or both");
+  }
+  if (authority.input >= 0) plant.authorities.push_back(authority);
+}
+
 }  // namespace
 
 void load_hidden_plant(const Value& section, const ScenarioContext& context,
                        ScenarioConfig& scenario) {
   const UnitConfig& unit = context.unit;
-  const Map map = section.map({"input", "output", "channels", "state"});
+  const Map map = section.map({"input", "output", "channels", "state", "authority"});
   HiddenPlant& plant = scenario.plant;
   plant.place = {section.file(), section.line(), section.column(), section.path()};
   plant.input_blocks.resize(static_cast<std::size_t>(unit.model.input_count));
@@ -41,6 +64,7 @@ void load_hidden_plant(const Value& section, const ScenarioContext& context,
     read_input_blocks(*blocks, unit.input_tags(), plant.input_blocks);
   if (const Value* blocks = map.find("output"))
     read_output_blocks(*blocks, unit.cv_tags(), plant.output_blocks);
+  load_list(map, "authority", [&](const Value& item) { read_authority(item, unit, plant); });
   for (const char* key : {"channels", "state"})
     if (map.find(key) != nullptr && unit.model.state_space)
       map.entry(key)->key_at.error("needs a unit whose model has channels, not a state space");
@@ -72,7 +96,7 @@ bool HiddenPlant::empty() const {
   const auto none = [](const auto& block) { return !block.has_value(); };
   return std::all_of(input_blocks.begin(), input_blocks.end(), none) &&
          std::all_of(output_blocks.begin(), output_blocks.end(), none) && channels.empty() &&
-         state_terms.empty();
+         state_terms.empty() && authorities.empty();
 }
 
 }  // namespace mpm::config

@@ -28,6 +28,15 @@ struct Change {
   Place place = {};
 };
 
+/// How much more an input of the plant does than it says: its deviation from the operating point
+/// times `above` or `below`, by its sign, and times 1 + per_unit * deviation of another input.
+struct Authority {
+  int input = 0;
+  int of = -1;            ///< the other input; -1: none
+  double per_unit = 0.0;  ///< per unit of the other input
+  double above = 1.0, below = 1.0;
+};
+
 /// What the plant has from the start on although the model does not. By index: the model's inputs,
 /// behind them the aux signals.
 struct HiddenPlant {
@@ -35,6 +44,7 @@ struct HiddenPlant {
   std::vector<std::optional<OutputBlock>> output_blocks;  ///< none, or one per CV
   std::vector<ChannelSpec> channels;                      ///< in place of the model's, or besides
   std::vector<StateTerm> state_terms;
+  std::vector<Authority> authorities;
   Place place = {};
 
   [[nodiscard]] bool empty() const;

@@ -43,9 +43,13 @@ void ModelAgreement::end_block() {
   block_ = {};
 }
 
+void ModelAgreement::Block::archive(Archive& a) {
+  a.within(samples, 0, limits::kBlock - 1);
+  a(difference, simulated, sum_difference, sum_simulated, square_difference, square_simulated);
+}
+
 void ModelAgreement::archive(Archive& a) {
   a(block_, blocks_, moves_, differs_);
-  a.within(block_.samples, 0, limits::kBlock - 1);
   a.within(against_, 0, limits::kBlocks - 1);
 }
 

@@ -26,17 +26,14 @@ class ModelAgreement {
     double difference = 0.0, simulated = 0.0;  ///< of the first sample
     double sum_difference = 0.0, sum_simulated = 0.0;
     double square_difference = 0.0, square_simulated = 0.0;
-    template <class Archive>
-    void archive(Archive& a) {
-      a(difference, simulated, sum_difference, sum_simulated, square_difference, square_simulated);
-    }
+    void archive(Archive& a);
   };
   void end_block();
 
   Block block_;
-  double blocks_ = 0.0;    // so far
-  double moves_ = 0.0;     // variance of the simulated one, mean over these
-  int against_ = 0;        // blocks in a row that say otherwise
+  double blocks_ = 0.0;  // so far
+  double moves_ = 0.0;   // variance of the simulated one, mean over these
+  int against_ = 0;      // blocks in a row that say otherwise
   bool differs_ = false;
 };
 

@@ -82,7 +82,7 @@ class Predictions {
   std::vector<bool> given_;
   std::vector<FeedbackCorrection> corrections_;
   std::vector<ModelAgreement> agreements_;
-  std::vector<std::int64_t> settling_;  // samples until a simulated one can be trusted
+  std::vector<std::int64_t> settling_;   // samples until a simulated one can be trusted
   std::int64_t simulation_settles_ = 0;  // likewise, of all CVs, whether they are used or not
 };
 

@@ -350,8 +350,7 @@ void Screen::screen_pulses(SignalKind kind) {
     if (length == 0 || away(0) != 0.0 || away(length + 1) != 0.0) continue;
     range.pulses += 1.0;
     if (range.pulses > calibration::pulses::kMost) continue;
-    for (int frames = 1; frames <= length; ++frames)
-      mark(kind, i, frames, &ScreenCounters::spikes);
+    for (int frames = 1; frames <= length; ++frames) mark(kind, i, frames, &ScreenCounters::spikes);
   }
 }
 

@@ -142,10 +142,10 @@ class Screen {
     int far = 0;    // values in a row that are absurdly far outside
     Extent former;  // where it was before it stayed there
     bool left = false;
-    int out = 0;         // frames of an excursion
-    double last = 0.0;   // value
-    bool taken = false;  // some of it has left the screen
-    int rejected = 0;    // excursions that came back
+    int out = 0;          // frames of an excursion
+    double last = 0.0;    // value
+    bool taken = false;   // some of it has left the screen
+    int rejected = 0;     // excursions that came back
     double pulses = 0.0;  // of an input, lately
     void archive(Archive& a);
   };

@@ -153,8 +153,8 @@ std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
   return all;
 }
 
-// Predictions that came and do no longer, that cannot be used, or that are another model's. Where none ever came, their
-// silence says so.
+// Predictions that came and do no longer, that cannot be used, or that are another model's. Where
+// none ever came, their silence says so.
 void UnitHealth::add_simulated(report::UnitMonitor& monitor,
                                std::vector<bus::Trouble>& troubles) const {
   const auto add = [&](const char* key, const char* before, const char* behind, auto&& holds) {
@@ -167,13 +167,11 @@ void UnitHealth::add_simulated(report::UnitMonitor& monitor,
     tags.resize(named);
     std::string text = config::join(tags);
     if (others > 0) text += " and " + counted(others, "other");
-    troubles.push_back({key, bus::Severity::kOutOfSpecification,
-                        before + text + behind});
+    troubles.push_back({key, bus::Severity::kOutOfSpecification, before + text + behind});
   };
   const Monitor& unit = monitor.monitor();
   constexpr const char* kSimulated = "the unit file's model predicts ";
-  add("simulated", kSimulated, ": no predictions come",
-      [&](int cv) { return unit.replaced(cv); });
+  add("simulated", kSimulated, ": no predictions come", [&](int cv) { return unit.replaced(cv); });
   add("corrected", kSimulated, ": the predictions that come are corrected by the measurement",
       [&](int cv) { return unit.corrected(cv); });
   add("other_model", "the predictions that come of ", " are not what the unit file's model gives",

@@ -14,8 +14,7 @@ namespace {
 constexpr std::size_t kNamed = 3;
 
 std::int64_t time_ns(const Recording& recording, Eigen::Index row) {
-  const double by_rows_s =
-      recording.start_s + static_cast<double>(row) * recording.sample_time_s;
+  const double by_rows_s = recording.start_s + static_cast<double>(row) * recording.sample_time_s;
   return std::llround(on_clock(recording, by_rows_s) * 1e9);
 }
 

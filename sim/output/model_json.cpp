@@ -106,6 +106,14 @@ Json hidden_plant_json(const config::HiddenPlant& hidden, const config::UnitConf
     entry.update(std::visit([](const auto& block) { return term_json(block); }, term.block));
     json["state"].push_back(std::move(entry));
   }
+  const auto tag = [&](int input) { return inputs[static_cast<std::size_t>(input)]; };
+  for (const config::Authority& authority : hidden.authorities) {
+    Json entry{{"mv", tag(authority.input)}};
+    if (authority.of >= 0)
+      entry.update({{"of", tag(authority.of)}, {"per_unit", authority.per_unit}});
+    entry.update({{"above", authority.above}, {"below", authority.below}});
+    json["authority"].push_back(std::move(entry));
+  }
   return json;
 }
 

@@ -59,6 +59,8 @@ std::vector<Case> all_cases() {
   cases.push_back(bent("operating_point_gain", {4}));
   cases.push_back(bent("output_clipping", {0, 3, 6}));
   cases.push_back(bent("square_root_flow", {8}));
+  cases.push_back(bent("product_of_inputs", {3, 4, 5, 6, 7, 8}));
+  cases.push_back(bent("directional_gain", {0, 1, 2}));
   return cases;
 }
 

@@ -68,8 +68,7 @@ std::vector<Pulse> pulses_of(const Recording& recording, int input) {
       }
     }
   }
-  if (static_cast<double>(pulses.size()) >
-      kMostPulses * static_cast<double>(recording.samples()))
+  if (static_cast<double>(pulses.size()) > kMostPulses * static_cast<double>(recording.samples()))
     pulses.clear();
   return pulses;
 }

@@ -129,8 +129,8 @@ bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
   };
   run.diagnosis = diagnose(run.unit.model, run.recording,
                            run.validation ? &*run.validation : nullptr, settings);
-  if (const std::string text = report::pulses_text(run.unit, run.recording,
-                                                   run.diagnosis.unanswered, run.zone.get());
+  if (const std::string text =
+          report::pulses_text(run.unit, run.recording, run.diagnosis.unanswered, run.zone.get());
       !text.empty()) {
     run.notices.push_back(run.data_file + ": " + text);
     if (!options.quiet) tell_notices({run.notices.back()});

@@ -99,10 +99,9 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
     run.notices.push_back(run.data_file + ": " + notice);
     if (!options.quiet) tell_notices({run.notices.back()});
   };
-  if (run.condensing.any())
-    tell(report::condensing_text(run.condensing, run.recording.samples()));
-  if (const std::string text = report::pulses_text(
-          run.unit, run.recording, run.identification.unanswered, run.zone.get());
+  if (run.condensing.any()) tell(report::condensing_text(run.condensing, run.recording.samples()));
+  if (const std::string text = report::pulses_text(run.unit, run.recording,
+                                                   run.identification.unanswered, run.zone.get());
       !text.empty())
     tell(text);
   if (options.plan)

@@ -54,7 +54,8 @@ TEST_CASE("digits, levels, a deadband and a sample more or less make no other mo
   CHECK(said(calm + 0.05 * test::white(2, kRows), calm) == 0);
 }
 
-TEST_CASE("it is over once three blocks agree, and nothing is learnt where nothing is to be trusted") {
+TEST_CASE(
+    "it is over once three blocks agree, and nothing is learnt where nothing is to be trusted") {
   const VectorXd model = test::first_order(input(), 2.0, 20.0, 3);
   ModelAgreement agreement;
   for (Eigen::Index k = 0; k < 3000; ++k) agreement.take(2.0 * model(k), model(k));

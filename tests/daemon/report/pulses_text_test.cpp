@@ -17,8 +17,8 @@ TEST_CASE("pulses that no CV answers are told with their times, three of them at
   CHECK(pulses_text(unit, recording, {pulse}, nullptr) ==
         "no CV answers FIC101.SP going from 39.9 to 95 and back at 01:00:00 on 5 January: it is "
         "taken as not known there");
-  const std::string many = pulses_text(unit, recording, {pulse, pulse, pulse, pulse, pulse},
-                                       nullptr);
+  const std::string many =
+      pulses_text(unit, recording, {pulse, pulse, pulse, pulse, pulse}, nullptr);
   CHECK(many.find(" and 2 more such jumps: they are taken as not known there") !=
         std::string::npos);
 }

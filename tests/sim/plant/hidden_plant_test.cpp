@@ -103,6 +103,20 @@ TEST_CASE("scenario valve_saturation: u1 stops at +-0.9") {
   CHECK(truth_of(setup)["input"]["u1"]["saturation"] == nlohmann::json::parse("[-0.9, 0.9]"));
 }
 
+TEST_CASE("scenario product_of_inputs: what u2 does grows with u3") {
+  const LoopSetup setup = shipped("product_of_inputs");
+  CHECK(distance(setup, Behind(setup, [](VectorXd& u) { u(1) *= 1.0 + 0.3 * u(2); })) < 1e-12);
+  CHECK(truth_of(setup)["authority"] ==
+        nlohmann::json::parse(
+            R"([{"mv": "u2", "of": "u3", "per_unit": 0.3, "above": 1.0, "below": 1.0}])"));
+}
+
+TEST_CASE("scenario directional_gain: u1 does more above its operating point than below") {
+  const LoopSetup setup = shipped("directional_gain");
+  CHECK(distance(setup, Behind(setup, [](VectorXd& u) { u(0) *= u(0) < 0.0 ? 0.7 : 1.3; })) <
+        1e-12);
+}
+
 TEST_CASE("scenario sensor_offset: y2 reads 0.15 more, and the controller holds what it reads") {
   const LoopSetup setup = shipped("sensor_offset");
   Behind behind(setup, [](VectorXd&) {});

@@ -61,7 +61,7 @@ std::vector<Pulse> none_of(const Recording& recording) {
 TEST_CASE("what moves, steps or rests has no short pulses") {
   MatrixXd u = inputs();
   CHECK(short_pulses(test::recording_of(u, u)).empty());
-  u.col(0).tail(400).array() += 20.0;                   // a step
+  u.col(0).tail(400).array() += 20.0;                         // a step
   u.col(1).segment(300, kLongestGlitch + 1).array() += 20.0;  // a pulse that is not so short
   CHECK(short_pulses(test::recording_of(u, u)).empty());
   u.col(0) = test::telegraph(5, kRows, 1);  // nothing but pulses
@@ -85,9 +85,9 @@ TEST_CASE("a short pulse is found with its value, whatever is unknown about it, 
   CHECK(short_pulses(cut).empty());  // nobody knows what came after it
 }
 
-// Sizes within the range of the input and beyond it. The answer to 5 of a gain of 2 and a lag of ten
-// samples, e^-0.1 from row to row, is its first row of 5 * 2 * (1 - e^-0.1) = 0.95 for a noise whose
-// memory is as long: 19 s.d. of 0.05, and twelve are asked for.
+// Sizes within the range of the input and beyond it. The answer to 5 of a gain of 2 and a lag of
+// ten samples, e^-0.1 from row to row, is its first row of 5 * 2 * (1 - e^-0.1) = 0.95 for a noise
+// whose memory is as long: 19 s.d. of 0.05, and twelve are asked for.
 TEST_CASE("a pulse that only the recorder saw is told from one that the plant answered") {
   const double size = GENERATE(5.0, -5.0, 10.0, 55.0);
   const double gain_ratio = GENERATE(1.0, 0.5, 2.0);
