@@ -28,26 +28,18 @@ void check_aux_moves(const Value& list, const UnitConfig& unit, const HiddenPlan
 }
 
 void read_authority(const Value& item, const UnitConfig& unit, HiddenPlant& plant) {
-  const Map map = item.map({"mv", "of", "per_unit", "above", "below"});
+  const Map map = item.map({"mv", "of", "per_unit"});
   const std::vector<std::string> inputs = unit.input_tags();
-  Authority authority;
   const Value* mv = map.require("mv");
-  authority.input = mv != nullptr ? find_signal(*mv, inputs, "mv or dv") : -1;
-  const auto number = [&map](const char* key, double& into) {
-    if (const Value* value = map.find(key)) into = value->number().value_or(into);
-  };
-  number("above", authority.above);
-  number("below", authority.below);
-  const Value* of = map.find("of");
-  if (of != nullptr) {
-    authority.of = find_signal(*of, inputs, "mv or dv");
-    if (map.require("per_unit") != nullptr) number("per_unit", authority.per_unit);
-    if (authority.of >= 0 && authority.of == authority.input)
-      of->error("is the input itself: a curve of its own is a `polynomial` under `input`");
-  } else if (map.find("above") == nullptr && map.find("below") == nullptr) {
-    item.error("needs `of` with `per_unit`, or `above`, `below` or both");
-  }
-  if (authority.input >= 0) plant.authorities.push_back(authority);
+  const Value* of = map.require("of");
+  const Value* per_unit = map.require("per_unit");
+  if (mv == nullptr || of == nullptr || per_unit == nullptr) return;
+  const Authority authority{find_signal(*mv, inputs, "mv or dv"),
+                            find_signal(*of, inputs, "mv or dv"), per_unit->number().value_or(0.0)};
+  if (authority.input < 0 || authority.of < 0) return;
+  if (authority.of == authority.input)
+    of->error("is the input itself: a curve of its own is a block under `input`");
+  plant.authorities.push_back(authority);
 }
 
 }  // namespace

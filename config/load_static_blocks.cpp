@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "config/load_model_parts.hpp"
 #include "config/yaml_text.hpp"
@@ -61,6 +62,24 @@ std::optional<Since> read_since(const Value& value, const char* key) {
   return since;
 }
 
+std::optional<TwoSided> read_two_sided(const Value& value) {
+  const Map map = value.map({"above", "below", "at"});
+  TwoSided sides;
+  if (map.find("above") == nullptr && map.find("below") == nullptr) {
+    value.error("give `above`, `below` or both");
+    return std::nullopt;
+  }
+  for (const auto& [key, into] :
+       {std::pair{"above", &sides.above}, {"below", &sides.below}, {"at", &sides.at}}) {
+    const Value* given = map.find(key);
+    if (given == nullptr) continue;
+    const auto number = given->number();
+    if (!number) return std::nullopt;
+    *into = *number;
+  }
+  return sides;
+}
+
 std::optional<InputBlock> read_input(const Map::Entry& entry) {
   const Value& value = entry.value;
   if (entry.key == "polynomial") {
@@ -84,6 +103,10 @@ std::optional<InputBlock> read_input(const Map::Entry& entry) {
   if (entry.key == "offset") {
     if (const auto since = read_since(value, "size"))
       return InputOffset{since->value, since->onset_s};
+    return std::nullopt;
+  }
+  if (entry.key == "two_sided") {
+    if (const auto sides = read_two_sided(value)) return *sides;
     return std::nullopt;
   }
   if (const auto block = read_stiction(value)) return *block;
@@ -125,8 +148,8 @@ void read_by_tag(const Value& section, const std::vector<std::string>& tags, Rea
 }  // namespace
 
 std::optional<InputBlock> read_input_block(const Value& value) {
-  const Map block =
-      value.map({"polynomial", "saturation", "deadband", "stiction", "stuck", "offset"});
+  const Map block = value.map(
+      {"polynomial", "saturation", "deadband", "stiction", "stuck", "offset", "two_sided"});
   const Map::Entry* only = only_entry(block);
   if (only == nullptr) return std::nullopt;
   return read_input(*only);

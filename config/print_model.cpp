@@ -60,6 +60,10 @@ std::string block_text(const Stuck& block) {
 std::string block_text(const InputOffset& block) {
   return "{offset: " + since("size", block.size, block.onset_s) + "}";
 }
+std::string block_text(const TwoSided& block) {
+  return "{two_sided: {above: " + yaml_text(block.above) + ", below: " + yaml_text(block.below) +
+         (std::isfinite(block.at) ? ", at: " + yaml_text(block.at) : "") + "}}";
+}
 std::string block_text(const Offset& block) { return "{offset: " + yaml_text(block.bias) + "}"; }
 std::string block_text(const Scale& block) { return "{scale: " + yaml_text(block.factor) + "}"; }
 

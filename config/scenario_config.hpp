@@ -28,13 +28,12 @@ struct Change {
   Place place = {};
 };
 
-/// How much more an input of the plant does than it says: its deviation from the operating point
-/// times `above` or `below`, by its sign, and times 1 + per_unit * deviation of another input.
+/// What an input of the plant does goes with another one: its deviation from the operating point
+/// times 1 + per_unit * that of the other.
 struct Authority {
   int input = 0;
-  int of = -1;            ///< the other input; -1: none
+  int of = 0;             ///< the other input
   double per_unit = 0.0;  ///< per unit of the other input
-  double above = 1.0, below = 1.0;
 };
 
 /// What the plant has from the start on although the model does not. By index: the model's inputs,

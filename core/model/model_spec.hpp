@@ -88,13 +88,20 @@ struct InputOffset {
   double size = 0.0;
   double onset_s = -std::numeric_limits<double>::infinity();  ///< as that of Stuck
 };
+/// What does more on one side of a point than on the other: heating is not cooling (split range).
+/// Moves count `above` or `below` times; at the operating point nothing is added.
+struct TwoSided {
+  double above = 1.0, below = 1.0;
+  double at = std::numeric_limits<double>::quiet_NaN();  ///< own units; NaN: the operating point
+};
 struct Offset {
   double bias = 0.0;
 };
 struct Scale {
   double factor = 1.0;  ///< of the deviation from the origin
 };
-using InputBlock = std::variant<Polynomial, Saturation, Deadband, Stiction, Stuck, InputOffset>;
+using InputBlock =
+    std::variant<Polynomial, Saturation, Deadband, Stiction, Stuck, InputOffset, TwoSided>;
 using OutputBlock = std::variant<Saturation, Offset, Scale>;
 
 struct ChannelSpec {

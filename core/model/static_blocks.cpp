@@ -22,6 +22,14 @@ double polynomial_value(const Polynomial& polynomial, double deviation) {
   });
 }
 
+double two_sided_value(const TwoSided& sides, double input, double origin) {
+  const double at = std::isfinite(sides.at) ? sides.at : origin;
+  const auto acting = [&](double value) {
+    return (value < at ? sides.below : sides.above) * (value - at);
+  };
+  return acting(input) - acting(origin);
+}
+
 int sign_of(double value) { return (value > 0.0) - (value < 0.0); }
 
 }  // namespace
@@ -40,6 +48,9 @@ InputElement::InputElement(std::optional<InputBlock> block, double origin)
   if (const auto* offset = std::get_if<InputOffset>(&*block_);
       offset && !std::isfinite(offset->size))
     throw std::invalid_argument("offset needs a finite size");
+  if (const auto* sides = std::get_if<TwoSided>(&*block_);
+      sides && !(std::isfinite(sides->above) && std::isfinite(sides->below)))
+    throw std::invalid_argument("two_sided needs finite ratios");
   reset(origin);
 }
 
@@ -69,6 +80,8 @@ double InputElement::apply(double input, double time_s) {
     return (time_s >= stuck->onset_s ? stuck->value : input) - origin_;
   if (const auto* offset = std::get_if<InputOffset>(&*block_))
     return input + (time_s >= offset->onset_s ? offset->size : 0.0) - origin_;
+  if (const auto* sides = std::get_if<TwoSided>(&*block_))
+    return two_sided_value(*sides, input, origin_);
   return apply_stiction(std::get<Stiction>(*block_), input) - origin_;
 }
 

@@ -27,6 +27,11 @@ Json block_json(const Stuck& block) {
 Json block_json(const InputOffset& block) {
   return {{"offset", since("size", block.size, block.onset_s)}};
 }
+Json block_json(const TwoSided& block) {
+  Json sides = {{"above", block.above}, {"below", block.below}};
+  if (std::isfinite(block.at)) sides["at"] = block.at;
+  return {{"two_sided", std::move(sides)}};
+}
 Json block_json(const Offset& block) { return {{"offset", block.bias}}; }
 Json block_json(const Scale& block) { return {{"scale", block.factor}}; }
 
@@ -107,13 +112,10 @@ Json hidden_plant_json(const config::HiddenPlant& hidden, const config::UnitConf
     json["state"].push_back(std::move(entry));
   }
   const auto tag = [&](int input) { return inputs[static_cast<std::size_t>(input)]; };
-  for (const config::Authority& authority : hidden.authorities) {
-    Json entry{{"mv", tag(authority.input)}};
-    if (authority.of >= 0)
-      entry.update({{"of", tag(authority.of)}, {"per_unit", authority.per_unit}});
-    entry.update({{"above", authority.above}, {"below", authority.below}});
-    json["authority"].push_back(std::move(entry));
-  }
+  for (const config::Authority& authority : hidden.authorities)
+    json["authority"].push_back({{"mv", tag(authority.input)},
+                                 {"of", tag(authority.of)},
+                                 {"per_unit", authority.per_unit}});
   return json;
 }
 

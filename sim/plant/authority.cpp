@@ -13,13 +13,10 @@ WithAuthority::WithAuthority(std::unique_ptr<Process> process,
 
 void WithAuthority::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   acting_ = input;
-  for (const config::Authority& authority : authorities_) {
-    const double away = input(authority.input) - origin_(authority.input);
-    double gain = away < 0.0 ? authority.below : authority.above;
-    if (authority.of >= 0)
-      gain *= 1.0 + authority.per_unit * (input(authority.of) - origin_(authority.of));
-    acting_(authority.input) += (gain - 1.0) * away;
-  }
+  for (const config::Authority& authority : authorities_)
+    acting_(authority.input) += authority.per_unit *
+                                (input(authority.input) - origin_(authority.input)) *
+                                (input(authority.of) - origin_(authority.of));
   process_->advance(acting_);
 }
 

@@ -9,9 +9,8 @@
 
 namespace mpm::sim {
 
-/// A process some of whose inputs do more or less than they say: by how far another input is from
-/// its operating point (two valves on one pipe), or by the side of their own on which they are
-/// (heating is not cooling). Product of deviations, so that at the operating point nothing shows.
+/// A process some of whose inputs do more or less than they say, by how far another one is from its
+/// operating point (two valves on one pipe): at the operating point nothing shows.
 class WithAuthority : public Process {
  public:
   /// `origin`: of the inputs, own units; aux inputs behind them have none.

@@ -122,6 +122,29 @@ TEST_CASE("a stuck and an offset input survive printing, with an onset and witho
   }
 }
 
+TEST_CASE("what an input does on either side of a point survives printing") {
+  const UnitConfig config = load_clean(
+      "unit: t\nsample_time: 1\nsignals: {mv: [u1, u2], cv: y1}\n"
+      "model:\n"
+      "  channels: [{cv: y1, mv: u1, gain: 1}, {cv: y1, mv: u2, gain: 1}]\n"
+      "  input:\n"
+      "    u1: {two_sided: {above: 1.3, below: 0.7, at: 40}}\n"
+      "    u2: {two_sided: {below: 0.5}}\n");
+  const std::string once = printed(config);
+  const UnitConfig again = load_clean(once);
+  CHECK(printed(again) == once);
+  for (const ModelSpec& model : {config.model, again.model}) {
+    const auto& heating = std::get<TwoSided>(model.input_blocks[0].value());
+    CHECK(heating.above == 1.3);
+    CHECK(heating.below == 0.7);
+    CHECK(heating.at == 40.0);
+    const auto& half = std::get<TwoSided>(model.input_blocks[1].value());
+    CHECK(half.above == 1.0);
+    CHECK(half.below == 0.5);
+    CHECK(std::isnan(half.at));
+  }
+}
+
 TEST_CASE("the operating point below the channels counts for tanks all the same") {
   const UnitConfig config = load_clean(
       "unit: t\nsample_time: 1\nsignals: {mv: u1, cv: y1}\n"

@@ -437,14 +437,11 @@ TEST_CASE("What is hidden in the plant arrives") {
   CHECK(only_finding("plant:\n  state: [{cv: y1, mv: u2, restoring_force: {cubic: 1}}]\n") ==
         "s.yaml:2:11: error: plant.state[0]: there is no channel from 'u2' to 'y1' for it to act "
         "in");
-  CHECK(load_for_plant("plant: {authority: [{mv: u1, of: d1, per_unit: 2}, {mv: u2, above: 3}]}\n")
-            .scenario.plant.authorities.size() == 2);
+  CHECK(load_for_plant("plant: {authority: [{mv: u1, of: d1, per_unit: 2}]}\n")
+            .scenario.plant.authorities.size() == 1);
   CHECK(only_finding("plant:\n  authority: [{mv: u1, of: u1, per_unit: 2}]\n") ==
         "s.yaml:2:28: error: plant.authority[0].of: is the input itself: a curve of its own is a "
-        "`polynomial` under `input`");
-  CHECK(only_finding("plant:\n  authority: [{mv: u1}]\n") ==
-        "s.yaml:2:15: error: plant.authority[0]: needs `of` with `per_unit`, or `above`, `below` "
-        "or both");
+        "block under `input`");
   CHECK(only_finding("plant:\n  authority: [{mv: u1, of: u2}]\n") ==
         "s.yaml:2:15: error: plant.authority[0]: `per_unit` is missing");
   CHECK(only_finding("plant: {inputs: {}}\n") ==

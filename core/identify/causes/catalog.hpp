@@ -17,6 +17,7 @@
   row(output_scale)          \
   row(input_polynomial)      \
   row(input_saturation)      \
+  row(input_two_sided)       \
   row(deadband)              \
   row(stiction)              \
   row(input_stuck)           \

@@ -62,6 +62,7 @@ struct Finding {
   /// Share of the mean square error on unseen samples of the CVs it acts on that goes with it; may
   /// be negative.
   double explains = 0.0;
+  int other_input = -1;  ///< that it depends on too; -1: on none
 
   [[nodiscard]] const Parameter* find(const Quantity& quantity) const;
 };

@@ -41,8 +41,11 @@ class Product : public UnnamedBehaviour {
  public:
   Product() : UnnamedBehaviour("product") {}
 
-  [[nodiscard]] std::string sentence(const Finding&, const SignalNames&) const override {
-    return ", whose effect seems to change with another input";
+  [[nodiscard]] std::string sentence(const Finding& finding,
+                                     const SignalNames& names) const override {
+    const int other = finding.other_input;
+    return ", whose effect seems to change with " +
+           (other >= 0 ? names.input(other).tag : std::string("another input"));
   }
 
  protected:
@@ -51,9 +54,10 @@ class Product : public UnnamedBehaviour {
     for (int other = 0; other < outlook.inputs(); ++other) {
       if (other == channel.spec().input) continue;
       const VectorXd by = normalised(outlook.recording().inputs.col(other));
-      if (by.size() > 0)
-        found.push_back(shaped(channel, {channel.modulated(by)}, kModulation,
-                               cost_of(static_cast<std::size_t>(outlook.inputs()))));
+      if (by.size() == 0) continue;
+      found.push_back(shaped(channel, {channel.modulated(by)}, kModulation,
+                             cost_of(static_cast<std::size_t>(outlook.inputs()))));
+      found.back().other_input = other;
     }
   }
 };

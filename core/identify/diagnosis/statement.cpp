@@ -65,6 +65,7 @@ Unexplained to_unexplained(const SearchResult& found, std::size_t index, Problem
   const Effect& effect = found.named[index].effect;
   Unexplained left;
   left.subject = subject_of(effect);
+  left.other_input = effect.other_input;
   const int cv = effect.place.cv;
   const auto of_cv = [&](const CvFit& fit) { return fit.cv == cv; };
   const auto fit = std::find_if(found.fit.cvs.begin(), found.fit.cvs.end(), of_cv);

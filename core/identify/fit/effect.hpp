@@ -45,6 +45,7 @@ struct Effect {
   int variant = 0;
   /// Seen in the data themselves, whatever the model: not weighed against others.
   bool certain = false;
+  int other_input = -1;  ///< that it depends on too; -1: on none
   /// Of what edits no model, samples x coordinates: what the CV does per unit of each.
   std::shared_ptr<const Eigen::MatrixXd> shape = {};
 

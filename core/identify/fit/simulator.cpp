@@ -55,6 +55,7 @@ class Key {
   void add(const Stiction& v) { add(v.band), add(v.jump), add(v.slips_once); }
   void add(const Stuck& v) { add(v.value), add(v.onset_s); }
   void add(const InputOffset& v) { add(v.size), add(v.onset_s); }
+  void add(const TwoSided& v) { add(v.above), add(v.below), add(v.at); }
   void add(const RestoringForce& v) { add(v.quadratic), add(v.cubic); }
   void add(const SquareRootOutflow& v) { add(v.empty_output); }
   void add(const CoulombFriction& v) { add(v.force), add(v.speed); }

@@ -164,6 +164,8 @@ Json unexplained_json(const DiagnosisRun& run) {
     json.push_back({{"cv", names.cv(place.cv).tag},
                     {"mv", tag_or_null(place.input >= 0 ? names.input(place.input).tag : "")},
                     {"manner", left.subject.cause->kind()},
+                    {"other_input",
+                     tag_or_null(left.other_input >= 0 ? names.input(left.other_input).tag : "")},
                     {"p_value", left.p_value},
                     {"share", left.share},
                     {"text", unexplained_text(run, left)}});

@@ -34,6 +34,8 @@ const Block* block_of(const std::vector<std::optional<Block>>& blocks, int index
 
 /// At so much from the origin.
 double slope(const InputBlock* block, double at) {
+  if (const auto* sides = block == nullptr ? nullptr : std::get_if<TwoSided>(block))
+    return at < sides->at ? sides->below : sides->above;
   const auto* polynomial = block == nullptr ? nullptr : std::get_if<Polynomial>(block);
   if (polynomial == nullptr || polynomial->coefficients.empty()) return 1.0;
   double sum = 0.0, power = 1.0;

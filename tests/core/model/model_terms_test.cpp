@@ -74,6 +74,16 @@ TEST_CASE("a block of one channel leaves the other channels of its input alone")
   }
 }
 
+TEST_CASE("what an input does more of on one side adds nothing at the operating point") {
+  // Operating point 10, gain 1, y(k) is what u(k-1) acts like.
+  ModelSpec spec = two_gains();
+  const Values inputs = {10, 12, 8, 14, 6};
+  spec.input_blocks = {mpm::TwoSided{2.0, 0.5}};  // at 10
+  CHECK(respond(spec, 1, inputs) == Values{0, 4, -1, 8, -2});
+  spec.input_blocks = {mpm::TwoSided{2.0, 0.5, 12.0}};  // of 10: 0.5 * -2
+  CHECK(respond(spec, 1, inputs) == Values{0, 1, -1, 5, -2});
+}
+
 TEST_CASE("a channel block with dynamics is the same block in front of that channel alone") {
   for (const mpm::InputBlock& block :
        {mpm::InputBlock(mpm::Stiction{2.0, 1.0}), mpm::InputBlock(mpm::Polynomial{{1.0, 0.3}})}) {

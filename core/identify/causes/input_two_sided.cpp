@@ -1,0 +1,99 @@
+#include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/channel_error.hpp"
+#include "core/identify/causes/input_block.hpp"
+#include "core/identify/causes/priors.hpp"
+#include "core/text/number_text.hpp"
+
+namespace mpm::causes {
+namespace {
+
+constexpr Quantity kAt{"at", Form::kPlain, Unit::kInput};
+constexpr Quantity kAbove{"above", Form::kPlain, Unit::kNone};
+constexpr Quantity kBelow{"below", Form::kPlain, Unit::kNone};
+
+/// Shares of the data below the point to begin a fit from; it stays within the first and last.
+constexpr double kStarts[] = {0.3, 0.5, 0.7};
+constexpr double kLeastBelow = 0.1, kMostBelow = 0.9;
+/// Levels of the input: three lie on two lines whatever the plant does, and so do five, where the
+/// point may lie anywhere between.
+constexpr int kLevels = 6;
+
+/// What an input does differs on the two sides of a point.
+class InputTwoSided : public InputBlockCause {
+ public:
+  InputTwoSided() : InputBlockCause(kInputNonlinearity, "two_sided") {}
+
+  [[nodiscard]] bool is_curve() const override { return true; }
+
+  void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
+    for (const BlockPlace& at : curve_places(outlook, kLevels)) {
+      const double range = at.input.range();
+      for (const double share : kStarts) {
+        const Coordinate point{.quantity = &kAt,
+                               .value = at.input.quantile(share),
+                               .prior_mean = at.input.median,
+                               .prior_sd = 0.25 * range,
+                               .step = 0.01 * range,
+                               .low = at.input.quantile(kLeastBelow),
+                               .high = at.input.quantile(kMostBelow)};
+        const auto ratio = [](const Quantity& quantity) {
+          return Coordinate{.quantity = &quantity,
+                            .value = 1.0,
+                            .prior_mean = 1.0,
+                            .prior_sd = 0.25,
+                            .step = 0.01,
+                            .low = -20.0,
+                            .high = 20.0};
+        };
+        found.push_back(
+            effect(at.place, {point, ratio(kBelow), ratio(kAbove)}, cost_of(at.members)));
+      }
+    }
+  }
+
+  [[nodiscard]] int kinked_numbers() const override { return 1; }
+
+  [[nodiscard]] bool may_be_nothing(const Finding& finding) const override {
+    const Parameter &below = *finding.find(kBelow), &above = *finding.find(kAbove);
+    return below.low <= above.high && above.low <= below.high;
+  }
+
+  /// One number before three: all gains of the input are off, and nothing is bent.
+  [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
+                                              const Problem& problem,
+                                              const Tolerances&) const override {
+    const Effect& sides = accepted[mine];
+    Effect plain = sides;
+    const bool alone = touched(plain, problem).size() == 1;
+    plain.edit = alone ? &gain() : &input_scale();
+    if (alone) plain.place.cv = touched(plain, problem).front();
+    plain.coordinates = {gain_ratio_coordinate()};
+    plain.coordinates.front().value = 0.5 * (sides.value(kBelow, 1.0) + sides.value(kAbove, 1.0));
+    return {{{mine}, {plain}}};
+  }
+
+  [[nodiscard]] std::string sentence(const Finding& finding,
+                                     const SignalNames& names) const override {
+    const Place& place = finding.subject.place;
+    const Parameter &at = *finding.find(kAt), &below = *finding.find(kBelow),
+                    &above = *finding.find(kAbove);
+    return target(finding, names) + " answers " + names.source(place).tag + " " +
+           number_text(below.value) + " times as much as the model says below " +
+           names.in_source(at.value, place) + " (" + interval_of(at) + "), and " +
+           number_text(above.value) + " times above: it does not act alike on both sides. ";
+  }
+
+ protected:
+  [[nodiscard]] InputBlock block(const Effect& effect, const Surroundings&) const override {
+    return TwoSided{effect.value(kAbove, 1.0), effect.value(kBelow, 1.0), effect.value(kAt, 0.0)};
+  }
+};
+
+}  // namespace
+
+const Cause& input_two_sided() {
+  static const InputTwoSided cause;
+  return cause;
+}
+
+}  // namespace mpm::causes
