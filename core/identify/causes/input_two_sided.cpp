@@ -75,12 +75,14 @@ class InputTwoSided : public InputBlockCause {
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override {
     const Place& place = finding.subject.place;
-    const Parameter &at = *finding.find(kAt), &below = *finding.find(kBelow),
-                    &above = *finding.find(kAbove);
-    return target(finding, names) + " answers " + names.source(place).tag + " " +
-           number_text(below.value) + " times as much as the model says below " +
-           names.in_source(at.value, place) + " (" + interval_of(at) + "), and " +
-           number_text(above.value) + " times above: it does not act alike on both sides. ";
+    const Parameter *at = finding.find(kAt), *below = finding.find(kBelow),
+                    *above = finding.find(kAbove);
+    std::string text = target(finding, names) + " does not answer " + names.source(place).tag +
+                       " alike on both sides of ";
+    if (at == nullptr || below == nullptr || above == nullptr) return text + "a point. ";
+    return text + names.in_source(at->value, place) + " (" + interval_of(*at) + "): below " +
+           number_text(below->value) + " times as much as the model says, above " +
+           number_text(above->value) + " times. ";
   }
 
  protected:

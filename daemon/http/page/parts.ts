@@ -20,8 +20,9 @@ export function lastSample(unit: { time_ns: number; sample_time_s: number }): HT
   if (!unit.time_ns) return h('p', { class: 'note' }, 'no sample yet');
   const age = Date.now() / 1e3 - unit.time_ns / 1e9;
   const allowed = Math.max(kLeastSilence, kSilentSamples * unit.sample_time_s);
-  return h('p', { class: 'note' }, 'last sample ', time(unit.time_ns),
-    Math.abs(age) > allowed ? h('strong', { class: 'old' }, ` △ ${span(Math.abs(age))} ${age > 0 ? 'ago' : 'ahead of this clock'}`) : null);
+  // The space is where the line may break.
+  return h('p', { class: 'note' }, 'last sample ', time(unit.time_ns), ' ',
+    Math.abs(age) > allowed ? h('strong', { class: 'old' }, `△ ${span(Math.abs(age))} ${age > 0 ? 'ago' : 'ahead of this clock'}`) : null);
 }
 
 /// Of a monitor that only looks on, first of all.

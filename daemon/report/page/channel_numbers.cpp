@@ -33,9 +33,9 @@ const Block* block_of(const std::vector<std::optional<Block>>& blocks, int index
 }
 
 /// At so much from the origin.
-double slope(const InputBlock* block, double at) {
+double slope(const InputBlock* block, double at, double origin) {
   if (const auto* sides = block == nullptr ? nullptr : std::get_if<TwoSided>(block))
-    return at < sides->at ? sides->below : sides->above;
+    return at < (std::isfinite(sides->at) ? sides->at - origin : 0.0) ? sides->below : sides->above;
   const auto* polynomial = block == nullptr ? nullptr : std::get_if<Polynomial>(block);
   if (polynomial == nullptr || polynomial->coefficients.empty()) return 1.0;
   double sum = 0.0, power = 1.0;
@@ -86,9 +86,10 @@ class Source {
     numbers.integrating = integrating_(cv, input);
     const auto at = static_cast<std::size_t>(input);
     const double operated = at < operated_.size() ? operated_[at] : 0.0;
-    numbers.curve = slope(block_of(spec_.input_blocks, input), operated);
+    const double origin = spec_.input_origin.size() != 0 ? spec_.input_origin(input) : 0.0;
+    numbers.curve = slope(block_of(spec_.input_blocks, input), operated, origin);
     if (channel != spec_.channels.end() && channel->input_block)
-      numbers.curve *= slope(&*channel->input_block, operated);
+      numbers.curve *= slope(&*channel->input_block, operated, origin);
     numbers.gain = gain_(cv, input) * numbers.curve * slope(block_of(spec_.output_blocks, cv));
     if (numbers.integrating) numbers.gain /= spec_.sample_time_s;
     if (channel != spec_.channels.end()) {

@@ -33,6 +33,7 @@ TEST_CASE("causes are called what the reports call them") {
       {&causes::output_scale(), {"output_scale", ""}},
       {&causes::input_polynomial(), {"input_nonlinearity", "polynomial"}},
       {&causes::input_saturation(), {"input_nonlinearity", "saturation"}},
+      {&causes::input_two_sided(), {"input_nonlinearity", "two_sided"}},
       {&causes::deadband(), {"input_nonlinearity", "deadband"}},
       {&causes::stiction(), {"stiction", ""}},
       {&causes::input_stuck(), {"input_stuck", ""}},
@@ -85,9 +86,10 @@ TEST_CASE("errors of channels are expected, anything else is rarer and the unnam
     CHECK(cause->rarity() == 0.0);
   // As 2 ln of odds: 1 to 12, 1 to 24, 1 to 1000.
   for (const Cause* cause :
-       {&causes::input_polynomial(), &causes::input_saturation(), &causes::deadband(),
-        &causes::stiction(), &causes::output_saturation(), &causes::unmodelled_input(),
-        &causes::step_disturbance(), &causes::drift_disturbance(), &causes::periodic_disturbance()})
+       {&causes::input_polynomial(), &causes::input_saturation(), &causes::input_two_sided(),
+        &causes::deadband(), &causes::stiction(), &causes::output_saturation(),
+        &causes::unmodelled_input(), &causes::step_disturbance(), &causes::drift_disturbance(),
+        &causes::periodic_disturbance()})
     CHECK(std::exp(0.5 * cause->rarity()) == Approx(12.0));
   for (const Cause* cause :
        {&causes::cubic_stiffness(), &causes::square_root_outflow(), &causes::coulomb_friction()})

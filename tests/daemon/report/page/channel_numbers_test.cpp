@@ -58,6 +58,14 @@ TEST_CASE("blocks before and behind a channel are part of its gain") {
   const double d = moved[moved.size() / 2] - run.diagnosis.extended.input_origin(0);
   REQUIRE(std::abs(d) > 0.01);
   CHECK(of(channel_numbers(run), 1, 0).gain.new_value == Approx(1.5 * (0.8 + 0.2 * d) * plain));
+  // Of what differs on either side of a point, in the input's own units: the side it was mostly on.
+  const double mostly = moved[moved.size() / 2];
+  run.diagnosis.extended.input_origin(0) = 40.0;
+  for (double& value : run.recording.inputs.col(0)) value += 40.0;
+  run.diagnosis.extended.input_blocks[0] = TwoSided{1.2, 0.7, 40.0 + mostly - 0.01};
+  CHECK(of(channel_numbers(run), 1, 0).gain.new_value == Approx(1.5 * 1.2 * plain));
+  run.diagnosis.extended.input_blocks[0] = TwoSided{1.2, 0.7, 40.0 + mostly + 0.01};
+  CHECK(of(channel_numbers(run), 1, 0).gain.new_value == Approx(1.5 * 0.7 * plain));
 }
 
 TEST_CASE("a lead is in the table, and two time constants have their intervals") {
