@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/channel_error.hpp"
 
 namespace mpm {
@@ -52,6 +53,27 @@ std::vector<BlockPlace> InputBlockCause::curve_places(const Outlook& outlook, in
   std::vector<BlockPlace> places = block_places(outlook);
   std::erase_if(places, [levels](const BlockPlace& at) { return at.input.levels() < levels; });
   return places;
+}
+
+Coordinate InputBlockCause::plain_ratio(const Quantity& quantity) {
+  return {.quantity = &quantity,
+          .value = 1.0,
+          .prior_mean = 1.0,
+          .prior_sd = 0.25,
+          .step = 0.01,
+          .low = -20.0,
+          .high = 20.0};
+}
+
+std::vector<Rewrite> InputBlockCause::as_gain(std::size_t mine, const std::vector<Effect>& accepted,
+                                              double ratio, const Problem& problem) {
+  Effect plain = accepted[mine];
+  const std::vector<int> cvs = touched(plain, problem);
+  plain.edit = cvs.size() == 1 ? &causes::gain() : &causes::input_scale();
+  if (cvs.size() == 1) plain.place.cv = cvs.front();
+  plain.coordinates = {gain_ratio_coordinate()};
+  plain.coordinates.front().value = ratio;
+  return {{{mine}, {plain}}};
 }
 
 double InputBlockCause::since_s(const Effect& effect, const Surroundings& surroundings) {

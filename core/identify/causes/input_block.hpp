@@ -37,6 +37,12 @@ class InputBlockCause : public Cause {
   /// Of these, where the input has been at so many levels: on fewer a curve through them is a
   /// straight line with an offset, and nothing tells them apart.
   [[nodiscard]] static std::vector<BlockPlace> curve_places(const Outlook& outlook, int levels = 3);
+  /// A gain to the model's, not in its logarithm.
+  [[nodiscard]] static Coordinate plain_ratio(const Quantity& quantity);
+  /// One number before several: all gains of the input are off, by so much, and nothing is bent.
+  [[nodiscard]] static std::vector<Rewrite> as_gain(std::size_t mine,
+                                                    const std::vector<Effect>& accepted,
+                                                    double ratio, const Problem& problem);
   /// The one CV that the model has this input act on; -1 where there are several.
   [[nodiscard]] static int only_cv(const ModelSpec& model, int input);
   /// The tag of what the block stands before: a CV's, or "the plant".

@@ -31,13 +31,7 @@ class InputPolynomial : public InputBlockCause {
       const double origin = outlook.model().input_origin(at.place.input);
       const double reach =
           std::max(std::abs(at.input.high - origin), std::abs(at.input.low - origin));
-      const Coordinate linear{.quantity = &kLinear,
-                              .value = 1.0,
-                              .prior_mean = 1.0,
-                              .prior_sd = 0.25,
-                              .step = 0.01,
-                              .low = -20.0,
-                              .high = 20.0};
+      const Coordinate linear = plain_ratio(kLinear);
       const auto curved = [](const Quantity& quantity, double sd) {
         return Coordinate{.quantity = &quantity,
                           .prior_sd = sd,
@@ -59,18 +53,10 @@ class InputPolynomial : public InputBlockCause {
            (cubic == nullptr || includes_nothing(*cubic));
   }
 
-  /// One number before three: all gains of the input are off, and nothing is bent.
   [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
                                               const Problem& problem,
                                               const Tolerances&) const override {
-    Effect plain = accepted[mine];
-    const bool alone = touched(plain, problem).size() == 1;
-    plain.edit = alone ? &gain() : &input_scale();
-    if (alone) plain.place.cv = touched(plain, problem).front();
-    const double linear = plain.value(kLinear, 1.0);
-    plain.coordinates = {gain_ratio_coordinate()};
-    plain.coordinates.front().value = linear;
-    return {{{mine}, {plain}}};
+    return as_gain(mine, accepted, accepted[mine].value(kLinear, 1.0), problem);
   }
 
   [[nodiscard]] std::string sentence(const Finding& finding,

@@ -1,5 +1,4 @@
 #include "core/identify/causes/catalog.hpp"
-#include "core/identify/causes/channel_error.hpp"
 #include "core/identify/causes/input_block.hpp"
 #include "core/identify/causes/priors.hpp"
 #include "core/text/number_text.hpp"
@@ -36,17 +35,8 @@ class InputTwoSided : public InputBlockCause {
                                .step = 0.01 * range,
                                .low = at.input.quantile(kLeastBelow),
                                .high = at.input.quantile(kMostBelow)};
-        const auto ratio = [](const Quantity& quantity) {
-          return Coordinate{.quantity = &quantity,
-                            .value = 1.0,
-                            .prior_mean = 1.0,
-                            .prior_sd = 0.25,
-                            .step = 0.01,
-                            .low = -20.0,
-                            .high = 20.0};
-        };
-        found.push_back(
-            effect(at.place, {point, ratio(kBelow), ratio(kAbove)}, cost_of(at.members)));
+        found.push_back(effect(at.place, {point, plain_ratio(kBelow), plain_ratio(kAbove)},
+                               cost_of(at.members)));
       }
     }
   }
@@ -58,18 +48,12 @@ class InputTwoSided : public InputBlockCause {
     return below.low <= above.high && above.low <= below.high;
   }
 
-  /// One number before three: all gains of the input are off, and nothing is bent.
   [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
                                               const Problem& problem,
                                               const Tolerances&) const override {
     const Effect& sides = accepted[mine];
-    Effect plain = sides;
-    const bool alone = touched(plain, problem).size() == 1;
-    plain.edit = alone ? &gain() : &input_scale();
-    if (alone) plain.place.cv = touched(plain, problem).front();
-    plain.coordinates = {gain_ratio_coordinate()};
-    plain.coordinates.front().value = 0.5 * (sides.value(kBelow, 1.0) + sides.value(kAbove, 1.0));
-    return {{{mine}, {plain}}};
+    return as_gain(mine, accepted, 0.5 * (sides.value(kBelow, 1.0) + sides.value(kAbove, 1.0)),
+                   problem);
   }
 
   [[nodiscard]] std::string sentence(const Finding& finding,

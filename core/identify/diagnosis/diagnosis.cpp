@@ -244,10 +244,9 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
       without_unanswered(base, without_readbacks(whole), diagnosis.unanswered);
   Recording recording = with_setpoints(measured);
   std::optional<Recording> validation;
-  if (unseen_runs != nullptr) {
-    std::vector<Pulse> unseen_pulses;
-    validation = with_setpoints(without_unanswered(base, *unseen_runs, unseen_pulses));
-  }
+  if (unseen_runs != nullptr)
+    validation =
+        with_setpoints(without_unanswered(base, *unseen_runs, diagnosis.validation_unanswered));
   const auto aux = static_cast<int>(measured.aux.cols());
   const Index samples = recording.samples();
   diagnosis.samples = samples;

@@ -56,6 +56,7 @@ struct Diagnosis {
   std::vector<Place> rejected;
   std::vector<InputMovement> inputs;  ///< MVs, then DVs
   std::vector<Pulse> unanswered;      ///< of inputs: taken as not known, for the plant saw none
+  std::vector<Pulse> validation_unanswered;  ///< the same in the second recording
   std::vector<ChannelEstimate> channels;
   ModelSpec extended;             ///< equal to the model where nothing was found
   std::vector<int> new_inputs;    ///< aux signals that `extended` takes as inputs after the model's

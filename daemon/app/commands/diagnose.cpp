@@ -129,12 +129,16 @@ bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
   };
   run.diagnosis = diagnose(run.unit.model, run.recording,
                            run.validation ? &*run.validation : nullptr, settings);
-  if (const std::string text =
-          report::pulses_text(run.unit, run.recording, run.diagnosis.unanswered, run.zone.get());
-      !text.empty()) {
-    run.notices.push_back(run.data_file + ": " + text);
+  const auto tell = [&](const std::string& file, const Recording& recording,
+                        const std::vector<Pulse>& pulses) {
+    const std::string text = report::pulses_text(run.unit, recording, pulses, run.zone.get());
+    if (text.empty()) return;
+    run.notices.push_back(file + ": " + text);
     if (!options.quiet) tell_notices({run.notices.back()});
-  }
+  };
+  tell(run.data_file, run.recording, run.diagnosis.unanswered);
+  if (run.validation)
+    tell(run.validation_file, *run.validation, run.diagnosis.validation_unanswered);
   return !stopped;
 }
 

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 
 #include "tests/core/identify/small_plant.hpp"
 
@@ -28,8 +27,8 @@ int said(const VectorXd& predicted, const VectorXd& simulated) {
 
 }  // namespace
 
-// The s.d. of the difference, in that of the model's answer: 0.3 of the gain; of a dead time or a
-// lag about as much as the answer goes on in the meantime, which was counted here: 0.43, 0.42.
+// The s.d. of the difference, in that of the model's answer: 0.3 of the gain; of the dead time
+// 0.54, of the lag 0.38 (means of 20 telegraphs of another generator; 0.36 at least).
 TEST_CASE("predictions of another gain, dead time or lag are told after three blocks") {
   const VectorXd model = test::first_order(input(), 2.0, 20.0, 3);
   CHECK(said(test::first_order(input(), 2.6, 20.0, 3), model) == kRows - 1499);
@@ -38,6 +37,8 @@ TEST_CASE("predictions of another gain, dead time or lag are told after three bl
   CHECK(said(VectorXd::Zero(kRows), model) == kRows - 1499);
 }
 
+// Of a sample more 0.08, of a tenth of the gain 0.1; of the digits 0.5 / sqrt(12) to an s.d.
+// of 1.1.
 TEST_CASE("digits, levels, a deadband and a sample more or less make no other model") {
   const VectorXd model = 100.0 + test::first_order(input(), 2.0, 20.0, 3).array();
   CHECK(said(model.array() + 5.0, model) == 0);
