@@ -161,7 +161,8 @@ std::vector<ChannelSpec> read_channels(const Value& list, const ModelSignals& si
     channel.cv = place.cv;
     channel.input = place.input;
     read_dynamics(map, signals, channel);
-    if (const Value* block = map.find("input")) channel.input_block = read_input_block(*block);
+    if (const Value* block = map.find("input"))
+      channel.input_block = read_input_block(*block, signals.inputs, place.input);
     if (!place.known()) continue;
     const auto [first, is_new] = lines.try_emplace({channel.cv, channel.input}, item.line());
     if (!is_new) {

@@ -27,27 +27,12 @@ void check_aux_moves(const Value& list, const UnitConfig& unit, const HiddenPlan
   }
 }
 
-void read_authority(const Value& item, const UnitConfig& unit, HiddenPlant& plant) {
-  const Map map = item.map({"mv", "of", "per_unit"});
-  const std::vector<std::string> inputs = unit.input_tags();
-  const Value* mv = map.require("mv");
-  const Value* of = map.require("of");
-  const Value* per_unit = map.require("per_unit");
-  if (mv == nullptr || of == nullptr || per_unit == nullptr) return;
-  const Authority authority{find_signal(*mv, inputs, "mv or dv"),
-                            find_signal(*of, inputs, "mv or dv"), per_unit->number().value_or(0.0)};
-  if (authority.input < 0 || authority.of < 0) return;
-  if (authority.of == authority.input)
-    of->error("is the input itself: a curve of its own is a block under `input`");
-  plant.authorities.push_back(authority);
-}
-
 }  // namespace
 
 void load_hidden_plant(const Value& section, const ScenarioContext& context,
                        ScenarioConfig& scenario) {
   const UnitConfig& unit = context.unit;
-  const Map map = section.map({"input", "output", "channels", "state", "authority"});
+  const Map map = section.map({"input", "output", "channels", "state"});
   HiddenPlant& plant = scenario.plant;
   plant.place = {section.file(), section.line(), section.column(), section.path()};
   plant.input_blocks.resize(static_cast<std::size_t>(unit.model.input_count));
@@ -56,7 +41,6 @@ void load_hidden_plant(const Value& section, const ScenarioContext& context,
     read_input_blocks(*blocks, unit.input_tags(), plant.input_blocks);
   if (const Value* blocks = map.find("output"))
     read_output_blocks(*blocks, unit.cv_tags(), plant.output_blocks);
-  load_list(map, "authority", [&](const Value& item) { read_authority(item, unit, plant); });
   for (const char* key : {"channels", "state"})
     if (map.find(key) != nullptr && unit.model.state_space)
       map.entry(key)->key_at.error("needs a unit whose model has channels, not a state space");
@@ -88,7 +72,7 @@ bool HiddenPlant::empty() const {
   const auto none = [](const auto& block) { return !block.has_value(); };
   return std::all_of(input_blocks.begin(), input_blocks.end(), none) &&
          std::all_of(output_blocks.begin(), output_blocks.end(), none) && channels.empty() &&
-         state_terms.empty() && authorities.empty();
+         state_terms.empty();
 }
 
 }  // namespace mpm::config

@@ -21,8 +21,10 @@ struct ModelSignals {
 /// MVs, then DVs, and the operating point read so far.
 [[nodiscard]] ModelSignals signals_of(const UnitConfig& unit);
 
-/// `{polynomial: [..]}` and the like; nothing (reported) where it is none.
-[[nodiscard]] std::optional<InputBlock> read_input_block(const Value& value);
+/// `{polynomial: [..]}` and the like, of an input of `inputs`; nothing (reported) where it is none.
+[[nodiscard]] std::optional<InputBlock> read_input_block(const Value& value,
+                                                         const std::vector<std::string>& inputs,
+                                                         int input);
 [[nodiscard]] std::optional<OutputBlock> read_output_block(const Value& value);
 /// Blocks by tag.
 void read_input_blocks(const Value& section, const std::vector<std::string>& tags,

@@ -80,7 +80,25 @@ std::optional<TwoSided> read_two_sided(const Value& value) {
   return sides;
 }
 
-std::optional<InputBlock> read_input(const Map::Entry& entry) {
+std::optional<Product> read_product(const Value& value, const std::vector<std::string>& inputs,
+                                    int input) {
+  const Map map = value.map({"of", "per_unit", "linear"});
+  const Value* of = map.require("of");
+  const Value* per_unit = map.require("per_unit");
+  const Value* linear = map.find("linear");
+  const int other = of != nullptr ? find_tag(*of, inputs, "mv or dv") : -1;
+  const auto slope = per_unit != nullptr ? per_unit->number() : std::nullopt;
+  const auto factor = linear != nullptr ? linear->number() : std::optional<double>(1.0);
+  if (other >= 0 && other == input) {
+    of->error("is the input itself: what goes with its own place is a `polynomial`");
+    return std::nullopt;
+  }
+  if (other < 0 || !slope || !factor) return std::nullopt;
+  return Product{other, *slope, *factor};
+}
+
+std::optional<InputBlock> read_input(const Map::Entry& entry,
+                                     const std::vector<std::string>& inputs, int input) {
   const Value& value = entry.value;
   if (entry.key == "polynomial") {
     const std::vector<double> c = value.numbers();
@@ -107,6 +125,10 @@ std::optional<InputBlock> read_input(const Map::Entry& entry) {
   }
   if (entry.key == "two_sided") {
     if (const auto sides = read_two_sided(value)) return *sides;
+    return std::nullopt;
+  }
+  if (entry.key == "product") {
+    if (const auto product = read_product(value, inputs, input)) return *product;
     return std::nullopt;
   }
   if (const auto block = read_stiction(value)) return *block;
@@ -141,18 +163,19 @@ void read_by_tag(const Value& section, const std::vector<std::string>& tags, Rea
   const Map by_tag = section.map(tags, "tag");
   for (const Map::Entry& entry : by_tag.entries()) {
     const auto index = std::find(tags.begin(), tags.end(), entry.key) - tags.begin();
-    blocks[static_cast<std::size_t>(index)] = read(entry.value);
+    blocks[static_cast<std::size_t>(index)] = read(entry.value, static_cast<int>(index));
   }
 }
 
 }  // namespace
 
-std::optional<InputBlock> read_input_block(const Value& value) {
-  const Map block = value.map(
-      {"polynomial", "saturation", "deadband", "stiction", "stuck", "offset", "two_sided"});
+std::optional<InputBlock> read_input_block(const Value& value,
+                                           const std::vector<std::string>& inputs, int input) {
+  const Map block = value.map({"polynomial", "saturation", "deadband", "stiction", "stuck",
+                               "offset", "two_sided", "product"});
   const Map::Entry* only = only_entry(block);
   if (only == nullptr) return std::nullopt;
-  return read_input(*only);
+  return read_input(*only, inputs, input);
 }
 
 std::optional<OutputBlock> read_output_block(const Value& value) {
@@ -164,12 +187,16 @@ std::optional<OutputBlock> read_output_block(const Value& value) {
 
 void read_input_blocks(const Value& section, const std::vector<std::string>& tags,
                        std::vector<std::optional<InputBlock>>& blocks) {
-  read_by_tag(section, tags, read_input_block, blocks);
+  read_by_tag(
+      section, tags,
+      [&tags](const Value& value, int input) { return read_input_block(value, tags, input); },
+      blocks);
 }
 
 void read_output_blocks(const Value& section, const std::vector<std::string>& tags,
                         std::vector<std::optional<OutputBlock>>& blocks) {
-  read_by_tag(section, tags, read_output_block, blocks);
+  read_by_tag(
+      section, tags, [](const Value& value, int) { return read_output_block(value); }, blocks);
 }
 
 }  // namespace mpm::config

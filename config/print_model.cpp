@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ostream>
 #include <string_view>
+#include <type_traits>
 
 #include "config/choice.hpp"
 #include "config/yaml_text.hpp"
@@ -64,6 +65,11 @@ std::string block_text(const TwoSided& block) {
   return "{two_sided: {above: " + yaml_text(block.above) + ", below: " + yaml_text(block.below) +
          (std::isfinite(block.at) ? ", at: " + yaml_text(block.at) : "") + "}}";
 }
+std::string block_text(const Product& block, const std::vector<std::string>& inputs) {
+  return "{product: {of: " + yaml_text(inputs[static_cast<std::size_t>(block.of)]) +
+         ", per_unit: " + yaml_text(block.per_unit) +
+         (block.linear != 1.0 ? ", linear: " + yaml_text(block.linear) : "") + "}}";
+}
 std::string block_text(const Offset& block) { return "{offset: " + yaml_text(block.bias) + "}"; }
 std::string block_text(const Scale& block) { return "{scale: " + yaml_text(block.factor) + "}"; }
 
@@ -92,20 +98,29 @@ std::string disturbance_text(const DisturbanceTerm& term) {
   return text;
 }
 
+/// `inputs`: the tags of all.
 template <class Block>
-std::string text_of(const Block& block) {
-  return std::visit([](const auto& kind) { return block_text(kind); }, block);
+std::string text_of(const Block& block, const std::vector<std::string>& inputs) {
+  return std::visit(
+      [&inputs](const auto& kind) {
+        if constexpr (std::is_same_v<decltype(kind), const Product&>)
+          return block_text(kind, inputs);
+        else
+          return block_text(kind);
+      },
+      block);
 }
 
 template <class Block>
 void print_blocks(std::string_view key, const std::vector<std::optional<Block>>& blocks,
-                  const std::vector<std::string>& tags, std::ostream& out) {
+                  const std::vector<std::string>& tags, const std::vector<std::string>& inputs,
+                  std::ostream& out) {
   bool first = true;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (!blocks[i]) continue;
     if (first) out << "  " << key << ":\n";
     first = false;
-    out << "    " << yaml_text(tags[i]) << ": " << text_of(*blocks[i]) << '\n';
+    out << "    " << yaml_text(tags[i]) << ": " << text_of(*blocks[i], inputs) << '\n';
   }
 }
 
@@ -130,7 +145,8 @@ void print_channels(const UnitConfig& config, std::ostream& out) {
         << ", mv: " << yaml_text(config.input_tag(channel.input)) << ", "
         << std::visit([](const auto& dynamics) { return dynamics_text(dynamics); },
                       channel.dynamics);
-    if (channel.input_block) out << ", input: " << text_of(*channel.input_block);
+    if (channel.input_block)
+      out << ", input: " << text_of(*channel.input_block, config.input_tags());
     out << "}\n";
   }
 }
@@ -165,8 +181,9 @@ void print_model(const UnitConfig& config, std::ostream& out) {
   } else {
     print_channels(config, out);
   }
-  print_blocks("input", model.input_blocks, config.input_tags(), out);
-  print_blocks("output", model.output_blocks, config.cv_tags(), out);
+  const std::vector<std::string> inputs = config.input_tags();
+  print_blocks("input", model.input_blocks, inputs, inputs, out);
+  print_blocks("output", model.output_blocks, config.cv_tags(), inputs, out);
   print_terms(config, out);
   out << "  operating_point: " << origin_text(config) << '\n';
 }

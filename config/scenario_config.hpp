@@ -28,14 +28,6 @@ struct Change {
   Place place = {};
 };
 
-/// What an input of the plant does goes with another one: its deviation from the operating point
-/// times 1 + per_unit * that of the other.
-struct Authority {
-  int input = 0;
-  int of = 0;             ///< the other input
-  double per_unit = 0.0;  ///< per unit of the other input
-};
-
 /// What the plant has from the start on although the model does not. By index: the model's inputs,
 /// behind them the aux signals.
 struct HiddenPlant {
@@ -43,7 +35,6 @@ struct HiddenPlant {
   std::vector<std::optional<OutputBlock>> output_blocks;  ///< none, or one per CV
   std::vector<ChannelSpec> channels;                      ///< in place of the model's, or besides
   std::vector<StateTerm> state_terms;
-  std::vector<Authority> authorities;
   Place place = {};
 
   [[nodiscard]] bool empty() const;

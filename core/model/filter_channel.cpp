@@ -38,10 +38,12 @@ ChannelFacts facts_of(const FilterChannel& filter) {
   for (Index i = 0; i < b.size() && b(i) == 0.0; ++i) result.dead_time += 1.0;
   result.integrating = std::abs(a.sum()) <= calibration::model_rounding::kSame * a.cwiseAbs().sum();
   double radius = 0.0;
-  if (order > 0) {
-    MatrixXd companion = MatrixXd::Zero(order, order);
-    companion.row(0) = -a.tail(order).transpose();
-    companion.bottomLeftCorner(order - 1, order - 1).setIdentity();
+  Index poles = order;  // those at 0 decide nothing
+  while (poles > 0 && a(poles) == 0.0) --poles;
+  if (poles > 0) {
+    MatrixXd companion = MatrixXd::Zero(poles, poles);
+    companion.row(0) = -a.segment(1, poles).transpose();
+    companion.bottomLeftCorner(poles - 1, poles - 1).setIdentity();
     for (const std::complex<double>& pole : companion.eigenvalues()) {
       if (result.integrating && std::abs(pole - 1.0) < calibration::model_rounding::kSameRoot)
         continue;

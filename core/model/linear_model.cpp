@@ -84,11 +84,18 @@ struct LinearModel::State {
   }
 
   void archive(Archive& a);
+  /// What is finite of the inputs; the rest stays as it was.
+  void hold(const Eigen::Ref<const VectorXd>& input);
   void compute_output();
   void add_disturbances();
   void read_feedback();
   void rest_own_inputs();
   void set_own_inputs();
+  /// Where the input that this element goes with stands, from its operating point; 0 without one.
+  [[nodiscard]] double other_deviation(const InputElement& element) const {
+    const int other = element.other();
+    return other < 0 ? 0.0 : last_input(other) - definition->input_origin(other);
+  }
   [[nodiscard]] double time_s() const {
     return clock_start_s + static_cast<double>(elapsed) * definition->spec.sample_time_s;
   }
@@ -119,6 +126,11 @@ void LinearModel::State::archive(Archive& a) {
   // not archived: next_states, linear_output (empty between calls)
   a(elements, own_elements, history, states, last_input, fed_back, fed_back_before, fir_outputs,
     clock_start_s, elapsed, output);
+}
+
+void LinearModel::State::hold(const Eigen::Ref<const VectorXd>& input) {
+  for (Index i = 0; i < last_input.size(); ++i)
+    if (std::isfinite(input(i))) last_input(i) = input(i);
 }
 
 void LinearModel::State::compute_output() {
@@ -167,7 +179,7 @@ void LinearModel::State::set_own_inputs() {
     double deviation = *history.newest(own.input);
     if (own.block)
       deviation = own_elements[i].apply(deviation + definition->input_origin(own.input),
-                                        time_s() + tolerance_s());
+                                        time_s() + tolerance_s(), other_deviation(own_elements[i]));
     if (own.feedback) deviation -= own.feedback->value(fed_back(at), fed_back_before(at));
     history.set_newest(own.source, deviation);
   }
@@ -181,7 +193,7 @@ void LinearModel::State::rest_own_inputs() {
     if (own.block) {
       const double input = deviation + definition->input_origin(own.input);
       own_elements[i].reset(input);
-      deviation = own_elements[i].apply(input, rest_time_s());
+      deviation = own_elements[i].apply(input, rest_time_s(), other_deviation(own_elements[i]));
     }
     if (own.feedback) {
       const double rest = own.feedback->rest(deviation);
@@ -225,11 +237,12 @@ void LinearModel::reset_steady(const Eigen::Ref<const VectorXd>& input) {
   State& state = *state_;
   const ModelDefinition& fixed = *state.definition;
   state.states.setZero();
+  state.hold(input);
   for (int i = 0; i < fixed.spec.input_count; ++i) {
-    if (std::isfinite(input(i))) state.last_input(i) = input(i);
     InputElement& element = state.elements[static_cast<std::size_t>(i)];
     element.reset(state.last_input(i));
-    const double deviation = element.apply(state.last_input(i), state.rest_time_s());
+    const double deviation =
+        element.apply(state.last_input(i), state.rest_time_s(), state.other_deviation(element));
     state.history.fill(i, deviation);
     if (fixed.state_space) state.states += fixed.state_space->rest.col(i) * deviation;
   }
@@ -258,10 +271,11 @@ void LinearModel::advance(const Eigen::Ref<const VectorXd>& input) {
   const ModelDefinition& fixed = *state.definition;
   if (!fixed.own_inputs.empty()) state.read_feedback();
   state.history.next();
+  state.hold(input);
   for (int i = 0; i < fixed.spec.input_count; ++i) {
-    if (std::isfinite(input(i))) state.last_input(i) = input(i);
-    const double deviation = state.elements[static_cast<std::size_t>(i)].apply(
-        state.last_input(i), state.time_s() + state.tolerance_s());
+    InputElement& element = state.elements[static_cast<std::size_t>(i)];
+    const double deviation = element.apply(
+        state.last_input(i), state.time_s() + state.tolerance_s(), state.other_deviation(element));
     state.history.set_newest(i, deviation);
   }
   if (!fixed.own_inputs.empty()) state.set_own_inputs();

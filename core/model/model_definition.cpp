@@ -39,6 +39,8 @@ ModelDefinition::ModelDefinition(ModelSpec given) : spec(std::move(given)) {
   spec.output_blocks.resize(cvs);
   for (const std::optional<OutputBlock>& block : spec.output_blocks)
     if (block) check_output_block(*block);
+  for (int i = 0; i < spec.input_count; ++i)
+    check_block(spec.input_blocks[static_cast<std::size_t>(i)], i);
   check_terms();
 
   if (spec.state_space) {
@@ -53,6 +55,15 @@ ModelDefinition::ModelDefinition(ModelSpec given) : spec(std::move(given)) {
   facts.resize(cvs * inputs);
   channels.resize(cvs * inputs);
   for (const ChannelSpec& channel : spec.channels) add_channel(channel);
+}
+
+void ModelDefinition::check_block(const std::optional<InputBlock>& block, int input) const {
+  const auto* product = block ? std::get_if<Product>(&*block) : nullptr;
+  if (product == nullptr) return;
+  if (product->of < 0 || product->of >= spec.input_count)
+    throw std::invalid_argument("product: no such input");
+  if (product->of == input)
+    throw std::invalid_argument("product: of an input with itself; that is a polynomial");
 }
 
 void ModelDefinition::check_terms() const {
@@ -81,6 +92,7 @@ void ModelDefinition::add_channel(const ChannelSpec& channel) {
   ChannelFacts& slot = facts[place(channel.cv, channel.input)];
   if (slot.exists) throw std::invalid_argument("channel: given twice");
   channels[place(channel.cv, channel.input)] = &channel;
+  check_block(channel.input_block, channel.input);
   const auto term = std::find_if(spec.state_terms.begin(), spec.state_terms.end(),
                                  [&channel](const StateTerm& each) {
                                    return each.cv == channel.cv && each.input == channel.input;

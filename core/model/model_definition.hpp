@@ -63,6 +63,7 @@ struct ModelDefinition {
     return static_cast<std::size_t>(cv * spec.input_count + input);
   }
   void add_channel(const ChannelSpec& channel);
+  void check_block(const std::optional<InputBlock>& block, int input) const;
   void check_terms() const;
   ChannelFacts add(const ChannelSpec& channel, int source, const TransferFunction& transfer);
   ChannelFacts add(const ChannelSpec& channel, int source, const DiscreteFilter& filter);

@@ -94,6 +94,13 @@ struct TwoSided {
   double above = 1.0, below = 1.0;
   double at = std::numeric_limits<double>::quiet_NaN();  ///< own units; NaN: the operating point
 };
+/// What does more or less with where another input stands: two valves on one pipe. With du from the
+/// operating point the linear part sees (linear + per_unit dv) du, dv that of the other input.
+struct Product {
+  int of = 0;             ///< the other input
+  double per_unit = 0.0;  ///< per unit of the other input
+  double linear = 1.0;
+};
 struct Offset {
   double bias = 0.0;
 };
@@ -101,7 +108,7 @@ struct Scale {
   double factor = 1.0;  ///< of the deviation from the origin
 };
 using InputBlock =
-    std::variant<Polynomial, Saturation, Deadband, Stiction, Stuck, InputOffset, TwoSided>;
+    std::variant<Polynomial, Saturation, Deadband, Stiction, Stuck, InputOffset, TwoSided, Product>;
 using OutputBlock = std::variant<Saturation, Offset, Scale>;
 
 struct ChannelSpec {

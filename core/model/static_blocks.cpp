@@ -34,6 +34,11 @@ int sign_of(double value) { return (value > 0.0) - (value < 0.0); }
 
 }  // namespace
 
+int other_input(const std::optional<InputBlock>& block) {
+  const auto* product = block ? std::get_if<Product>(&*block) : nullptr;
+  return product == nullptr ? -1 : product->of;
+}
+
 InputElement::InputElement(std::optional<InputBlock> block, double origin)
     : block_(std::move(block)), origin_(origin) {
   if (!block_) return;
@@ -51,6 +56,9 @@ InputElement::InputElement(std::optional<InputBlock> block, double origin)
   if (const auto* sides = std::get_if<TwoSided>(&*block_);
       sides && !(std::isfinite(sides->above) && std::isfinite(sides->below)))
     throw std::invalid_argument("two_sided needs finite ratios");
+  if (const auto* product = std::get_if<Product>(&*block_);
+      product && !(std::isfinite(product->per_unit) && std::isfinite(product->linear)))
+    throw std::invalid_argument("product needs finite numbers");
   reset(origin);
 }
 
@@ -66,7 +74,7 @@ void InputElement::archive(Archive& a) {
   a.within(direction_, -1, 1);
 }
 
-double InputElement::apply(double input, double time_s) {
+double InputElement::apply(double input, double time_s, double other_deviation) {
   if (!block_) return input - origin_;
   if (const auto* polynomial = std::get_if<Polynomial>(&*block_))
     return polynomial_value(*polynomial, input - origin_);
@@ -82,6 +90,8 @@ double InputElement::apply(double input, double time_s) {
     return input + (time_s >= offset->onset_s ? offset->size : 0.0) - origin_;
   if (const auto* sides = std::get_if<TwoSided>(&*block_))
     return two_sided_value(*sides, input, origin_);
+  if (const auto* product = std::get_if<Product>(&*block_))
+    return (product->linear + product->per_unit * other_deviation) * (input - origin_);
   return apply_stiction(std::get<Stiction>(*block_), input) - origin_;
 }
 

@@ -8,6 +8,9 @@ namespace mpm {
 
 class Archive;
 
+/// Index of the input that a product goes with; -1 where there is none.
+[[nodiscard]] int other_input(const std::optional<InputBlock>& block);
+
 /// The static (or friction) element in front of one input of the linear part. Takes the input in
 /// its own units and gives the deviation from the origin that the linear part sees.
 ///
@@ -21,6 +24,8 @@ class Archive;
 /// of S after a reversal (J after a stop) and then a jump by J. From a reset the valve sits at the
 /// input.
 ///
+/// A product goes with another input, whose deviation from its origin `apply` is given.
+///
 /// A stuck input and an offset one are in force from their onset on: time goes by the clock of the
 /// data.
 class InputElement {
@@ -28,10 +33,12 @@ class InputElement {
   /// Throws std::invalid_argument where a parameter makes no sense.
   InputElement(std::optional<InputBlock> block, double origin);
 
+  [[nodiscard]] int other() const { return other_input(block_); }
+
   /// As if `input` had been held for ever.
   void reset(double input);
   /// `time_s`: when the input is given, with whatever rounding may take from it.
-  [[nodiscard]] double apply(double input, double time_s);
+  [[nodiscard]] double apply(double input, double time_s, double other_deviation = 0.0);
 
   void archive(Archive& a);
 

@@ -78,6 +78,7 @@ struct Monitor::State {
   MismatchDetector detector;
   NonlinearDetector nonlinear;
   OutsideSignals outside;
+  Eigen::VectorXd rows;            // residuals, NaN where no row may have them
   Eigen::VectorXd outside_values;  // set-points, then auxiliary signals; NaN where unknown
   ChangeScan scan;
   ChannelJudge judge;
@@ -112,6 +113,7 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
                  settings.gain_error_of_interest}),
       outside(detector.shape(), counts.cv + counts.aux, settings.outside_poles,
               settings.remembered),
+      rows(Eigen::VectorXd::Zero(counts.cv)),
       outside_values(Eigen::VectorXd::Zero(counts.cv + counts.aux)),
       scan(detector.shape()),
       judge(counts, settings),
@@ -152,7 +154,7 @@ void Monitor::State::Cv::archive(Archive& a) {
 
 void Monitor::State::archive(Archive& a) {
   // not archived: model, counts, expected, settings (construction)
-  // not archived: outside_values, scan (each sample and each search begins anew)
+  // not archived: rows, outside_values, scan (each sample and each search begins anew)
   a(reader, correlation, detector, nonlinear, outside, judge, cvs, status, judged_frames, counters,
     lost, first, last_interval);
   a.within(judged_count, 0, judged_frames.size());
@@ -224,7 +226,10 @@ void Monitor::State::pass_gap(std::int64_t missing) {
 }
 
 void Monitor::State::take_sample(const Frame& frame) {
-  detector.update(reader.inputs().values(), reader.residuals().values());
+  rows = reader.residuals().values();
+  for (int j = 0; j < counts.cv; ++j)
+    if (reader.predictions().unseen(j)) rows(j) = std::numeric_limits<double>::quiet_NaN();
+  detector.update(reader.inputs().values(), rows);
   nonlinear.add_sample(detector);
   bool used = false;
   for (int j = 0; j < counts.cv; ++j) {
@@ -233,7 +238,7 @@ void Monitor::State::take_sample(const Frame& frame) {
     const bool implausible = frame[SignalKind::kCv].quality[at] == Quality::kImplausible ||
                              (reader.predictions().given(j) &&
                               frame[SignalKind::kPrediction].quality[at] == Quality::kImplausible);
-    const bool settling = reader.predictions().settling(j);
+    const bool settling = reader.predictions().settling(j) || reader.predictions().unseen(j);
     of(j).settled += settling ? 0 : 1;
     of(j).quality.take({settling || std::isfinite(reader.residuals().values()(j)), implausible,
                         took_row, reader.screen().spikes(j)},

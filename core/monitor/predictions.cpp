@@ -44,7 +44,8 @@ Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_
       given_(may_predict.size(), false),
       corrections_(may_predict.size()),
       agreements_(may_predict.size()),
-      settling_(may_predict.size(), 0) {}
+      settling_(may_predict.size(), 0),
+      unseen_(may_predict.size(), 0) {}
 
 double Predictions::residual(int cv, const Frame& frame) const {
   const SignalBlock& measured = frame[SignalKind::kCv];
@@ -80,8 +81,10 @@ void Predictions::distrust(int input) {
   const std::size_t cvs = given_.size();
   simulation_settles_ = settling_samples_;
   for (std::size_t j = 0; j < cvs; ++j)
-    if (!given_[j] && acts_[static_cast<std::size_t>(input) * cvs + j])
-      settling_[j] = settling_samples_;
+    if (acts_[static_cast<std::size_t>(input) * cvs + j]) {
+      unseen_[j] = settling_samples_;
+      if (!given_[j]) settling_[j] = settling_samples_;
+    }
 }
 
 void Predictions::compare(const Frame& frame) {
@@ -104,8 +107,9 @@ void Predictions::compare(const Frame& frame) {
 }
 
 void Predictions::advance(const UnitInputs& inputs) {
-  for (std::int64_t& samples : settling_)
-    if (samples > 0) --samples;
+  for (auto* each : {&settling_, &unseen_})
+    for (std::int64_t& samples : *each)
+      if (samples > 0) --samples;
   if (simulation_settles_ > 0) --simulation_settles_;
   // Where the plant stood before the first sample is unknown: at rest with the first inputs is the
   // least wrong; what is wrong about it decays.
@@ -122,11 +126,11 @@ void Predictions::advance(const UnitInputs& inputs) {
 
 void Predictions::skip(std::int64_t missing, const UnitInputs& inputs) {
   for (FeedbackCorrection& correction : corrections_) correction.skip();
+  if (missing > kHeldSamples)
+    for (int i = 0; i < model_.input_count(); ++i) distrust(i);
   if (!started_) return;
   for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, settling_samples_); ++k)
     model_.advance(inputs.held());
-  if (missing > kHeldSamples)
-    for (int i = 0; i < model_.input_count(); ++i) distrust(i);
 }
 
 }  // namespace mpm

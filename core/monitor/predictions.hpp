@@ -44,6 +44,8 @@ class Predictions {
   }
   /// Comes from elsewhere than it did, or is simulated, and cannot be trusted yet.
   [[nodiscard]] bool settling(int cv) const { return settling_[static_cast<std::size_t>(cv)] > 0; }
+  /// An input that acts on it moved unseen, and that may still show.
+  [[nodiscard]] bool unseen(int cv) const { return unseen_[static_cast<std::size_t>(cv)] > 0; }
   /// Measured minus predicted; NaN where the prediction is not known, or the measurement is not.
   [[nodiscard]] double residual(int cv, const Frame& frame) const;
 
@@ -53,7 +55,8 @@ class Predictions {
   void follow(const Screen& screen, Turns turns);
   /// Before the residuals of a frame are read. What disturbs in the model keeps to the clock of the
   /// data, over gaps too. An input that was unknown for long moved unseen: what is simulated from
-  /// it is wrong until it has forgotten that.
+  /// it is wrong until it has forgotten that; and what it did through an error of its channel goes
+  /// with the inputs that moved with it, whoever predicted.
   void begin(const Frame& frame, const UnitInputs& inputs);
   /// After they were read: the frame's part, then the inputs' part.
   void compare(const Frame& frame);
@@ -65,7 +68,7 @@ class Predictions {
   void archive(Archive& a) {
     // not archived: may_predict_, acts_, has_model_, integrating_, starting_samples_,
     // settling_samples_ (construction)
-    a(model_, started_, given_, corrections_, agreements_, settling_, simulation_settles_);
+    a(model_, started_, given_, corrections_, agreements_, settling_, unseen_, simulation_settles_);
   }
 
  private:
@@ -83,6 +86,7 @@ class Predictions {
   std::vector<FeedbackCorrection> corrections_;
   std::vector<ModelAgreement> agreements_;
   std::vector<std::int64_t> settling_;   // samples until a simulated one can be trusted
+  std::vector<std::int64_t> unseen_;     // samples until what moved unseen has settled
   std::int64_t simulation_settles_ = 0;  // likewise, of all CVs, whether they are used or not
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/plant/authority.hpp"
 #include "sim/plant/hidden_plant.hpp"
 #include "sim/plant/recovery_boiler/boiler_process.hpp"
 
@@ -80,11 +79,7 @@ std::unique_ptr<Process> make_process(const LoopSetup& setup) {
   const std::string& name = setup.unit.simulation.process;
   if (name.empty()) {
     const config::HiddenPlant& hidden = setup.scenario.plant;
-    auto plant = std::make_unique<Plant>(plant_model(setup.unit, hidden), setup.changes);
-    if (hidden.authorities.empty()) return plant;
-    return std::make_unique<WithAuthority>(
-        std::move(plant), hidden.authorities,
-        origin_of(setup.unit.model.input_origin, setup.unit.model.input_count));
+    return std::make_unique<Plant>(plant_model(setup.unit, hidden), setup.changes);
   }
   if (name != kRecoveryBoiler)
     throw std::invalid_argument("there is no process '" + name + "'; known: " + kRecoveryBoiler);

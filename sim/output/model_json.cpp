@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 namespace mpm::sim {
 namespace {
@@ -31,6 +32,11 @@ Json block_json(const TwoSided& block) {
   Json sides = {{"above", block.above}, {"below", block.below}};
   if (std::isfinite(block.at)) sides["at"] = block.at;
   return {{"two_sided", std::move(sides)}};
+}
+Json block_json(const Product& block, const std::vector<std::string>& inputs) {
+  Json product = {{"of", inputs[static_cast<std::size_t>(block.of)]}, {"per_unit", block.per_unit}};
+  if (block.linear != 1.0) product["linear"] = block.linear;
+  return {{"product", std::move(product)}};
 }
 Json block_json(const Offset& block) { return {{"offset", block.bias}}; }
 Json block_json(const Scale& block) { return {{"scale", block.factor}}; }
@@ -71,17 +77,25 @@ Json term_json(const CoulombFriction& friction) {
   return {{"coulomb_friction", {{"force", friction.force}, {"speed", friction.speed}}}};
 }
 
+/// `inputs`: the tags of all.
 template <class Block>
-Json json_of(const Block& block) {
-  return std::visit([](const auto& kind) { return block_json(kind); }, block);
+Json json_of(const Block& block, const std::vector<std::string>& inputs) {
+  return std::visit(
+      [&inputs](const auto& kind) {
+        if constexpr (std::is_same_v<decltype(kind), const Product&>)
+          return block_json(kind, inputs);
+        else
+          return block_json(kind);
+      },
+      block);
 }
 
 template <class Block>
 Json blocks_json(const std::vector<std::optional<Block>>& blocks,
-                 const std::vector<std::string>& tags) {
+                 const std::vector<std::string>& tags, const std::vector<std::string>& inputs) {
   Json json = Json::object();
   for (std::size_t i = 0; i < blocks.size(); ++i)
-    if (blocks[i]) json[tags[i]] = json_of(*blocks[i]);
+    if (blocks[i]) json[tags[i]] = json_of(*blocks[i], inputs);
   return json;
 }
 
@@ -95,15 +109,15 @@ Json hidden_plant_json(const config::HiddenPlant& hidden, const config::UnitConf
     return Json{{"cv", cvs[static_cast<std::size_t>(item.cv)]},
                 {"mv", inputs[static_cast<std::size_t>(item.input)]}};
   };
-  Json json = {{"input", blocks_json(hidden.input_blocks, inputs)},
-               {"output", blocks_json(hidden.output_blocks, cvs)},
+  Json json = {{"input", blocks_json(hidden.input_blocks, inputs, inputs)},
+               {"output", blocks_json(hidden.output_blocks, cvs, inputs)},
                {"channels", Json::array()},
                {"state", Json::array()}};
   for (const ChannelSpec& channel : hidden.channels) {
     Json entry = place(channel);
     entry.update(
         std::visit([](const auto& form) { return dynamics_json(form); }, channel.dynamics));
-    if (channel.input_block) entry["input"] = json_of(*channel.input_block);
+    if (channel.input_block) entry["input"] = json_of(*channel.input_block, inputs);
     json["channels"].push_back(std::move(entry));
   }
   for (const StateTerm& term : hidden.state_terms) {
@@ -111,11 +125,6 @@ Json hidden_plant_json(const config::HiddenPlant& hidden, const config::UnitConf
     entry.update(std::visit([](const auto& block) { return term_json(block); }, term.block));
     json["state"].push_back(std::move(entry));
   }
-  const auto tag = [&](int input) { return inputs[static_cast<std::size_t>(input)]; };
-  for (const config::Authority& authority : hidden.authorities)
-    json["authority"].push_back({{"mv", tag(authority.input)},
-                                 {"of", tag(authority.of)},
-                                 {"per_unit", authority.per_unit}});
   return json;
 }
 

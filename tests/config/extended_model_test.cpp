@@ -145,6 +145,30 @@ TEST_CASE("what an input does on either side of a point survives printing") {
   }
 }
 
+TEST_CASE("what goes with another input survives printing") {
+  const UnitConfig config = load_clean(
+      "unit: t\nsample_time: 1\nsignals: {mv: [u1, u2], dv: d1, cv: y1}\n"
+      "model:\n"
+      "  channels:\n"
+      "    - {cv: y1, mv: u1, gain: 1}\n"
+      "    - {cv: y1, mv: u2, gain: 1, input: {product: {of: d1, per_unit: -2, linear: 0.9}}}\n"
+      "  input:\n"
+      "    u1: {product: {of: u2, per_unit: 0.3}}\n");
+  const std::string once = printed(config);
+  const UnitConfig again = load_clean(once);
+  CHECK(printed(again) == once);
+  for (const ModelSpec& model : {config.model, again.model}) {
+    const auto& valves = std::get<Product>(model.input_blocks[0].value());
+    CHECK(valves.of == 1);
+    CHECK(valves.per_unit == 0.3);
+    CHECK(valves.linear == 1.0);
+    const auto& own = std::get<Product>(model.channels[1].input_block.value());
+    CHECK(own.of == 2);
+    CHECK(own.per_unit == -2.0);
+    CHECK(own.linear == 0.9);
+  }
+}
+
 TEST_CASE("the operating point below the channels counts for tanks all the same") {
   const UnitConfig config = load_clean(
       "unit: t\nsample_time: 1\nsignals: {mv: u1, cv: y1}\n"

@@ -437,13 +437,19 @@ TEST_CASE("What is hidden in the plant arrives") {
   CHECK(only_finding("plant:\n  state: [{cv: y1, mv: u2, restoring_force: {cubic: 1}}]\n") ==
         "s.yaml:2:11: error: plant.state[0]: there is no channel from 'u2' to 'y1' for it to act "
         "in");
-  CHECK(load_for_plant("plant: {authority: [{mv: u1, of: d1, per_unit: 2}]}\n")
-            .scenario.plant.authorities.size() == 1);
-  CHECK(only_finding("plant:\n  authority: [{mv: u1, of: u1, per_unit: 2}]\n") ==
-        "s.yaml:2:28: error: plant.authority[0].of: is the input itself: a curve of its own is a "
-        "block under `input`");
-  CHECK(only_finding("plant:\n  authority: [{mv: u1, of: u2}]\n") ==
-        "s.yaml:2:15: error: plant.authority[0]: `per_unit` is missing");
+  const auto product = load_for_plant("plant: {input: {u1: {product: {of: d1, per_unit: 2}}}}\n")
+                           .scenario.plant.input_blocks[0];
+  REQUIRE(product.has_value());
+  CHECK(std::get<mpm::Product>(*product).per_unit == 2.0);
+  CHECK(
+      only_finding("plant:\n  input: {u1: {product: {of: u1, per_unit: 2}}}\n") ==
+      "s.yaml:2:30: error: plant.input.u1.product.of: is the input itself: what goes with its own "
+      "place is a `polynomial`");
+  CHECK(only_finding("plant:\n  input: {u1: {product: {of: u2}}}\n") ==
+        "s.yaml:2:25: error: plant.input.u1.product: `per_unit` is missing");
+  CHECK(only_finding("plant:\n  input: {u1: {product: {of: u9, per_unit: 2}}}\n") ==
+        "s.yaml:2:30: error: plant.input.u1.product.of: 'u9' is no mv or dv of this unit (did you "
+        "mean 'u1'?)");
   CHECK(only_finding("plant: {inputs: {}}\n") ==
         "s.yaml:1:9: error: plant.inputs: unknown key (did you mean 'input'?)");
 }

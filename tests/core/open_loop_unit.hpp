@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -20,6 +21,7 @@ struct OpenLoopUnit {
   int from = 0, until = 1000000;  ///< samples
   std::uint64_t seed = 0;
   bool graded = false;                    ///< inputs move to any value, not to one of two
+  double alike = 0.0;                     ///< so much of input 1 is what input 0 does, -1..1
   int still_from = 1000000;               ///< input 1 stays where it was, samples
   std::optional<TransferFunction> plant;  ///< what the channel is in truth, before these changes
   SignalCounts counts{2, 0, 2, 0};
@@ -56,7 +58,10 @@ struct OpenLoopUnit {
     for (int k = 0; k < samples; ++k) {
       for (int i = 0; i < 2; ++i) {
         const auto s = static_cast<std::uint64_t>(i);
-        const double level = uniform(700 + 10 * seed + s, k / 20);
+        const double own = uniform(700 + 10 * seed + s, k / 20);
+        const double level = i == 0 ? own
+                                    : alike * uniform(700 + 10 * seed, k / 20) +
+                                          std::sqrt(1.0 - alike * alike) * own;
         if (i == 0 || k == 0 || k < still_from)
           u(i) = model.input_origin(i) + (graded ? 2.0 * level : level > 0 ? 1.0 : -1.0);
         noise(i) = 0.7 * noise(i) + 0.1 * uniform(800 + 10 * seed + s, k);

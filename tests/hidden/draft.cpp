@@ -46,6 +46,8 @@ void hide(Draft& draft, EffectClass effect_class) {
       return hide_noise(draft);
     case EffectClass::kUnnamed:
       return hide_unnamed(draft);
+    case EffectClass::kProduct:
+      return hide_product(draft);
     case EffectClass::kNone:
     case EffectClass::kTwoCauses:
       break;

@@ -21,10 +21,11 @@ struct TrueEffect {
   const Cause* cause = nullptr;  ///< null = nothing that the contract names
   Place place = {};
   std::string manner = {};  ///< of what has no cause: what it is
+  int other_input = -1;     ///< that it goes with too
   /// Plant against model, with the names and units of the findings: gain_ratio,
   /// time_constant_ratio, dead_time_error (s), band, jump, width, low, high (input or CV units),
-  /// quadratic, cubic, gain, time_constant, dead_time (s), size (of a drift: by the end of the
-  /// fitted part), rate (CV units per s), period (s), variance_ratio.
+  /// quadratic, cubic, per_unit, gain, time_constant, dead_time (s), size (of a drift: by the end
+  /// of the fitted part), rate (CV units per s), period (s), variance_ratio.
   std::map<std::string, double> parameters = {};
   std::optional<double> onset_s = {};  ///< clock of the data
 };
@@ -93,6 +94,10 @@ void hide_unmodelled_input(Draft& draft);  ///< behind one of the aux signals
 void hide_disturbance(Draft& draft, EffectClass shape);
 void hide_noise(Draft& draft);
 void hide_unnamed(Draft& draft);
+void hide_product(Draft& draft);
+
+/// One of an MV that is not too quick for its samples.
+[[nodiscard]] TrueChannel& any_slow_channel(Draft& draft);
 
 /// Any class but none and two_causes.
 void hide(Draft& draft, EffectClass effect_class);

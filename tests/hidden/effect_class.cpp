@@ -46,6 +46,8 @@ const char* name_of(EffectClass effect_class) {
       return "input_stuck";
     case EffectClass::kInputOffset:
       return "input_offset";
+    case EffectClass::kProduct:
+      return "product";
   }
   return "";
 }

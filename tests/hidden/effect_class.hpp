@@ -29,6 +29,7 @@ enum class EffectClass {
   kUnnamed,      ///< something that no cause of the contract means
   kInputStuck,   ///< begins inside the part that is fitted
   kInputOffset,  ///< the same
+  kProduct,      ///< a channel's gain goes with another MV
 };
 
 inline constexpr std::array kAllClasses = {EffectClass::kNone,
@@ -51,7 +52,8 @@ inline constexpr std::array kAllClasses = {EffectClass::kNone,
                                            EffectClass::kOnsetDeadTime,
                                            EffectClass::kUnnamed,
                                            EffectClass::kInputStuck,
-                                           EffectClass::kInputOffset};
+                                           EffectClass::kInputOffset,
+                                           EffectClass::kProduct};
 
 /// As the command line and the tables say it.
 [[nodiscard]] const char* name_of(EffectClass effect_class);

@@ -42,6 +42,7 @@ constexpr std::array kBounds = {
     FixedBound{EffectClass::kUnnamed, Setting::kHard, 2},
     FixedBound{EffectClass::kInputStuck, Setting::kHard, 2},
     FixedBound{EffectClass::kInputOffset, Setting::kHard, 2},
+    FixedBound{EffectClass::kProduct, Setting::kHard, 2},
 };
 static_assert(kBounds.size() == kAllClasses.size());
 

@@ -43,7 +43,11 @@ ModelSpec repaired(const HiddenCase& hidden) {
   };
   ModelSpec model = hidden.model;
   constexpr double kFar = 1e9;
-  if (effect.cause->is_input_block()) {
+  if (effect.cause == &causes::input_product()) {
+    for (ChannelSpec& channel : model.channels)
+      if (channel.cv == effect.place.cv && channel.input == effect.place.input)
+        channel.input_block = Product{effect.other_input, value("per_unit", 0.0)};
+  } else if (effect.cause->is_input_block()) {
     InputBlock block = Stiction{value("band", 0.0), value("jump", 0.0)};
     if (effect.cause == &causes::deadband()) block = Deadband{value("width", 0.0)};
     if (effect.cause == &causes::input_polynomial())

@@ -117,7 +117,7 @@ TEST_CASE("nothing hidden, and what has no name") {
   CHECK(score(unnamed, mismatch({finding(causes::gain(), 1, 0, 0.5)}), 1.0).place_right == true);
   Diagnosis located = mismatch({});
   CHECK(score(unnamed, located, 1.0).place_right == false);
-  located.unexplained.push_back({{&causes::unnamed_product(), {1}}, 0.0, 0.5});
+  located.unexplained.push_back({{&causes::unnamed_swing(), {1}}, 0.0, 0.5});
   CHECK(score(unnamed, located, 1.0).cause_right);
   CHECK(score(unnamed, located, 1.0).place_right == true);
   CHECK(score(unnamed, located, 1.0).named == "unnamed");

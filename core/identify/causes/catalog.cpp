@@ -18,7 +18,7 @@ const Cause* find(std::string_view name, std::string_view kind) {
   return found == all().end() ? nullptr : *found;
 }
 
-bool is_unnamed(const Cause& cause) { return &cause.name() == &unnamed_product().name(); }
+bool is_unnamed(const Cause& cause) { return &cause.name() == &unnamed_swing().name(); }
 
 bool is_from_outside(const Subject& subject) {
   const Place& place = subject.place;

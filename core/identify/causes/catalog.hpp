@@ -18,6 +18,7 @@
   row(input_polynomial)      \
   row(input_saturation)      \
   row(input_two_sided)       \
+  row(input_product)         \
   row(deadband)              \
   row(stiction)              \
   row(input_stuck)           \
@@ -31,7 +32,6 @@
   row(cubic_stiffness)       \
   row(square_root_outflow)   \
   row(coulomb_friction)      \
-  row(unnamed_product)       \
   row(unnamed_swing)         \
   row(unnamed_direction)
 // clang-format on

@@ -33,10 +33,6 @@ ActiveChannel::ActiveChannel(const Problem& problem, const ModelSpec& model,
   response_ = response_to(moves_);
 }
 
-VectorXd ActiveChannel::modulated(const VectorXd& by) const {
-  return response_to(moves_.cwiseProduct(by));
-}
-
 VectorXd ActiveChannel::response_to(const VectorXd& moves) const {
   const Recording driven{
       0.0,     model_.sample_time_s, moves, VectorXd::Zero(moves.size()), MatrixXd(moves.size(), 0),

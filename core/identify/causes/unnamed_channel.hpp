@@ -18,8 +18,6 @@ class ActiveChannel {
   [[nodiscard]] const ChannelSpec& spec() const { return spec_; }
   [[nodiscard]] const ModelSpec& model() const { return model_; }
   [[nodiscard]] const Eigen::VectorXd& response() const { return response_; }
-  /// What it would give if its input's moves were multiplied row by row.
-  [[nodiscard]] Eigen::VectorXd modulated(const Eigen::VectorXd& by) const;
 
  private:
   [[nodiscard]] Eigen::VectorXd response_to(const Eigen::VectorXd& moves) const;

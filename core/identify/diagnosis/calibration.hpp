@@ -51,6 +51,8 @@ inline constexpr double kStateSpaceDeviation = 1e-3;
 inline constexpr int kMostStatesOfChannel = 60;
 inline constexpr int kMostStates = 500;
 inline constexpr int kLargestHankel = 400;
+/// Samples of the line that the pulse response of an integrating channel ends in.
+inline constexpr int kLineAfterSettling = 50;
 
 /// Gauss-Newton steps of a channel's estimate beside all that was found.
 inline constexpr int kEstimateSteps = 4;

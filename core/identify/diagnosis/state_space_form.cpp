@@ -38,7 +38,13 @@ bool same(const ChannelSpec* a, const ChannelSpec* b) {
   if (a == nullptr || b == nullptr) return a == b;
   const auto* one = std::get_if<StepResponse>(&a->dynamics);
   const auto* other = std::get_if<StepResponse>(&b->dynamics);
-  return one != nullptr && other != nullptr && one->values == other->values;
+  if (one != nullptr && other != nullptr) return one->values == other->values;
+  const auto* filter = std::get_if<DiscreteFilter>(&a->dynamics);
+  const auto* other_filter = std::get_if<DiscreteFilter>(&b->dynamics);
+  return filter != nullptr && other_filter != nullptr &&
+         filter->numerator == other_filter->numerator &&
+         filter->denominator == other_filter->denominator &&
+         filter->delay_samples == other_filter->delay_samples;
 }
 
 bool linear(const ModelSpec& model) {
@@ -48,10 +54,15 @@ bool linear(const ModelSpec& model) {
          });
 }
 
+/// Samples after which nothing is left of a unit step; after which it goes on in a line, where the
+/// channel integrates.
 int settled_after(const ChannelSpec* channel, double sample_time_s) {
-  return channel == nullptr ? 0
-                            : LinearModel(alone(*channel, sample_time_s))
-                                  .settling_samples(kSettledShare, kLongestResponse);
+  if (channel == nullptr) return 0;
+  const LinearModel model(alone(*channel, sample_time_s));
+  const auto* filter = std::get_if<DiscreteFilter>(&channel->dynamics);
+  if (filter != nullptr && model.integrating()(0, 0))
+    return static_cast<int>(filter->numerator.size()) + filter->delay_samples + kLineAfterSettling;
+  return model.settling_samples(kSettledShare, kLongestResponse);
 }
 
 VectorXd impulse_response(const ChannelSpec* channel, double sample_time_s, int length) {
@@ -77,6 +88,7 @@ double deviation(const Realisation& system, const VectorXd& pulse) {
 std::optional<Realisation> realise(const VectorXd& pulse, double tolerance) {
   const Index size = std::min<Index>((pulse.size() - 1) / 2, kLargestHankel);
   if (size < 1) return std::nullopt;
+  if (pulse.isZero(0.0)) return Realisation{MatrixXd(0, 0), VectorXd(0), Eigen::RowVectorXd(0)};
   MatrixXd now(size, size), next(size, size);
   for (Index i = 0; i < size; ++i)
     for (Index j = 0; j < size; ++j) {
@@ -108,6 +120,23 @@ std::optional<Realisation> realise(const VectorXd& pulse, double tolerance) {
   return std::nullopt;
 }
 
+/// The same of a pulse response that ends in a line, which is an integrator's, exactly.
+std::optional<Realisation> realise_beside_line(const VectorXd& pulse, double tolerance) {
+  const Index last = pulse.size() - 1;
+  const double slope = pulse(last) == pulse(last - 1) ? pulse(last) : 0.0;
+  if (slope == 0.0) return realise(pulse, tolerance);
+  VectorXd rest = pulse;
+  rest.tail(last).array() -= slope;
+  std::optional<Realisation> system = realise(rest, tolerance);
+  if (!system) return std::nullopt;
+  const Index states = system->a.rows();
+  system->a.conservativeResizeLike(MatrixXd::Zero(states + 1, states + 1));
+  system->a(states, states) = 1.0;
+  system->b.conservativeResizeLike(VectorXd::Ones(states + 1));
+  system->c.conservativeResizeLike(Eigen::RowVectorXd::Constant(states + 1, slope));
+  return system;
+}
+
 }  // namespace
 
 std::optional<ModelSpec> in_state_space(const ModelSpec& given, const ModelSpec& base,
@@ -133,7 +162,8 @@ std::optional<ModelSpec> in_state_space(const ModelSpec& given, const ModelSpec&
         level += wanted(k);
         largest = std::max({largest, std::abs(level)});
       }
-      const std::optional<Realisation> more = realise(wanted - was, kStateSpaceDeviation * largest);
+      std::optional<Realisation> more =
+          realise_beside_line(wanted - was, kStateSpaceDeviation * largest);
       if (!more) return std::nullopt;
       const Index states = system.a.rows(), new_states = more->a.rows();
       if (states + new_states > kMostStates) return std::nullopt;

@@ -54,6 +54,7 @@ Finding to_finding(const SearchResult& found, std::size_t index, const Problem& 
     finding.parameters.push_back(
         stated(effect.coordinates[i], kFittedNoiseReach * sd, sample_time_s));
   }
+  finding.other_input = effect.other_input;
   if (effect.onset > 0)
     finding.onset_s =
         problem.surroundings().start_s + static_cast<double>(effect.onset) * sample_time_s;
@@ -65,7 +66,6 @@ Unexplained to_unexplained(const SearchResult& found, std::size_t index, Problem
   const Effect& effect = found.named[index].effect;
   Unexplained left;
   left.subject = subject_of(effect);
-  left.other_input = effect.other_input;
   const int cv = effect.place.cv;
   const auto of_cv = [&](const CvFit& fit) { return fit.cv == cv; };
   const auto fit = std::find_if(found.fit.cvs.begin(), found.fit.cvs.end(), of_cv);

@@ -11,7 +11,6 @@ struct Unexplained {
   Subject subject;       ///< how it seems to come about: an unnamed cause; the input it goes with
   double p_value = 1.0;  ///< of what is left having nothing to do with it
   double share = 0.0;    ///< of the residual's variance that it makes up
-  int other_input = -1;  ///< that it depends on too; -1: on none
 };
 
 /// A fitted number as reports give it, with an interval of `reach` to either side, in its form.

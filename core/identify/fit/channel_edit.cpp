@@ -172,16 +172,38 @@ double slowest_of_cv_s(const ModelSpec& model, int cv, double least_samples) {
   return slowest;
 }
 
+namespace {
+
+/// A channel that integrates, as its pulse response has it: z^-1 N(z) / (1 - z^-1), N the moves of
+/// the pulse response until it is its slope for good.
+DiscreteFilter integrator_of(const Eigen::VectorXd& pulse) {
+  const double slope = pulse(pulse.size() - 1), size = pulse.cwiseAbs().maxCoeff();
+  Eigen::Index settled = pulse.size() - 1;
+  while (settled > 1 && std::abs(pulse(settled - 1) - slope) <= kSettledShare * size) --settled;
+  DiscreteFilter filter{{}, {1.0, -1.0}, 0};
+  for (Eigen::Index k = 1; k <= settled; ++k)
+    filter.numerator.push_back((k < settled ? pulse(k) : slope) - pulse(k - 1));
+  return filter;
+}
+
+}  // namespace
+
 ModelSpec in_channels(const ModelSpec& model) {
   if (!model.state_space) return model;
   ModelSpec result = model;
   result.state_space.reset();
   const LinearModel simulator(model);
   const int length = simulator.settling_samples(kSettledShare, kLongestResponse) + 2;
+  const auto integrating = simulator.integrating();
   for (int cv = 0; cv < model.cv_count; ++cv) {
     for (int input = 0; input < model.input_count; ++input) {
-      const Eigen::VectorXd pulse = simulator.impulse_response(cv, input, length);
+      const Eigen::VectorXd pulse =
+          simulator.impulse_response(cv, input, integrating(cv, input) ? kLongestResponse : length);
       if (pulse.isZero(0.0)) continue;
+      if (integrating(cv, input)) {
+        result.channels.push_back({cv, input, integrator_of(pulse), {}});
+        continue;
+      }
       StepResponse response;
       double level = 0.0;
       for (const double value : pulse) response.values.push_back(level += value);

@@ -33,7 +33,8 @@ struct ChannelError {
 /// A model of this channel alone, without its input block, in deviations (all origins 0).
 [[nodiscard]] ModelSpec alone(const ChannelSpec& channel, double sample_time_s);
 
-/// `model` with every channel on its own: a state space becomes step responses.
+/// `model` with every channel on its own: a state space becomes step responses, and filters whose
+/// one pole is the integrator's where a channel integrates.
 [[nodiscard]] ModelSpec in_channels(const ModelSpec& model);
 
 }  // namespace mpm

@@ -56,6 +56,7 @@ class Key {
   void add(const Stuck& v) { add(v.value), add(v.onset_s); }
   void add(const InputOffset& v) { add(v.size), add(v.onset_s); }
   void add(const TwoSided& v) { add(v.above), add(v.below), add(v.at); }
+  void add(const Product& v) { add(v.of), add(v.per_unit), add(v.linear); }
   void add(const RestoringForce& v) { add(v.quadratic), add(v.cubic); }
   void add(const SquareRootOutflow& v) { add(v.empty_output); }
   void add(const CoulombFriction& v) { add(v.force), add(v.speed); }
@@ -104,10 +105,24 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
   if (const StateTerm* term = state_term(model, spec)) one.state_terms = {{0, 0, term->block}};
 
   const auto inputs = recording_->inputs.cols();
-  const bool aux = spec.input >= inputs;
-  const Eigen::Ref<const VectorXd> all =
-      aux ? recording_->aux.col(spec.input - inputs) : recording_->inputs.col(spec.input);
+  const auto given_input = [&](int i) -> Eigen::Ref<const VectorXd> {
+    if (i >= inputs) return recording_->aux.col(i - inputs);
+    return recording_->inputs.col(i);
+  };
+  const Eigen::Ref<const VectorXd> all = given_input(spec.input);
   const double origin = model.input_origin(spec.input);
+  const auto other_deviations = [&](const InputElement& element, const Run& run) {
+    VectorXd deviations = VectorXd::Zero(run.count);
+    if (element.other() < 0) return deviations;
+    const auto moves = given_input(element.other()).segment(run.first, run.count);
+    const double rest = model.input_origin(element.other());
+    double last = first_finite(moves, rest);
+    for (Index k = 0; k < run.count; ++k) {
+      if (std::isfinite(moves(k))) last = moves(k);
+      deviations(k) = last - rest;
+    }
+    return deviations;
+  };
   // The blocks by hand, so that the linear part sees a plain input.
   InputElement own(model.input_blocks[static_cast<std::size_t>(spec.input)], origin);
   InputElement channels(spec.input_block, origin);
@@ -123,19 +138,23 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const Run& run = runs_[r];
     const auto given = all.segment(run.first, run.count);
+    const VectorXd own_other = other_deviations(own, run), other = other_deviations(channels, run);
+    const double own_other_first = at_origin[r] ? 0.0 : own_other(0);
+    const double other_first = at_origin[r] ? 0.0 : other(0);
     const auto time_s = [&](Index k) {
       return start_s + static_cast<double>(run.first + k) * sample_time_s;
     };
     VectorXd moved(run.count);
     const double first = at_origin[r] ? origin : first_finite(given, origin);
     own.reset(first);
-    const double first_moved = origin + own.apply(first, time_s(-1));
+    const double first_moved = origin + own.apply(first, time_s(-1), own_other_first);
     channels.reset(first_moved);
-    const double rest = origin + channels.apply(first_moved, time_s(-1));
+    const double rest = origin + channels.apply(first_moved, time_s(-1), other_first);
     double last = first_finite(given, origin);
     for (Index k = 0; k < run.count; ++k) {
       if (std::isfinite(given(k))) last = given(k);
-      moved(k) = origin + channels.apply(origin + own.apply(last, time_s(k)), time_s(k));
+      const double acting = origin + own.apply(last, time_s(k), own_other(k));
+      moved(k) = origin + channels.apply(acting, time_s(k), other(k));
     }
     if (plain_response) {  // as long as the data, often
       output.segment(run.first, run.count) =
@@ -180,6 +199,9 @@ Simulator::Given Simulator::channel(const ModelSpec& model, const ChannelSpec& s
   key.add(spec.dynamics);
   key.add(spec.input_block);
   key.add(model.input_blocks[static_cast<std::size_t>(spec.input)]);
+  for (const std::optional<InputBlock>* block :
+       {&spec.input_block, &model.input_blocks[static_cast<std::size_t>(spec.input)]})
+    if (const int other = other_input(*block); other >= 0) key.add(model.input_origin(other));
   const StateTerm* term = state_term(model, spec);
   key.add(term ? 1.0 : 0.0);
   if (term) key.add(term->block);

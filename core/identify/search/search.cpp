@@ -26,7 +26,7 @@ bool same_form(const Effect& a, const Effect& b) {
     return x.quantity == y.quantity && x.number == y.number;
   };
   return subject_of(a) == subject_of(b) && (a.onset > 0) == (b.onset > 0) &&
-         a.variant == b.variant &&
+         a.variant == b.variant && a.other_input == b.other_input &&
          std::equal(a.coordinates.begin(), a.coordinates.end(), b.coordinates.begin(),
                     b.coordinates.end(), same_number);
 }

@@ -32,10 +32,11 @@ void add_kind(const Cause& cause, Json& json) {
   if (*cause.kind() != '\0') json[cause.name().kind_key] = cause.kind();
 }
 
-Json parameters_json(const Finding& finding) {
+Json parameters_json(const Finding& finding, const SignalNames& names) {
   const Cause& cause = *finding.subject.cause;
   Json json = Json::object();
   add_kind(cause, json);
+  if (finding.other_input >= 0) json["of"] = names.input(finding.other_input).tag;
   for (const Parameter& parameter : finding.parameters) json[parameter.name()] = parameter.value;
   if (cause.has_onset_parameter() && finding.onset_s && !json.contains("onset"))
     json["onset"] = *finding.onset_s;
@@ -59,7 +60,7 @@ Json finding_json(const DiagnosisRun& run, const Finding& finding) {
   const SignalNames names = names_of(run);
   Json json = subject_json(finding.subject, names);
   json["title"] = finding.subject.cause->name().title;
-  json["parameters"] = parameters_json(finding);
+  json["parameters"] = parameters_json(finding, names);
   json["interval"] = Json::object();
   json["units"] = Json::object();
   for (const Parameter& parameter : finding.parameters) {
@@ -164,8 +165,6 @@ Json unexplained_json(const DiagnosisRun& run) {
     json.push_back({{"cv", names.cv(place.cv).tag},
                     {"mv", tag_or_null(place.input >= 0 ? names.input(place.input).tag : "")},
                     {"manner", left.subject.cause->kind()},
-                    {"other_input",
-                     tag_or_null(left.other_input >= 0 ? names.input(left.other_input).tag : "")},
                     {"p_value", left.p_value},
                     {"share", left.share},
                     {"text", unexplained_text(run, left)}});

@@ -141,7 +141,6 @@ std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left) {
   if (place.input >= 0) text += "; it goes with " + names.input(place.input).tag;
   Finding unnamed;
   unnamed.subject = left.subject;
-  unnamed.other_input = left.other_input;
   text += left.subject.cause->sentence(unnamed, names);
   return text + " (p " + number_text(left.p_value, 2) + ")";
 }

@@ -124,7 +124,7 @@ std::string cause_text(const Subject& subject) {
   const std::string kind = subject.cause->kind();
   if (subject.cause->name().text == std::string("unmodelled_input")) return "missing input";
   if (kind.empty()) return lower(subject.cause->name().title);
-  if (kind == "polynomial" || kind == "saturation" || kind == "two_sided")
+  if (kind == "polynomial" || kind == "saturation" || kind == "two_sided" || kind == "product")
     return lower(subject.cause->name().title);
   return spaced(kind);
 }

@@ -84,6 +84,43 @@ TEST_CASE("what an input does more of on one side adds nothing at the operating 
   CHECK(respond(spec, 1, inputs) == Values{0, 1, -1, 5, -2});
 }
 
+TEST_CASE("a product goes with where the other input stands at that time") {
+  // Operating points 10 and 5; y(k) is what u(k-1) acts like.
+  ModelSpec spec = two_gains();
+  spec.input_count = 2;
+  spec.input_origin = (VectorXd(2) << 10, 5).finished();
+  const auto respond_to = [](const ModelSpec& of, int cv) {
+    LinearModel model(of);
+    Values values;
+    for (const auto& [u, v] : {std::pair{12.0, 5.0}, {12.0, 7.0}, {8.0, 7.0}, {10.0, 9.0}}) {
+      model.advance((VectorXd(2) << u, v).finished());
+      values.push_back(model.output()(cv));
+    }
+    return values;
+  };
+  spec.input_blocks = {mpm::Product{1, 0.25}, {}};
+  CHECK(respond_to(spec, 0) == Values{2, 3, -3, 0});
+  spec.input_blocks = {mpm::Product{1, 0.25, 2.0}, {}};
+  CHECK(respond_to(spec, 0) == Values{4, 5, -5, 0});
+  spec.input_blocks = {};
+  spec.channels[1].input_block = mpm::Product{1, 0.25};
+  CHECK(respond_to(spec, 0) == Values{2, 2, -2, 0});
+  CHECK(respond_to(spec, 1) == Values{2, 3, -3, 0});
+
+  // Held for ever at 12 and 9, what it does is twice as much.
+  spec.channels[1].input_block.reset();
+  spec.input_blocks = {mpm::Product{1, 0.25}, {}};
+  LinearModel model(spec);
+  model.reset_steady((VectorXd(2) << 12, 9).finished());
+  CHECK(model.output()(0) == 4);
+
+  for (const mpm::Product& none : {mpm::Product{0, 1.0}, mpm::Product{2, 1.0},
+                                   mpm::Product{-1, 1.0}, mpm::Product{1, std::nan("")}}) {
+    spec.input_blocks = {none, {}};
+    CHECK_THROWS_AS(LinearModel(spec), std::invalid_argument);
+  }
+}
+
 TEST_CASE("a channel block with dynamics is the same block in front of that channel alone") {
   for (const mpm::InputBlock& block :
        {mpm::InputBlock(mpm::Stiction{2.0, 1.0}), mpm::InputBlock(mpm::Polynomial{{1.0, 0.3}})}) {

@@ -106,8 +106,8 @@ TEST_CASE("scenario valve_saturation: u1 stops at +-0.9") {
 TEST_CASE("scenario product_of_inputs: what u2 does grows with u3") {
   const LoopSetup setup = shipped("product_of_inputs");
   CHECK(distance(setup, Behind(setup, [](VectorXd& u) { u(1) *= 1.0 + 0.3 * u(2); })) < 1e-12);
-  CHECK(truth_of(setup)["authority"] ==
-        nlohmann::json::parse(R"([{"mv": "u2", "of": "u3", "per_unit": 0.3}])"));
+  CHECK(truth_of(setup)["input"]["u2"]["product"] ==
+        nlohmann::json::parse(R"({"of": "u3", "per_unit": 0.3})"));
 }
 
 TEST_CASE("scenario directional_gain: u1 does more above its operating point than below") {

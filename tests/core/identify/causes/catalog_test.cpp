@@ -34,6 +34,7 @@ TEST_CASE("causes are called what the reports call them") {
       {&causes::input_polynomial(), {"input_nonlinearity", "polynomial"}},
       {&causes::input_saturation(), {"input_nonlinearity", "saturation"}},
       {&causes::input_two_sided(), {"input_nonlinearity", "two_sided"}},
+      {&causes::input_product(), {"input_nonlinearity", "product"}},
       {&causes::deadband(), {"input_nonlinearity", "deadband"}},
       {&causes::stiction(), {"stiction", ""}},
       {&causes::input_stuck(), {"input_stuck", ""}},
@@ -47,7 +48,6 @@ TEST_CASE("causes are called what the reports call them") {
       {&causes::cubic_stiffness(), {"state_nonlinearity", "cubic_stiffness"}},
       {&causes::square_root_outflow(), {"state_nonlinearity", "square_root_outflow"}},
       {&causes::coulomb_friction(), {"state_nonlinearity", "coulomb_friction"}},
-      {&causes::unnamed_product(), {"unnamed", "product"}},
       {&causes::unnamed_swing(), {"unnamed", "swing"}},
       {&causes::unnamed_direction(), {"unnamed", "direction"}},
   };
@@ -87,15 +87,14 @@ TEST_CASE("errors of channels are expected, anything else is rarer and the unnam
   // As 2 ln of odds: 1 to 12, 1 to 24, 1 to 1000.
   for (const Cause* cause :
        {&causes::input_polynomial(), &causes::input_saturation(), &causes::input_two_sided(),
-        &causes::deadband(), &causes::stiction(), &causes::output_saturation(),
-        &causes::unmodelled_input(), &causes::step_disturbance(), &causes::drift_disturbance(),
-        &causes::periodic_disturbance()})
+        &causes::input_product(), &causes::deadband(), &causes::stiction(),
+        &causes::output_saturation(), &causes::unmodelled_input(), &causes::step_disturbance(),
+        &causes::drift_disturbance(), &causes::periodic_disturbance()})
     CHECK(std::exp(0.5 * cause->rarity()) == Approx(12.0));
   for (const Cause* cause :
        {&causes::cubic_stiffness(), &causes::square_root_outflow(), &causes::coulomb_friction()})
     CHECK(std::exp(0.5 * cause->rarity()) == Approx(24.0));
-  for (const Cause* cause :
-       {&causes::unnamed_product(), &causes::unnamed_swing(), &causes::unnamed_direction()})
+  for (const Cause* cause : {&causes::unnamed_swing(), &causes::unnamed_direction()})
     CHECK(std::exp(0.5 * cause->rarity()) == Approx(1000.0));
 }
 

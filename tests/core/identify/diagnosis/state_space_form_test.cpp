@@ -84,6 +84,32 @@ TEST_CASE("dead time, time constants and new inputs find their states, too") {
   CHECK(apart(*repaired, extended, 0, 0) < 1e-9);
 }
 
+// The level of a tank behind a lag, with another gain and a dead time.
+TEST_CASE("a repaired channel that integrates becomes states that integrate") {
+  ModelSpec model;
+  model.input_count = model.cv_count = 1;
+  StateSpaceSpec states;
+  states.a = (Eigen::MatrixXd(2, 2) << 1.0, 0.02, 0.0, 0.8).finished();
+  states.b = (Eigen::MatrixXd(2, 1) << 0.0, 0.2).finished();
+  states.c = (Eigen::MatrixXd(1, 2) << 1.0, 0.0).finished();
+  states.d = Eigen::MatrixXd::Zero(1, 1);
+  model.state_space = states;
+  const ModelSpec base = in_channels(model);
+  CHECK(in_state_space(model, base, base)->state_space->a == model.state_space->a);
+  ModelSpec extended = base;
+  extended.channels[0] = edited(extended.channels[0], {1.4, 1.0, 3.0}, 1.0);
+  const std::optional<ModelSpec> repaired = in_state_space(model, base, extended);
+  REQUIRE(repaired);
+  REQUIRE(repaired->state_space);
+  // A thousandth of what is reached is allowed; the slope is exact.
+  LinearModel one(*repaired), other(extended);
+  for (int k = 0; k < 10000; ++k) {
+    one.advance(Eigen::VectorXd::Ones(1));
+    other.advance(Eigen::VectorXd::Ones(1));
+  }
+  CHECK(one.output()(0) == Approx(other.output()(0)).epsilon(1e-4));
+}
+
 TEST_CASE("what is no longer linear stays in channels") {
   const ModelSpec model = given();
   const ModelSpec base = in_channels(model);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "core/model/linear_model.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -181,6 +182,49 @@ TEST_CASE("a state space becomes the step responses of its channels") {
   for (std::size_t k = 0; k < values.size(); ++k)
     CHECK(values[k] == Approx(3.0 * (1.0 - std::pow(pole, static_cast<double>(k)))).margin(1e-12));
   CHECK(values.back() == Approx(3.0).epsilon(1e-5));
+}
+
+// A level behind a lag: it goes on rising for as long as one likes, and as the state space does.
+TEST_CASE("a state space that integrates goes on integrating as channels") {
+  constexpr double pole = 0.8, slope = 0.02;
+  ModelSpec model;
+  model.sample_time_s = 2.0;
+  model.input_count = 1;
+  model.cv_count = 2;
+  StateSpaceSpec states;
+  states.a = (Eigen::MatrixXd(2, 2) << 1.0, slope, 0.0, pole).finished();
+  states.b = (Eigen::MatrixXd(2, 1) << 0.0, 1.0 - pole).finished();
+  states.c = (Eigen::MatrixXd(2, 2) << 1.0, 0.0, 0.0, 3.0).finished();
+  states.d = Eigen::MatrixXd::Zero(2, 1);
+  model.state_space = states;
+  const ModelSpec channels = in_channels(model);
+  REQUIRE(channels.channels.size() == 2);
+  LinearModel whole(model), parts(channels);
+  CHECK(parts.integrating()(0, 0));
+  CHECK_FALSE(parts.integrating()(1, 0));
+  CHECK(parts.steady_gain()(0, 0) == Approx(slope).epsilon(1e-5));
+  for (int k = 0; k < 20000; ++k) {
+    const Eigen::VectorXd input = Eigen::VectorXd::Constant(1, k < 19000 ? 1.0 : -2.0);
+    whole.advance(input);
+    parts.advance(input);
+    // The pulse response is taken for its slope from where a millionth is left.
+    REQUIRE(parts.output()(0) == Approx(whole.output()(0)).epsilon(2e-6).margin(1e-6));
+    REQUIRE(parts.output()(1) == Approx(whole.output()(1)).epsilon(2e-6).margin(1e-5));
+  }
+  // Half the gain, two and a half samples later.
+  ChannelSpec other = edited(channels.channels[0], {0.5, 1.0, 5.0}, model.sample_time_s);
+  ModelSpec changed = channels;
+  changed.channels = {other};
+  LinearModel later(changed), now(channels);
+  std::vector<double> one, two;
+  for (int k = 0; k < 300; ++k) {
+    later.advance(Eigen::VectorXd::Ones(1));
+    now.advance(Eigen::VectorXd::Ones(1));
+    one.push_back(later.output()(0));
+    two.push_back(now.output()(0));
+  }
+  for (std::size_t k = 3; k < one.size(); ++k)
+    CHECK(one[k] == Approx(0.25 * (two[k - 2] + two[k - 3])).margin(1e-9));
 }
 
 }  // namespace

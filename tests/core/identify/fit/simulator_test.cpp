@@ -92,6 +92,33 @@ TEST_CASE("static blocks bend inputs, channels and CVs") {
       test::first_order(bent.cwiseMax(-0.5).cwiseMin(0.5), 3.0, 5.0), 1e-12));
 }
 
+// The product with a second input, which is unknown for a while and then counts as it was.
+TEST_CASE("what goes with another input goes with where it was last seen") {
+  const VectorXd u = test::telegraph(3, kRows, 6), v = test::telegraph(4, kRows, 9);
+  MatrixXd inputs(kRows, 2);
+  inputs << u, v;
+  VectorXd held = v;
+  for (Eigen::Index k = 20; k < 40; ++k) {
+    held(k) = v(19);
+    inputs(k, 1) = std::nan("");
+  }
+  const VectorXd acting = u.array() * (0.8 + 0.5 * (held.array() - 0.25));
+  const Recording recording = recording_of(inputs, MatrixXd::Zero(kRows, 2));
+  ModelSpec model = model_of({lag(0, 0, 2.0, 10.0), lag(1, 0, 3.0, 5.0)}, 2, 2);
+  model.input_origin(1) = 0.25;
+  model.input_blocks[0] = Product{1, 0.5, 0.8};
+  Simulator simulator(recording);
+  CHECK(simulator.cv(model, 0).isApprox(test::first_order(acting, 2.0, 10.0), 1e-12));
+  model.input_blocks[0].reset();
+  model.channels[1].input_block = Product{1, 0.5, 0.8};
+  CHECK(simulator.cv(model, 0).isApprox(test::first_order(u, 2.0, 10.0), 1e-12));
+  CHECK(simulator.cv(model, 1).isApprox(test::first_order(acting, 3.0, 5.0), 1e-12));
+  // What is remembered of one operating point is not another's.
+  model.input_origin(1) = 0.0;
+  CHECK(simulator.cv(model, 1).isApprox(
+      test::first_order(u.array() * (0.8 + 0.5 * held.array()), 3.0, 5.0), 1e-12));
+}
+
 TEST_CASE("disturbances are on the clock of the data") {
   Recording recording = recording_of(VectorXd::Zero(kRows), VectorXd::Zero(kRows));
   recording.start_s = 1000.0;

@@ -34,8 +34,8 @@ Effect gain(double start) {
 }
 
 Effect shaped(const VectorXd& shape, double sd) {
-  const Quantity& part = test::quantity_of(causes::unnamed_product(), "part");
-  Effect effect{&causes::unnamed_product(), {0, 0}, {{&part, 0.0, 0.0, sd, 0.1 * sd, -1e3, 1e3}}};
+  const Quantity& part = test::quantity_of(causes::unnamed_swing(), "part");
+  Effect effect{&causes::unnamed_swing(), {0, 0}, {{&part, 0.0, 0.0, sd, 0.1 * sd, -1e3, 1e3}}};
   effect.shape = std::make_shared<MatrixXd>(shape);
   return effect;
 }
