@@ -113,12 +113,21 @@ void Aligner::Window::archive(Archive& a) {
 
 void Aligner::archive(Archive& a) {
   // not archived: counts_, settings_, sink_, needed_, welcome_ (construction)
-  a(silent_, current_, candidate_, back_, back_frames_, offset_, last_emitted_, counters_);
+  // not archived: restart_ (told at once)
+  a(silent_, current_, candidate_, back_, back_frames_, elsewhere_, offset_, last_emitted_,
+    counters_);
   a.time(last_time_ns_);
+}
+
+bool Aligner::deserted() const {
+  const int kinds = std::popcount(candidate_.seen);
+  return candidate_.started && kinds > 0 &&
+         elsewhere_ >= static_cast<std::uint64_t>(calibration::alignment::kReturnFrames * kinds);
 }
 
 void Aligner::expire() {
   if (!current_.started) return;
+  if (deserted()) take_over();
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
     const unsigned bit = 1u << kind;
     const bool behind = (current_.seen & bit) == 0 ||
@@ -132,7 +141,8 @@ void Aligner::expire() {
 }
 
 void Aligner::finish() {
-  while (pending()) settle_next(current_);
+  if (deserted()) take_over();
+  while (unsettled()) settle_next(current_);
 }
 
 void Aligner::start(Window& window, std::int64_t interval) {
@@ -144,6 +154,7 @@ void Aligner::start(Window& window, std::int64_t interval) {
   if (&window == &candidate_) {
     back_ = 0;
     back_frames_ = 0;
+    elsewhere_ = 0;
   }
   window.seen = 0;
   // Blocks of earlier intervals may still be on their way.
@@ -188,6 +199,7 @@ bool Aligner::store(Window& window, const BlockView& block) {
     return false;
   }
   fill(slot, block);
+  elsewhere_ = &window == &candidate_ ? elsewhere_ + 1 : 0;
 
   std::int64_t& newest_of_kind = window.newest_of[static_cast<std::size_t>(block.kind)];
   const bool seen = (window.seen & bit) != 0;
@@ -261,7 +273,7 @@ bool Aligner::complete(std::int64_t interval) const {
 }
 
 void Aligner::advance() {
-  while (pending() && (complete(current_.next) || past_lateness(current_.next)))
+  while (unsettled() && (complete(current_.next) || past_lateness(current_.next)))
     settle_next(current_);
 }
 
@@ -275,16 +287,25 @@ bool Aligner::past_lateness(std::int64_t interval) const {
   return true;
 }
 
+// Of what is there.
+std::int64_t Aligner::first_of(Window& window) const {
+  std::int64_t first = window.next;
+  while (first < window.newest && !slot_of(window, first).used) ++first;
+  return first;
+}
+
 void Aligner::take_over() {
-  while (pending()) settle_next(current_);
+  while (unsettled()) settle_next(current_);
   const std::int64_t next = candidate_.next + offset_;
   if (counters_.frames > 0 &&
       (next <= last_emitted_ || next - last_emitted_ > kLongestGap || next > kLargestInterval)) {
     ++counters_.restarts;
+    restart_ = {current_.newest, first_of(candidate_)};
     offset_ = last_emitted_ + 2 - candidate_.next;  // 2: never adjacent, so that windows close
   }
   std::swap(current_, candidate_);
   candidate_.started = false;
+  elsewhere_ = 0;
   for (Slot& slot : candidate_.slots) slot.used = false;
   back_ = 0;
   back_frames_ = 0;

@@ -74,9 +74,11 @@ struct AlignerCounters {
 /// lateness to pass, or for `expire()`.
 ///
 /// Blocks far from the current window are gathered in a second one. When that one has a complete
-/// frame, it takes over: the controller restarted or was away. A single stray number changes
-/// nothing. After a restart the emitted interval numbers go on increasing, with a gap; so they do
-/// after a leap forward that would take them beyond 2^53.
+/// frame, it takes over: the controller restarted or was away. So it does in `expire()` where no
+/// frame in it is complete, as without a kind that has fallen silent meanwhile, and all that comes
+/// has come there. A single stray number changes nothing. After a restart the emitted interval
+/// numbers go on increasing, with a gap; so they do after a leap forward that would take them
+/// beyond 2^53.
 class Aligner {
  public:
   using Sink = std::function<void(const Frame&)>;
@@ -98,10 +100,13 @@ class Aligner {
   void finish();
 
   /// True while something waits for its frame to be complete.
-  [[nodiscard]] bool pending() const {
-    return current_.started && current_.next <= current_.newest;
-  }
+  [[nodiscard]] bool pending() const { return unsettled() || deserted(); }
   [[nodiscard]] const AlignerCounters& counters() const { return counters_; }
+  /// The last one, in numbers as they came: the newest before it, the first after it.
+  struct Restart {
+    std::int64_t from = 0, to = 0;
+  };
+  [[nodiscard]] const Restart& restart() const { return restart_; }
 
   void archive(Archive& a);
 
@@ -129,6 +134,11 @@ class Aligner {
   [[nodiscard]] bool goes_back(const BlockView& block);
   void go_on(SignalKind kind);
   void refuse(std::int64_t interval, SignalKind kind);
+  [[nodiscard]] bool unsettled() const {
+    return current_.started && current_.next <= current_.newest;
+  }
+  /// The second window alone has been filled lately, and by more than stray numbers.
+  [[nodiscard]] bool deserted() const;
   [[nodiscard]] bool near(const Window& window, std::int64_t interval) const;
   [[nodiscard]] std::size_t place_of(std::int64_t interval) const;
   [[nodiscard]] Slot& slot_of(Window& window, std::int64_t interval) const;
@@ -140,6 +150,7 @@ class Aligner {
   void emit(Slot& slot);
   [[nodiscard]] std::uint64_t missing_before(std::int64_t interval, const Frame& frame) const;
   void advance();
+  [[nodiscard]] std::int64_t first_of(Window& window) const;
   void take_over();
   [[nodiscard]] bool past_lateness(std::int64_t interval) const;
 
@@ -155,10 +166,12 @@ class Aligner {
   Window candidate_;
   unsigned back_ = 0;              // kinds whose numbers went back a little, into the candidate
   int back_frames_ = 0;            // complete there since then
+  std::uint64_t elsewhere_ = 0;    // blocks in the candidate since the last one in the other
   std::int64_t offset_ = 0;        // emitted minus received interval number
   std::int64_t last_emitted_ = 0;  // valid if counters_.frames > 0
   std::int64_t last_time_ns_ = 0;  // likewise, source time
   AlignerCounters counters_;
+  Restart restart_;
 };
 
 }  // namespace mpm

@@ -97,7 +97,8 @@ inline constexpr int kCapacity = 1024;
 inline constexpr int kRestartFactor = 4;
 /// One that is behind by less is a restart where the numbers went back by at least kSmallestReturn
 /// while the source time went on, and kReturnFrames frames came so while the old numbers did not go
-/// on. Chosen: two gateways with the same numbers are hardly so far apart.
+/// on. Chosen: two gateways with the same numbers are hardly so far apart. Where no frame is
+/// complete it takes as many blocks of each kind that comes.
 inline constexpr int kSmallestReturn = 3;
 inline constexpr int kReturnFrames = 3;
 }  // namespace alignment

@@ -48,6 +48,11 @@ bool fits(const BlockView& block, const SignalCounts& counts) {
   return block.values.size() == count && (block.quality.empty() || block.quality.size() == count);
 }
 
+std::string others_text(const host::RateLimiter& limit) {
+  return limit.held_back() == 0 ? ""
+                                : fmt::format(" ({} more like this before)", limit.held_back());
+}
+
 }  // namespace
 
 UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWriters& outputs,
@@ -126,22 +131,23 @@ void UnitPipeline::go_on(Clock::time_point now) {
 // What the aligner has made of it that a person should know.
 void UnitPipeline::report(const idl::SampleView& sample, const AlignerCounters& before) {
   const AlignerCounters& after = aligner_.counters();
-  const auto others = [](const host::RateLimiter& limit) {
-    return limit.held_back() == 0 ? ""
-                                  : fmt::format(" ({} more like this before)", limit.held_back());
-  };
   if (after.wrong_length != before.wrong_length && refused_limit_.admit(now_))
     spdlog::warn(
         "{}: {} sample of interval {} has {} values and {} qualities, expected {}; ignored{}",
         config_.unit, idl::sample_topic(sample.kind), sample.interval, sample.values.size(),
-        sample.quality.size(), config_.counts().of(sample.kind), others(refused_limit_));
+        sample.quality.size(), config_.counts().of(sample.kind), others_text(refused_limit_));
   if (after.beyond != before.beyond && beyond_limit_.admit(now_))
     spdlog::warn("{}: {} sample of interval {}: numbers beyond 2^53 are not taken; ignored{}",
                  config_.unit, idl::sample_topic(sample.kind), sample.interval,
-                 others(beyond_limit_));
-  if (after.restarts != before.restarts && restart_limit_.admit(now_))
-    spdlog::info("{}: the controller restarted: interval {} after {}{}", config_.unit,
-                 sample.interval, health_.record().interval, others(restart_limit_));
+                 others_text(beyond_limit_));
+  report_restart(before);
+}
+
+void UnitPipeline::report_restart(const AlignerCounters& before) {
+  if (aligner_.counters().restarts == before.restarts || !restart_limit_.admit(now_)) return;
+  const auto [from, to] = aligner_.restart();
+  spdlog::info("{}: the controller restarted: interval {} after {}{}", config_.unit, to, from,
+               others_text(restart_limit_));
 }
 
 // Frames that were begun before it may still come first.
@@ -391,8 +397,10 @@ void UnitPipeline::tick(Clock::time_point now, std::uint64_t unknown_unit,
                         const bus::Surroundings& around) {
   go_on(now);
   if (aligner_.pending() && now - last_frame_ > patience_) {
+    const AlignerCounters before = aligner_.counters();
     if (checkpoints_) checkpoints_->push_expiry();
     aligner_.expire();
+    report_restart(before);
   }
   if (diagnosis_) publish_diagnosis();
   if (now >= next_health_) {

@@ -129,6 +129,7 @@ class UnitPipeline {
   void go_on(Clock::time_point now);
   void note_absence(const Frame& frame);
   void report(const idl::SampleView& sample, const AlignerCounters& before);
+  void report_restart(const AlignerCounters& before);
   /// Over what there is of the window.
   [[nodiscard]] PerformanceRecord performance();
   void publish_performance();

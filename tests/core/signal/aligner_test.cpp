@@ -370,6 +370,69 @@ TEST_CASE("aligner: a controller that starts again just behind where it was is f
   CHECK(by_kind.frames == in_turn.frames);
 }
 
+TEST_CASE(
+    "aligner: a controller that starts again without a kind is followed once that is given up") {
+  for (const std::int64_t first : {std::int64_t{1}, std::int64_t{90}, std::int64_t{500'000}}) {
+    CAPTURE(first);
+    Bench bench;
+    bench.push_all(1, 100);
+    bench.clock_ns = 1'000'000;  // the times go on
+    for (std::int64_t k = first; k < first + 40; ++k) {
+      bench.push(SignalKind::kMv, k);
+      bench.push(SignalKind::kCv, k);
+    }
+    REQUIRE(bench.frames.size() == 100);
+    CHECK(bench.aligner.pending());
+    bench.aligner.expire();
+    CHECK(bench.frames.size() > 100);
+    for (std::int64_t k = first + 40; k < first + 60; ++k) {
+      bench.push(SignalKind::kMv, k);
+      bench.push(SignalKind::kCv, k);
+    }
+    REQUIRE(bench.frames.size() == 100 + 51);  // all but those that may still be late
+    CHECK(bench.frames[100].values[0] == 10.0 * static_cast<double>(first));
+    CHECK(bench.frames.back().values[0] == 10.0 * static_cast<double>(first + 50));
+    CHECK(bench.aligner.counters().incomplete == 51);
+    CHECK(bench.aligner.counters().late == 0);
+    CHECK(bench.aligner.counters().restarts == (first < 100 ? 1 : 0));
+    if (first < 100) {
+      CHECK(bench.aligner.restart().from == 100);
+      CHECK(bench.aligner.restart().to == first);
+    }
+    bench.push_all(first + 60, first + 80);  // it is back
+    CHECK(bench.frames.size() == 100 + 81);
+  }
+}
+
+TEST_CASE("aligner: what only stray numbers fill is not gone to when nothing comes") {
+  Bench bench;
+  bench.push_all(1, 100);
+  bench.push(SignalKind::kMv, 9'000'000);
+  bench.push(SignalKind::kMv, 9'000'000);
+  bench.push(SignalKind::kCv, 9'000'001);
+  CHECK_FALSE(bench.aligner.pending());
+  bench.aligner.expire();
+  bench.push_all(101, 120);
+  CHECK(bench.intervals() == range(1, 120));
+  // Nor what comes beside the numbers that go on.
+  for (std::int64_t k = 121; k <= 160; ++k) {
+    bench.push(SignalKind::kPrediction, k);
+    bench.push(SignalKind::kMv, k - 100'000);
+  }
+  bench.aligner.expire();
+  CHECK(bench.aligner.counters().restarts == 0);
+}
+
+TEST_CASE("aligner: a restart is told in the numbers that came, though frames count on") {
+  Bench bench;
+  bench.push_all(5000, 5100);
+  bench.push_all(0, 50);
+  bench.push_all(-1000, -990);
+  CHECK(bench.aligner.counters().restarts == 2);
+  CHECK(bench.aligner.restart().from == 50);
+  CHECK(bench.aligner.restart().to == -1000);
+}
+
 TEST_CASE("aligner: late and repeated blocks are no new beginning, whoever sends them") {
   Bench late;
   late.push_all(0, 30);
