@@ -49,6 +49,7 @@ UnitAlarms::UnitAlarms(const config::UnitConfig& unit, const UnitOutputs& output
     record.cv = channel.cv;
     alarms_.push_back(std::move(record));
   }
+  diagnosed_.assign(alarms_.begin(), alarms_.end());
   controller_.unit = unit_;
   controller_.consequence = settings_.consequence;
   controller_.action = settings_.action;
@@ -140,7 +141,9 @@ void UnitAlarms::note(const std::vector<ChannelRecord>& channels,
       std::string text = changes[i].to == AlarmChange::kActive ? texts[i] : alarm->view.message;
       *alarm = AlarmStateRecord(changes[i]);
       alarm->view.message = std::move(text);
-      fresh_[static_cast<std::size_t>(alarm - alarms_.data())] = true;
+      const auto index = static_cast<std::size_t>(alarm - alarms_.data());
+      diagnosed_[index].named = {};
+      fresh_[index] = true;
     }
 }
 
@@ -159,7 +162,7 @@ void UnitAlarms::archive(Archive& a) {
   // not archived: unit_, settings_, outputs_, journal_ (construction)
   // not archived: desk_, controller_ (`keep` has them from the journal)
   // not archived: observed_, fresh_, said_ (each frame, `recall` and `announce` say them anew)
-  a(alarms_, held_, interval_);
+  a(alarms_, diagnosed_, held_, interval_);
   a.time(source_time_ns_);
   recalled_ = recalled_ || a.reads();
 }
@@ -204,6 +207,20 @@ bool UnitAlarms::say(const AlarmRecord& change) {
   return outputs_.write(change);
 }
 
+// The other one may have ended before it found what this one has found of the same alarm.
+bool UnitAlarms::say_cause(std::size_t i, const AlarmRecord* told) {
+  const AlarmRecord& own = diagnosed_[i];
+  AlarmStateRecord& alarm = alarms_[i];
+  const bool told_since = told != nullptr && told->to == AlarmChange::kDiagnosed &&
+                          told->source_time_ns >= own.source_time_ns;
+  if (own.named.text.empty() || own.source_time_ns < alarm.source_time_ns || told_since)
+    return true;
+  const bool news = alarm.named.text != own.named.text;
+  alarm.named = own.named;
+  alarm.view.message = own.named.text;
+  return !news || outputs_.write(own);
+}
+
 bool UnitAlarms::take_over(const ToldAlarms& told, const std::vector<ChannelRecord>& channels,
                            std::int64_t wall_ns) {
   bool written = true;
@@ -228,6 +245,8 @@ bool UnitAlarms::take_over(const ToldAlarms& told, const std::vector<ChannelReco
       written = clear_held(i) && written;
     else if (!stood && observed_[i].active)
       written = say(alarm) && written;
+    else if (stood)
+      written = say_cause(i, event == told.events.end() ? nullptr : &event->second) && written;
     said_[i] = observed_[i].active;
   }
   if (told.controller) {
@@ -278,6 +297,7 @@ bool UnitAlarms::diagnosed(const AlarmRecord& diagnosis, std::int64_t interval,
   *alarm = AlarmStateRecord(diagnosis);
   alarm->view.message = diagnosis.named.text;
   const int index = static_cast<int>(alarm - alarms_.data());
+  diagnosed_[static_cast<std::size_t>(index)] = event;
   refresh(index);
   if (journal_ != nullptr && news) journal_->push(entry(index, "diagnosed", wall_ns));
   const bool written = write(index);

@@ -49,9 +49,10 @@ class UnitAlarms {
             const std::vector<std::string>& texts, std::int64_t wall_ns);
   /// From now on this process speaks for the unit, of whose alarms readers know `told` from
   /// another. What they know stands as they know it, with what people did about it; of what is
-  /// otherwise they are told. An alarm that stands for them and of whose channel nothing is known
-  /// here yet goes on until something is. Where `told` is silent, what this process, or one before
-  /// it, said last counts. `channels`: as in `push`. False as in `push`.
+  /// otherwise, and of causes that only this process has found, they are told. An alarm that stands
+  /// for them and of whose channel nothing is known here yet goes on until something is. Where
+  /// `told` is silent, what this process, or one before it, said last counts. `channels`: as in
+  /// `push`. False as in `push`.
   bool take_over(const ToldAlarms& told, const std::vector<ChannelRecord>& channels,
                  std::int64_t wall_ns);
   /// A cause was named, at that interval; the alarm is as old as it was.
@@ -94,6 +95,7 @@ class UnitAlarms {
   [[nodiscard]] bool known(const AlarmRecord& change) const;
   [[nodiscard]] bool clear_held(std::size_t i);
   bool say(const AlarmRecord& change);
+  bool say_cause(std::size_t i, const AlarmRecord* told);
   void refresh(int alarm);
   [[nodiscard]] std::string controller_text() const;
   [[nodiscard]] history::AlarmEntry entry(int alarm, std::string what, std::int64_t wall_ns) const;
@@ -106,9 +108,10 @@ class UnitAlarms {
   std::vector<AlarmStateRecord> alarms_;  // as last written
   ControllerAlarmRecord controller_;      // likewise
   std::vector<AlarmDesk::Observation> observed_;
-  std::vector<bool> fresh_;  // to be written; the controller's last
-  std::vector<bool> held_;   // stands because another monitor said so
-  std::vector<bool> said_;   // stands for who reads, as this process last said
+  std::vector<AlarmRecord> diagnosed_;  // what this process found last of each that stands
+  std::vector<bool> fresh_;             // to be written; the controller's last
+  std::vector<bool> held_;              // stands because another monitor said so
+  std::vector<bool> said_;              // stands for who reads, as this process last said
   std::int64_t interval_ = 0, source_time_ns_ = 0;
   bool recalled_ = false;
   AlarmJournal* journal_ = nullptr;

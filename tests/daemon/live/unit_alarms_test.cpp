@@ -1,0 +1,129 @@
+#include "daemon/live/unit_alarms.hpp"
+
+#include <catch2/catch.hpp>
+#include <utility>
+#include <vector>
+
+#include "idl/output_readers.hpp"
+#include "idl/output_writers.hpp"
+#include "tests/daemon/report/sample_channels.hpp"
+#include "tests/idl/test_domain.hpp"
+
+namespace mpm::live {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr const char* kMv = "FIC-101";
+constexpr const char* kCv = "AI-201";
+
+/// The alarms of one channel in a process that shares its unit with others, and one who reads.
+struct Desk {
+  explicit Desk(const std::string& test)
+      : participant(idl::test_domain(test)), writers(participant), readers(participant) {}
+
+  /// A sample; the alarm is `active`, and may have changed.
+  void sample(bool active, bool changed) {
+    ++interval;
+    channels[0] = active ? report::mismatch(kMv, kCv) : report::match(kMv, kCv);
+    channels[0].unit = unit.unit;
+    channels[0].alarm = active ? AlarmState::kActive : AlarmState::kCleared;
+    channels[0].interval = interval;
+    channels[0].source_time_ns = interval * kSecond;
+    std::vector<AlarmRecord> changes;
+    if (changed) changes.push_back(change(active ? AlarmChange::kActive : AlarmChange::kCleared));
+    REQUIRE(alarms.push(channels, changes, {changes.size(), "gain not known"}, 0));
+  }
+  [[nodiscard]] AlarmRecord change(AlarmChange to) const {
+    AlarmRecord record = report::alarm(channels[0], to, interval * kSecond);
+    record.unit = unit.unit;
+    record.interval = interval;
+    return record;
+  }
+  /// Of the alarm that rose with `rise`.
+  void diagnose(AlarmRecord rise, const std::string& text) {
+    rise.to = AlarmChange::kDiagnosed;
+    rise.named.cause = "gain";
+    rise.named.text = text;
+    REQUIRE(alarms.diagnosed(rise, interval, interval * kSecond, 0));
+  }
+  [[nodiscard]] const AlarmStateRecord& state() const { return alarms.channels()[0]; }
+  /// The diagnoses that were told up to one last word.
+  [[nodiscard]] std::vector<std::string> told() {
+    std::vector<std::string> texts;
+    HealthRecord last;
+    last.unit = unit.unit;
+    last.detail = "last";
+    REQUIRE(idl::eventually([&] {
+      REQUIRE(writers.write(last));
+      bool ended = false;
+      for (const idl::Output& output : readers.take()) {
+        if (const auto* event = std::get_if<AlarmRecord>(&output);
+            event != nullptr && event->to == AlarmChange::kDiagnosed)
+          texts.push_back(event->named.text);
+        ended = ended || std::holds_alternative<HealthRecord>(output);
+      }
+      return ended;
+    }));
+    return texts;
+  }
+
+  config::UnitConfig unit = report::column();
+  std::vector<ChannelRecord> channels{report::match(kMv, kCv)};
+  std::int64_t interval = 0;
+  idl::Participant participant;
+  idl::OutputWriters writers;
+  idl::OutputReaders readers;
+  UnitOutputs outputs{writers};
+  UnitAlarms alarms{unit, outputs, channels};
+};
+
+/// What the other monitor has said of the alarm that rose here with `rise`.
+ToldAlarms told_of(const AlarmRecord& rise) {
+  ToldAlarms told;
+  AlarmStateRecord state{rise};
+  AlarmStanding standing;
+  standing.annunciation = Annunciation::kAcknowledged;
+  state.view = ControlRoomView(standing, NotificationClass::kAlert, AlarmPriority::kLow);
+  state.view.message = "gain not known";
+  told.states[{rise.mv, rise.cv}] = state;
+  told.events[{rise.mv, rise.cv}] = rise;
+  return told;
+}
+
+}  // namespace
+
+TEST_CASE("who takes over tells the cause that it alone has found, once") {
+  Desk desk("alarms-cause");
+  desk.outputs.be_silent(true);
+  desk.sample(true, true);
+  const AlarmRecord rise = desk.change(AlarmChange::kActive);
+  desk.sample(true, false);
+  desk.diagnose(rise, "gain 80 % more");
+  desk.outputs.be_silent(false);
+  ToldAlarms told = told_of(rise);
+
+  SECTION("where the other one has told none") {
+    REQUIRE(desk.alarms.take_over(told, desk.channels, 0));
+    CHECK(desk.state().view.message == "gain 80 % more");
+    CHECK(desk.state().view.acknowledged);
+    CHECK(desk.told() == std::vector<std::string>{"gain 80 % more"});
+  }
+  SECTION("not where the other one has told it, or a younger one") {
+    AlarmRecord& event = told.events.at({kMv, kCv});
+    event.to = AlarmChange::kDiagnosed;
+    event.source_time_ns = desk.interval * kSecond;
+    event.named.text = told.states.at({kMv, kCv}).view.message = "gain 79 % more";
+    told.states.at({kMv, kCv}).named = event.named;
+    REQUIRE(desk.alarms.take_over(told, desk.channels, 0));
+    CHECK(desk.state().view.message == "gain 79 % more");
+    CHECK(desk.told().empty());
+  }
+  SECTION("nor of an alarm that was another one") {
+    told.states.at({kMv, kCv}).source_time_ns = (desk.interval + 1) * kSecond;
+    REQUIRE(desk.alarms.take_over(told, desk.channels, 0));
+    CHECK(desk.state().view.message == "gain not known");
+    CHECK(desk.told().empty());
+  }
+}
+
+}  // namespace mpm::live
