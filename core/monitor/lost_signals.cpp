@@ -31,6 +31,7 @@ void LostSignals::take(const Frame& frame, SignalKind kind, int index) {
   if (!usable) {
     loss.cause = cause_of(block, index);
     if (loss.usable && !loss.lost) loss.since_ns = frame.source_time_ns;
+    loss.last_ns = frame.source_time_ns;
   }
   loss.usable = usable;
   loss.lost = loss.share > (loss.lost ? bad_data::kFoundShare : bad_data::kMostShare);
@@ -40,6 +41,7 @@ void LostSignals::Loss::archive(Archive& a) {
   a(share, usable, lost);
   a.within(cause, LossCause::kNoValue, LossCause::kImplausible);
   a.time(since_ns);
+  a.time(last_ns);
 }
 
 void LostSignals::archive(Archive& a) {
@@ -54,7 +56,8 @@ std::vector<LostSignal> LostSignals::list() const {
     const std::vector<Loss>& losses = losses_[static_cast<std::size_t>(kind)];
     for (std::size_t i = 0; i < losses.size(); ++i)
       if (losses[i].lost)
-        lost.push_back({kind, static_cast<int>(i), losses[i].cause, losses[i].since_ns});
+        lost.push_back(
+            {kind, static_cast<int>(i), losses[i].cause, losses[i].since_ns, losses[i].last_ns});
   }
   return lost;
 }

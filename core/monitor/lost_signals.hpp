@@ -24,6 +24,7 @@ struct LostSignal {
   int index = 0;  ///< within the kind
   LossCause cause = LossCause::kNoValue;
   std::int64_t since_ns = 0;  ///< source time of the first sample without one
+  std::int64_t last_ns = 0;   ///< of the last one
 };
 
 /// Which signals are lost. By the share of unusable values lately, not by a run: a few bad values
@@ -47,6 +48,7 @@ class LostSignals {
     bool lost = false;
     LossCause cause = LossCause::kNoValue;
     std::int64_t since_ns = 0;
+    std::int64_t last_ns = 0;
     void archive(Archive& a);
   };
 

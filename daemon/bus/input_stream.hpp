@@ -43,6 +43,7 @@ class InputStream {
     std::int64_t from = 0, to = 0;
     bool timely = false;       ///< the source time went on as far: nothing was sent, or it was lost
     std::uint64_t before = 0;  ///< the writer that sent `from`, where it was another one
+    std::int64_t to_ns = 0;    ///< source time of `to`
   };
   /// The source time did not go on with the interval number.
   struct ClockStep {

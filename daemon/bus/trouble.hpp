@@ -18,6 +18,8 @@ struct Trouble {
   Severity severity = Severity::kFailure;
   std::string text;        ///< for a person
   std::string event = {};  ///< which of its kind, where it happened at one moment; empty: it lasts
+  /// Of an event that left samples out: source time of the first one behind it.
+  std::int64_t until_ns = 0;
 };
 
 /// What `mpm/health` says of a unit that has only begun.

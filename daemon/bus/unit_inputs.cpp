@@ -403,6 +403,7 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
       });
       Jumped& place = same == jumps.end() ? jumps.emplace_back(Jumped{*jump, {}}) : *same;
       place.topics.push_back(topic_of(kind));
+      place.jump.to_ns = std::max(place.jump.to_ns, jump->to_ns);
     }
     if (input.clock_step() && now - input.clock_step()->when < kTold) {
       const InputStream::ClockStep& step = *input.clock_step();
@@ -421,6 +422,7 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
                                      : "the interval number went from " + from + " to " + to) +
                             " on " + config::join(topics),
                         from + " " + to});
+    troubles.back().until_ns = jump.to_ns;
   }
   for (const auto& [step, topics] : steps) {
     const std::string interval = std::to_string(step.interval);

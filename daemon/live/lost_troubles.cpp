@@ -40,13 +40,15 @@ std::string tag_of(const config::UnitConfig& unit, const LostSignal& signal) {
 }
 
 // Where a topic does not come, or not in each interval, its signals have no value, which its
-// trouble says. That a clock stepped or numbers go on as they should not explains no missing value.
+// trouble says; a gap that is over says it of what it left out, and of nothing behind it. That a
+// clock stepped or numbers go on as they should not explains no missing value.
 bool said_already(const LostSignal& signal, const std::vector<bus::Trouble>& others) {
   const std::string topic = idl::sample_topic(signal.kind);
   return std::any_of(others.begin(), others.end(), [&](const bus::Trouble& other) {
     return other.severity == bus::Severity::kFailure || other.key == "no data" ||
            other.key.ends_with(" " + topic) ||
-           (signal.cause == LossCause::kNoValue && (other.key == "gaps" || other.key == "jump") &&
+           (signal.cause == LossCause::kNoValue &&
+            (other.key == "gaps" || (other.key == "jump" && signal.last_ns < other.until_ns)) &&
             other.text.find(topic) != std::string::npos);
   });
 }

@@ -39,6 +39,7 @@ TEST_CASE("a signal that stays bad is lost since its first bad value, and found 
   CHECK(lost.kind == SignalKind::kCv);
   CHECK(lost.cause == LossCause::kQuality);
   CHECK(lost.since_ns == 11'000'000'000);
+  CHECK(lost.last_ns == 70'000'000'000);
   scene.samples(5, Quality::kGood);  // not yet
   CHECK(scene.lost.list().size() == 1);
   scene.samples(5 * kLags, Quality::kGood);

@@ -288,6 +288,7 @@ TEST_CASE("what came while this process stood still is nobody else's fault") {
   for (int k = 42; k < 50; ++k) scene.second({kMv, kDv, kCv}, k);
   scene.second({kMv, kDv, kCv}, 80);
   CHECK(scene.text() == "no intervals came between 49 and 80 on mpm/mv, mpm/dv, mpm/cv");
+  CHECK(scene.troubles()[0].until_ns == scene.start_ns + 80 * kSecond);
 }
 
 TEST_CASE("of several leaps each names the topics that truly leapt") {

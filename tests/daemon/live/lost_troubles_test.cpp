@@ -56,14 +56,25 @@ TEST_CASE("a topic that does not come is one trouble, not its signals' too") {
   REQUIRE(troubles.size() == 1);
   CHECK(troubles[0].text.find("y1 ") == 0);
   CHECK(lost_troubles(toy(), {lost[0]},
-                      {{"jump", Severity::kOutOfSpecification,
-                        "no intervals came between 9 and 99 on mpm/dv", "9 99"}})
-            .empty());
-  CHECK(lost_troubles(toy(), {lost[0]},
                       {{"clock", Severity::kOutOfSpecification,
                         "the clock of the control system stepped back by 60 s on mpm/dv", "9"}})
             .size() == 1);
   CHECK(lost_troubles(toy(), lost, {{"no data", Severity::kFailure, "no data"}}).empty());
+}
+
+TEST_CASE("a gap explains what it left out, and no value that is missing behind it") {
+  bus::Trouble gap{"jump", Severity::kOutOfSpecification,
+                   "no intervals came between 9 and 99 on mpm/dv", "9 99"};
+  gap.until_ns = kTime + 90'000'000'000;
+  LostSignal signal{SignalKind::kDv, 0, LossCause::kNoValue, kTime, kTime + 89'000'000'000};
+  CHECK(lost_troubles(toy(), {signal}, {gap}).empty());
+  signal.last_ns = gap.until_ns;  // it came back without a value
+  CHECK(lost_troubles(toy(), {signal}, {gap}).size() == 1);
+  signal.since_ns = gap.until_ns + 10'000'000'000;
+  signal.last_ns = gap.until_ns + 50'000'000'000;
+  REQUIRE(lost_troubles(toy(), {signal}, {gap}).size() == 1);
+  CHECK(lost_troubles(toy(), {signal}, {gap})[0].text ==
+        "d1 is bad since 2023-11-14T22:15:00Z: no value");
 }
 
 }  // namespace mpm::live
