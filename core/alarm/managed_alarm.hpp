@@ -55,6 +55,12 @@ struct AlarmStanding {
            shelving == Shelving::kUnshelved;
   }
   [[nodiscard]] AlarmWord word() const;
+  /// A list shows what stands, what nobody has seen yet and what people have silenced. Of what the
+  /// plant alone silences that is there which would call else.
+  [[nodiscard]] bool listed() const {
+    return annunciation != Annunciation::kNormal || shelving != Shelving::kUnshelved ||
+           suppressed || out_of_service;
+  }
 };
 
 /// What became of an alarm.

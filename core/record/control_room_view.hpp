@@ -39,7 +39,7 @@ struct ControlRoomView {
         suppressed(standing.suppressed),
         suppressed_by_design(standing.suppressed_by_design),
         out_of_service(standing.out_of_service),
-        retain(alarm_state != AlarmWord::kNormal),
+        retain(standing.listed()),
         active_time_ns(standing.active_time_ns),
         ack_time_ns(standing.ack_time_ns),
         client_user_id(standing.user),

@@ -88,24 +88,10 @@ Json kpi_json(const UnitStore& store, const UnitSnapshot& snapshot) {
           {"determined_trend", trend_json(drawing, KpiColumn::kDetermined)}};
 }
 
-bool is_normal(const Json& alarm) {
-  const auto state = alarm.find("alarm_state");
-  return state != alarm.end() ? *state == "normal"
-                              : alarm["to"] == std::string(to_string(AlarmChange::kCleared));
-}
-
-/// Silenced by nobody but the plant, with nothing there to be silent about: no alarm.
-bool is_idle(const ControlRoomView& view, bool active) {
-  return view.suppressed_by_design && !view.suppressed && !view.out_of_service &&
-         view.shelving_state == Shelving::kUnshelved && !active && view.acknowledged;
-}
-
 /// Neither shelved nor suppressed nor out of service: it calls for somebody.
 bool calls(const Json& alarm) {
-  const auto state = alarm.find("alarm_state");
-  return state == alarm.end() ? !is_normal(alarm)
-                              : *state == "unacknowledged" || *state == "acknowledged" ||
-                                    *state == "returned_unacknowledged";
+  const Json& state = alarm.at("alarm_state");
+  return state == "unacknowledged" || state == "acknowledged" || state == "returned_unacknowledged";
 }
 
 const ChannelRecord* channel_of(const UnitSnapshot& snapshot, const AlarmRecord& alarm) {
@@ -324,14 +310,10 @@ Json alarms_json(const UnitStore& store) {
   const std::shared_ptr<const UnitSnapshot> snapshot = store.snapshot();
   std::vector<Json> standing;
   for (const AlarmStateRecord& alarm : snapshot->alarms) {
-    Json json = alarm_json(store, *snapshot, alarm);
-    if (!is_normal(json) && !is_idle(alarm.view, alarm.to != AlarmChange::kCleared))
-      standing.push_back(std::move(json));
+    if (alarm.view.retain) standing.push_back(alarm_json(store, *snapshot, alarm));
   }
   const ControllerAlarmRecord& controller = snapshot->controller;
-  if (Json json = controller_json(controller);
-      !is_normal(json) && !is_idle(controller.view, controller.state == AlarmState::kActive))
-    standing.insert(standing.begin(), std::move(json));
+  if (controller.view.retain) standing.insert(standing.begin(), controller_json(controller));
   std::stable_sort(standing.begin(), standing.end(), [](const Json& a, const Json& b) {
     return a["time_ns"].get<std::int64_t>() > b["time_ns"].get<std::int64_t>();
   });

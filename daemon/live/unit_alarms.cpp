@@ -23,6 +23,15 @@ bool meaningful(Reason reason) {
   return reason != Reason::kControllerOff && reason != Reason::kBadData;
 }
 
+// Of what has cleared the text has to say so.
+std::string told_text(std::string text, bool active) {
+  constexpr std::string_view kOver = "over: ";
+  const bool says_over = text.starts_with(kOver);
+  if (active && says_over) text.erase(0, kOver.size());
+  if (!active && !says_over && !text.empty()) text.insert(0, kOver);
+  return text;
+}
+
 // While nothing stands nobody looks at what is suppressed by design each time the controller rests.
 bool worth_keeping(const AlarmDesk::Occurrence& occurrence, const AlarmStanding& standing) {
   const bool silence = occurrence.what == AlarmOccurrence::kSuppressed ||
@@ -379,14 +388,16 @@ void UnitAlarms::refresh(int alarm) {
       controller_.interval = interval_;
       controller_.source_time_ns = source_time_ns_;
     }
-    std::string message = active ? controller_text() : controller_.view.message;
+    std::string message =
+        told_text(active ? controller_text() : std::move(controller_.view.message), active);
     controller_.view = ControlRoomView(standing, settings_.notification_class, settings_.priority);
     controller_.view.message = std::move(message);
     controller_.channels = desk_.standing_channels();
     return;
   }
   AlarmStateRecord& record = alarms_[static_cast<std::size_t>(alarm)];
-  std::string message = std::move(record.view.message);
+  std::string message =
+      told_text(std::move(record.view.message), record.to == AlarmChange::kActive);
   record.view = ControlRoomView(standing, NotificationClass::kAlert, AlarmPriority::kLow);
   record.view.message = std::move(message);
 }

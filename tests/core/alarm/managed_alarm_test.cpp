@@ -54,6 +54,30 @@ TEST_CASE("an alarm that nobody has seen waits after its cause has gone, where i
   CHECK(bench.word() == "normal");
 }
 
+TEST_CASE("a list shows what stands, what nobody has seen and what people have silenced") {
+  Bench bench;
+  CHECK_FALSE(bench.alarm.standing().listed());
+  bench.observe(false, false);  // no data, and nothing there to be silent about
+  CHECK(bench.word() == "suppressed");
+  CHECK_FALSE(bench.alarm.standing().listed());
+  for (const auto& [silence, end] :
+       {std::pair(AlarmAction::kShelve, AlarmAction::kUnshelve),
+        std::pair(AlarmAction::kSuppress, AlarmAction::kUnsuppress),
+        std::pair(AlarmAction::kOutOfService, AlarmAction::kInService)}) {
+    CHECK(bench.apply(silence, 60.0).accepted);
+    CHECK(bench.alarm.standing().listed());
+    CHECK(bench.apply(end).accepted);
+    CHECK_FALSE(bench.alarm.standing().listed());
+  }
+  bench.observe(true, false);
+  CHECK(bench.alarm.standing().listed());
+  bench.observe(true, true);
+  bench.observe(false, true);
+  CHECK(bench.word() == "returned_unacknowledged");
+  bench.observe(false, false);
+  CHECK(bench.alarm.standing().listed());
+}
+
 TEST_CASE("who acknowledged an alarm, when and with which words is kept") {
   Bench bench;
   CHECK_FALSE(bench.apply(AlarmAction::kAcknowledge).accepted);

@@ -89,14 +89,17 @@ TEST_CASE("alarms that are normal are not listed") {
 TEST_CASE("what the plant silences is an alarm only where it would call") {
   test::SampleBoard sample;
   sample.show(true);
-  for (AlarmStateRecord& alarm : sample.alarms) {
-    alarm.view.alarm_state = AlarmWord::kSuppressed;
-    alarm.view.suppressed_by_design = true;
-  }
-  sample.controller.view.alarm_state = AlarmWord::kSuppressed;
-  sample.controller.view.suppressed_by_design = true;
+  const auto view = [](bool active, Shelving shelving = Shelving::kUnshelved) {
+    AlarmStanding standing;
+    standing.annunciation = active ? Annunciation::kUnacknowledged : Annunciation::kNormal;
+    standing.suppressed_by_design = true;
+    standing.shelving = shelving;
+    return ControlRoomView(standing, NotificationClass::kAlert, AlarmPriority::kLow);
+  };
+  for (AlarmStateRecord& alarm : sample.alarms) alarm.view = view(alarm.to == AlarmChange::kActive);
+  sample.controller.view = view(true);
   sample.controller.state = AlarmState::kActive;
-  sample.alarms[1].view.shelving_state = Shelving::kTimed;  // by somebody, who may undo it
+  sample.alarms[1].view = view(false, Shelving::kTimed);  // by somebody, who may undo it
   const auto look = [&sample] {
     sample.feed().on_view({sample.channels, sample.alarms, sample.controller, sample.health,
                            sample.troubles, sample.performance});
@@ -110,7 +113,7 @@ TEST_CASE("what the plant silences is an alarm only where it would call") {
   CHECK(alarms[0]["suppressed_by_design"] == true);
   CHECK(overview_json(sample.store())["silenced_alarms"] == 2);
   CHECK(overview_json(sample.store())["alarms"] == 0);
-  sample.alarms[1].view.shelving_state = Shelving::kUnshelved;
+  sample.alarms[1].view = view(false);
   CHECK(look().size() == 2);
   CHECK(overview_json(sample.store())["silenced_alarms"] == 1);
 }

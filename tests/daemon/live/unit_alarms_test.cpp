@@ -126,4 +126,16 @@ TEST_CASE("who takes over tells the cause that it alone has found, once") {
   }
 }
 
+TEST_CASE("the text of an alarm that has cleared says so") {
+  Desk desk("alarms-over");
+  desk.sample(true, true);
+  CHECK(desk.state().view.message == "gain not known");
+  desk.sample(false, true);
+  CHECK(desk.state().view.message == "over: gain not known");
+  desk.sample(false, false);
+  CHECK(desk.state().view.message == "over: gain not known");
+  desk.sample(true, true);
+  CHECK(desk.state().view.message == "gain not known");
+}
+
 }  // namespace mpm::live
