@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,8 @@ struct Trouble {
   Severity severity = Severity::kFailure;
   std::string text;        ///< for a person
   std::string event = {};  ///< which of its kind, where it happened at one moment; empty: it lasts
+  /// Since when it has been so, where it can be told only after a while.
+  std::optional<std::chrono::steady_clock::time_point> since = {};
   /// Of an event that left samples out: source time of the first one behind it.
   std::int64_t until_ns = 0;
 };

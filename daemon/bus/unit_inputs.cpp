@@ -250,6 +250,7 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
                 (i + 1 == quiet.size() ? ")" : "");
     troubles.push_back(
         {"no data", any_started ? Severity::kFailure : Severity::kFunctionCheck, std::move(text)});
+    troubles.back().since = last;
     return;
   }
   for (const SignalKind kind : quiet) {
@@ -264,6 +265,7 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
                         "nothing on " + topic_of(kind) + since + " (" +
                             why_silent(kind, around, now) + ")" +
                             (simulated ? ": the unit file's model predicts" : "")});
+    troubles.back().since = stream(kind).last().value_or(start_);
   }
 }
 

@@ -47,10 +47,10 @@ std::vector<TroubleLog::Line> TroubleLog::update(const std::vector<bus::Trouble>
     if (is_other) tell(trouble, now, lines);
     if (is_new) {
       entry.event = event;
-      entry.came = now;
+      entry.came = trouble.since.value_or(now);
     } else if (entry.ended_s != 0) {
       entry.stood += entry.seen - entry.came;
-      entry.came = now;
+      entry.came = std::max(entry.seen, trouble.since.value_or(now));
       ++entry.times;
     }
     entry.text = trouble.text;

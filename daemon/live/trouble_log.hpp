@@ -20,6 +20,8 @@ class TroubleLog {
  public:
   using Clock = std::chrono::steady_clock;
 
+  /// How long one lasted counts from when it has been so, where the trouble knows, as its text
+  /// does.
   struct Line {
     bool begins = true;
     std::string text;

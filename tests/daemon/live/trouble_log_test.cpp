@@ -46,6 +46,26 @@ TEST_CASE("a trouble is told once when it begins and once when it is over") {
   CHECK(scene.told.size() == 2);
 }
 
+// A silence is told after some seconds, and is as long as its text says.
+TEST_CASE("a trouble that was so before it was told has lasted since then") {
+  Scene scene;
+  const auto silent = [&scene](std::int64_t since) {
+    std::vector<Trouble> troubles = kSilent;
+    troubles[0].since = TroubleLog::Clock::time_point{seconds(1000 + since)};
+    troubles[0].text += " for " + std::to_string(scene.second + 1 - since) + " s";
+    return troubles;
+  };
+  scene.ticks(9, {});
+  for (int i = 0; i < 10; ++i) scene.tick(silent(5));  // until second 19
+  scene.ticks(5, {});
+  for (int i = 0; i < 3; ++i) scene.tick(silent(20));  // again, until second 27
+  scene.ticks(31, {});
+  REQUIRE(scene.told.size() == 2);
+  CHECK(scene.told[0].text == "nothing on mpm/dv for 5 s");
+  CHECK(scene.told[1].text ==
+        "over since 00:00:28Z after 21 s in 2 times: nothing on mpm/dv for 7 s");
+}
+
 TEST_CASE("what comes and goes each second does not flood the log") {
   Scene scene;
   for (int i = 0; i < 1000; ++i) {
