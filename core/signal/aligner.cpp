@@ -55,12 +55,14 @@ void Aligner::push(const BlockView& block) {
   if (!current_.started) start(current_, block.interval);
   if (near(current_, block.interval) && !goes_back(block)) {
     store(current_, block);
+    if (current_.newest_of[static_cast<std::size_t>(block.kind)] == block.interval)
+      go_on(block.kind);
     advance();
     return;
   }
   if (!candidate_.started || !near(candidate_, block.interval)) start(candidate_, block.interval);
-  if (!store(candidate_, block)) return;
-  if (back_ == 0 || ++back_frames_ >= calibration::alignment::kReturnFrames) take_over();
+  if (store(candidate_, block) && ++candidate_frames_ >= calibration::alignment::kReturnFrames)
+    take_over();
 }
 
 bool Aligner::goes_back(const BlockView& block) {
@@ -70,9 +72,7 @@ bool Aligner::goes_back(const BlockView& block) {
   const std::int64_t newest = current_.newest_of[kind];
   if ((back_ & bit) != 0) {
     // Beyond both, it counts on from the one that is nearer.
-    if (block.interval <= newest || candidate_.newest_of[kind] >= newest) return true;
-    go_on(block.kind);
-    return false;
+    return block.interval <= newest || candidate_.newest_of[kind] >= newest;
   }
   if (block.interval > newest - calibration::alignment::kSmallestReturn) return false;
   if (back_ == 0) start(candidate_, block.interval);
@@ -80,18 +80,21 @@ bool Aligner::goes_back(const BlockView& block) {
   return true;
 }
 
-// With the numbers that it had: what came of others is none of a restart's.
+// With the numbers that it had: what came of others is none of a restart's. Each kind says so by
+// its own blocks, whichever topic is read first.
 void Aligner::go_on(SignalKind kind) {
   const unsigned bit = bit_of(kind);
+  if (!candidate_.started || (candidate_.seen & bit) == 0) return;
   for (std::int64_t k = candidate_.next; k <= candidate_.newest; ++k) {
     Slot& slot = slot_of(candidate_, k);
     if (!slot.used || slot.interval != k || (slot.present & bit) == 0) continue;
     slot.present &= ~bit;
+    slot.used = slot.present != 0;
     refuse(k, kind);
   }
   candidate_.seen &= ~bit;
   back_ &= ~bit;
-  back_frames_ = 0;
+  candidate_frames_ = 0;
 }
 
 void Aligner::refuse(std::int64_t interval, SignalKind kind) {
@@ -114,7 +117,7 @@ void Aligner::Window::archive(Archive& a) {
 void Aligner::archive(Archive& a) {
   // not archived: counts_, settings_, sink_, needed_, welcome_ (construction)
   // not archived: restart_ (told at once)
-  a(silent_, current_, candidate_, back_, back_frames_, elsewhere_, offset_, last_emitted_,
+  a(silent_, current_, candidate_, back_, candidate_frames_, elsewhere_, offset_, last_emitted_,
     counters_);
   a.time(last_time_ns_);
 }
@@ -153,7 +156,7 @@ void Aligner::start(Window& window, std::int64_t interval) {
   }
   if (&window == &candidate_) {
     back_ = 0;
-    back_frames_ = 0;
+    candidate_frames_ = 0;
     elsewhere_ = 0;
   }
   window.seen = 0;
@@ -212,7 +215,7 @@ bool Aligner::store(Window& window, const BlockView& block) {
   window.newest = std::max(window.newest, block.interval);
   window.seen |= bit;
   if (&window == &current_ && (adjacent || (needed_ & bit) != 0)) silent_ &= ~bit;
-  return (slot.present & needed_) == needed_;
+  return (needed_ & bit) != 0 && (slot.present & needed_) == needed_;
 }
 
 void Aligner::fill(Slot& slot, const BlockView& block) {
@@ -308,7 +311,7 @@ void Aligner::take_over() {
   elsewhere_ = 0;
   for (Slot& slot : candidate_.slots) slot.used = false;
   back_ = 0;
-  back_frames_ = 0;
+  candidate_frames_ = 0;
   silent_ &= welcome_;  // of which a new beginning says nothing
   advance();
 }

@@ -73,12 +73,13 @@ struct AlignerCounters {
 /// the frames depend on what came and not on its order. The first frame after a start waits for the
 /// lateness to pass, or for `expire()`.
 ///
-/// Blocks far from the current window are gathered in a second one. When that one has a complete
-/// frame, it takes over: the controller restarted or was away. So it does in `expire()` where no
-/// frame in it is complete, as without a kind that has fallen silent meanwhile, and all that comes
-/// has come there. A single stray number changes nothing. After a restart the emitted interval
-/// numbers go on increasing, with a gap; so they do after a leap forward that would take them
-/// beyond 2^53.
+/// Blocks far from the current window are gathered in a second one. When that one has kReturnFrames
+/// complete frames and no kind of theirs went on with its old numbers, it takes over: the
+/// controller restarted or was away. So it does in `expire()` where no frame in it is complete, as
+/// without a kind that has fallen silent meanwhile, and all that comes has come there. So a stray
+/// number changes nothing, be it one block's or a whole interval's. After a restart the emitted
+/// interval numbers go on increasing, with a gap; so they do after a leap forward that would take
+/// them beyond 2^53.
 class Aligner {
  public:
   using Sink = std::function<void(const Frame&)>;
@@ -165,7 +166,7 @@ class Aligner {
   Window current_;
   Window candidate_;
   unsigned back_ = 0;              // kinds whose numbers went back a little, into the candidate
-  int back_frames_ = 0;            // complete there since then
+  int candidate_frames_ = 0;       // complete there since a kind went on
   std::uint64_t elsewhere_ = 0;    // blocks in the candidate since the last one in the other
   std::int64_t offset_ = 0;        // emitted minus received interval number
   std::int64_t last_emitted_ = 0;  // valid if counters_.frames > 0

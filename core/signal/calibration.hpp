@@ -96,10 +96,12 @@ inline constexpr int kCapacity = 1024;
 /// block.
 inline constexpr int kRestartFactor = 4;
 /// One that is behind by less is a restart where the numbers went back by at least kSmallestReturn
-/// while the source time went on, and kReturnFrames frames came so while the old numbers did not go
-/// on. Chosen: two gateways with the same numbers are hardly so far apart. Where no frame is
-/// complete it takes as many blocks of each kind that comes.
+/// while the source time went on. Chosen: two gateways with the same numbers are hardly so far
+/// apart.
 inline constexpr int kSmallestReturn = 3;
+/// Other numbers are followed after so many frames of them while the old ones did not go on.
+/// Where no frame is complete it takes as many blocks of each kind that comes. Chosen: a stray number
+/// is one sample's, hardly two in a row.
 inline constexpr int kReturnFrames = 3;
 }  // namespace alignment
 
