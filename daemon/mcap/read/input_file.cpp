@@ -18,7 +18,8 @@ constexpr std::uint64_t kReadAhead = 64U << 10U;
 }  // namespace
 
 InputFile::InputFile(const std::string& path)
-    : name_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    // Nobody may ever write to a pipe: not to wait there before it is refused.
+    : name_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   const auto refuse = [&](const std::string& message) {
     if (descriptor_ >= 0) ::close(descriptor_);
     throw config::InputError({name_, 0, 0, config::Severity::kError, "", message});

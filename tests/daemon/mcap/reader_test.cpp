@@ -1,4 +1,5 @@
 #include <rapidcheck.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -358,6 +359,13 @@ TEST_CASE("A chunk that cannot be unpacked is told so") {
   file.save(path);
   CHECK_THAT(error_of(path),
              Catch::Matchers::Contains("a chunk cannot be unpacked (ERROR_frameType_unknown)"));
+}
+
+TEST_CASE("A pipe is refused at once, whether or not somebody will ever write to it") {
+  TemporaryFolder folder;
+  const std::string path = folder.file("pipe.mcap");
+  REQUIRE(mkfifo(path.c_str(), 0600) == 0);
+  CHECK(error_of(path) == path + ": error: is no regular file");
 }
 
 TEST_CASE("A bomb of zeros stops at the size it names") {
