@@ -2,7 +2,14 @@
 
 #include <CLI/CLI.hpp>
 
+#include "config/cli/number_value.hpp"
+
 namespace mpm::sim {
+namespace {
+
+constexpr double kMostSamples = 9e15;  // numbers up to 2^53 are taken
+
+}  // namespace
 
 void declare(CLI::App& app, Options& options) {
   app.add_option("-c,--config", options.config, "unit file of the plant and its controller")
@@ -20,7 +27,7 @@ void declare(CLI::App& app, Options& options) {
                  "unit file whose model the controller uses instead of the plant's own");
   app.add_option("-n,--samples", options.samples,
                  "control intervals to run (3000 with --csv, else until stopped)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(cli::number_value(0.0, kMostSamples));
   app.add_option("--seed", options.seed, "of all random numbers; same seed, same numbers")
       ->capture_default_str();
   app.add_option("--csv", options.csv,
@@ -30,21 +37,21 @@ void declare(CLI::App& app, Options& options) {
          "--limits", options.limits_percent,
          "print, for the unit file, which errors of each channel make the controller's cost "
          "rise by so many per cent; no run")
-      ->check(CLI::Range(0.1, 1000.0));
+      ->check(cli::number_value(0.1, 1000.0));
   app.add_option("--start-time", options.start_time,
                  "of the first sample: ISO 8601 with zone, or seconds since 1970 "
                  "(0 with --csv, else now)");
   app.add_option("--speed", options.speed,
                  "samples times real time on DDS; 0 = as fast as readers keep up")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(cli::number_value(0.0));
   app.add_option("--wait-readers", options.wait_readers_s,
                  "seconds to wait for readers of every topic before the first sample "
                  "(10 with --speed 0 or --readers, else none)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(cli::number_value(0.0));
   app.add_option("--readers", options.readers, "how many readers of every topic to wait for")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(cli::number_value(1.0));
   app.add_option("--domain", options.domain, "DDS domain, instead of the unit file's")
       ->check(CLI::Range(0, 230));
   app.add_option("--partition", options.partition, "discovery tag, instead of the unit file's");

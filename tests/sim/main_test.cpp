@@ -73,6 +73,26 @@ TEST_CASE("mpmsim runs a plant of its own equations, and tells what it hides the
   CHECK(folder.read("err").find("no quantity 'co_oxydation'") != std::string::npos);
 }
 
+TEST_CASE("mpmsim refuses numbers that are none, in words, and takes no other ones for them") {
+  const Folder folder;
+  const auto refusal = [&](const std::string& option) {
+    CHECK(folder.run("--config " + kShell + " --csv " + folder.file("run.csv") + " " + option) ==
+          3);
+    const std::string said = folder.read("err");
+    return said.substr(0, said.find('\n'));
+  };
+  CHECK(refusal("--seed -1") == "--seed: '-1' is below 0");
+  CHECK(refusal("--seed 18446744073709551616") ==
+        "--seed: '18446744073709551616' is too large a number");
+  CHECK(refusal("--samples 18446744073709551616") ==
+        "--samples: '18446744073709551616' is too large a number");
+  CHECK(refusal("--samples -5") == "--samples: '-5' is no number from 0 to 9e+15");
+  CHECK(refusal("--limits nan") == "--limits: 'nan' is no number from 0.1 to 1000");
+  for (const std::string text : {"nan", "inf", "-1"})
+    CHECK(refusal("--speed " + text) == "--speed: '" + text + "' is no number from 0 on");
+  CHECK_FALSE(fs::exists(folder.file("run.csv")));
+}
+
 TEST_CASE("mpmsim writes a run and its truth, the same for the same seed") {
   const Folder folder;
   const std::string run = "--config " + kShell + " --scenario hidden_gain --samples 200 --seed 5 ";

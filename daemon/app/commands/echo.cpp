@@ -7,6 +7,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "config/cli/number_value.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
@@ -159,7 +160,7 @@ void add_echo(CLI::App& app, int& exit_code) {
   command->add_option("--unit", options->unit, "only this unit");
   auto* once = command->add_flag("--once", options->once, "end after one sample");
   command->add_option("--count", options->count, "end after this many samples")
-      ->check(CLI::PositiveNumber)
+      ->check(cli::number_value(1.0))
       ->excludes(once);
   command->add_option("--duration", options->duration_s, "end after this time, as 90 or 1.5h")
       ->transform(positive_time_value());

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "config/cli/number_value.hpp"
 #include "core/signal/saturated.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
@@ -134,7 +135,7 @@ void add(CLI::App& app, const char* name, const char* description, Measure measu
   command->add_option("--unit", options->unit, "only samples of this unit");
   command->add_option("--window", options->window, "how many of the last samples count")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(cli::number_value(1.0));
   command->add_option("--duration", options->duration_s, "end after this time, as 90 or 1.5h")
       ->transform(positive_time_value());
   command->add_flag("--json", options->json, "print JSON lines");

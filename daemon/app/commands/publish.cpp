@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "config/cli/number_value.hpp"
 #include "config/load_unit.hpp"
 #include "config/unit_layout.hpp"
 #include "core/text/number_text.hpp"
@@ -159,7 +160,7 @@ void add_publish(CLI::App& app, int& exit_code) {
       ->transform(time_value());
   command->add_option("--readers", options->readers, "how many readers of every topic to wait for")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(cli::number_value(1.0));
   command->add_flag("--real-time", options->real_time,
                     "never wait for a slow reader; it loses the oldest samples");
   command->add_option("--domain", options->domain, "DDS domain, instead of the unit file's")

@@ -92,15 +92,4 @@ CLI::Validator size_value(std::uint64_t smallest) {
           "SIZE"};
 }
 
-CLI::Validator factor_value() {
-  return {[](std::string& text) -> std::string {
-            static const Units none = {{"", 1.0}};
-            const std::optional<double> number = parse(text, none);
-            if (!number) return "'" + text + "' is no number from 0 on";
-            text = plain(*number);
-            return {};
-          },
-          "NUMBER"};
-}
-
 }  // namespace mpm::app

@@ -13,7 +13,5 @@ namespace mpm::app {
 /// A size in bytes, or with a unit: 100MB, 1.5GB, 4KiB; kB = 1000. Becomes bytes, `smallest` or
 /// more.
 [[nodiscard]] CLI::Validator size_value(std::uint64_t smallest);
-/// A number that is finite and not negative.
-[[nodiscard]] CLI::Validator factor_value();
 
 }  // namespace mpm::app

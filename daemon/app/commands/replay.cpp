@@ -12,8 +12,10 @@
 #include <string>
 #include <thread>
 
+#include "config/cli/number_value.hpp"
 #include "config/finding.hpp"
 #include "core/text/number_text.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/app/commands/status_line.hpp"
@@ -59,6 +61,10 @@ std::map<std::string, std::string> parse_remap(const std::vector<std::string>& r
     const std::size_t at = rule.find(":=");
     if (at == std::string::npos || at == 0 || at + 2 == rule.size())
       throw std::invalid_argument("--remap: '" + rule + "' is not FROM:=TO");
+    if (const std::string to = rule.substr(at + 2); printable(to) != to)
+      throw std::invalid_argument("--remap: '" + printable(to) +
+                                  "' has what no unit is named with: a control character, bytes "
+                                  "that are no UTF-8, or too many");
     if (!remap.emplace(rule.substr(0, at), rule.substr(at + 2)).second)
       throw std::invalid_argument("--remap: two rules for unit '" + rule.substr(0, at) + "'");
   }
@@ -229,7 +235,7 @@ void add_replay(CLI::App& app, int& exit_code) {
       ->add_option("-r,--rate", player.rate,
                    "recorded time per time; 0 = as fast as readers keep up")
       ->capture_default_str()
-      ->transform(factor_value());
+      ->check(cli::number_value(0.0));
   command
       ->add_option("--start-offset", options->start_offset_s,
                    "leave out this much at the beginning, as 90 or 1.5h (s, min, h, d)")
@@ -259,7 +265,7 @@ void add_replay(CLI::App& app, int& exit_code) {
       ->transform(time_value());
   command->add_option("--readers", options->readers, "how many readers of every topic to wait for")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(cli::number_value(1.0));
   options->domain.role = "gateway";
   add_domain_flags(*command, options->domain);
   command->footer(

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -66,7 +67,11 @@ RecordingFiles::RecordingFiles(const std::string& output, bool split, std::uint6
   numbered_ = is_folder || split;
   folder_ = is_folder ? path : path.parent_path();
   stem_ = is_folder ? time_name(prefix_of(keep_ns_), start_ns) : path.stem().string();
-  if (!folder_.empty()) std::filesystem::create_directories(folder_);
+  std::error_code error;
+  if (!folder_.empty()) std::filesystem::create_directories(folder_, error);
+  if (error)
+    throw std::invalid_argument(folder_.string() +
+                                ": a folder of that name cannot be made: " + error.message());
   if (numbered_) find_earlier(is_folder, start_ns);
 }
 

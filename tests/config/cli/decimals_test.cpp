@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <catch2/catch.hpp>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -13,6 +14,7 @@ struct Bench {
   Bench() {
     app.add_option("--seed", seed);
     app.add_option("--name", name);
+    app.add_option("--count", count);
     CLI::App* command = app.add_subcommand("sub");
     command->add_option("--domain", domain)->check(CLI::Range(0, 230));
     command->add_option("--shift", shift);
@@ -21,6 +23,7 @@ struct Bench {
   CLI::App app;
   std::uint64_t seed = 0;
   std::string name;
+  std::int64_t count = 0;
   std::optional<int> domain;
   int shift = 0;
 };
@@ -45,6 +48,27 @@ TEST_CASE("zeros alone are zero, and what is no number stays none") {
     CAPTURE(line);
     CHECK_THROWS_AS(bench.app.parse(line), CLI::ParseError);
   }
+}
+
+TEST_CASE("a number that 64 bits do not hold is refused, not made another one") {
+  Bench bench;
+  bench.app.parse("--seed 18446744073709551615");
+  CHECK(bench.seed == 18446744073709551615U);
+  const auto refusal = [&](const std::string& line) {
+    try {
+      bench.app.parse(line);
+    } catch (const CLI::ParseError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  CHECK(refusal("--seed -1") == "--seed: '-1' is below 0");
+  CHECK(refusal("--seed 18446744073709551616") ==
+        "--seed: '18446744073709551616' is too large a number");
+  CHECK(refusal("--count 9223372036854775808") ==
+        "--count: '9223372036854775808' is too large a number");
+  CHECK(refusal("--count -9223372036854775808") == "taken");
+  CHECK(bench.count == std::numeric_limits<std::int64_t>::min());
 }
 
 }  // namespace

@@ -29,10 +29,5 @@ TEST_CASE("sizes are bytes, or have a unit, and are not too small") {
   CHECK(made(size_value(1), "much") == "refused");
 }
 
-TEST_CASE("factors are finite and not negative") {
-  CHECK(std::stod(made(factor_value(), "2.5")) == 2.5);
-  for (const char* text : {"-1", "nan", "x"}) CHECK(made(factor_value(), text) == "refused");
-}
-
 }  // namespace
 }  // namespace mpm::app

@@ -23,6 +23,8 @@ TEST_CASE("mpm record refuses a choice that means nothing, and writes nothing") 
   CHECK(refusal({"--output", ring, "--snapshot-after", "10min"}).find("--snapshot") !=
         std::string::npos);
   CHECK_FALSE(std::filesystem::exists(ring));
+  CHECK(refusal({"--output", "/dev/full"})
+            .starts_with("mpm record: error: /dev/full: a folder of that name cannot be made: "));
 }
 
 }  // namespace mpm::test

@@ -19,6 +19,9 @@ TEST_CASE("mpm replay refuses what chooses nothing, and says which option it was
   CHECK(refusal({"--exclude-topics", "mpm/mx"}).find("no topic 'mpm/mx'") != std::string::npos);
   CHECK(refusal({"--exclude-regex", "."}).find("all topics chosen are excl") != std::string::npos);
   CHECK(refusal({"--regex", "health"}).find("holds no sample of mpm/health") != std::string::npos);
+  CHECK(refusal({"--remap", "small:=a\nb"}).find("--remap: 'a\\nb' has what no unit") !=
+        std::string::npos);
+  CHECK(refusal({"--rate", "nan"}).find("'nan' is no number from 0 on") != std::string::npos);
   CHECK(refusal({"--playback-until", "noon"}).find("'noon' is neither a time") !=
         std::string::npos);
   CHECK(refusal({"--playback-until", "1969-12-31T23:00:00Z"})
