@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "config/finding.hpp"
+#include "core/signal/interval_gap.hpp"
 #include "core/signal/saturated.hpp"
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/bag/sample_stream.hpp"
@@ -109,9 +110,9 @@ class McapInspector {
     SampleTally& tally = unit->samples[sample.kind];
     tally.kind = sample.kind;
     const std::int64_t step = saturated_difference(sample.interval, tally.last_interval);
-    if (tally.times.count > 0 && step > 1 && !tally.cut)
-      tally.times.add_gap(tally.last_ns, sample.source_time_ns,
-                          static_cast<std::uint64_t>(step - 1));
+    const std::uint64_t missing = missing_between(tally.last_interval, sample.interval);
+    if (tally.times.count > 0 && missing > 0 && !tally.cut)
+      tally.times.add_gap(tally.last_ns, sample.source_time_ns, missing);
     tally.cut = false;
     if (tally.times.count == 0 || step > 0 || step < -kRestart) {
       tally.last_interval = sample.interval;

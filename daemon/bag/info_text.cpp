@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdarg>
 #include <cstdio>
+#include <limits>
 
 #include "core/signal/saturated.hpp"
 #include "core/text/number_text.hpp"
@@ -100,16 +101,22 @@ __attribute__((format(printf, 1, 2))) std::string line(const char* format, ...) 
   return {text.data(), std::min(text.size() - 1, static_cast<std::size_t>(std::max(size, 0)))};
 }
 
+/// Of a difference of times that came from outside and may be anything (`saturated_difference`).
+std::string length_text(std::int64_t ns) {
+  const bool more = ns == std::numeric_limits<std::int64_t>::max();
+  return (more ? "more than " : std::string()) + duration_text(seconds(ns));
+}
+
 std::string span_text(const TimeTally& times) {
   if (times.count == 0) return "nothing";
   return files::utc_text(times.first_ns) + " to " + files::utc_text(times.last_ns) + " (" +
-         duration_text(seconds(saturated_difference(times.last_ns, times.first_ns))) + ")";
+         length_text(saturated_difference(times.last_ns, times.first_ns)) + ")";
 }
 
 std::string gaps_text(const TimeTally& times) {
   if (times.gaps == 0) return "no gaps";
   return counted(times.gaps, "gap") + ", " + std::to_string(times.missing) +
-         " missing, the longest " + duration_text(seconds(times.longest_gap_ns)) + " at " +
+         " missing, the longest " + length_text(times.longest_gap_ns) + " at " +
          files::utc_text(times.longest_gap_at_ns);
 }
 
@@ -117,7 +124,7 @@ std::string order_text(const TimeTally& times) {
   if (times.out_of_order == 0) return {};
   return "; " + counted(times.out_of_order, "row") +
          " not later than the one before, the farthest back by " +
-         duration_text(seconds(times.farthest_back_ns)) + " after " +
+         length_text(times.farthest_back_ns) + " after " +
          files::utc_text(times.farthest_back_at_ns);
 }
 

@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/signal/interval_gap.hpp"
 #include "core/signal/saturated.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/bag/info_text.hpp"
@@ -172,9 +173,7 @@ void RecordingWriter::look_for_gap(const RecordedSample& sample) {
   UnitIntervals& unit = units_[name];
   const auto [entry, is_new] = unit.topics.try_emplace(sample.topic);
   TopicIntervals& topic = entry->second;
-  if (!is_new && stamp->interval > topic.last)  // else the controller restarted
-    topic.missing +=
-        static_cast<std::uint64_t>(saturated_difference(stamp->interval, topic.last) - 1);
+  if (!is_new) topic.missing += missing_between(topic.last, stamp->interval);
   topic.last = stamp->interval;
   if (topic.missing <= unit.missing) return;
   totals_.missing_intervals += topic.missing - unit.missing;

@@ -209,6 +209,18 @@ TEST_CASE("Of several units the one of the unit file is taken") {
   CHECK(u.good + u.uncertain + u.bad + u.missing == 30);
 }
 
+TEST_CASE("Info bounds what times that may be anything make longer than it can count") {
+  bag::FileInfo info;
+  info.path = "a.csv";
+  info.times.add(0);
+  info.times.add_gap(std::numeric_limits<std::int64_t>::min(),
+                     std::numeric_limits<std::int64_t>::max(), 5);
+  CHECK(to_text(info).find("1 gap, 5 missing, the longest more than 106752.0 days at ") !=
+        std::string::npos);
+  info.times.longest_gap_ns = 90'000'000'000;
+  CHECK(to_text(info).find("5 missing, the longest 90 s at ") != std::string::npos);
+}
+
 TEST_CASE("Info tells a CSV's step, gaps and qualities, and a torn recording's tear") {
   Bench bench;
   write_file(bench.folder.file("a.csv"),

@@ -1,11 +1,13 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "daemon/bag/info.hpp"
 #include "daemon/bag/lifecycle.hpp"
 #include "daemon/bag/record/recording_writer.hpp"
 #include "daemon/mcap/read/ordered_reader.hpp"
@@ -25,15 +27,19 @@ idl::RawSample raw(std::span<const std::byte> cdr, std::int64_t source_time_ns) 
   return sample;
 }
 
-RecordedSample sample_of(std::size_t topic, std::string unit, std::int64_t interval) {
+RecordedSample sample_of(std::size_t topic, std::string unit, std::int64_t interval,
+                         std::int64_t time_ns) {
   std::vector<double> values(20, 0.5 * static_cast<double>(interval));
   mpm_Sample sample{};
   sample.unit = unit.data();
   sample.interval = interval;
   sample.values = {20, 20, values.data(), false};
   idl::CdrEncoder<mpm_Sample> encoder;
-  const std::int64_t time_ns = kStart + interval * kSecond;
   return {topic, time_ns, raw(encoder.encode(sample), time_ns - 7)};
+}
+
+RecordedSample sample_of(std::size_t topic, std::string unit, std::int64_t interval) {
+  return sample_of(topic, std::move(unit), interval, kStart + interval * kSecond);
 }
 
 RecordedSample layout_of(std::size_t topic, std::string kind, double sample_time_s) {
@@ -88,6 +94,8 @@ TEST_CASE("a recording's files are named by their start, or as asked") {
   write_bytes(folder.file("there.mcap"), 1);
   RecordingFiles there(folder.file("there.mcap"), false, 0, kStart);
   CHECK_THROWS_AS((void)there.next(), std::invalid_argument);
+  CHECK_THROWS_WITH(RecordingFiles("/dev/full", false, 0, kStart),
+                    Catch::StartsWith("/dev/full: a folder of that name cannot be made: "));
 }
 
 TEST_CASE("the quota takes the oldest of our files and no other") {
@@ -223,6 +231,25 @@ TEST_CASE("an interval that all topics of a unit lack is missing once") {
   }
   recording.finish();
   CHECK(recording.totals().missing_intervals == 3 + 3);
+}
+
+TEST_CASE("no absence is as long as numbers may leap: nothing is missing there") {
+  const test::TemporaryFolder folder;
+  RecordingOptions options;
+  options.output = folder.file("run.mcap");
+  RecordingWriter recording(options, kStart);
+  const std::size_t mv = recording.add_topic({"mpm/mv", "mpm::Sample", "text", 0, true});
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const std::vector<std::int64_t> intervals = {0, kMost, -kMost - 1, kMost, 1, 3, kMost, 4};
+  std::int64_t time_ns = kStart;
+  for (const std::int64_t interval : intervals)
+    recording.write(sample_of(mv, "shell", interval, time_ns += kSecond));
+  recording.finish();
+  CHECK(recording.totals().missing_intervals == 1);
+  const SampleTally told =
+      inspect(folder.file("run.mcap")).units.at("shell").samples.at(SignalKind::kMv);
+  CHECK(told.times.missing == 1);
+  CHECK(told.times.gaps == 1);
 }
 
 TEST_CASE("a recording is split by time even where nothing comes") {
