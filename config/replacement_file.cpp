@@ -81,4 +81,10 @@ bool same_file(const std::string& a, const std::string& b) {
   return fs::equivalent(a, b, ignored);
 }
 
+void refuse_to_replace(const std::vector<std::string>& inputs, const std::string& output) {
+  for (const std::string& input : inputs)
+    if (same_file(input, output))
+      throw InputError({output, 0, 0, Severity::kError, "", "is the file that is read"});
+}
+
 }  // namespace mpm::config

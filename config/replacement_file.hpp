@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace mpm::config {
 
@@ -47,5 +48,8 @@ class ReplacementFile {
 
 /// True where both are names of one file that exists.
 [[nodiscard]] bool same_file(const std::string& a, const std::string& b);
+/// Throws config::InputError where a file written as `output` would take the place of one of
+/// `inputs`, which are read.
+void refuse_to_replace(const std::vector<std::string>& inputs, const std::string& output);
 
 }  // namespace mpm::config

@@ -17,6 +17,7 @@
 #include "config/cli/help_format.hpp"
 #include "config/cli/slips.hpp"
 #include "config/load_unit.hpp"
+#include "config/replacement_file.hpp"
 #include "config/scenario_config.hpp"
 #include "config/time_text.hpp"
 #include "idl/version.hpp"
@@ -153,6 +154,8 @@ int run_limits(const LoopSetup& setup, double percent) {
 }
 
 int run(const Options& options) {
+  for (const std::string& output : {options.csv, options.truth})
+    config::refuse_to_replace({options.config, options.controller_model, options.scenario}, output);
   const LoopSetup setup = prepare(options);
   if (options.limits_percent) return run_limits(setup, *options.limits_percent);
   BadDataFilter filter(setup);

@@ -79,7 +79,7 @@ ConvertReport convert(const std::string& input, const std::string& output,
     refuse(input, "give the unit file with --config: it tells which topic each tag belongs to");
   std::optional<config::ReplacementFile> file;  // standard output is none
   if (output != files::kStandardOutput) {
-    if (config::same_file(input, output)) refuse(output, "is the file that is read");
+    config::refuse_to_replace({input}, output);
     file.emplace(output);
   }
   const TableOptions table_options{options.unit ? &*options.unit : nullptr, options.unit_name,

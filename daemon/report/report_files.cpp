@@ -12,18 +12,18 @@
 namespace mpm::report {
 
 std::string write_reports(const DiagnosisRun& run, files::OutputFolder& folder) {
-  folder.write("extended.yaml", extended_yaml(run));
+  folder.write(kDiagnosisFiles[0], extended_yaml(run));
   nlohmann::ordered_json report = to_json(run);
   if (run.performance) report["performance"] = performance_json(*run.performance);
   std::string json = json_text(report, 2) + "\n";
-  folder.write("report.json", json);
-  folder.write("report.html", page_html(page_data(run)));
+  folder.write(kDiagnosisFiles[1], json);
+  folder.write(kDiagnosisFiles[2], page_html(page_data(run)));
   return json;
 }
 
 void write_reports(const IdentificationRun& run, files::OutputFolder& folder) {
-  folder.write("model.json", json_text(to_json(run), 2) + "\n");
-  folder.write("report.html", page_html(page_data(run)));
+  folder.write(kIdentificationFiles[0], json_text(to_json(run), 2) + "\n");
+  folder.write(kIdentificationFiles[1], page_html(page_data(run)));
 }
 
 }  // namespace mpm::report

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "daemon/files/output_folder.hpp"
@@ -8,10 +9,13 @@
 
 namespace mpm::report {
 
-/// The files of a diagnosis, whoever asked for it: extended.yaml, report.json and report.html.
+inline constexpr std::array kDiagnosisFiles = {"extended.yaml", "report.json", "report.html"};
+inline constexpr std::array kIdentificationFiles = {"model.json", "report.html"};
+
+/// The files of a diagnosis, whoever asked for it.
 /// Returns the text of report.json. They appear when `folder` is committed.
 std::string write_reports(const DiagnosisRun& run, files::OutputFolder& folder);
-/// The files of an identification: model.json and report.html.
+/// The files of an identification.
 void write_reports(const IdentificationRun& run, files::OutputFolder& folder);
 
 }  // namespace mpm::report

@@ -75,6 +75,19 @@ TEST_CASE("what is not committed leaves nothing behind") {
   CHECK_THROWS_AS(ReplacementFile(folder.file(".")), mpm::config::InputError);
 }
 
+TEST_CASE("what is read is not replaced, by whatever name") {
+  TemporaryFolder folder;
+  write_file(folder.file("unit.yaml"), "precious");
+  std::filesystem::create_symlink("unit.yaml", folder.file("link"));
+  using mpm::config::refuse_to_replace;
+  const std::vector<std::string> inputs = {"", "data.csv", folder.file("unit.yaml")};
+  for (const char* name : {"unit.yaml", "./unit.yaml", "link"})
+    CHECK_THROWS_WITH(refuse_to_replace(inputs, folder.file(name)),
+                      folder.file(name) + ": error: is the file that is read");
+  CHECK_NOTHROW(refuse_to_replace(inputs, folder.file("new.yaml")));
+  CHECK_NOTHROW(refuse_to_replace(inputs, ""));
+}
+
 TEST_CASE("a pipe, a device or a link is not replaced by a file") {
   namespace fs = std::filesystem;
   TemporaryFolder folder;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "config/load_unit.hpp"
+#include "config/replacement_file.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
@@ -49,6 +50,7 @@ int convert(const Options& options) {
     wanted.unit = std::move(loaded.config);
   }
   try {
+    config::refuse_to_replace({options.config}, options.output);
     wanted.unit_name = options.unit;
     wanted.layout = options.layout == "long" ? files::CsvLayout::kLong : files::CsvLayout::kWide;
     wanted.seconds = options.time_zone == "seconds";

@@ -11,6 +11,7 @@
 
 #include "config/cli/color.hpp"
 #include "config/load_unit.hpp"
+#include "config/replacement_file.hpp"
 #include "config/scenario_config.hpp"
 #include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
@@ -120,6 +121,9 @@ int detect(const DetectOptions& options) {
   config::LoadResult loaded = config::load_unit(options.config);
   if (!report(loaded.findings)) return 3;
   try {
+    std::vector<std::string> inputs = options.data;
+    inputs.push_back(options.config);
+    config::refuse_to_replace(inputs, options.sample_journal);
     if (!options.scenario.empty()) {
       const config::ScenarioResult scenario = config::load_scenario(
           config::find_scenario(options.scenario, options.config), loaded.config);

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -9,7 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "config/cli/color.hpp"
+#include "config/cli/number_value.hpp"
 #include "config/load_unit.hpp"
+#include "config/replacement_file.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/parallel/parallel.hpp"
 #include "core/text/number_text.hpp"
@@ -219,8 +223,17 @@ int print_settings(const DiagnoseOptions& options) {
   return 0;
 }
 
+void refuse_to_replace_inputs(const DiagnoseOptions& options) {
+  std::vector<std::string> inputs = options.data;
+  inputs.insert(inputs.end(), options.validate.begin(), options.validate.end());
+  inputs.push_back(options.config);
+  for (const char* name : report::kDiagnosisFiles)
+    config::refuse_to_replace(inputs, std::filesystem::path(options.out) / name);
+}
+
 int diagnose_file(const DiagnoseOptions& options) {
   try {
+    refuse_to_replace_inputs(options);
     std::optional<config::UnitConfig> unit = load(options.config);
     return unit ? diagnose_unit(options, *unit) : 3;
   } catch (const config::InputError& error) {
@@ -251,7 +264,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
                    "first part of the data that is fitted (of what came after a change in it, "
                    "as much); the gain is measured on the rest")
       ->capture_default_str()
-      ->check(CLI::Range(0.2, 0.9));
+      ->check(cli::number_value(0.2, 0.9));
   command->add_option("--max-findings", options->max_findings, "causes named at most")
       ->capture_default_str()
       ->check(CLI::Range(1, 20));
@@ -273,6 +286,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   add_times(*command, options->times);
   command->add_flag("--json", options->json, "print report.json too");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
+  cli::add_no_color(*command);
   command->add_flag("--fail-on-mismatch", options->fail_on_mismatch,
                     "exit with 1 if anything was found");
   command->add_flag("--print-settings", options->print_settings,

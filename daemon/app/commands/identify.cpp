@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -124,8 +125,18 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
   return found ? 0 : 1;
 }
 
+void refuse_to_replace_inputs(const IdentifyOptions& options) {
+  std::vector<std::string> inputs = options.data;
+  inputs.push_back(options.config);
+  config::refuse_to_replace(inputs, options.out);
+  if (options.report.empty()) return;
+  for (const char* name : report::kIdentificationFiles)
+    config::refuse_to_replace(inputs, std::filesystem::path(options.report) / name);
+}
+
 int identify_file(const IdentifyOptions& options) {
   try {
+    refuse_to_replace_inputs(options);
     std::optional<config::UnitConfig> unit = load(options.config);
     return unit ? identify_unit(options, std::move(*unit)) : 3;
   } catch (const config::InputError& error) {

@@ -114,6 +114,7 @@ std::string unit_text(const ImportOptions& options, const config::UnitConfig& un
 // 0, or 3 on bad input.
 int import_model(const ImportOptions& options) {
   try {
+    config::refuse_to_replace({options.config, options.table}, options.out);
     config::LoadResult loaded = config::load_unit(options.config, config::ModelNeed::kMayBeMissing);
     if (!tell(loaded.findings)) return 3;
     clear_model(loaded.config);

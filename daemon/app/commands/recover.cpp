@@ -22,9 +22,7 @@ std::string default_output(const std::string& input) {
 // 0, or 3 on bad input.
 int run_recover(const std::string& input, const std::string& output) {
   try {
-    if (config::same_file(input, output))
-      throw config::InputError(
-          {output, 0, 0, config::Severity::kError, "", "is the file that is read"});
+    config::refuse_to_replace({input}, output);
     config::ReplacementFile file(output);
     const mcap::RecoverReport report = mcap::recover(input, {file.temporary(), file.descriptor()});
     file.commit();

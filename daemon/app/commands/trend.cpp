@@ -91,6 +91,11 @@ void write_file(const std::string& path, const std::string& text) {
 // 0, 1 if a mismatch or a change was found and that was to fail, 3 on bad input.
 int trend(const TrendOptions& options) {
   try {
+    std::vector<std::string> inputs = options.data;
+    inputs.insert(inputs.end(), options.journal.begin(), options.journal.end());
+    inputs.push_back(options.config);
+    config::refuse_to_replace(inputs, options.csv);
+    config::refuse_to_replace(inputs, options.svg);
     const files::TimeStyle times = times_of(options.times);
     const files::TimeChoice choice(options.time, times);
     history::TrendMaker maker(from_string<history::Step>(options.by), times.zone.get());
