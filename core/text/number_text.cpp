@@ -35,6 +35,9 @@ std::string number_text(double value, int digits) {
 
 std::string interval_text(double low, double high, int digits) {
   constexpr int kMostDigits = 7;
+  constexpr double kRounding = 1e-12;  // of the other end: what doubles leave of 0
+  if (std::abs(low) < kRounding * std::abs(high)) low = 0.0;
+  if (std::abs(high) < kRounding * std::abs(low)) high = 0.0;
   while (digits < kMostDigits && low != high &&
          number_text(low, digits) == number_text(high, digits))
     ++digits;

@@ -12,6 +12,8 @@ namespace {
 // What an interval that is said to be `ok` may reach: of the gain, of the time constants either
 // way, samples of dead time.
 constexpr double kOkPercent = 25.0, kOkTimeRatio = 1.5, kOkDeadTimeSamples = 2.0;
+// p-value of "does not matter" that is doubtful.
+constexpr double kLikely = 0.05;
 // What doubles leave of a whole percentage.
 constexpr double kRounding = 1e-9;
 
@@ -42,35 +44,64 @@ Interval gain_percent(const ChannelRecord& channel) {
 
 double percent_of_ratio(double ratio) { return 100.0 * (ratio - 1.0); }
 
-std::string gain_part(const ChannelRecord& channel, const ChannelFile& file) {
+/// What is said of one quantity.
+struct Part {
+  const char* name;
+  std::string numbers;  // or that it is not known
+  bool ok = false;      // what `ok` says of it is enough, where another one is off
+
+  [[nodiscard]] std::string text(bool all_ok) const {
+    return ok && !all_ok ? std::string(name) + " ok" : numbers;
+  }
+};
+
+Part gain_part(const ChannelRecord& channel, const ChannelFile& file) {
   if (!file.modelled) {
     const std::string effect = number_text(channel.effect_size);
     const std::string in_units = with_units(effect, file);
-    return "answers, where the model has nothing: gain " + (in_units.empty() ? effect : in_units) +
-           " (" + interval_text(channel.effect_low, channel.effect_high) + ")";
+    return {"gain", "answers, where the model has nothing: gain " +
+                        (in_units.empty() ? effect : in_units) + " (" +
+                        interval_text(channel.effect_low, channel.effect_high) + ")"};
   }
-  if (!channel.gain_resolved()) return "gain not known";
+  if (!channel.gain_resolved()) return {"gain", "gain not known"};
   const Interval percent = gain_percent(channel);
-  if (percent.holds(0.0) && percent.within(-kOkPercent, kOkPercent)) return "gain ok";
   const std::string in_units = with_units(signed_text(channel.effect_size, 3), file);
-  return "gain " + signed_text(channel.percent_of_gain(channel.effect_size)) + " % (" +
-         percent.text() + (in_units.empty() ? "" : "; " + in_units) + ")";
+  return {"gain",
+          "gain " + signed_text(channel.percent_of_gain(channel.effect_size)) + " % (" +
+              percent.text() + (in_units.empty() ? "" : "; " + in_units) + ")",
+          percent.holds(0.0) && percent.within(-kOkPercent, kOkPercent)};
 }
 
-std::string time_constant_part(const ChannelRecord& channel) {
-  if (!channel.time_constant_resolved()) return "time constant not known";
+Part time_constant_part(const ChannelRecord& channel) {
+  if (!channel.time_constant_resolved()) return {"time constant", "time constant not known"};
   const Interval ratio{channel.time_constant_low, channel.time_constant_high};
-  if (ratio.holds(1.0) && ratio.within(1.0 / kOkTimeRatio, kOkTimeRatio)) return "time constant ok";
-  return "time constant " + signed_text(percent_of_ratio(channel.time_constant_ratio)) + " % (" +
-         Interval{percent_of_ratio(ratio.low), percent_of_ratio(ratio.high)}.text() + ")";
+  return {"time constant",
+          "time constant " + signed_text(percent_of_ratio(channel.time_constant_ratio)) + " % (" +
+              Interval{percent_of_ratio(ratio.low), percent_of_ratio(ratio.high)}.text() + ")",
+          ratio.holds(1.0) && ratio.within(1.0 / kOkTimeRatio, kOkTimeRatio)};
 }
 
-std::string dead_time_part(const ChannelRecord& channel, const ChannelFile& file) {
-  if (!channel.dead_time_resolved()) return "dead time not known";
+Part dead_time_part(const ChannelRecord& channel, const ChannelFile& file) {
+  if (!channel.dead_time_resolved()) return {"dead time", "dead time not known"};
   const Interval seconds{channel.dead_time_low_s, channel.dead_time_high_s};
   const double most = kOkDeadTimeSamples * file.sample_time_s;
-  if (seconds.holds(0.0) && seconds.within(-most, most)) return "dead time ok";
-  return "dead time " + signed_text(channel.dead_time_error_s) + " s (" + seconds.text() + ")";
+  return {"dead time",
+          "dead time " + signed_text(channel.dead_time_error_s) + " s (" + seconds.text() + ")",
+          seconds.holds(0.0) && seconds.within(-most, most)};
+}
+
+// Of what the test does not find to matter. It looks at the whole response, all else that may be
+// off beside it, and wants to be surer than a 95 % interval is.
+std::string not_material_text(const ChannelRecord& channel, const ChannelFile& file) {
+  const double most = 100.0 * file.gain_limit;
+  const Interval percent = gain_percent(channel);
+  const bool beyond =
+      file.modelled && channel.gain_resolved() && (percent.low > most || percent.high < -most);
+  if (!beyond) return "; may be too small to matter";
+  return channel.p_value_material < kLikely
+             ? "; likely to matter, not beyond doubt"
+             : "; not sure to matter: what is allowed of the whole response, with what else may be "
+               "off, explains it too";
 }
 
 bool nobody_moves(const std::string& tag, const ChannelFile& file) {
@@ -118,6 +149,11 @@ ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
   file.cv_unit = unit_of(unit.cv, cv);
   for (const config::InputSignal& disturbance : unit.dv)
     file.disturbances.push_back(disturbance.tag);
+  file.gain_limit = unit.monitor.materiality.gain;
+  for (const ChannelMateriality& channel : unit.monitor.channel_materiality)
+    if (unit.input_tag(channel.input) == mv &&
+        unit.cv[static_cast<std::size_t>(channel.cv)].tag == cv)
+      file.gain_limit = channel.limits.gain;
   const auto& channels = unit.model.channels;
   file.modelled = unit.model.state_space.has_value() ||
                   std::any_of(channels.begin(), channels.end(), [&](const ChannelSpec& channel) {
@@ -131,15 +167,20 @@ std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file)
   if (channel.reason == Reason::kOperatingPoint)
     return "the gain varies by +-" + number_text(100.0 * channel.gain_variation) +
            " % over where the plant is operated, which a linear model cannot follow; no fault";
-  std::string text = gain_part(channel, file);
-  if (file.modelled && channel.usual)
-    text += ", " + time_constant_part(channel) + ", " + dead_time_part(channel, file);
-  else if (file.modelled)
+  const Part gain = gain_part(channel, file);
+  std::string text = gain.text(false);
+  if (file.modelled && channel.usual) {
+    const Part time_constant = time_constant_part(channel);
+    const Part dead_time = dead_time_part(channel, file);
+    const bool all_ok = gain.ok && time_constant.ok && dead_time.ok;
+    text = gain.text(all_ok) + ", " + time_constant.text(all_ok) + ", " + dead_time.text(all_ok);
+  } else if (file.modelled) {
     text += std::string(", and not of that alone: the dynamics or the dead time differ") +
             (channel.material ? " by much" : "");
+  }
   if (channel.reason == Reason::kWeakExcitation)
     text += "; seen though " + printable(channel.mv) + " moved little";
-  if (!channel.material) text += "; may be too small to matter";
+  if (!channel.material) text += not_material_text(channel, file);
   return text;
 }
 

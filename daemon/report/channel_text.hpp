@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "config/unit_config.hpp"
+#include "core/mismatch/calibration.hpp"
 #include "core/record/alarm_record.hpp"
 #include "core/record/channel_record.hpp"
 
@@ -14,15 +15,16 @@ namespace mpm::report {
 struct ChannelFile {
   bool modelled = true;  ///< the model has it: a gain error in per cent of it means something
   std::string mv_unit, cv_unit;
-  double sample_time_s = 0.0;             ///< 0 = not known
+  double sample_time_s = 0.0;                           ///< 0 = not known
+  double gain_limit = calibration::materiality::kGain;  ///< errors up to it do not matter, relative
   std::vector<std::string> disturbances;  ///< inputs that are measured and that nobody can move
 };
 [[nodiscard]] ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
                                        const std::string& cv);
 
 /// Of a mismatch: "gain +41 % (31 to 51; +0.0404 t/h per %), time constant ok, dead time not
-/// known", which is what the data do not resolve; `ok` is what its 95 % interval holds to be as
-/// modelled, and nothing much else.
+/// known", which is what the data do not resolve; `ok` is, beside what is off, what its 95 %
+/// interval holds to be as modelled, and nothing much else.
 [[nodiscard]] std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file);
 
 /// How a channel answers as no linear one does; empty unless it does.

@@ -97,7 +97,7 @@ std::string legend(const std::vector<MatrixRow>& rows) {
   };
   explain('m', "match");
   explain('X', "mismatch");
-  explain('x', "mismatch that may be too small to matter");
+  explain('x', "mismatch that is not sure to matter");
   explain('u', "undetermined");
   explain('!', "in alarm");
   return text;

@@ -30,6 +30,10 @@ TEST_CASE("intervals and shares read as people write them") {
   CHECK(interval_text(-4.0, 1.23456, 2) == "-4 to 1.2");
   CHECK(interval_text(1.4998, 1.5003) == "1.4998 to 1.5003");
   CHECK(interval_text(1.5, 1.5) == "1.5 to 1.5");
+  CHECK(interval_text(1.67e-15, 19.4) == "0 to 19.4");
+  CHECK(interval_text(-2e4, -1e-13) == "-20000 to 0");
+  CHECK(interval_text(1e-9, 19.4) == "1e-09 to 19.4");
+  CHECK(interval_text(1e-15, 2e-15) == "1e-15 to 2e-15");
   CHECK(interval_text(1.0, 1.0 + 1e-12) == "1 to 1");
   CHECK(percent_text(0.25) == "25 %");
   CHECK(percent_text(0.004) == "0.4 %");

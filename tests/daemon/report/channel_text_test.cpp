@@ -37,6 +37,44 @@ TEST_CASE("what the data do not resolve is no number") {
         "gain ok, and not of that alone: the dynamics or the dead time differ by much");
 }
 
+TEST_CASE("of a mismatch in which all is nearly as modelled the numbers are said") {
+  ChannelRecord channel = mismatch("FIC-101", "AI-201");
+  const ChannelFile file = channel_file(column(), "FIC-101", "AI-201");
+  channel.effect_size = 0.002;
+  channel.effect_low = -0.001;
+  channel.effect_high = 0.005;
+  channel.time_constant_ratio = 1.1;
+  channel.time_constant_low = 0.9;
+  channel.time_constant_high = 1.3;
+  channel.dead_time_error_s = 0.0;
+  channel.dead_time_low_s = -0.5;
+  channel.dead_time_high_s = 0.5;
+  channel.material = false;
+  const std::string text = mismatch_text(channel, file);
+  INFO(text);
+  CHECK(text.find(" ok") == std::string::npos);
+  CHECK(text.find("gain +") == 0);
+  CHECK(text.find(", time constant +10 % (-10 to 30), dead time 0 s (-0.5 to 0.5); may be too "
+                  "small to matter") != std::string::npos);
+}
+
+TEST_CASE("what an interval holds to be beyond the limit is not called small") {
+  ChannelRecord channel = mismatch("FIC-101", "AI-201");  // 31 to 51 % too much gain
+  ChannelFile file = channel_file(column(), "FIC-101", "AI-201");
+  channel.material = false;
+  channel.p_value_material = 0.01;
+  CHECK(mismatch_text(channel, file).ends_with("; likely to matter, not beyond doubt"));
+  channel.p_value_material = 0.6;
+  CHECK(mismatch_text(channel, file)
+            .ends_with("; not sure to matter: what is allowed of the whole response, with what "
+                       "else may be off, explains it too"));
+  file.gain_limit = 0.4;
+  CHECK(mismatch_text(channel, file).ends_with("; may be too small to matter"));
+  config::UnitConfig unit = column();
+  unit.monitor.materiality.gain = 0.4;
+  CHECK(channel_file(unit, "FIC-101", "AI-201").gain_limit == 0.4);
+}
+
 TEST_CASE("of a model whose gain is negative, more gain is more in its direction") {
   ChannelRecord channel = mismatch("FIC-101", "AI-202");
   channel.model_gain = -0.1;
