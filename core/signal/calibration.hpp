@@ -100,8 +100,8 @@ inline constexpr int kRestartFactor = 4;
 /// apart.
 inline constexpr int kSmallestReturn = 3;
 /// Other numbers are followed after so many frames of them while the old ones did not go on.
-/// Where no frame is complete it takes as many blocks of each kind that comes. Chosen: a stray number
-/// is one sample's, hardly two in a row.
+/// Where no frame is complete it takes as many blocks of each kind that comes. Chosen: a stray
+/// number is one sample's, hardly two in a row.
 inline constexpr int kReturnFrames = 3;
 }  // namespace alignment
 

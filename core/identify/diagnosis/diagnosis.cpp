@@ -382,7 +382,7 @@ Index needed_samples(const ModelSpec& model) {
                                         [cv](const ChannelSpec& c) { return c.cv == cv; });
     most = std::max<Index>(most, model.state_space ? 3 * model.input_count : 3 * channels);
   }
-  return 3 * kRowsPerNumber * (most + kFreeNoise.order + kOtherNumbers) / 2;
+  return 3 * kRowsPerNumber * (most + kLeastOrder + kOtherNumbers) / 2;
 }
 
 Index rows_to_diagnose(Index samples) { return samples > kMostDiagnosed ? kCondensed : samples; }

@@ -6,6 +6,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/statement.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/evidence/free_run_residuals.hpp"
@@ -41,7 +42,8 @@ Index late_from(Index first) {
 
 std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const Recording& recording,
                                Index first, const SearchSettings& asked) {
-  Problem problem(model, model_inputs, recording, Tolerances{}, kFreeNoise);
+  Problem problem(model, model_inputs, recording, Tolerances{},
+                  free_noise(model, model_inputs, recording));
   std::vector<int> cvs(static_cast<std::size_t>(model.cv_count));
   std::iota(cvs.begin(), cvs.end(), 0);
   SearchResult found;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -93,14 +96,45 @@ bool cuts_a_walk(const Explained& explained) {
   });
 }
 
+/// Coefficients, up to `most`, of which Akaike's criterion is least.
+int order_of(const CvFit& fit, const CvData& data, int most) {
+  int best = kLeastOrder;
+  double least = std::numeric_limits<double>::infinity();
+  for (int order = kLeastOrder; order <= most; order += kOrderStep) {
+    Whitening noise = fit_whitening(fit.residual, data.weights, {.order = order, .bound = 0.0});
+    noise.borders = fit.noise.borders;
+    const double misfit = noise.apply(fit.residual).cwiseAbs2().dot(data.weights);
+    const double cost = data.rows * std::log(misfit) + 2.0 * order;
+    if (!(cost < least)) continue;
+    least = cost;
+    best = order;
+  }
+  return best;
+}
+
 }  // namespace
+
+NoiseModel free_noise(const ModelSpec& model, int model_inputs, const Recording& recording) {
+  const auto most = static_cast<int>(
+      std::clamp<Index>(recording.samples() / kRowsPerCoefficient, kLeastOrder, kMostOrder));
+  NoiseModel chosen{.order = kLeastOrder, .bound = 0.0};
+  Problem problem(model, model_inputs, recording, Tolerances{}, {.order = most, .bound = 0.0});
+  std::vector<int> cvs(static_cast<std::size_t>(model.cv_count));
+  std::iota(cvs.begin(), cvs.end(), 0);
+  for (const CvFit& fit : problem.fit({}, 0, cvs).cvs)
+    if (integrates(model, fit.cv) ||
+        wanders(fit.residual, slowest_of_cv_s(model, fit.cv, 1.0) / model.sample_time_s))
+      chosen.order = std::max(chosen.order, order_of(fit, problem.data(fit.cv), most));
+  return chosen;
+}
 
 Explained explain(const ModelSpec& model, int model_inputs, const Recording& recording,
                   const SearchSettings& settings) {
   const auto explain_on = [&](const NoiseModel& noise, const Recording& on) {
     return explain_with(noise, model, model_inputs, on, settings);
   };
-  Explained explained = explain_on(kFreeNoise, recording);
+  const NoiseModel free = free_noise(model, model_inputs, recording);
+  Explained explained = explain_on(free, recording);
   const bool blind =
       explained.found.named.empty() &&
       unknown_gains(estimate_channels(*explained.problem, explained.found, settings)) > 0;
@@ -108,7 +142,7 @@ Explained explain(const ModelSpec& model, int model_inputs, const Recording& rec
     return explained;
   const Index first = (kComparedQuarter - 1) * recording.samples() / kComparedQuarter;
   const Recording train = part(recording, 0, first);
-  const double with_free = log_error(explain_on(kFreeNoise, train), recording, first);
+  const double with_free = log_error(explain_on(free, train), recording, first);
   const double with_bounded = log_error(explain_on(kBoundedNoise, train), recording, first);
   if (!(with_bounded < with_free - (blind ? kSomewhatLess : kClearlyLess))) return explained;
   Explained bounded = explain_on(kBoundedNoise, recording);

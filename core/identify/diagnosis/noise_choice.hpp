@@ -6,6 +6,13 @@
 
 namespace mpm {
 
+/// A free noise model with as long a past as the residual of some CV that wanders asks for (Akaike
+/// 1974): a disturbance that wanders and is measured with noise remembers longer than a few
+/// samples, and under feedback what the noise model forgets is laid to the channels. Of what comes
+/// back a long past would take structure for noise.
+[[nodiscard]] NoiseModel free_noise(const ModelSpec& model, int model_inputs,
+                                    const Recording& recording);
+
 /// A problem and what the search found in it.
 struct Explained {
   std::unique_ptr<Problem> problem;
