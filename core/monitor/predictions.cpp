@@ -33,7 +33,8 @@ bool simulates_some(const std::vector<bool>& may_predict) {
 }
 
 Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_predict,
-                         const std::vector<bool>& acts, int starting_samples, int settling_samples)
+                         const std::vector<bool>& acts, int starting_samples, int settling_samples,
+                         int lost_samples)
     : model_(model),
       may_predict_(may_predict),
       acts_(acts),
@@ -41,6 +42,7 @@ Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_
       integrating_(integrating_cvs(model)),
       starting_samples_(starting_samples),
       settling_samples_(settling_samples),
+      lost_samples_(lost_samples),
       given_(may_predict.size(), false),
       corrections_(may_predict.size()),
       agreements_(may_predict.size()),
@@ -73,16 +75,16 @@ void Predictions::turn(std::size_t cv) {
 
 void Predictions::begin(const Frame& frame, const UnitInputs& inputs) {
   model_.set_time_s(1e-9 * static_cast<double>(frame.source_time_ns));
-  for (int i = 0; i < model_.input_count(); ++i)
-    if (inputs.unknown_run(i) > kHeldSamples) distrust(i);
+  for (int i = 0; i < model_.input_count(); ++i) distrust(i, inputs.unknown_run(i));
 }
 
-void Predictions::distrust(int input) {
+void Predictions::distrust(int input, std::int64_t unknown_run) {
+  if (unknown_run <= kHeldSamples) return;
   const std::size_t cvs = given_.size();
   simulation_settles_ = settling_samples_;
   for (std::size_t j = 0; j < cvs; ++j)
     if (acts_[static_cast<std::size_t>(input) * cvs + j]) {
-      unseen_[j] = settling_samples_;
+      if (unknown_run > lost_samples_) unseen_[j] = settling_samples_;
       if (!given_[j]) settling_[j] = settling_samples_;
     }
 }
@@ -126,8 +128,7 @@ void Predictions::advance(const UnitInputs& inputs) {
 
 void Predictions::skip(std::int64_t missing, const UnitInputs& inputs) {
   for (FeedbackCorrection& correction : corrections_) correction.skip();
-  if (missing > kHeldSamples)
-    for (int i = 0; i < model_.input_count(); ++i) distrust(i);
+  for (int i = 0; i < model_.input_count(); ++i) distrust(i, missing);
   if (!started_) return;
   for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, settling_samples_); ++k)
     model_.advance(inputs.held());

@@ -28,9 +28,11 @@ class Predictions {
  public:
   /// `may_predict[j]`: CV j's may come with the frames; `acts`: see `channels_of`;
   /// Samples until the model can be trusted: `starting_samples` after the first one,
-  /// `settling_samples` after an input has moved unseen.
+  /// `settling_samples` after an input has moved unseen. An input is lost when it has been unknown
+  /// for more than `lost_samples`.
   Predictions(const LinearModel& model, const std::vector<bool>& may_predict,
-              const std::vector<bool>& acts, int starting_samples, int settling_samples);
+              const std::vector<bool>& acts, int starting_samples, int settling_samples,
+              int lost_samples);
 
   /// Comes with the frames.
   [[nodiscard]] bool given(int cv) const { return given_[static_cast<std::size_t>(cv)]; }
@@ -44,7 +46,7 @@ class Predictions {
   }
   /// Comes from elsewhere than it did, or is simulated, and cannot be trusted yet.
   [[nodiscard]] bool settling(int cv) const { return settling_[static_cast<std::size_t>(cv)] > 0; }
-  /// An input that acts on it moved unseen, and that may still show.
+  /// An input that acts on it was lost, and what it did meanwhile may still show.
   [[nodiscard]] bool unseen(int cv) const { return unseen_[static_cast<std::size_t>(cv)] > 0; }
   /// Measured minus predicted; NaN where the prediction is not known, or the measurement is not.
   [[nodiscard]] double residual(int cv, const Frame& frame) const;
@@ -67,12 +69,12 @@ class Predictions {
   template <class Archive>
   void archive(Archive& a) {
     // not archived: may_predict_, acts_, has_model_, integrating_, starting_samples_,
-    // settling_samples_ (construction)
+    // settling_samples_, lost_samples_ (construction)
     a(model_, started_, given_, corrections_, agreements_, settling_, unseen_, simulation_settles_);
   }
 
  private:
-  void distrust(int input);
+  void distrust(int input, std::int64_t unknown_run);
   void turn(std::size_t cv);
 
   LinearModel model_;
@@ -80,7 +82,7 @@ class Predictions {
   std::vector<bool> acts_;
   bool has_model_;
   std::vector<bool> integrating_;  // per CV
-  int starting_samples_, settling_samples_;
+  int starting_samples_, settling_samples_, lost_samples_;
   bool started_ = false;  // the simulation
   std::vector<bool> given_;
   std::vector<FeedbackCorrection> corrections_;

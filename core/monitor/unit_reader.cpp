@@ -40,7 +40,7 @@ UnitReader::UnitReader(const LinearModel& model, const SignalCounts& counts,
       predictions_(
           model, may_predict, acts,
           simulates_some(may_predict) ? settings.starting_samples : settings.settling_samples,
-          settings.settling_samples),
+          settings.settling_samples, settings.fir_lags),
       residuals_(counts.cv) {
   turned_.reserve(static_cast<std::size_t>(counts.cv));
 }

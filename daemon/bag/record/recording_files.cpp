@@ -70,8 +70,8 @@ RecordingFiles::RecordingFiles(const std::string& output, bool split, std::uint6
   std::error_code error;
   if (!folder_.empty()) std::filesystem::create_directories(folder_, error);
   if (error)
-    throw std::invalid_argument(folder_.string() +
-                                ": a folder of that name cannot be made: " + error.message());
+    throw std::runtime_error(folder_.string() +
+                             ": a folder of that name cannot be made: " + error.message());
   if (numbered_) find_earlier(is_folder, start_ns);
 }
 

@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-constexpr int kSettling = 20, kTurning = 30;
+constexpr int kSettling = 20, kTurning = 30, kLost = 10;
 
 ModelSpec first_order() {
   return test::channel_model(1, 1, {{0, 0, TransferFunction{2.0, {4.0}, 0, 1, false}}});
@@ -24,7 +24,7 @@ struct Unit {
         plant(first_order()),
         screen(counts, {true}, {true}, 0, kTurning),
         inputs(counts, 100.0),
-        predictions(model, {true}, {true}, kSettling, kSettling),
+        predictions(model, {true}, {true}, kSettling, kSettling, kLost),
         residuals(1) {}
 
   // Measured: the model's own output plus 1. NaN: unknown.

@@ -61,7 +61,7 @@ TEST_CASE("what an unseen input does wrong is laid to no other one", "[trials]")
 TEST_CASE(
     "rows wait while an input is not seen and until the plant has settled; a few may be held") {
   const std::uint64_t all = outcome(1, true, 0, 1.0).used;
-  CHECK(outcome(1, true, 5, 1.0).used == all);
+  CHECK(outcome(1, true, 20, 1.0).used == all);
   // Both CVs: 300 and then some four time constants of 15 samples and the dead time.
   const std::uint64_t lost = all - outcome(1, true, 300, 1.0).used;
   CHECK(lost > 300 + 3 * 15);

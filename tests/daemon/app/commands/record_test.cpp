@@ -23,8 +23,10 @@ TEST_CASE("mpm record refuses a choice that means nothing, and writes nothing") 
   CHECK(refusal({"--output", ring, "--snapshot-after", "10min"}).find("--snapshot") !=
         std::string::npos);
   CHECK_FALSE(std::filesystem::exists(ring));
-  CHECK(refusal({"--output", "/dev/full"})
-            .starts_with("mpm record: error: /dev/full: a folder of that name cannot be made: "));
+  CHECK(run({"mpm", "record", "--output", "/dev/full"}, bench.folder.file("out"),
+            bench.folder.file("err")) == 2);
+  CHECK(bench.text("err").starts_with(
+      "mpm: error: /dev/full: a folder of that name cannot be made: "));
 }
 
 }  // namespace mpm::test
