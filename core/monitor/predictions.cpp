@@ -128,7 +128,9 @@ void Predictions::advance(const UnitInputs& inputs) {
 
 void Predictions::skip(std::int64_t missing, const UnitInputs& inputs) {
   for (FeedbackCorrection& correction : corrections_) correction.skip();
-  for (int i = 0; i < model_.input_count(); ++i) distrust(i, missing);
+  // Where no CV was seen either, nothing that an input did was laid to another one.
+  for (int i = 0; i < model_.input_count(); ++i)
+    distrust(i, std::min<std::int64_t>(missing, lost_samples_));
   if (!started_) return;
   for (std::int64_t k = 0; k < std::min<std::int64_t>(missing, settling_samples_); ++k)
     model_.advance(inputs.held());
