@@ -2,7 +2,8 @@
 //   bench_kernel POINTS exact | gram | nystrom LANDMARKS COMPONENTS | random FREQUENCIES
 // POINTS: a text file, "dimension count" and then the points, a line each; behind them, of `exact`,
 // one value of a response per point. Prints "microseconds values" (per point; of `exact` and `gram`
-// of all) and then the numbers, row by row: the fitted values, the kernel matrix, the features.
+// of all; before them the ridge, or the kernel's width) and then the numbers, row by row: the
+// fitted values, the kernel matrix, the features.
 #include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
@@ -96,6 +97,7 @@ int run(const std::vector<std::string>& arguments) {
   } else if (what == "gram") {
     MatrixXd gram;
     const double took = microseconds([&] { gram = kernel_matrix(kernel, given.points); });
+    std::cout << std::setprecision(17) << kernel.bandwidth << ' ';
     print(took, gram);
   } else if (what == "exact") {
     const VectorXd constant = VectorXd::Ones(given.points.cols());

@@ -39,12 +39,6 @@ def points_of(dimension):
     return x, y - y.mean()
 
 
-def gamma_of(x):
-    """1 / (2 h^2), h the median distance of two points."""
-    distance = np.sqrt(((x[:, None, :] - x[None, :, :]) ** 2).sum(axis=2))
-    return 0.5 / np.median(distance[np.triu_indices(len(x), 1)]) ** 2
-
-
 class Ours:
     """bench_kernel on one set of points."""
 
@@ -95,9 +89,9 @@ def peer(maker, x):
 
 def accuracy(program, folder, dimension):
     x, y = points_of(dimension)
-    gamma = gamma_of(x)
     ours = Ours(program, x, y, folder)
-    (gram_us, _), gram = ours("gram")
+    (width, _, _), gram = ours("gram")
+    gamma = 0.5 / width**2
     exact = np.exp(-gamma * ((x[:, None, :] - x[None, :, :]) ** 2).sum(axis=2))
     if np.abs(gram - exact).max() > 1e-12:
         sys.exit("the kernel matrix is not numpy's")
@@ -133,7 +127,8 @@ def exact_fit(program, folder, dimension):
     x, y = points_of(dimension)
     ours = Ours(program, x, y, folder)
     (ridge, us, _), fitted = ours("exact")
-    gamma = gamma_of(x)
+    (width, _, _), _ = ours("gram")
+    gamma = 0.5 / width**2
     gram = np.exp(-gamma * ((x[:, None, :] - x[None, :, :]) ** 2).sum(axis=2))
     centred = gram - gram.mean(axis=0) - gram.mean(axis=1)[:, None] + gram.mean()
 
@@ -147,11 +142,12 @@ def exact_fit(program, folder, dimension):
     return dimension, us / 1e3, median_us(fit) / 1e3, difference
 
 
+UNITS = {"3x3": 0.3, "10x20": 1.0}  # seconds a measurement
 VARIANTS = (("linear test alone", "off"), ("polynomial", "polynomial"), ("kernel", "kernel"),
             ("random features", "random"))
 
 
-def costs(build):
+def costs(build, sizes):
     """Per unit size: microseconds a sample that each variant adds, and the kilobytes of all."""
     process = subprocess.Popen([build / "bin/bench_core"], stdin=subprocess.PIPE,
                                stdout=subprocess.PIPE, text=True)
@@ -166,7 +162,7 @@ def costs(build):
         return float(answer)
 
     rows = []
-    for size, seconds in (("3x3", 0.3), ("10x20", 1.0)):
+    for size, seconds in sizes.items():
         taken = {name: [] for _, name in VARIANTS}
         for _ in range(ROUNDS if size == "3x3" else 1):
             for _, name in VARIANTS:
@@ -190,10 +186,10 @@ def number(value):
     return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
 
 
-def tables(build):
+def tables(build, sizes):
     """Two tables of Markdown."""
     lines = ["| unit | test | adds, us a sample | adds, kB |", "|---|---|---|---|"]
-    for size, title, us, _, kilobytes in costs(build):
+    for size, title, us, _, kilobytes in costs(build, sizes):
         note = " (all)" if title == "linear test alone" else ""
         lines.append(f"| {size} | {title} | {number(us)}{note} | {number(kilobytes)}{note} |")
     cost = "\n".join(lines)
@@ -222,14 +218,14 @@ def tables(build):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=Path, help="folder of a Release build with MPM_BENCH=ON")
-    parser.add_argument("--markdown", type=Path, help="write the tables into this file")
+    parser.add_argument("--markdown", type=Path, help="write the table of kernels into this file")
+    parser.add_argument("--units", nargs="+", choices=UNITS, default=list(UNITS),
+                        help="3x3 takes a minute, 10x20 ten")
     options = parser.parse_args()
-    cost, kernels = tables(options.build)
+    cost, kernels = tables(options.build, {unit: UNITS[unit] for unit in options.units})
     if options.markdown:
         text = options.markdown.read_text(encoding="utf-8")
-        for name, lines in (("cost", cost), ("kernels", kernels)):
-            text = replace_part(text, name, [lines])
-        options.markdown.write_text(text, encoding="utf-8")
+        options.markdown.write_text(replace_part(text, "kernels", [kernels]), encoding="utf-8")
     print(cost, kernels, sep="\n\n")
 
 
