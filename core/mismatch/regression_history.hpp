@@ -53,8 +53,10 @@ struct RegressionShape {
 ///     and per input i:  u_i(k-1 .. k-L), s_it(k-L-1), t = 1..tails,
 ///     s_it(k) = r_t s_it(k-1) + (1 - r_t) u_i(k),  m_jt likewise of e_j with q_t.
 ///
-/// Unknown values (NaN) do not break the window. An unknown input counts as unchanged: where the
-/// model is right e does not depend on u, so this cannot raise a false alarm. A residual that is
+/// Unknown values (NaN) do not break the window. An unknown input counts as unchanged: where its
+/// channel is right e does not depend on it. Where it is not, what it does goes with the inputs
+/// that move with it, so that whoever pushes takes a CV for unknown while an input of it is lost
+/// (`Predictions::unseen`). A residual that is
 /// unknown once or twice in a row is interpolated when the next one comes; longer gaps are not.
 /// A CV's row counts (`usable`) where its response and the one before are known, and none of its
 /// own lags lies in a long gap: the residual just before has a large coefficient, and what is

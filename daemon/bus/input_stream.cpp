@@ -137,12 +137,13 @@ void InputStream::begin(const Arrival& arrival, double sample_time_s, Clock::tim
   const double steps =
       static_cast<double>(arrival.interval) - static_cast<double>(before->interval);
   if (steps <= static_cast<double>(kJump)) return;
-  jump_ = Jump{now,
-               before->interval,
-               arrival.interval,
-               is_timely(steps, elapsed_s(before->source_time_ns, arrival), sample_time_s),
-               before->handle,
-               arrival.source_time_ns};
+  jump_ =
+      Jump{.when = now,
+           .from = before->interval,
+           .to = arrival.interval,
+           .timely = is_timely(steps, elapsed_s(before->source_time_ns, arrival), sample_time_s),
+           .before = before->handle,
+           .to_ns = arrival.source_time_ns};
 }
 
 void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time_point now) {
@@ -169,9 +170,11 @@ void InputStream::push(const Arrival& arrival, double sample_time_s, Clock::time
     const bool back = goes_back(steps, arrival.source_time_ns > writer.source_time_ns);
     const double elapsed = elapsed_s(writer.source_time_ns, arrival);
     if (steps > static_cast<double>(kJump) || back)
-      jump_ = Jump{
-          now, writer.interval,       arrival.interval, is_timely(steps, elapsed, sample_time_s),
-          0,   arrival.source_time_ns};
+      jump_ = Jump{.when = now,
+                   .from = writer.interval,
+                   .to = arrival.interval,
+                   .timely = is_timely(steps, elapsed, sample_time_s),
+                   .to_ns = arrival.source_time_ns};
     const double step_s = elapsed - steps * sample_time_s;
     const bool dated = arrival.source_time_ns != writer.source_time_ns;  // else it has no clock
     const double limit_s = clock_limit_s(sample_time_s);

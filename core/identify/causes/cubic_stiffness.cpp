@@ -34,7 +34,7 @@ class CubicStiffness : public StateNonlinearity {
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     for (const StatePlace& at : state_places(outlook)) {
       const double origin = outlook.model().output_origin(at.channel->cv);
-      const double reach = std::max(std::abs(at.cv.high - origin), std::abs(at.cv.low - origin));
+      const double reach = at.cv.reach_from(origin);
       const double force = at.input.range();
       const auto term = [](const Quantity& quantity, double sd) {
         return Coordinate{.quantity = &quantity,

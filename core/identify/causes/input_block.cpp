@@ -5,6 +5,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/channel_error.hpp"
+#include "core/identify/causes/priors.hpp"
 
 namespace mpm {
 
@@ -63,6 +64,14 @@ Coordinate InputBlockCause::plain_ratio(const Quantity& quantity) {
           .step = 0.01,
           .low = -20.0,
           .high = 20.0};
+}
+
+Coordinate InputBlockCause::bending(const Quantity& quantity, double sd) {
+  return {.quantity = &quantity,
+          .prior_sd = sd,
+          .step = 0.05 * sd,
+          .low = -kUnbounded,
+          .high = kUnbounded};
 }
 
 std::vector<Rewrite> InputBlockCause::as_gain(std::size_t mine, const std::vector<Effect>& accepted,

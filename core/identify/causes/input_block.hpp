@@ -8,6 +8,10 @@
 
 namespace mpm {
 
+/// s.d. of what bends an input adds where that, or what it goes with, is farthest from the
+/// operating point, as a share of the straight part.
+inline constexpr double kBend = 0.3;
+
 inline constexpr CauseName kInputNonlinearity{"input_nonlinearity", "Nonlinear input"};
 
 /// Where a static block may sit: before all of an input's channels, or before one of several.
@@ -39,6 +43,8 @@ class InputBlockCause : public Cause {
   [[nodiscard]] static std::vector<BlockPlace> curve_places(const Outlook& outlook, int levels = 3);
   /// A gain to the model's, not in its logarithm.
   [[nodiscard]] static Coordinate plain_ratio(const Quantity& quantity);
+  /// A number that bends what is straight.
+  [[nodiscard]] static Coordinate bending(const Quantity& quantity, double sd);
   /// One number before several: all gains of the input are off, by so much, and nothing is bent.
   [[nodiscard]] static std::vector<Rewrite> as_gain(std::size_t mine,
                                                     const std::vector<Effect>& accepted,

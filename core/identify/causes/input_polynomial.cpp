@@ -1,10 +1,6 @@
-#include <algorithm>
-#include <cmath>
-
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/channel_error.hpp"
 #include "core/identify/causes/input_block.hpp"
-#include "core/identify/causes/priors.hpp"
 
 namespace mpm::causes {
 namespace {
@@ -14,8 +10,6 @@ constexpr Quantity kLinear{"linear", Form::kPlain, Unit::kNone};
 constexpr Quantity kQuadratic{"quadratic", Form::kPlain, Unit::kNone};
 constexpr Quantity kCubic{"cubic", Form::kPlain, Unit::kNone};
 
-/// s.d. of what the curved part adds at the end of the input's range, as a share of the linear one.
-constexpr double kBend = 0.3;
 /// Levels of the input that a parabola and an offset go through, whatever the plant does.
 constexpr int kLevelsOfSquare = 3;
 
@@ -28,19 +22,10 @@ class InputPolynomial : public InputBlockCause {
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     for (const BlockPlace& at : curve_places(outlook)) {
-      const double origin = outlook.model().input_origin(at.place.input);
-      const double reach =
-          std::max(std::abs(at.input.high - origin), std::abs(at.input.low - origin));
+      const double reach = at.input.reach_from(outlook.model().input_origin(at.place.input));
       const Coordinate linear = plain_ratio(kLinear);
-      const auto curved = [](const Quantity& quantity, double sd) {
-        return Coordinate{.quantity = &quantity,
-                          .prior_sd = sd,
-                          .step = 0.05 * sd,
-                          .low = -kUnbounded,
-                          .high = kUnbounded};
-      };
-      const Coordinate quadratic = curved(kQuadratic, kBend / reach);
-      const Coordinate cubic = curved(kCubic, kBend / (reach * reach));
+      const Coordinate quadratic = bending(kQuadratic, kBend / reach);
+      const Coordinate cubic = bending(kCubic, kBend / (reach * reach));
       found.push_back(effect(at.place, {linear, quadratic}, cost_of(at.members)));
       if (at.input.levels() > kLevelsOfSquare)
         found.push_back(effect(at.place, {linear, quadratic, cubic}, cost_of(at.members)));

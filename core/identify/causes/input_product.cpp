@@ -1,9 +1,5 @@
-#include <algorithm>
-#include <cmath>
-
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/input_block.hpp"
-#include "core/identify/causes/priors.hpp"
 #include "core/text/number_text.hpp"
 
 namespace mpm::causes {
@@ -12,10 +8,6 @@ namespace {
 /// u acts like (linear + per_unit dv) du, du and dv from the operating point, v the other input.
 constexpr Quantity kLinear{"linear", Form::kPlain, Unit::kNone};
 constexpr Quantity kPerUnit{"per_unit", Form::kPlain, Unit::kNone};
-
-/// s.d. of how much of its gain an input may win or lose while the other one goes to the end of its
-/// range.
-constexpr double kMost = 0.3;
 
 /// What an input does goes with where another one stands.
 class InputProduct : public InputBlockCause {
@@ -30,15 +22,8 @@ class InputProduct : public InputBlockCause {
         if (other == at.place.input) continue;
         const std::optional<Spread> spread = spread_of(outlook.recording().inputs.col(other));
         if (!spread) continue;
-        const double origin = outlook.model().input_origin(other);
-        const double reach =
-            std::max(std::abs(spread->high - origin), std::abs(spread->low - origin));
-        const double sd = kMost / reach;
-        const Coordinate per_unit{.quantity = &kPerUnit,
-                                  .prior_sd = sd,
-                                  .step = 0.05 * sd,
-                                  .low = -kUnbounded,
-                                  .high = kUnbounded};
+        const double reach = spread->reach_from(outlook.model().input_origin(other));
+        const Coordinate per_unit = bending(kPerUnit, kBend / reach);
         found.push_back(
             effect(at.place, {plain_ratio(kLinear), per_unit},
                    cost_of(at.members) + cost_of(static_cast<std::size_t>(outlook.inputs() - 1))));

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -16,6 +18,10 @@ struct Spread {
     return sorted[static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1))];
   }
   [[nodiscard]] double range() const { return high - low; }
+  /// How far it goes from there.
+  [[nodiscard]] double reach_from(double origin) const {
+    return std::max(std::abs(high - origin), std::abs(low - origin));
+  }
   /// Values that it rests at or passes, as far as they can be told apart: a binary test signal has
   /// two. So many at most as there are steps in its range.
   [[nodiscard]] int levels() const;

@@ -14,7 +14,7 @@ namespace mpm {
 
 /// Coefficients of a free noise model, which may swallow structure: the fewest, more in steps, and
 /// no more than one for so many rows. Chosen: of a wandering level measured with noise (zero at
-/// 0.9) 8 make a sound gain 0.75 to 0.97 in a closed loop, 16 0.98 to 1.02. Akaike's criterion, for
+/// 0.9) 8 make a sound gain 0.90 to 0.97 in a closed loop, 16 0.98 to 1.02. Akaike's criterion, for
 /// Schwarz's takes what so many coefficients forget for nothing
 /// (tests/core/identify/diagnosis/feedback_test).
 inline constexpr int kLeastOrder = 8, kOrderStep = 8, kMostOrder = 24;
