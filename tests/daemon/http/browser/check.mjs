@@ -134,9 +134,10 @@ try {
   // One route all along, for one that is set soon after another was taken away may not take effect.
   let played = () => ({ alarms: kept });
   await page.route("**/api/v1/units/shell", async (route) => {
-    if (!played) return route.continue();
+    const play = played; // what is played may change while the monitor's answer is awaited
+    if (!play) return route.continue();
     const response = await route.fetch(), unit = await response.json();
-    await route.fulfill({ response, json: { ...unit, ...played(unit) } });
+    await route.fulfill({ response, json: { ...unit, ...play(unit) } });
   });
   await page.route("**/api/v1/commands", (route) => {
     ordered = route.request().postDataJSON();
