@@ -34,6 +34,12 @@ inline constexpr double kRepeatedShare = 0.45;
 inline constexpr double kConvincingPValue = 1e-6;
 }  // namespace coarse_readings
 
+/// What a historian's deadband took from an input weighs in a CV beyond so many s.d. of its
+/// one-step errors. Chosen: a tenth of its variance, as of one that comes and goes with the input.
+namespace held_inputs {
+inline constexpr double kShareOfNoise = 0.3;
+}
+
 /// When data are too bad for a verdict.
 namespace bad_data {
 /// Unknown values of a signal in a row that may be taken as unchanged, samples. Chosen.

@@ -15,6 +15,7 @@
 #include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/cv_quality.hpp"
 #include "core/monitor/derived_settings.hpp"
+#include "core/monitor/held_inputs.hpp"
 #include "core/monitor/reported_correlation.hpp"
 #include "core/monitor/unit_reader.hpp"
 #include "core/nonlinear/nonlinear_detector.hpp"
@@ -68,12 +69,14 @@ struct Monitor::State {
   [[nodiscard]] Reason bad_data(int cv, int input) const;
   [[nodiscard]] int spoilt_input(int cv, int input) const;
   [[nodiscard]] int missing_input(int cv, int input) const;
+  [[nodiscard]] int held_input(int cv) const;
 
   LinearModel model;
   SignalCounts counts;
   std::vector<bool> expected;  // per CV: a prediction may come
   DerivedSettings settings;
   UnitReader reader;
+  HeldInputs held;
   ReportedCorrelation correlation;
   MismatchDetector detector;
   NonlinearDetector nonlinear;
@@ -100,6 +103,7 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
       expected(may_predict),
       settings(derived),
       reader(model, counts, may_predict, settings),
+      held(model),
       correlation(counts, settings),
       detector({counts.inputs(), counts.cv, settings.fir_lags, settings.residual_order,
                 settings.tail_poles,
@@ -153,7 +157,7 @@ void Monitor::State::Cv::archive(Archive& a) {
 }
 
 void Monitor::State::archive(Archive& a) {
-  // not archived: model, counts, expected, settings (construction)
+  // not archived: model, counts, expected, settings, held (construction)
   // not archived: rows, outside_values, scan (each sample and each search begins anew)
   a(reader, correlation, detector, nonlinear, outside, judge, cvs, status, judged_frames, counters,
     lost, first, last_interval);
@@ -202,8 +206,8 @@ void Monitor::State::count_bad(const Frame& frame) {
 // What was learnt of held values and drawn lines says nothing once all is measured again.
 void Monitor::State::follow_compression() {
   for (int j = 0; j < counts.cv; ++j) {
-    const bool was = std::exchange(of(j).compressed, reader.screen().compressed(j) ||
-                                                         reader.screen().compressed_input(j) >= 0);
+    const bool was =
+        std::exchange(of(j).compressed, reader.screen().compressed(j) || held_input(j) >= 0);
     if (was && !of(j).compressed) begin_anew(j);
   }
 }
@@ -386,7 +390,7 @@ Reason Monitor::State::bad_data(int cv, int input) const {
 // The input that is to blame for bad data; -1: the CV itself, or this one.
 int Monitor::State::spoilt_input(int cv, int input) const {
   if (!cvs[static_cast<std::size_t>(cv)].compressed) return missing_input(cv, input);
-  return reader.screen().compressed(cv) ? -1 : reader.screen().compressed_input(cv);
+  return reader.screen().compressed(cv) ? -1 : held_input(cv);
 }
 
 // Another input that is lost, where the CV has no rows for so long: simulated or not, no row goes
@@ -396,6 +400,16 @@ int Monitor::State::missing_input(int cv, int input) const {
   for (int i = 0; i < counts.inputs(); ++i)
     if (i != input && reader.inputs().unknown_run(i) > settings.fir_lags) return i;
   return -1;
+}
+
+// An input from which the CV is simulated and which a historian has held: the plant moved, and
+// nobody wrote it down. Once said, it takes half as much to be said again.
+int Monitor::State::held_input(int cv) const {
+  if (reader.screen().predicted(cv)) return -1;
+  const NoiseLevel& noise = detector.regression(cv).noise();
+  const double share = calibration::held_inputs::kShareOfNoise *
+                       (cvs[static_cast<std::size_t>(cv)].compressed ? 0.5 : 1.0);
+  return held.heaviest(cv, reader.screen(), noise.known() ? noise.scale() : 0.0, share);
 }
 
 Monitor::Monitor(const ModelSpec& spec, const SignalCounts& counts,

@@ -36,6 +36,9 @@ namespace spikes {
 /// So many times the usual difference it leaves and comes back. Chosen
 /// (tests/sim/bad_data_alarms_test.cpp).
 inline constexpr double kJump = 6.0;
+/// And so many times what the value before had moved. Chosen: the peak of a wave moves less than
+/// the sample before it.
+inline constexpr double kSudden = 2.0;
 /// It is back where it is nearer to the last value than this share of the jump. Chosen.
 inline constexpr double kBackShare = 0.5;
 /// Differences over which the usual one is followed; so many it takes to know one; and beyond how
@@ -75,8 +78,11 @@ inline constexpr int kLongestBurst = 10;
 /// may have moved on meanwhile.
 inline constexpr double kHome = 1.0;
 inline constexpr double kBackShare = 0.1;
-/// So many widths outside, any value is, until so many have come in a row.
+/// So many widths outside, any value is none of the process, until so many have come in a row; of
+/// one signal alone fewer are enough, as where its unit is another one for an hour: what happens to
+/// a plant moves several.
 inline constexpr double kTooFar = 1e4;
+inline constexpr double kTooFarAlone = 1e3;
 inline constexpr int kPatience = 60;
 /// No instrument gives more, in whatever unit.
 inline constexpr double kLargest = 1e100;

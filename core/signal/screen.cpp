@@ -103,7 +103,7 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
 
 void Screen::Predicted::archive(Archive& a) { a(comes, came, against); }
 
-void Screen::Jumps::archive(Archive& a) { a(scale, samples, home, since_home, spikes); }
+void Screen::Jumps::archive(Archive& a) { a(scale, samples, home, moved, since_home, spikes); }
 
 void Screen::Range::archive(Archive& a) {
   a(extent, far, former, left, last, taken, rejected, pulses);
@@ -112,7 +112,8 @@ void Screen::Range::archive(Archive& a) {
 
 void Screen::archive(Archive& a) {
   // not archived: counts_, may_predict_, acts_, dead_time_, turning_, looks_ (construction)
-  // not archived: all_mvs_rest_, longest_out_, run_ended_, anew_ (each frame says it anew)
+  // not archived: all_mvs_rest_, longest_out_, run_ended_, anew_, one_is_far_ (each frame says it
+  // anew)
   a(predicted_, inputs_matter_, since_rest_, ring_, marked_);
   a.within(position_, 0, kHeld - 1);
   a.within(held_, 0, kHeld);
@@ -128,6 +129,7 @@ void Screen::push(const Frame& frame) {
   pushed_ = std::min(pushed_ + 1, kDelay + 1);
   longest_out_ = 0;
   run_ended_ = anew_ = false;
+  one_is_far_ = far_signals() == 1;
 
   for (const SignalKind kind : screened()) {
     screen_far(kind);
@@ -190,15 +192,6 @@ double Screen::repeated_share(int cv) const {
   const Repeats& repeats =
       repeats_[static_cast<std::size_t>(SignalKind::kCv)][static_cast<std::size_t>(cv)];
   return repeats.coarse() ? repeats.repeated / repeats.counted : 0.0;
-}
-
-int Screen::compressed_input(int cv) const {
-  if (predicted(cv)) return -1;
-  for (int i = 0; i < counts_.inputs(); ++i)
-    if (acts_[static_cast<std::size_t>(i * counts_.cv + cv)] &&
-        input_compression_[static_cast<std::size_t>(i)].kind() == Compression::Kind::kHeld)
-      return i;
-  return -1;
 }
 
 bool Screen::learns(int cv) const {
@@ -304,6 +297,7 @@ void Screen::screen_spikes(int cv) {
   Jumps& jumps = jumps_[static_cast<std::size_t>(cv)];
   ++jumps.since_home;
   if (known[0]) {
+    jumps.moved = std::abs(levels[0] - jumps.home);
     jumps.home = levels[0];
     jumps.since_home = 0;
   }
@@ -317,7 +311,9 @@ void Screen::screen_spikes(int cv) {
       return std::abs(home) > kJump * jumps.scale && away * home < 0.0 &&
              std::abs(levels[next] - jumps.home) < calibration::spikes::kBackShare * std::abs(away);
     };
-    if (std::abs(away) > kJump * jumps.scale && (back_at(2) || back_at(3))) {
+    // What was on its way turns, as a process does; an instrument's spike begins from rest.
+    const bool sudden = std::abs(away) > calibration::spikes::kSudden * jumps.moved;
+    if (std::abs(away) > kJump * jumps.scale && sudden && (back_at(2) || back_at(3))) {
       mark(SignalKind::kCv, cv, kDelay - 1, &ScreenCounters::spikes);
       ++jumps.spikes;
     }
@@ -354,6 +350,22 @@ void Screen::screen_pulses(SignalKind kind) {
   }
 }
 
+int Screen::far_signals() const {
+  int count = 0;
+  for (const SignalKind kind : screened()) {
+    const SignalBlock& block = ring_[place(0)][kind];
+    const auto& ranges = ranges_[static_cast<std::size_t>(kind)];
+    for (int i = 0; i < block.size(); ++i) {
+      const Extent& extent = ranges[static_cast<std::size_t>(i)].extent;
+      count += block.usable(i) && extent.known() && extent.width() > 0.0 &&
+                       extent.beyond(block.values(i)) > calibration::extent::kTooFarAlone
+                   ? 1
+                   : 0;
+    }
+  }
+  return count;
+}
+
 // Before anything is learnt from it.
 void Screen::screen_far(SignalKind kind) {
   for (int i = 0; i < ago(0)[kind].size(); ++i) {
@@ -381,8 +393,12 @@ bool Screen::absurd(SignalKind kind, int index, Range& range) {
     anew_ = true;  // it was not there in truth
     return false;
   }
-  const bool far = range.extent.known() && range.extent.width() > 0.0 &&
-                   range.extent.beyond(value) > calibration::extent::kTooFar;
+  // Among values too far away one that only happens to be nearer is none of the process either.
+  const double limit = range.far > 0 ? calibration::extent::kHome
+                       : one_is_far_ ? calibration::extent::kTooFarAlone
+                                     : calibration::extent::kTooFar;
+  const bool far =
+      range.extent.known() && range.extent.width() > 0.0 && range.extent.beyond(value) > limit;
   range.far = far ? range.far + 1 : 0;
   if (!far) return false;
   if (range.far <= calibration::extent::kPatience) {

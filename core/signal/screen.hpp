@@ -93,9 +93,10 @@ class Screen {
   [[nodiscard]] bool compressed(int cv) const {
     return compression_[static_cast<std::size_t>(cv)].kind() != Compression::Kind::kNone;
   }
-  /// An input from which the CV is simulated and which is held until it has left a deadband: the
-  /// plant moved, and nobody wrote it down. -1: none. (Lines in an input may be ramps.)
-  [[nodiscard]] int compressed_input(int cv) const;
+  /// What the values of an input look like. (Lines in it may be ramps.)
+  [[nodiscard]] const Compression& input_compression(int input) const {
+    return input_compression_[static_cast<std::size_t>(input)];
+  }
   /// Whether too few values have come to know the usual range of the CV, or of what its residual is
   /// made from: its predictions or, where none come, the inputs that act on it.
   [[nodiscard]] bool learns(int cv) const;
@@ -132,6 +133,7 @@ class Screen {
     double scale = 0.0;  // of the differences
     double samples = 0.0;
     double home = 0.0;   // last level that left without a mark
+    double moved = 0.0;  // by which it differed from the one before it
     int since_home = 0;  // frames
     std::uint64_t spikes = 0;
     void archive(Archive& a);
@@ -169,6 +171,7 @@ class Screen {
   void mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCounters::*counter);
   void screen_spikes(int cv);
   void screen_pulses(SignalKind kind);
+  [[nodiscard]] int far_signals() const;
   void screen_far(SignalKind kind);
   [[nodiscard]] std::span<const SignalKind> screened() const;
   [[nodiscard]] bool absurd(SignalKind kind, int index, Range& range);
@@ -197,6 +200,7 @@ class Screen {
   int longest_out_ = 0;
   bool run_ended_ = false;
   bool anew_ = false;
+  bool one_is_far_ = false;                    // of the last frame
   std::vector<std::vector<Repeats>> repeats_;  // per kind
   std::vector<std::vector<Range>> ranges_;     // per kind
   std::vector<Jumps> jumps_;                   // per CV

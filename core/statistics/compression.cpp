@@ -62,7 +62,8 @@ void Compression::Batch::archive(Archive& a) {
 }
 
 void Compression::archive(Archive& a) {
-  a(batch_, sizes_, begun_, rests_, last_, last_change_, was_straight_, smallest_change_);
+  a(batch_, sizes_, begun_, rests_, last_, last_change_, was_straight_, smallest_change_,
+    held_for_);
   a.within(kind_, Kind::kNone, Kind::kInterpolated);
   a.require(
       std::all_of(sizes_.begin(), sizes_.end(), [](double each) { return std::isfinite(each); }),
@@ -72,6 +73,7 @@ void Compression::archive(Archive& a) {
 void Compression::judge() {
   kind_ = held() ? Kind::kHeld : interpolated() ? Kind::kInterpolated : Kind::kNone;
   smallest_change_ = *std::min_element(sizes_.begin(), sizes_.begin() + batch_.changes);
+  held_for_ = static_cast<double>(batch_.values) / batch_.changes;
   batch_ = {};
 }
 

@@ -26,6 +26,9 @@ class Compression {
   [[nodiscard]] Kind kind() const { return kind_; }
   /// Of that batch, signal units: kHeld: the deadband, or a little more.
   [[nodiscard]] double smallest_change() const { return smallest_change_; }
+  /// Of that batch: share of the values that are the one before, and values per change.
+  [[nodiscard]] double held_share() const { return 1.0 - 1.0 / held_for_; }
+  [[nodiscard]] double held_for() const { return held_for_; }
 
   /// Whether two changes in a row are one line.
   [[nodiscard]] static bool straight(double change, double last_change);
@@ -57,6 +60,7 @@ class Compression {
   bool was_straight_ = false;
   Kind kind_ = Kind::kNone;
   double smallest_change_ = 0.0;
+  double held_for_ = 1.0;
 };
 
 }  // namespace mpm

@@ -166,7 +166,10 @@ RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit
   for (const auto& [tag, bad] : file.bad_tags) file.bad_values += static_cast<std::int64_t>(bad);
   table.move_to(recording);
   file.jumps = leave_out_jumps(recording);
+  const Eigen::Index all = recording.samples();
+  recording = without_lost_inputs(std::move(recording));
   const Eigen::Index rows = recording.samples();
+  file.lost = all - rows;
   if (!recording.borders.empty()) recording = without_scraps(recording);
   file.scraps = rows - recording.samples();
   return file;

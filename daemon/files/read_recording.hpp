@@ -23,14 +23,15 @@ struct RecordingFile {
   JumpTally jumps;               ///< values left out because no process gives them
   std::int64_t long_gaps = 0;    ///< after each a new run begins
   std::int64_t longest_gap = 0;  ///< intervals that a run goes on across
+  std::int64_t lost = 0;         ///< rows left out, in which an input was lost (likewise)
   std::int64_t scraps = 0;       ///< rows of runs too short to tell anything; left out
 };
 
 /// Reads all frames that `choice` takes. What is bad, missing or implausible becomes NaN. A new run
 /// begins where frames were not taken, and after a gap in which a run would forget more of its past
-/// than it keeps (longest_gap()). Throws config::InputError, naming the file as `name`, where
-/// nothing is taken or the file spans more than memory should hold (a clock far off makes a gap of
-/// years).
+/// than it keeps (longest_gap()) or an input was lost (without_lost_inputs()). Throws
+/// config::InputError, naming the file as `name`, where nothing is taken or the file spans more
+/// than memory should hold (a clock far off makes a gap of years).
 [[nodiscard]] RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit,
                                            const std::string& name, const TimeChoice& choice = {});
 

@@ -6,6 +6,7 @@
 
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/identify/evidence/jumps.hpp"
+#include "core/identify/fit/runs.hpp"
 #include "daemon/files/folder_name.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/live/named_cause.hpp"
@@ -24,6 +25,7 @@ report::DiagnosisRun prepare(const DiagnosisJob& job) {
   if (std::string text = report::left_out_text(run.unit, leave_out_jumps(run.recording));
       !text.empty())
     run.notices.push_back(std::move(text));
+  run.recording = without_scraps(without_lost_inputs(std::move(run.recording)));
   run.program = idl::version_text("mpmd");
   run.command_line = "mpmd, because of the alarm of " + files::time_folder(job.alarm_time_ns);
   run.config_file = job.unit->unit + " as mpmd runs it";

@@ -333,6 +333,13 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
       (made ? diagnosis.refused : diagnosis.findings).push_back(std::move(late));
     }
   diagnosis.rejected = rejected_channels(base, tests, diagnosis);
+  if (!diagnosis.rejected.empty()) {  // by the monitor's own regression too, or by none
+    const std::vector<Place> by_monitor = rejected_channels(
+        base, ChannelTests(tested, measured, residuals, OwnPast::kSlowToo), diagnosis);
+    std::erase_if(diagnosis.rejected, [&](const Place& at) {
+      return std::find(by_monitor.begin(), by_monitor.end(), at) == by_monitor.end();
+    });
+  }
   const std::size_t doubted =
       std::erase_if(diagnosis.rejected, [&](const Place& at) { return compressed.cv(at.cv); });
   if (!diagnosis.rejected.empty() && std::find(in.begin(), in.end(), true) != in.end())

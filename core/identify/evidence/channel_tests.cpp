@@ -46,7 +46,7 @@ double harmless_p_value_of(const ChannelEvidence& evidence, double freedom) {
 }  // namespace
 
 ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
-                           const MatrixXd& residuals)
+                           const MatrixXd& residuals, OwnPast past)
     : cvs_(model.cv_count),
       p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)),
       harmless_(p_values_.size(), 1.0),
@@ -54,7 +54,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       masked_(p_values_.size(), 1.0),
       setpoints_(static_cast<std::size_t>(model.cv_count), RivalSignal{.loses = false}) {
   const RegressedRecording regressed =
-      regress_recording(model, recording, residuals, rows_to_follow(recording));
+      regress_recording(model, recording, residuals, rows_to_follow(recording), past);
   if (!regressed.detector) return;
   MismatchDetector& detector = *regressed.detector;
   for (int cv = 0; cv < model.cv_count; ++cv) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/identify/evidence/calibration.hpp"
+#include "core/identify/evidence/regress_recording.hpp"
 #include "core/identify/fit/recording.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
 #include "core/model/model_spec.hpp"
@@ -19,8 +20,8 @@ class ChannelTests {
  public:
   /// `model` in channels, with the recording's aux signals as inputs after its own. `residuals`:
   /// samples x CVs, measured minus free run, NaN where unknown.
-  ChannelTests(const ModelSpec& model, const Recording& recording,
-               const Eigen::MatrixXd& residuals);
+  ChannelTests(const ModelSpec& model, const Recording& recording, const Eigen::MatrixXd& residuals,
+               OwnPast past = OwnPast::kLags);
 
   /// 0..1 of the channel's match; nothing where the data do not suffice for a test or the input
   /// does not move, and of set-points, which are no inputs of it. Aux signals are numbered after

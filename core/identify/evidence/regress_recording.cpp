@@ -17,21 +17,21 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Without means of the CVs' own past: a loop that swings by itself, as with a sticking valve, is
-/// predicted by these as well as by its input.
-RegressionShape shape_of(const ModelSpec& model, const DerivedSettings& derived) {
-  return {model.input_count, model.cv_count, derived.fir_lags, derived.residual_order,
-          derived.tail_poles};
+RegressionShape shape_of(const ModelSpec& model, const DerivedSettings& derived, OwnPast past) {
+  RegressionShape shape{model.input_count, model.cv_count, derived.fir_lags, derived.residual_order,
+                        derived.tail_poles};
+  if (past == OwnPast::kSlowToo) shape.residual_poles = derived.residual_poles;
+  return shape;
 }
 
 /// The monitor's regression, with ever fewer lags until the rows suffice for it; nothing where they
 /// never do.
 std::optional<DerivedSettings> settings_for(const ModelSpec& model, const LinearModel& linear,
-                                            double rows) {
+                                            double rows, OwnPast past) {
   MonitorSettings monitor;
   for (;;) {
     DerivedSettings derived = derive_settings(model, linear, monitor, AlarmSettings{});
-    if (kTestRowsPerColumn * shape_of(model, derived).columns() <= rows) return derived;
+    if (kTestRowsPerColumn * shape_of(model, derived, past).columns() <= rows) return derived;
     if (derived.residual_order > kFewestResidualLags)
       monitor.residual_order = std::max(kFewestResidualLags, derived.residual_order / 2);
     else if (derived.fir_lags > kFewestLags)
@@ -53,16 +53,16 @@ double fewest_known(const MatrixXd& residuals) {
 }  // namespace
 
 RegressedRecording regress_recording(const ModelSpec& model, const Recording& recording,
-                                     const MatrixXd& residuals, Index remembered) {
+                                     const MatrixXd& residuals, Index remembered, OwnPast past) {
   const LinearModel linear(model);
   const std::optional<DerivedSettings> settings =
-      settings_for(model, linear, fewest_known(residuals));
+      settings_for(model, linear, fewest_known(residuals), past);
   if (!settings) return {};
   const int depth = remembered > 0 ? static_cast<int>(remembered) : settings->remembered;
   RegressedRecording result;
-  result.detector =
-      std::make_unique<MismatchDetector>(shape_of(model, *settings), std::vector{MemoryLength{}},
-                                         depth, settings->evaluation_stride, linear);
+  result.detector = std::make_unique<MismatchDetector>(shape_of(model, *settings, past),
+                                                       std::vector{MemoryLength{}}, depth,
+                                                       settings->evaluation_stride, linear);
   if (recording.setpoints.cols() > 0)
     result.setpoints = std::make_unique<OutsideSignals>(
         result.detector->shape(), static_cast<int>(recording.setpoints.cols()),

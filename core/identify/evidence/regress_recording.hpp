@@ -10,6 +10,13 @@
 
 namespace mpm {
 
+/// What of a CV's own past a regression knows.
+enum class OwnPast {
+  kLags,     ///< a loop that swings by itself, as with a sticking valve, is predicted as well by
+             ///< slow means of its past as by its input
+  kSlowToo,  ///< the monitor's: noise that wanders is predicted from far back
+};
+
 /// The monitor's regression of a recording, and the recording's set-points beside it.
 struct RegressedRecording {
   std::unique_ptr<MismatchDetector> detector;  ///< null where there are too few rows
@@ -23,6 +30,7 @@ struct RegressedRecording {
 [[nodiscard]] RegressedRecording regress_recording(const ModelSpec& model,
                                                    const Recording& recording,
                                                    const Eigen::MatrixXd& residuals,
-                                                   Eigen::Index remembered = 0);
+                                                   Eigen::Index remembered = 0,
+                                                   OwnPast past = OwnPast::kLags);
 
 }  // namespace mpm

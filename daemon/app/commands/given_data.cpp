@@ -61,6 +61,8 @@ Recording read(const std::string& file, const config::UnitConfig& unit,
   count(data.long_gaps, "gap",
         " of more than " + std::to_string(data.longest_gap) +
             " intervals; a new run begins after each");
+  count(data.lost, "row",
+        " left out, for an input was missing for more than 20 intervals; a new run begins after");
   count(data.scraps, "row", " left out, of runs too short to tell anything");
   count(data.out_of_order, "row", " left out, for the time does not grow");
   count(data.bad_values, "value",

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/statistics/compression.hpp"
 #include "tests/core/counter_noise.hpp"
 #include "tests/core/monitor/experiment.hpp"
 
@@ -105,6 +106,27 @@ TEST_CASE("a CV that is simulated from a compressed input has no verdict") {
       CHECK((channel.reason == Reason::kCompressed) == !experiment.predictions);
       if (!experiment.predictions) CHECK(channel.confounder == 1);
     }
+}
+
+TEST_CASE("an input that is held within what no CV shows is no reason for silence") {
+  // A controller that moves its MV at most samples, and by no less than a step.
+  Experiment experiment;
+  experiment.predictions = false;
+  Monitor monitor = experiment.monitor();
+  Compression looks;
+  double held = 0.0;
+  experiment.run(4000, [&](Frame frame) {
+    double& value = frame[SignalKind::kMv].values(1);
+    const double moved = value + 0.2 * test::uniform(900, frame.interval);
+    if (std::abs(moved - held) > 0.05) held = moved;
+    value = held;
+    looks.take(value);
+    monitor.push(frame);
+    CHECK(monitor.transitions().empty());
+  });
+  CHECK(looks.kind() == Compression::Kind::kHeld);  // as a historian would leave it
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) CHECK(monitor.channel(j, i).verdict == Verdict::kMatch);
 }
 
 TEST_CASE("implausible values are a part of the bad ones at every moment") {

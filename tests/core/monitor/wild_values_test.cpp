@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/monitor/monitor.hpp"
@@ -131,6 +132,32 @@ TEST_CASE("a burst of up to ten values of any size, at any time, in any signal l
     CHECK(injured.verdicts == twin->second.verdicts);
     if (injury.from >= 60) CHECK(injured.bad_values > 0);  // earlier, all may begin anew
   }
+}
+
+TEST_CASE("a signal that is in another unit for an hour leaves no trace", "[trials]") {
+  for (const double gain_ratio : {1.0, 0.75})
+    for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv, SignalKind::kPrediction}) {
+      CAPTURE(gain_ratio, static_cast<int>(kind));
+      test::OpenLoopUnit unit;
+      unit.gain_ratio = gain_ratio;
+      const auto seen = [&](double factor) {
+        Monitor monitor(unit.model, unit.counts, {true, true}, {}, {});
+        std::string result;
+        unit.run(1560 + kMemory, [&](Frame frame) {
+          // Where it stands is 10 and 50, how far it goes 2 and 10: three and a half thousand
+          // times.
+          if (frame.interval >= 1500 && frame.interval < 1560) frame[kind].values(0) *= factor;
+          monitor.push(frame);
+          for (const AlarmTransition& moved : monitor.transitions())
+            result += std::to_string(moved.cv) + std::to_string(moved.input) + ' ';
+        });
+        for (int cv = 0; cv < 2; ++cv)
+          for (int input = 0; input < 2; ++input)
+            result += std::to_string(static_cast<int>(monitor.channel(cv, input).verdict));
+        return std::pair(result, monitor.counters().bad_values);
+      };
+      CHECK(seen(1000.0) == std::pair(seen(1.0).first, std::uint64_t{60}));
+    }
 }
 
 // The input has stood still for 40 samples.

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "tests/core/identify/small_plant.hpp"
 
@@ -22,6 +23,28 @@ TEST_CASE("a run goes on across a gap of the slowest time constant, or of 20 int
   const ModelSpec slow =
       test::model_of({test::lag(0, 0, 1.0, 5.0), test::lag(1, 0, 1.0, 90.0)}, 1, 2);
   CHECK(std::abs(longest_gap(slow) - 90) <= 1);
+}
+
+TEST_CASE("rows in which an input was lost are left out, and a new run begins after them") {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  MatrixXd inputs = MatrixXd::Ones(200, 2), cvs = MatrixXd::Zero(200, 1);
+  inputs.col(0).segment(30, 20).setConstant(unknown);   // not longer than it may be held
+  inputs.col(1).segment(70, 21).setConstant(unknown);   // too long
+  inputs.col(0).segment(120, 40).setConstant(unknown);  // a gap in all signals, and 20 rows more
+  cvs.col(0).segment(120, 20).setConstant(unknown);
+  Recording recording = test::recording_of(inputs, cvs);
+  const Recording kept = without_lost_inputs(recording);
+  CHECK(kept.samples() == 179);
+  REQUIRE(kept.borders.size() == 1);
+  CHECK(kept.borders[0].row == 70);
+  CHECK(on_clock(kept, recording.start_s + 70.0 * recording.sample_time_s) ==
+        recording.start_s + 91.0 * recording.sample_time_s);
+
+  // Read once in thirty samples it is not lost, and never known it is for others to refuse.
+  inputs.setConstant(unknown);
+  for (Index k = 0; k < 200; k += 30) inputs(k, 0) = 1.0;
+  recording = test::recording_of(inputs, cvs);
+  CHECK(without_lost_inputs(recording).samples() == 200);
 }
 
 TEST_CASE("runs too short to tell anything are left out, where there are others") {
