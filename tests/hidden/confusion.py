@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""What two programs say first of the same nonlinear plants: confusion.py BUILD --before MPM
-[--seeds FIRST-LAST] [--markdown FILE]. mpm_hidden writes the cases with its hard setting, mpmsim those
-of a gain that goes with where the channel stands; then `mpm diagnose` of MPM and of BUILD is asked.
+"""What `mpm diagnose` says first of nonlinear plants, beside what another program says of the same
+ones where one is given: confusion.py BUILD [--before MPM] [--seeds FIRST-LAST] [--markdown FILE]. mpm_hidden writes the cases with its hard setting, mpmsim those
+of a gain that goes with where the channel stands.
 Standard library only. Seeds below 1000 are for scores, from 100001 on for tuning."""
 import argparse
 import concurrent.futures
@@ -85,23 +85,27 @@ def right(truth, said):
 
 
 def table(cases, answers):
-    """A row per true cause; cells: before / now, in cases."""
+    """A row per true cause; cells in cases, of several programs with a slash between."""
     rows = {}
     for case, truth in cases:
         effect = truth["effects"][0] if truth["effects"] else {"cause": "none", "kind": ""}
-        name = label(effect["cause"], effect["kind"])
-        rows.setdefault(name, []).append((case, truth))
-    order = [said for said in rows if any(a["said"] == said for pair in answers.values() for a in pair)]
-    order += sorted({a["said"] for pair in answers.values() for a in pair} - set(order))
-    lines = ["| truly | cases | right, with its signals | " + " | ".join(order) + " |",
+        rows.setdefault(label(effect["cause"], effect["kind"]), []).append((case, truth))
+    said = {answer["said"] for of_case in answers.values() for answer in of_case}
+    order = [name for name in rows if name in said]
+    order += sorted(said - set(order))
+    lines = ["| truly | cases | right, and its signals | " + " | ".join(order) + " |",
              "|---|---|---|" + "---|" * len(order)]
+    programs = range(len(next(iter(answers.values()))))
     for name, members in rows.items():
-        def cell(count):
-            pair = [sum(count(truth, answers[case][i]) for case, truth in members) for i in (0, 1)]
-            return f"{pair[0]} / {pair[1]}" if any(pair) else ""
-        cells = [cell(lambda _, answer, said=said: answer["said"] == said) for said in order]
-        lines.append(f"| {name} | {len(members)} | {cell(right) or '0 / 0'} | " +
-                     " | ".join(cells) + " |")
+        def counts(is_so):
+            return [sum(is_so(truth, answers[case][i]) for case, truth in members)
+                    for i in programs]
+
+        def cell(column):
+            numbers = counts(lambda _, answer: answer["said"] == column)
+            return " / ".join(map(str, numbers)) if any(numbers) else ""
+        lines.append(f"| {name} | {len(members)} | {' / '.join(map(str, counts(right)))} | " +
+                     " | ".join(map(cell, order)) + " |")
     return lines
 
 
@@ -109,13 +113,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path, help="folder of a Release build")
-    parser.add_argument("--before", type=pathlib.Path, required=True, help="the other program mpm")
+    parser.add_argument("--before", type=pathlib.Path, help="another program mpm, told first")
     parser.add_argument("--seeds", default="801-810")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--markdown", type=pathlib.Path, help="write the table into this file")
     options = parser.parse_args()
     first, last = (int(seed) for seed in options.seeds.split("-"))
-    programs = [options.before, options.build / "bin/mpm"]
+    programs = [*filter(None, [options.before]), options.build / "bin/mpm"]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         write_cases(options.build, first, last, folder)
@@ -123,11 +127,11 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
             said = list(pool.map(lambda job: first_said(*job),
                                  [(mpm, folder / case) for case, _ in cases for mpm in programs]))
-    answers = {case: (said[2 * i], said[2 * i + 1]) for i, (case, _) in enumerate(cases)}
+    count = len(programs)
+    answers = {case: said[count * i:count * (i + 1)] for i, (case, _) in enumerate(cases)}
     for case, truth in cases:
-        was, now = answers[case]
-        print(f"{case}: {'right' if right(truth, now) else 'WRONG'}: before {was['said']}, now "
-              f"{now['said']}")
+        print(f"{case}: {'right' if right(truth, answers[case][-1]) else 'WRONG'}: " +
+              ", now ".join(answer["said"] for answer in answers[case]))
     lines = table(cases, answers)
     print("\n".join(lines))
     if options.markdown:
