@@ -5,6 +5,7 @@
 #include <map>
 #include <system_error>
 
+#include "config/choice.hpp"
 #include "config/default_movement.hpp"
 #include "config/failure_text.hpp"
 #include "config/load_sections.hpp"
@@ -30,6 +31,17 @@ void load_name(const Map& root, UnitConfig& config) {
 
 constexpr double kMostBytes = 16e9;
 
+/// What the usual nonlinear test would take, where it would keep up and another one is chosen.
+std::string faster_test(const UnitConfig& config) {
+  MonitorSettings usual = config.monitor;
+  usual.nonlinear = MonitorSettings{}.nonlinear;
+  const double seconds = monitor_cost(config.model, usual).seconds;
+  if (config.monitor.nonlinear == NonlinearTest::kOff || seconds > config.sample_time_s) return "";
+  return "; with `nonlinear: " + name_of(usual.nonlinear) + "` about " + number_text(seconds) +
+         " s, and `mpm detect --nonlinear " + name_of(config.monitor.nonlinear) +
+         "` asks what is recorded";
+}
+
 /// A unit that no machine has room for is refused where its size comes from; one that is too slow
 /// to keep up is told.
 void check_cost(const Map& root, const UnitConfig& config) {
@@ -45,7 +57,8 @@ void check_cost(const Map& root, const UnitConfig& config) {
                  " GB of memory (" + size + "); split the unit, or shorten its memory");
   else if (cost.seconds > config.sample_time_s)
     cause->warning("the monitor of this unit would take about " + number_text(cost.seconds) +
-                   " s of every " + number_text(config.sample_time_s) + " s sample (" + size + ")");
+                   " s of every " + number_text(config.sample_time_s) + " s sample (" + size + ")" +
+                   faster_test(config));
 }
 
 void load_root(const Value& document, ModelNeed need, Report& report, UnitConfig& config) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/signature.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/calibration.hpp"
@@ -18,7 +19,7 @@ using calibration::cost::kPerInverted;
 using calibration::cost::kPerRotated;
 
 constexpr double kNumber = sizeof(double);
-constexpr double kTwice = 2.0;        // a lag window holds each value twice
+constexpr double kTwice = 2.0;        // a lag window holds each value so often
 constexpr double kPerCv = 1.0 + 2.0;  // residual, weight and scale
 
 }  // namespace
@@ -55,8 +56,13 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   const double beside =
       terms > 0.0 ? cost.columns + LinearCompanions(shape, 1).columns() + terms : 0.0;
   const double nonlinear = cvs * beside * beside;
+  // Before and after each moment of a change, with and without the inputs (`ChangeScan`).
+  const double led = 1.0 + cvs * derived.residual_order +
+                     static_cast<double>(derived.residual_poles.size()) +
+                     static_cast<double>(calibration::simulation::kStartPoles.size());
+  const double scan = kTwice * kTwice * calibration::change_scan::kMoments * led * (led + 1.0);
   cost.bytes = kNumber * (history + factors + nonlinear + 2.0 * cvs * terms * terms +
-                          2.0 * evaluation + tree + shapes);
+                          2.0 * evaluation + tree + shapes + scan);
   cost.seconds = kPerRotated * (factors + nonlinear + tree) +
                  kPerInverted * cvs *
                      (memories * std::pow(inputs * block, 3) + std::pow(terms, 3)) /

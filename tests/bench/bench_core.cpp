@@ -1,8 +1,5 @@
 // Times one case at a time, on request, so that the caller can take turns with the peers: reads
-// lines "case seconds" and answers each with the median microseconds per call; "memory_CASE 0" with
-// the kilobytes that what the case works on takes.
-#include <malloc.h>
-
+// lines "case seconds" and answers each with the median microseconds per call.
 #include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
@@ -20,7 +17,6 @@
 #include "core/mismatch/lagged_correlation.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
 #include "core/monitor/monitor.hpp"
-#include "core/nonlinear/rank_window.hpp"
 #include "core/regression/givens_qr.hpp"
 #include "sim/loop/closed_loop.hpp"
 
@@ -195,54 +191,6 @@ struct Monitored : Shell {
   Monitor monitor;
 };
 
-/// A unit under random moves, with this nonlinear test beside the linear one.
-struct Tested {
-  Tested(const Size& size, NonlinearTest test)
-      : counts{size.mvs, 0, size.cvs},
-        plant(first_order_model(size)),
-        inputs(size.mvs, 1),
-        noise(size.cvs, 2),
-        monitor(first_order_model(size), counts,
-                std::vector<bool>(static_cast<std::size_t>(size.cvs), false), with(test), {}) {
-    for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv}) {
-      frame[kind].resize(counts.of(kind));
-      std::fill(frame[kind].quality.begin(), frame[kind].quality.end(), Quality::kGood);
-    }
-    for (int k = 0; k < kFrames; ++k) step();
-  }
-  static MonitorSettings with(NonlinearTest test) {
-    MonitorSettings settings;
-    settings.nonlinear = test;
-    return settings;
-  }
-  void step() {
-    frame[SignalKind::kMv].values = inputs.next();
-    frame[SignalKind::kCv].values = plant.output() + noise.next();
-    monitor.push(frame);
-    plant.advance(frame[SignalKind::kMv].values);
-    ++frame.interval;
-    frame.source_time_ns += 1'000'000'000;
-  }
-
-  SignalCounts counts;
-  LinearModel plant;
-  Signals inputs, noise;
-  Monitor monitor;
-  Frame frame;
-};
-
-/// Ranks of all inputs and of all CVs at five lags, over 1000 samples.
-struct Ranked {
-  explicit Ranked(const Size& size)
-      : signals(size.mvs + 5 * size.cvs, 1), window(size.mvs + 5 * size.cvs, 1000) {
-    for (int k = 0; k < kPool; ++k) step();
-  }
-  void step() { window.push(signals.next()); }
-
-  Signals signals;
-  RankWindow window;
-};
-
 /// A step that owns what it works on.
 template <class T, class... Arguments>
 std::shared_ptr<T> make(Arguments... arguments) {
@@ -280,13 +228,6 @@ Step monitor_push() {
   return [monitored = make<Monitored>()] { monitored->step(); };
 }
 
-Step tested(const Size& size, NonlinearTest test) {
-  return [unit = make<Tested>(size, test)] { unit->step(); };
-}
-Step ranked(const Size& size) {
-  return [ranks = make<Ranked>(size)] { ranks->step(); };
-}
-
 const std::map<std::string, std::function<Step()>>& cases() {
   static const std::map<std::string, std::function<Step()>> all{
       {"lagged_step_3x3", [] { return lagged_step(kSmall); }},
@@ -304,33 +245,16 @@ const std::map<std::string, std::function<Step()>>& cases() {
       {"mpc_step_free", [] { return mpc_step(1.0); }},
       {"mpc_step_limited", [] { return mpc_step(0.02); }},
       {"monitor_push_3x3", [] { return monitor_push(); }},
-      {"ranks_3x3", [] { return ranked(kSmall); }},
-      {"ranks_10x20", [] { return ranked(kLarge); }},
-      {"monitor_off_3x3", [] { return tested(kSmall, NonlinearTest::kOff); }},
-      {"monitor_polynomial_3x3", [] { return tested(kSmall, NonlinearTest::kPolynomial); }},
-      {"monitor_kernel_3x3", [] { return tested(kSmall, NonlinearTest::kKernel); }},
-      {"monitor_random_3x3", [] { return tested(kSmall, NonlinearTest::kRandomFeatures); }},
-      {"monitor_off_10x20", [] { return tested(kLarge, NonlinearTest::kOff); }},
-      {"monitor_polynomial_10x20", [] { return tested(kLarge, NonlinearTest::kPolynomial); }},
-      {"monitor_kernel_10x20", [] { return tested(kLarge, NonlinearTest::kKernel); }},
-      {"monitor_random_10x20", [] { return tested(kLarge, NonlinearTest::kRandomFeatures); }},
   };
   return all;
 }
 
 int serve() {
-  struct Made {
-    Step step;
-    double kilobytes;
-  };
-  std::map<std::string, Made> made;
+  std::map<std::string, Step> made;
   std::string name;
   double seconds = 0.0;
   std::cout << MPM_COMPILER << std::endl;
   while (std::cin >> name >> seconds) {
-    const std::string memory = "memory_";
-    const bool asks_memory = name.rfind(memory, 0) == 0;
-    if (asks_memory) name.erase(0, memory.size());
     auto step = made.find(name);
     if (step == made.end()) {
       const auto found = cases().find(name);
@@ -338,18 +262,11 @@ int serve() {
         std::cerr << "bench_core: no case " << name << '\n';
         return 3;
       }
-      const std::size_t before = mallinfo2().uordblks;
-      Step fresh = found->second();
-      const double kilobytes = static_cast<double>(mallinfo2().uordblks - before) / 1024.0;
-      step = made.emplace(name, Made{std::move(fresh), kilobytes}).first;
-    }
-    if (asks_memory) {
-      std::cout << step->second.kilobytes << std::endl;
-      continue;
+      step = made.emplace(name, found->second()).first;
     }
     // Where rows wait for each other most steps do next to nothing.
     const bool waits = name.find("update") != std::string::npos || name.rfind("monitor_", 0) == 0;
-    std::cout << measure(step->second.step, seconds, waits ? 64 : 1) << std::endl;
+    std::cout << measure(step->second, seconds, waits ? 64 : 1) << std::endl;
   }
   return 0;
 }

@@ -62,9 +62,9 @@ class Ours:
 def median_us(work):
     times = []
     for _ in range(ROUNDS):
-        begin = time.perf_counter()
+        begin = time.process_time()
         work()
-        times.append(time.perf_counter() - begin)
+        times.append(time.process_time() - begin)
     return statistics.median(times) * 1e6
 
 
@@ -87,32 +87,35 @@ def peer(maker, x):
     return made.transform(x), median_us(lambda: made.transform(x)) / len(x)
 
 
-def accuracy(program, folder, dimension):
+def kernel_of(x, width):
+    return np.exp(-0.5 / width**2 * ((x[:, None, :] - x[None, :, :]) ** 2).sum(axis=2))
+
+
+def accuracy(program, folder, dimension, sizes):
+    """A map is held against the kernel of its own width: the median rule's of its landmarks."""
     x, y = points_of(dimension)
     ours = Ours(program, x, y, folder)
     (width, _, _), gram = ours("gram")
     gamma = 0.5 / width**2
-    exact = np.exp(-gamma * ((x[:, None, :] - x[None, :, :]) ** 2).sum(axis=2))
-    if np.abs(gram - exact).max() > 1e-12:
+    if np.abs(gram - kernel_of(x, width)).max() > 1e-12:
         sys.exit("the kernel matrix is not numpy's")
     rows = []
-    for size in SIZES:
+    for size in sizes:
         cells = []
 
         def add(us, features):
             cells.append((error_of(x, gram, features), us))
 
-        if size > dimension + 1:
-            (us, _), features = ours("nystrom", size, size - dimension - 1)
-            add(us, features)
-        else:
-            cells.append(None)
+        def add_nystrom(landmarks, components):
+            if components < 1 or components > landmarks - dimension - 1:
+                cells.append(None)
+                return
+            (own, us, _), features = ours("nystrom", landmarks, components)
+            cells.append((error_of(x, kernel_of(x, own), features), us))
+
+        add_nystrom(size, size - dimension - 1)
         add(*reversed(peer(Nystroem(gamma=gamma, n_components=size, random_state=SEED), x)))
-        if size <= LANDMARKS - dimension - 1:
-            (us, _), features = ours("nystrom", LANDMARKS, size)
-            add(us, features)
-        else:
-            cells.append(None)
+        add_nystrom(LANDMARKS, size)
         pca = KernelPCA(n_components=size, kernel="rbf", gamma=gamma)
         add(*reversed(peer(pca, x)))
         (us, _), features = ours("random", size // 2)
@@ -128,8 +131,7 @@ def exact_fit(program, folder, dimension):
     ours = Ours(program, x, y, folder)
     (ridge, us, _), fitted = ours("exact")
     (width, _, _), _ = ours("gram")
-    gamma = 0.5 / width**2
-    gram = np.exp(-gamma * ((x[:, None, :] - x[None, :, :]) ** 2).sum(axis=2))
+    gram = kernel_of(x, width)
     centred = gram - gram.mean(axis=0) - gram.mean(axis=1)[:, None] + gram.mean()
 
     def fit():
@@ -142,43 +144,26 @@ def exact_fit(program, folder, dimension):
     return dimension, us / 1e3, median_us(fit) / 1e3, difference
 
 
-UNITS = {"3x3": 0.3, "10x20": 1.0}  # seconds a measurement
-VARIANTS = (("linear test alone", "off"), ("polynomial", "polynomial"), ("kernel", "kernel"),
-            ("random features", "random"))
+UNITS = {"3x3": (3, 3, 0.3), "10x20": (10, 20, 1.0)}  # MVs, CVs, seconds a measurement
+METHODS = {  # of bench_methods
+    "correlation": "correlation", "lagged_partial": "(3.15)",
+    "spearman": "Spearman", "rank_partial": "rank partial",
+    "linear": "linear F test", "polynomial": "linear and polynomial",
+    "kernel": "linear and kernel", "random_features": "linear and random features"}
 
 
-def costs(build, sizes):
-    """Per unit size: microseconds a sample that each variant adds, and the kilobytes of all."""
-    process = subprocess.Popen([build / "bin/bench_core"], stdin=subprocess.PIPE,
-                               stdout=subprocess.PIPE, text=True)
-    process.stdout.readline()
-
-    def ask(line):
-        process.stdin.write(line + "\n")
-        process.stdin.flush()
-        answer = process.stdout.readline()
-        if not answer:
-            sys.exit(f"bench_core ended at {line}")
-        return float(answer)
-
+def costs(build, units):
+    """Of each unit and method what bench_methods measures, as a list of dictionaries."""
     rows = []
-    for size, seconds in sizes.items():
-        taken = {name: [] for _, name in VARIANTS}
-        for _ in range(ROUNDS if size == "3x3" else 1):
-            for _, name in VARIANTS:
-                taken[name].append(ask(f"monitor_{name}_{size} {seconds}"))
-        base = statistics.median(taken["off"])
-        base_kb = ask(f"memory_monitor_off_{size} 0")
-        for title, name in VARIANTS:
-            us = statistics.median(taken[name]) if name == "off" else statistics.median(
-                a - b for a, b in zip(taken[name], taken["off"]))
-            kilobytes = ask(f"memory_monitor_{name}_{size} 0") - (0 if name == "off" else base_kb)
-            rows.append((size, title, us, base, kilobytes))
-        ranks = statistics.median(ask(f"ranks_{size} 0.1") for _ in range(ROUNDS))
-        rows.append((size, "ranks (Spearman, rank partial), window of 1000", ranks, base,
-                     ask(f"memory_ranks_{size} 0")))
-    process.stdin.close()
-    process.wait(timeout=10)
+    for unit in units:
+        mvs, cvs, seconds = UNITS[unit]
+        text = subprocess.run([build / "bin/bench_methods", str(mvs), str(cvs), str(seconds),
+                               str(ROUNDS)], check=True, stdout=subprocess.PIPE, text=True,
+                              timeout=3600).stdout
+        for line in text.splitlines():
+            name, sample, read, kilobytes = line.split()
+            rows.append({"unit": unit, "method": METHODS[name], "us": float(sample),
+                         "read_us": float(read), "kB": float(kilobytes)})
     return rows
 
 
@@ -186,22 +171,31 @@ def number(value):
     return f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
 
 
-def tables(build, sizes):
-    """Two tables of Markdown."""
-    lines = ["| unit | test | adds, us a sample | adds, kB |", "|---|---|---|---|"]
-    for size, title, us, _, kilobytes in costs(build, sizes):
-        note = " (all)" if title == "linear test alone" else ""
-        lines.append(f"| {size} | {title} | {number(us)}{note} | {number(kilobytes)}{note} |")
-    cost = "\n".join(lines)
+def cost_table(rows):
+    """A row a method, and of each unit three columns."""
+    units = list(dict.fromkeys(row["unit"] for row in rows))
+    lines = ["| method | " + " | ".join(f"{unit}: us a sample | us to read off | MB"
+                                        for unit in units) + " |",
+             "|---|" + "---|---|---|" * len(units)]
+    for method in METHODS.values():
+        cells = []
+        for row in (row for row in rows if row["method"] == method):
+            cells += [number(row["us"]), number(row["read_us"]) if row["read_us"] else "-",
+                      number(row["kB"] / 1024)]
+        lines.append(f"| {method} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
 
+
+def kernel_tables(build, dimensions=DIMENSIONS, sizes=SIZES):
+    """Two tables of Markdown, a line between them."""
     program = build / "bin/bench_kernel"
     lines = ["| inputs | columns | Nystrom | scikit-learn | components of 48 landmarks | "
              "scikit-learn's of all points | random features | scikit-learn |",
              "|---|---|---|---|---|---|---|---|"]
     fits = []
     with tempfile.TemporaryDirectory() as folder:
-        for dimension in DIMENSIONS:
-            for _, size, cells in accuracy(program, folder, dimension):
+        for dimension in dimensions:
+            for _, size, cells in accuracy(program, folder, dimension, sizes):
                 text = " | ".join("-" if cell is None else f"{number(100 * cell[0])} %; "
                                   f"{number(cell[1])}" for cell in cells)
                 lines.append(f"| {dimension} | {size} | {text} |")
@@ -212,19 +206,20 @@ def tables(build, sizes):
               "|---|---|---|---|"]
     lines += [f"| {dimension} | {number(ours)} | {number(other)} | {difference:.1g} |"
               for dimension, ours, other, difference in fits]
-    return cost, "\n".join(lines)
+    return "\n".join(lines)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=Path, help="folder of a Release build with MPM_BENCH=ON")
-    parser.add_argument("--markdown", type=Path, help="write the table of kernels into this file")
+    parser.add_argument("--markdown", type=Path, help="write the tables into this file")
     parser.add_argument("--units", nargs="+", choices=UNITS, default=list(UNITS),
-                        help="3x3 takes a minute, 10x20 ten")
+                        help="of the costs")
     options = parser.parse_args()
-    cost, kernels = tables(options.build, {unit: UNITS[unit] for unit in options.units})
+    cost, kernels = cost_table(costs(options.build, options.units)), kernel_tables(options.build)
     if options.markdown:
         text = options.markdown.read_text(encoding="utf-8")
+        text = replace_part(text, "costs", [cost])
         options.markdown.write_text(replace_part(text, "kernels", [kernels]), encoding="utf-8")
     print(cost, kernels, sep="\n\n")
 

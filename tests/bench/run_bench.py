@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Speed of the monitor beside its peers, in turns on the same machine: run_bench.py BUILD_DIR
-[--json FILE]. Needs numpy; bounded to about four minutes."""
+[--json FILE]. Needs numpy and scikit-learn; bounded to about five minutes."""
 
 import argparse
 import itertools
@@ -16,6 +16,7 @@ from pathlib import Path
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before numpy
 import numpy  # noqa: E402
 
+import kernels  # noqa: E402
 import peers  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -341,8 +342,12 @@ def main():
         "latency": latency_figures(options.build, push_us),
         "recording": recording_figures(options.build) + file_figures(options.build),
         "diagnosis": diagnosis_figures(options.build),
+        "methods": kernels.costs(options.build, ["3x3"]),
     }
     print_table(result)
+    print("\nmethods of docs/nonlinear.md\n", kernels.cost_table(result["methods"]), "",
+          "share of a kernel that is missed; microseconds a point",
+          kernels.kernel_tables(options.build, dimensions=(1, 2), sizes=(4, 16, 64)), sep="\n")
     if options.json:
         options.json.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
 

@@ -51,6 +51,47 @@ TEST_CASE("a unit that takes longer than its samples is told") {
   CHECK(told[0].severity == Severity::kWarning);
 }
 
+// bench_methods counts 6.9 MB of heap for the monitor of three by three of Shell's channels, 8.7
+// with the kernel; two fifths are what is kept of each moment that a change may have been at.
+TEST_CASE("what the monitor takes is told with all that it keeps") {
+  const LoadResult loaded = load_unit(MPM_SOURCE_DIR "/config/plants/shell3x3.yaml");
+  MonitorSettings settings = loaded.config.monitor;
+  settings.nonlinear = NonlinearTest::kOff;
+  const double linear = monitor_cost(loaded.config.model, settings).bytes;
+  CHECK(linear > 5e6);
+  CHECK(linear < 10e6);
+  settings.nonlinear = NonlinearTest::kKernel;
+  const double kernel = monitor_cost(loaded.config.model, settings).bytes;
+  CHECK(kernel - linear > 1.2e6);
+  CHECK(kernel - linear < 2.7e6);
+}
+
+// Of the same number of samples' time constants, so that what a sample takes stays the same.
+TEST_CASE("a unit for which the kernel is too slow is told what would keep up") {
+  const auto text_of = [](double sample_time) {
+    std::string text = unit(10, 20, "time_constants: [" + std::to_string(10.0 * sample_time) + "]",
+                            "monitor: {nonlinear: kernel}\n");
+    const std::string slow = "sample_time: 1";
+    return text.replace(text.find(slow), slow.size(),
+                        "sample_time: " + std::to_string(sample_time));
+  };
+  const LoadResult loaded = load_unit_text(text_of(1.0), "unit.yaml");
+  MonitorSettings settings = loaded.config.monitor;
+  REQUIRE(settings.nonlinear == NonlinearTest::kKernel);
+  const double kernel = monitor_cost(loaded.config.model, settings).seconds;
+  settings.nonlinear = NonlinearTest::kPolynomial;
+  const double polynomial = monitor_cost(loaded.config.model, settings).seconds;
+  REQUIRE(polynomial < 0.8 * kernel);
+  CHECK(of_cost(text_of(1.1 * kernel)).empty());
+  const std::vector<Finding> told = of_cost(text_of(0.9 * kernel));
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].severity == Severity::kWarning);
+  CHECK(told[0].message.find("; with `nonlinear: polynomial` about ") != std::string::npos);
+  const std::vector<Finding> neither = of_cost(text_of(0.5 * polynomial));
+  REQUIRE(neither.size() == 1);
+  CHECK(neither[0].message.find("polynomial") == std::string::npos);
+}
+
 // Its pole rounds to 1. A run of mpm detect took 198 MB; estimates are good to a factor of two.
 TEST_CASE("what a channel costs that takes for ever is a number") {
   LoadResult loaded = load_unit_text(unit(1, 1, "time_constants: [1e30]"), "slow.yaml");

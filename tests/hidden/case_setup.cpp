@@ -42,8 +42,12 @@ std::vector<double> sorted(const Eigen::VectorXd& values) {
 
 }  // namespace
 
+std::string plant_path(const std::string& plant) {
+  return std::string(MPM_SOURCE_DIR) + "/config/plants/" + plant + ".yaml";
+}
+
 config::UnitConfig load_plant(const std::string& plant) {
-  const std::string path = std::string(MPM_SOURCE_DIR) + "/config/plants/" + plant + ".yaml";
+  const std::string path = plant_path(plant);
   config::LoadResult loaded = config::load_unit(path);
   if (!loaded.ok()) throw std::runtime_error("cannot read " + path);
   config::SimulationSettings& simulation = loaded.config.simulation;

@@ -13,6 +13,7 @@
 /// What a case starts from, before anything is hidden.
 namespace mpm::hidden {
 
+[[nodiscard]] std::string plant_path(const std::string& plant);
 /// A file of config/plants. Throws std::runtime_error where it cannot be read.
 [[nodiscard]] config::UnitConfig load_plant(const std::string& plant);
 

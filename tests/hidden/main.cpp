@@ -17,6 +17,7 @@
 
 #include "tests/hidden/report.hpp"
 #include "tests/hidden/score_all.hpp"
+#include "tests/hidden/write_case.hpp"
 #include "tests/study/report.hpp"
 
 namespace mpm::hidden {
@@ -24,7 +25,8 @@ namespace {
 
 struct Options {
   std::vector<std::string> classes = {"all"};
-  std::string seeds = "100001-100005", size = "full", setting = "plain", plant = "shell", markdown;
+  std::string seeds = "100001-100005", size = "full", setting = "plain", plant = "shell", markdown,
+              folder;
   int samples = 3000;
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool verbose = false;
@@ -53,6 +55,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--markdown", options.markdown,
                  "write the tables to FILE; where it exists, between the lines "
                  "<!-- study:begin hidden_SETTING_SIZE --> and <!-- study:end ... -->");
+  app.add_option(
+      "--write", options.folder,
+      "write each case into this folder, as data, unit file and truth; diagnose nothing");
   app.add_flag("--verbose", options.verbose, "print every case, not only the wrong ones");
   app.add_flag("--truth-only", options.truth_only, "print what would be hidden; diagnose nothing");
 }
@@ -124,6 +129,10 @@ int run(const Options& options) {
     for (const CaseRequest& request : requests)
       std::cout << name_of(request.effect_class) << ' ' << request.plant << " seed " << request.seed
                 << ": " << describe(draw_case(request)) << '\n';
+    return 0;
+  }
+  if (!options.folder.empty()) {
+    for (const CaseRequest& request : requests) write_case(draw_case(request), options.folder);
     return 0;
   }
   const std::vector<CaseScore> scores = score_all(requests, options.jobs);

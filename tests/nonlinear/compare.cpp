@@ -252,6 +252,22 @@ std::string cell(const Case& one, const std::vector<Comparison>& runs, std::size
          "; " + others;
 }
 
+Blame blame_of(const Case& one, const std::vector<Comparison>& runs, const Thresholds& thresholds) {
+  const std::size_t last = kAsked.size() - 1;
+  Blame blame{one, 0, {}};
+  for (const Comparison& run : runs) {
+    if (run.diverged) continue;
+    ++blame.runs;
+    for (std::size_t m = 0; m < kMethodCount; ++m) {
+      const std::vector<double>& says = run.says[m][last];
+      blame.blamed[m].resize(says.size());
+      for (std::size_t c = 0; c < says.size(); ++c)
+        blame.blamed[m][c] += says[c] > thresholds[m][last] ? 1 : 0;
+    }
+  }
+  return blame;
+}
+
 }  // namespace
 
 Comparison compare(const study::Prepared& prepared, std::uint64_t seed) {
@@ -302,13 +318,15 @@ Comparison compare(const study::Prepared& prepared, std::uint64_t seed) {
   return result;
 }
 
-std::string compare_methods(const CompareOptions& options) {
+MethodScores compare_methods(const CompareOptions& options) {
   const std::vector<Comparison> healthy = compare_all(
       Case{.name = "healthy"}, options.first_healthy, options.healthy_runs, options.threads);
   const Thresholds thresholds = thresholds_of(healthy);
-  std::string table =
-      "| case | correlation | (3.15) | Spearman | rank partial | linear F test | polynomial | "
-      "kernel | random features |\n|---|---|---|---|---|---|---|---|---|\n";
+  MethodScores scores;
+  std::string& table = scores.table;
+  table = "| case";
+  for (const char* name : kMethodNames) table += std::string(" | ") + name;
+  table += " |\n|---|---|---|---|---|---|---|---|---|\n";
   std::array<std::vector<double>, kMethodCount> times;
   for (const Case& one : all_cases()) {
     const bool compared = one.truth == Truth::kNonlinear || one.name == "shell3x3_none" ||
@@ -321,6 +339,7 @@ std::string compare_methods(const CompareOptions& options) {
     row += " |\n";
     std::cout << row << std::flush;
     table += row;
+    scores.blames.push_back(blame_of(one, runs, thresholds));
     for (const Comparison& run : runs)
       for (std::size_t m = 0; m < kMethodCount && !run.diverged; ++m)
         times[m].push_back(run.microseconds[m]);
@@ -331,7 +350,8 @@ std::string compare_methods(const CompareOptions& options) {
     std::snprintf(text.data(), text.size(), " | %.3g", study::quantile(of, 0.5));
     table += text.data();
   }
-  return table + " |\n";
+  table += " |\n";
+  return scores;
 }
 
 }  // namespace mpm::nonlinear

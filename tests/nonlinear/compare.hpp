@@ -25,6 +25,10 @@ enum class Method {
 inline constexpr std::array kMethods = {
     Method::kConventional, Method::kLaggedPartial, Method::kSpearman, Method::kRankPartial,
     Method::kLinear,       Method::kPolynomial,    Method::kKernel,   Method::kRandomFeatures};
+/// As the tables and files say it.
+inline constexpr std::array kMethodNames = {"correlation",  "(3.15)",         "Spearman",
+                                            "rank partial", "linear F test",  "polynomial",
+                                            "kernel",       "random features"};
 inline constexpr std::size_t kCorrelations = 4;  ///< the first ones have no threshold of their own
 
 /// Samples after which it is asked what a method says.
@@ -47,9 +51,23 @@ struct CompareOptions {
   int runs = 20, healthy_runs = 40, threads = 2;
 };
 
-/// Table as Markdown: of each case that is nonlinear who sees it, from how many samples on, and
-/// what of its linear channels is blamed. Correlations count as seen beyond what 1 % of the
-/// channels of healthy runs show.
-[[nodiscard]] std::string compare_methods(const CompareOptions& options);
+/// How often each method blames each channel at the end of the runs of one case.
+struct Blame {
+  Case of;
+  int runs = 0;  ///< that did not diverge
+  /// Per method and channel (input * CVs + CV), in runs.
+  std::array<std::vector<int>, kMethods.size()> blamed;
+};
+
+struct MethodScores {
+  /// As Markdown: of each case that is nonlinear who sees it, from how many samples on, and what of
+  /// its linear channels is blamed.
+  std::string table;
+  std::vector<Blame> blames;
+};
+
+/// Of the cases that are nonlinear, a healthy one and one with a linear error. A correlation counts
+/// beyond what 1 % of the channels of healthy runs show.
+[[nodiscard]] MethodScores compare_methods(const CompareOptions& options);
 
 }  // namespace mpm::nonlinear

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -23,7 +24,7 @@ namespace mpm::nonlinear {
 namespace {
 
 struct Options {
-  std::string only = "*", test = "polynomial", markdown, table;
+  std::string only = "*", test = "polynomial", markdown, table, json;
   std::uint64_t first = 100001;
   int runs = 20, samples = 3000, threads = 2;
   bool methods = false;
@@ -126,13 +127,36 @@ void run(const Options& options) {
   write(options, options.table.empty() ? options.test : options.table, table);
 }
 
+constexpr int kCvs = 3;  // of the unit that methods are compared on
+
+/// What docs/figures/methods.py draws.
+void write_json(const Options& options, const std::vector<Blame>& blames) {
+  nlohmann::ordered_json json = {{"first_seed", options.first}, {"methods", kMethodNames}};
+  for (const Blame& blame : blames) {
+    std::vector<int> linear;  // errors; channels as in `Case::nonlinear`
+    for (const sim::ChannelChange& change : blame.of.changes)
+      linear.push_back(kCvs * change.input + change.cv);
+    json["cases"].push_back({{"name", blame.of.name},
+                             {"runs", blame.runs},
+                             {"nonlinear", blame.of.nonlinear},
+                             {"linear", linear},
+                             {"blamed", blame.blamed}});
+  }
+  std::ofstream out(options.json, std::ios::binary);
+  out << json.dump(1) << '\n';
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + options.json);
+}
+
 void run_methods(const Options& options) {
   CompareOptions compared;
   compared.only = options.only;
   compared.first = options.first;
   compared.runs = options.runs;
   compared.threads = options.threads;
-  write(options, "methods", compare_methods(compared));
+  const MethodScores scores = compare_methods(compared);
+  write(options, "methods", scores.table);
+  if (!options.json.empty()) write_json(options, scores.blames);
 }
 
 }  // namespace
@@ -151,6 +175,8 @@ int main(int argc, char** argv) {
   app.add_option("--markdown", options.markdown, "rewrite a table of FILE between its markers");
   app.add_flag("--methods", options.methods,
                "all methods of the thesis beside each other on the nonlinear cases");
+  app.add_option("--json", options.json,
+                 "of --methods: write to FILE in how many runs each method blames each channel");
   app.add_option("--table", options.table, "its name, instead of the test's");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "config/choice.hpp"
 #include "config/cli/color.hpp"
 #include "config/load_unit.hpp"
 #include "config/replacement_file.hpp"
@@ -40,6 +41,7 @@ struct DetectOptions {
   std::vector<std::string> data;
   files::TimeChoiceText time;
   std::string scenario;
+  std::string nonlinear;       // a name of `config::choices`; empty: as the files say
   std::string journal;         // folder
   std::string sample_journal;  // file
   TimesText times;
@@ -116,6 +118,17 @@ bool report(const std::vector<config::Finding>& findings) {
   return !config::has_errors(findings);
 }
 
+std::vector<std::string> nonlinear_names() {
+  std::vector<std::string> names;
+  for (const auto& choice : config::choices(NonlinearTest{})) names.emplace_back(choice.name);
+  return names;
+}
+
+void choose_nonlinear(const std::string& name, MonitorSettings& settings) {
+  for (const auto& choice : config::choices(NonlinearTest{}))
+    if (name == choice.name) settings.nonlinear = choice.kind;
+}
+
 // 0, 1 if a mismatch was found and that was to fail, 3 on bad input.
 int detect(const DetectOptions& options) {
   config::LoadResult loaded = config::load_unit(options.config);
@@ -130,6 +143,7 @@ int detect(const DetectOptions& options) {
       if (!report(scenario.findings)) return 3;
       loaded.config.monitor = scenario.scenario.monitor;
     }
+    choose_nonlinear(options.nonlinear, loaded.config.monitor);
     const files::TimeStyle times = times_of(options.times);
     const std::unique_ptr<files::FrameSource> frames =
         bag::open_recording(options.data, loaded.config, times);
@@ -169,6 +183,10 @@ void add_detect(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--scenario", options->scenario,
                       "scenario (name or file) whose `monitor` settings replace the unit file's");
+  command
+      ->add_option("--nonlinear", options->nonlinear,
+                   "nonlinear test of this run, in place of the unit file's and the scenario's")
+      ->check(CLI::IsMember(nonlinear_names()));
   add_time_choice(*command, options->time);
   add_times(*command, options->times);
   cli::add_no_color(*command);
