@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 /// Numbers that decide an identification, none of which a user sets. Chosen by hand on tuning seeds
@@ -115,6 +116,9 @@ inline constexpr std::array kBesideTimes = {0.5, 1.0, 2.0};
 
 // Whether feedback moves the inputs (feedback_test.hpp).
 inline constexpr int kFeedbackLags = 6;
+/// Poles of the means of the inputs' past beside these lags: of a measured disturbance that is read
+/// coarsely a CV that answers it would know more than six lags do, as if it moved it.
+inline constexpr std::array kFeedbackPoles = {0.8, 0.95, 0.99};
 inline constexpr double kFeedback = 1e-3;  ///< p-value below which it does
 /// A binary or ternary test signal has so many levels; what a controller moves has hundreds.
 inline constexpr std::size_t kTestLevels = 4;

@@ -18,7 +18,7 @@ namespace {
 /// p-values of each input not depending on some columns beside others.
 class InputRegression {
  public:
-  explicit InputRegression(const IdentificationData& data) : data_(data) {
+  explicit InputRegression(const IdentificationData& data) : data_(data), means_(means_of(data)) {
     for (const Run& run : data.runs)
       for (Index k = run.first + kFeedbackLags; k < run.first + run.count; ++k)
         if (data.known.middleRows(k - kFeedbackLags, kFeedbackLags + 1).minCoeff() > 0.0)
@@ -29,7 +29,8 @@ class InputRegression {
   /// which else stands beside.
   [[nodiscard]] std::vector<double> p_values(int first_lag, bool own) const {
     const Index inputs = data_.inputs.cols(), cvs = data_.cvs.cols(), lags = kFeedbackLags;
-    const Index past = lags * inputs, columns = 1 + past + (lags + 1 - first_lag) * cvs;
+    const Index past = lags * inputs + means_.cols(),
+                columns = 1 + past + (lags + 1 - first_lag) * cvs;
     const Index asked = columns - 1 - (own ? 0 : past), beside = columns - asked;
     const auto count = static_cast<Index>(rows_.size());
     std::vector<double> p_values(static_cast<std::size_t>(inputs), 1.0);
@@ -40,6 +41,7 @@ class InputRegression {
       system(r, 0) = 1.0;
       for (Index l = 1; l <= lags; ++l)
         system.row(r).segment(1 + (l - 1) * inputs, inputs) = data_.inputs.row(k - l);
+      system.row(r).segment(1 + lags * inputs, means_.cols()) = means_.row(k);
       for (Index l = first_lag; l <= lags; ++l)
         system.row(r).segment(1 + past + (l - first_lag) * cvs, cvs) = data_.cvs.row(k - l);
       system.row(r).tail(inputs) = data_.inputs.row(k);
@@ -63,7 +65,23 @@ class InputRegression {
   }
 
  private:
+  // Per input and pole the mean of its values before the row, of its run.
+  static MatrixXd means_of(const IdentificationData& data) {
+    const Index inputs = data.inputs.cols();
+    MatrixXd means(data.samples(), inputs * static_cast<Index>(kFeedbackPoles.size()));
+    for (const Run& run : data.runs)
+      for (std::size_t p = 0; p < kFeedbackPoles.size(); ++p) {
+        Eigen::RowVectorXd mean = data.inputs.row(run.first);
+        for (Index k = run.first; k < run.first + run.count; ++k) {
+          means.row(k).segment(static_cast<Index>(p) * inputs, inputs) = mean;
+          mean += (1.0 - kFeedbackPoles[p]) * (data.inputs.row(k) - mean);
+        }
+      }
+    return means;
+  }
+
   const IdentificationData& data_;
+  MatrixXd means_;  // samples x (poles x inputs)
   std::vector<Index> rows_;
 };
 

@@ -6,10 +6,10 @@
 
 namespace mpm {
 
-/// Per input the p-value of its not depending on the CVs' past beside that of all inputs (Granger
-/// 1969): small where a controller moves it. 1 where nothing can be asked. The CVs' past begins
-/// `first_lag` rows before: 0 sees every controller, but also a CV that answers within the row; 1
-/// sees all but one without any dynamics.
+/// Per input the p-value of its not depending on the CVs' past beside that of all inputs, lags and
+/// slow means (Granger 1969): small where a controller moves it. 1 where nothing can be asked. The
+/// CVs' past begins `first_lag` rows before: 0 sees every controller, but also a CV that answers
+/// within the row; 1 sees all but one without any dynamics.
 [[nodiscard]] std::vector<double> feedback_p_values(const IdentificationData& data, int first_lag);
 
 /// The smallest, times the number of inputs.

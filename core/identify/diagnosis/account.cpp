@@ -42,7 +42,8 @@ bool follows_setpoint(const Problem& problem, const SearchResult& found, std::ve
   others[accusation] = false;
   if (std::find(others.begin(), others.end(), true) == others.end()) return false;
   const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
-  const ChannelTests tests = witness.of(extend(problem, found, others, keep, judges.open));
+  const ChannelTests tests =
+      witness.of(extend(problem, found, others, keep, judges.open), OwnPast::kLags);
   const std::vector<int> cvs = touched(found.named[accusation].effect, problem);
   return std::any_of(cvs.begin(), cvs.end(), [&](int cv) { return tests.setpoint(cv).wins; });
 }
@@ -90,12 +91,23 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
   for (std::size_t i = 0; i < tested.size(); ++i) any = any || concerned(i);
   if (!any) return reasons;
   const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
-  const ChannelTests after = witness.of(extend(problem, found, tested, keep, judges.open));
+  const ModelSpec repaired = extend(problem, found, tested, keep, judges.open);
+  const ChannelTests after = witness.of(repaired, OwnPast::kLags);
+  std::optional<ChannelTests> after_nonlinear;
+  // Of a curve that the nonlinear test called for its word counts.
+  const auto straightened = [&](const Effect& effect) {
+    const auto channels = channels_of(effect, problem.model(), problem.surroundings().model_inputs);
+    if (!cause_of(effect).is_curve() || !witness.given_nonlinear.bends(channels)) return false;
+    if (!after_nonlinear) after_nonlinear = witness.of(repaired, OwnPast::kSlowToo);
+    return !after_nonlinear->bends(channels);
+  };
   for (std::size_t i = 0; i < tested.size(); ++i) {
     if (!concerned(i)) continue;
     const Effect& effect = found.named[i].effect;
-    const Confirmation says = confirmation(
+    const Confirmation linear = confirmation(
         effect, problem.model(), problem.surroundings().model_inputs, witness.given, after);
+    const Confirmation says =
+        linear < Confirmation::kNothing && straightened(effect) ? Confirmation::kNothing : linear;
     const bool overwhelming =
         selection.sure_gains[i] >= kOverwhelmingGain && effect.edit != &causes::input_stuck();
     const bool outside = moved_from_outside(effect, problem.model(), judges.outside_shares);

@@ -9,10 +9,11 @@
 namespace mpm {
 
 /// The calibrated test of the channels: of the given model, and of another with the same inputs and
-/// set-points behind them.
+/// set-points behind them; and, beside it, the monitor's with its nonlinear test.
 struct Witness {
   const ChannelTests& given;
-  std::function<ChannelTests(const ModelSpec&)> of;
+  const ChannelTests& given_nonlinear;
+  std::function<ChannelTests(const ModelSpec&, OwnPast)> of;
 };
 
 /// What it says of a repair, ever more in its favour.

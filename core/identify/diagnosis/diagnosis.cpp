@@ -259,6 +259,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   if (!diagnosis.reason.empty()) return diagnosis;
   const ModelSpec tested = with_aux_inputs(base, measured);
   const ChannelTests tests(tested, measured, residuals);
+  const ChannelTests by_monitor(tested, measured, residuals, OwnPast::kSlowToo);
   recording.changed = change_row(tested, measured, residuals, tests);
   diagnosis.fit_samples = validation ? samples : fitted_rows(recording, settings.fit_share);
   diagnosis.validation_samples =
@@ -271,7 +272,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   search_settings.threads = settings.threads;
   search_settings.progress = settings.progress;
   search_settings.may_name =
-      nameable(model, {settings.mv_count, base.input_count, aux}, tests, outside);
+      nameable(model, {settings.mv_count, base.input_count, aux}, tests, by_monitor, outside);
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
   const Judges judges{unseen, aux,
@@ -283,9 +284,9 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
                                 (i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside));
                       },
                       outside, compressed};
-  const Witness witness{tests, [&](const ModelSpec& repaired) {
+  const Witness witness{tests, by_monitor, [&](const ModelSpec& repaired, OwnPast past) {
                           return ChannelTests(tested, measured,
-                                              free_run_residuals(repaired, recording));
+                                              free_run_residuals(repaired, recording), past);
                         }};
   const Account kept =
       account_for(model, base.input_count, fitted, judges, witness, search_settings);
@@ -333,16 +334,16 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
       (made ? diagnosis.refused : diagnosis.findings).push_back(std::move(late));
     }
   diagnosis.rejected = rejected_channels(base, tests, diagnosis);
-  if (!diagnosis.rejected.empty()) {  // by the monitor's own regression too, or by none
-    const std::vector<Place> by_monitor = rejected_channels(
-        base, ChannelTests(tested, measured, residuals, OwnPast::kSlowToo), diagnosis);
-    std::erase_if(diagnosis.rejected, [&](const Place& at) {
-      return std::find(by_monitor.begin(), by_monitor.end(), at) == by_monitor.end();
-    });
-  }
+  const std::vector<Place> too = rejected_channels(base, by_monitor, diagnosis);
+  std::erase_if(diagnosis.rejected, [&](const Place& at) {  // by both, or not
+    return std::find(too.begin(), too.end(), at) == too.end();
+  });
   const std::size_t doubted =
       std::erase_if(diagnosis.rejected, [&](const Place& at) { return compressed.cv(at.cv); });
-  if (!diagnosis.rejected.empty() && std::find(in.begin(), in.end(), true) != in.end())
+  const bool repaired_some = std::find(in.begin(), in.end(), true) != in.end();
+  diagnosis.bent = bent_channels(
+      base, repaired_some ? witness.of(extended, OwnPast::kSlowToo) : by_monitor, diagnosis);
+  if (!diagnosis.rejected.empty() && repaired_some)
     keep_rejected(ChannelTests(tested, measured, free_run_residuals(extended, recording)),
                   diagnosis.rejected);
   decide(least_explained(residuals, recording.cvs),

@@ -71,13 +71,17 @@ std::vector<std::pair<int, int>> channels_of(const Effect& effect, const ModelSp
 }
 
 std::function<bool(const Effect&)> nameable(const ModelSpec& model, const SignalRanges& ranges,
-                                            const ChannelTests& tests, const Shares& shares) {
-  return [&model, ranges, &tests, &shares](const Effect& effect) {
+                                            const ChannelTests& tests,
+                                            const ChannelTests& nonlinear, const Shares& shares) {
+  return [&model, ranges, &tests, &nonlinear, &shares](const Effect& effect) {
     if (is_of_an_actuator(effect) && effect.place.input >= ranges.mvs) return false;
-    if (outside_share(effect, model, shares) < outside_needed(effect)) return false;
+    const bool bends = effect.place.aux < 0 && cause_of(effect).is_curve() &&
+                       nonlinear.bends(channels_of(effect, model, ranges.inputs));
+    if (outside_share(effect, model, shares) < outside_needed(effect) && !bends) return false;
     if (effect.place.aux >= ranges.aux) return may_name_setpoint(effect, tests, ranges.aux);
     if (!cause_of(effect).acts_through_channels()) return true;
     const std::vector<std::pair<int, int>> channels = channels_of(effect, model, ranges.inputs);
+    if (bends) return true;
     const bool has_to_matter =
         cause_of(effect).is_curve() || (is_linear_error(effect) && !is_error_of_channel(effect));
     return tests.reject(channels) && (!has_to_matter || tests.may_matter(channels));

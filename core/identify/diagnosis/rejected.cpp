@@ -24,23 +24,35 @@ bool is_about(const Subject& subject, const ChannelSpec& channel) {
          (place.input < 0 || place.input == channel.input);
 }
 
+/// Those of the model for which `is_so(cv, input)` and that nothing named or seen is about.
+template <class IsSo>
+std::vector<Place> untold(const ModelSpec& model, const Diagnosis& diagnosis, const IsSo& is_so) {
+  std::vector<Place> channels;
+  for (const ChannelSpec& channel : model.channels) {
+    const auto told = [&](const auto& each) { return is_about(each.subject, channel); };
+    if (is_so(channel.cv, channel.input) &&
+        std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), told) &&
+        std::none_of(diagnosis.small.begin(), diagnosis.small.end(), told) &&
+        std::none_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(), told))
+      channels.push_back({channel.cv, channel.input});
+  }
+  return channels;
+}
+
 }  // namespace
 
 std::vector<Place> rejected_channels(const ModelSpec& model, const ChannelTests& tests,
                                      const Diagnosis& diagnosis) {
-  std::vector<Place> rejected;
   Level level;
   if (diagnosis.findings.empty() && diagnosis.unexplained.empty())
     level = {kDoubted / static_cast<double>(model.channels.size()), kDoubted};
-  for (const ChannelSpec& channel : model.channels) {
-    const auto told = [&](const auto& each) { return is_about(each.subject, channel); };
-    if (rejects(tests, channel.cv, channel.input, level) &&
-        std::none_of(diagnosis.findings.begin(), diagnosis.findings.end(), told) &&
-        std::none_of(diagnosis.small.begin(), diagnosis.small.end(), told) &&
-        std::none_of(diagnosis.unexplained.begin(), diagnosis.unexplained.end(), told))
-      rejected.push_back({channel.cv, channel.input});
-  }
-  return rejected;
+  return untold(model, diagnosis,
+                [&](int cv, int input) { return rejects(tests, cv, input, level); });
+}
+
+std::vector<Place> bent_channels(const ModelSpec& model, const ChannelTests& tests,
+                                 const Diagnosis& diagnosis) {
+  return untold(model, diagnosis, [&](int cv, int input) { return tests.bends({{cv, input}}); });
 }
 
 void keep_rejected(const ChannelTests& repaired, std::vector<Place>& channels) {

@@ -15,8 +15,12 @@ namespace mpm {
                                                    const ChannelTests& tests,
                                                    const Diagnosis& diagnosis);
 
-/// Of these, those that the repaired model's tests reject too: the repair of something else may
-/// have been all that was wrong with them.
+/// Likewise those that the monitor's nonlinear test calls nonlinear.
+[[nodiscard]] std::vector<Place> bent_channels(const ModelSpec& model, const ChannelTests& tests,
+                                               const Diagnosis& diagnosis);
+
+/// Of the rejected, those that the repaired model's tests reject too: the repair of something else
+/// may have been all that was wrong with them.
 void keep_rejected(const ChannelTests& repaired, std::vector<Place>& channels);
 
 }  // namespace mpm

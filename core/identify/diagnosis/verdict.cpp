@@ -84,6 +84,9 @@ void decide(double explained, bool sticks, Diagnosis& diagnosis) {
         "that only feedback shows: it, or a disturbance that wanders, can look the same";
   else if (!diagnosis.rejected.empty())
     diagnosis.reason = "a model that matches would not be rejected so; what is wrong is not told";
+  else if (!diagnosis.bent.empty())
+    diagnosis.reason =
+        "what these channels do no linear model explains; of the known causes none was sure enough";
   else if (blind > 0)
     diagnosis.reason = "the inputs move too little beside the noise: the gains of " +
                        std::to_string(blind) + " of " + std::to_string(diagnosis.channels.size()) +

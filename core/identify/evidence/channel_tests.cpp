@@ -52,6 +52,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       harmless_(p_values_.size(), 1.0),
       wrong_(p_values_.size(), 0.0),
       masked_(p_values_.size(), 1.0),
+      bends_(p_values_.size(), false),
       setpoints_(static_cast<std::size_t>(model.cv_count), RivalSignal{.loses = false}) {
   const RegressedRecording regressed =
       regress_recording(model, recording, residuals, rows_to_follow(recording), past);
@@ -61,6 +62,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
     detector.fold(cv);
     if (!(detector.memory(cv).freedom() >= detector.shape().columns())) continue;
     detector.evaluate(cv);
+    if (regressed.nonlinear) regressed.nonlinear->evaluate(cv, detector);
     const double steps = mean_square_step(residuals.col(cv));
     for (int input = 0; input < model.input_count; ++input) {
       const ChannelEvidence& evidence = detector.evidence(cv, input);
@@ -71,6 +73,8 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       if (evidence.excitation_index_alone > 0.0 && std::isfinite(evidence.excitation_index))
         masked_[channel] = evidence.excitation_index / evidence.excitation_index_alone;
       wrong_[channel] = evidence.statistic * steps;
+      bends_[channel] = regressed.nonlinear && regressed.nonlinear->result(cv, input).verdict ==
+                                                   NonlinearVerdict::kNonlinear;
     }
     if (rows_to_follow(recording) > 0 && reject(channels_to(cv)))
       setpoints_[static_cast<std::size_t>(cv)] = detector.rival(
@@ -101,6 +105,13 @@ bool ChannelTests::undone(const std::vector<std::pair<int, int>>& channels) cons
   return std::any_of(channels.begin(), channels.end(), [&](const std::pair<int, int>& each) {
     const auto channel = static_cast<std::size_t>(each.second * cvs_ + each.first);
     return channel < masked_.size() && masked_[channel] > calibration::materiality::kUndone;
+  });
+}
+
+bool ChannelTests::bends(const std::vector<std::pair<int, int>>& channels) const {
+  return std::any_of(channels.begin(), channels.end(), [&](const std::pair<int, int>& each) {
+    const auto channel = static_cast<std::size_t>(each.second * cvs_ + each.first);
+    return channel < bends_.size() && bends_[channel];
   });
 }
 

@@ -59,6 +59,9 @@ class ChannelTests {
   /// Whether other inputs undo most of what the input of some of these channels does, so that small
   /// errors of any kind are large ones of what is left.
   [[nodiscard]] bool undone(const std::vector<std::pair<int, int>>& channels) const;
+  /// Whether the nonlinear test of the monitor, where it was asked (`OwnPast::kSlowToo`), says of
+  /// some of these channels that no linear error explains what they do.
+  [[nodiscard]] bool bends(const std::vector<std::pair<int, int>>& channels) const;
   /// All channels to a CV, as (CV, input).
   [[nodiscard]] std::vector<std::pair<int, int>> channels_to(int cv) const;
 
@@ -68,6 +71,7 @@ class ChannelTests {
   std::vector<double> harmless_;                 // likewise
   std::vector<double> wrong_;                    // likewise
   std::vector<double> masked_;                   // likewise: s.d. of its gain to that of it alone
+  std::vector<bool> bends_;                      // likewise
   std::vector<RivalSignal> setpoints_;           // per CV
 };
 

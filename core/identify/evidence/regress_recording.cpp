@@ -67,18 +67,37 @@ RegressedRecording regress_recording(const ModelSpec& model, const Recording& re
     result.setpoints = std::make_unique<OutsideSignals>(
         result.detector->shape(), static_cast<int>(recording.setpoints.cols()),
         settings->outside_poles, depth);
+  if (past == OwnPast::kSlowToo) {
+    const double rate = settings->false_alarm_rate / (model.input_count * model.cv_count);
+    result.nonlinear = std::make_unique<NonlinearDetector>(
+        result.detector->shape(), linear,
+        NonlinearDetector::Settings{settings->nonlinear, MemoryLength{},
+                                    settings->evaluation_stride, rate,
+                                    settings->gain_error_of_interest});
+  }
+  const auto take = [&](int cv) {
+    result.detector->fold(cv);
+    if (result.nonlinear) result.nonlinear->take(cv, *result.detector);
+  };
   VectorXd inputs(model.input_count);
   auto border = recording.borders.begin();
   for (Index k = 0; k < recording.samples(); ++k) {
     if (border != recording.borders.end() && border->row == k) {
       const int apart = settings->fir_lags + settings->residual_order;  // no row has both sides
+      for (int cv = 0; cv < model.cv_count; ++cv) take(cv);
       result.detector->skip(apart);
+      if (result.nonlinear) result.nonlinear->skip(apart, *result.detector);
       if (result.setpoints) result.setpoints->skip(apart);
       ++border;
     }
     inputs.head(recording.inputs.cols()) = recording.inputs.row(k);
     inputs.tail(recording.aux.cols()) = recording.aux.row(k);
     result.detector->update(inputs, residuals.row(k).transpose());
+    if (result.nonlinear) {
+      result.nonlinear->add_sample(*result.detector);
+      if ((k + 1) % settings->evaluation_stride == 0)
+        for (int cv = 0; cv < model.cv_count; ++cv) take(cv);
+    }
     if (result.setpoints) result.setpoints->push(recording.setpoints.row(k).transpose());
   }
   return result;

@@ -7,6 +7,7 @@
 #include "core/mismatch/mismatch_detector.hpp"
 #include "core/mismatch/outside_signals.hpp"
 #include "core/model/model_spec.hpp"
+#include "core/nonlinear/nonlinear_detector.hpp"
 
 namespace mpm {
 
@@ -14,13 +15,15 @@ namespace mpm {
 enum class OwnPast {
   kLags,     ///< a loop that swings by itself, as with a sticking valve, is predicted as well by
              ///< slow means of its past as by its input
-  kSlowToo,  ///< the monitor's: noise that wanders is predicted from far back
+  kSlowToo,  ///< the monitor's: noise that wanders is predicted from far back; with its nonlinear
+             ///< test, which needs that
 };
 
 /// The monitor's regression of a recording, and the recording's set-points beside it.
 struct RegressedRecording {
-  std::unique_ptr<MismatchDetector> detector;  ///< null where there are too few rows
-  std::unique_ptr<OutsideSignals> setpoints;   ///< of as many rows; null where there are none
+  std::unique_ptr<MismatchDetector> detector;    ///< null where there are too few rows
+  std::unique_ptr<OutsideSignals> setpoints;     ///< of as many rows; null where there are none
+  std::unique_ptr<NonlinearDetector> nonlinear;  ///< null where `OwnPast` has none
 };
 
 /// The monitor's regression of a recording's residuals (samples x CVs, measured minus free run, NaN

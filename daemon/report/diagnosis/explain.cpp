@@ -32,15 +32,28 @@ std::string gain_of_extension(const DiagnosisRun& run) {
          names.in_cv(best->rmse_before, best_cv) + " RMS.";
 }
 
-/// What the test rejects and no finding is about.
-std::string rejected_text(const DiagnosisRun& run) {
-  if (run.diagnosis.rejected.empty()) return {};
+std::string channels_text(const DiagnosisRun& run, const std::vector<Place>& places) {
   const SignalNames names = names_of(run);
   std::string channels;
-  for (const Place& place : run.diagnosis.rejected)
+  for (const Place& place : places)
     channels += (channels.empty() ? "" : ", ") + names.input(place.input).tag + " -> " +
                 names.cv(place.cv).tag;
-  return "The calibrated test rejects " + channels + ", of which no cause could be named.";
+  return channels;
+}
+
+/// What the tests reject and no finding is about.
+std::string rejected_text(const DiagnosisRun& run) {
+  const std::vector<Place>&rejected = run.diagnosis.rejected, &bent = run.diagnosis.bent;
+  std::string text;
+  if (!rejected.empty())
+    text = "The calibrated test rejects " + channels_text(run, rejected) +
+           ", of which no cause could be named.";
+  if (!bent.empty())
+    text +=
+        (text.empty() ? "" : " ") +
+        ("The nonlinear test finds that " + channels_text(run, bent) +
+         (bent.size() == 1 ? " is" : " are") + " not linear, of which no cause could be named.");
+  return text;
 }
 
 }  // namespace
@@ -63,7 +76,7 @@ std::string difference_headline(const DiagnosisRun& run) {
   };
   const std::vector<Finding>& findings = run.diagnosis.findings;
   const bool disturbed = !findings.empty() && run.diagnosis.unexplained.empty() &&
-                         run.diagnosis.rejected.empty() &&
+                         run.diagnosis.rejected.empty() && run.diagnosis.bent.empty() &&
                          std::all_of(findings.begin(), findings.end(), from_outside);
   const std::string model = "model of " + run.unit.unit;
   if (!disturbed) return "The " + model + " does not match the plant: ";

@@ -20,6 +20,19 @@ TEST_CASE("feedback is seen where there is some, also one without dynamics") {
   CHECK(feedback_p_value(identification_data(still.run(1500)), 0) < 1e-9);
 }
 
+// A CV that answers a disturbance knows more of it than six coarse readings do.
+TEST_CASE("a disturbance that is read coarsely is not moved by the CV that answers it") {
+  int fed_back = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const VectorXd wandering = autoregressive(0.15 * white(920 + seed, 3000), 0.975);
+    MatrixXd inputs(3000, 1), cvs(3000, 1);
+    inputs.col(0) = (2.0 * wandering).array().round() / 2.0;
+    cvs.col(0) = first_order(wandering, 2.0, 15.0) + 0.05 * white(950 + seed, 3000);
+    fed_back += feedback_p_value(identification_data(recording_of(inputs, cvs)), 1) < 1e-3 ? 1 : 0;
+  }
+  CHECK(fed_back <= 1);
+}
+
 TEST_CASE("a test signal is told from what a controller moves") {
   const std::vector<bool> loop = test_signals(identification_data(Loop().run(1500)));
   CHECK_FALSE(loop[0]);

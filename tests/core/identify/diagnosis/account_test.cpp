@@ -43,13 +43,15 @@ struct Bench {
     return test::recording_of(u, y);
   }
 
-  [[nodiscard]] ChannelTests test(const ModelSpec& of) const {
-    return {model, all, free_run_residuals(of, all)};
+  [[nodiscard]] ChannelTests test(const ModelSpec& of, OwnPast past = OwnPast::kLags) const {
+    return {model, all, free_run_residuals(of, all), past};
   }
   Account take() {
     const ChannelTests given = test(model);
-    return account_for(model, 1, first, {unseen, 0, {}, shares},
-                       {given, [this](const ModelSpec& of) { return test(of); }}, settings);
+    return account_for(
+        model, 1, first, {unseen, 0, {}, shares},
+        {given, given, [this](const ModelSpec& of, OwnPast past) { return test(of, past); }},
+        settings);
   }
 };
 

@@ -24,7 +24,7 @@ struct Bench {
       test::model_of({lag(0, 0, 2.0, 10.0), lag(0, 1, 1.0, 5.0), lag(1, 1, 1.0, 8.0)}, 2, 2);
   ChannelTests tests = make();
   std::vector<std::optional<double>> shares{1.0, 1.0};
-  std::function<bool(const Effect&)> may = nameable(model, {1, 2, 0}, tests, shares);
+  std::function<bool(const Effect&)> may = nameable(model, {1, 2, 0}, tests, tests, shares);
 
   ChannelTests make() const {
     MatrixXd u(kRows, 2), residuals(kRows, 2);
@@ -43,6 +43,34 @@ struct Bench {
     return may(effect);
   }
 };
+
+// A square about the middle of three levels: next to nothing of it is linear.
+TEST_CASE("a curve may be named where the nonlinear test sees it, moved by feedback or not") {
+  constexpr Index kMany = 3000;
+  MatrixXd u(kMany, 2), residuals(kMany, 2);
+  u << test::telegraph(1, kMany, 12) + test::telegraph(7, kMany, 17), test::telegraph(2, kMany, 9);
+  const VectorXd square = u.col(0).array().square() - u.col(0).array().square().mean();
+  residuals << 0.5 * test::first_order(square, 1.0, 10.0) + 0.1 * test::white(3, kMany),
+      0.1 * test::white(4, kMany);
+  const Bench bench;
+  const Recording recording = test::recording_of(u, residuals);
+  const ChannelTests linear(bench.model, recording, residuals);
+  const ChannelTests nonlinear(bench.model, recording, residuals, OwnPast::kSlowToo);
+  const std::vector<std::optional<double>> by_feedback{0.1, 0.1};
+  const auto may = [&](const ChannelTests& asked, const Cause& cause, const Place& place) {
+    Effect effect;
+    effect.edit = &cause;
+    effect.place = place;
+    return nameable(bench.model, {1, 2, 0}, linear, asked, by_feedback)(effect);
+  };
+  CHECK(nonlinear.bends({{0, 0}}));
+  CHECK_FALSE(nonlinear.bends({{0, 1}}));
+  CHECK_FALSE(nonlinear.bends({{1, 1}}));
+  CHECK_FALSE(linear.bends({{0, 0}}));
+  CHECK(may(nonlinear, causes::input_polynomial(), {0, 0}));
+  CHECK_FALSE(may(linear, causes::input_polynomial(), {0, 0}));
+  CHECK_FALSE(may(nonlinear, causes::input_polynomial(), {0, 1}));
+}
 
 TEST_CASE("a channel may be named where the test rejects it") {
   const Bench bench;

@@ -50,6 +50,16 @@ TEST_CASE("the reason is that of the strongest that was refused") {
   CHECK(diagnosis.reason == "what explains most was refused: strong");
 }
 
+TEST_CASE("what no linear model fits and nothing names leaves the verdict open") {
+  Diagnosis diagnosis;
+  diagnosis.bent = {{0, 0}};
+  decide(0.9, false, diagnosis);
+  CHECK(diagnosis.verdict == DiagnosisVerdict::kUndetermined);
+  CHECK(
+      diagnosis.reason ==
+      "what these channels do no linear model explains; of the known causes none was sure enough");
+}
+
 TEST_CASE("what the calibrated test surely rejects and nothing names leaves the verdict open") {
   Diagnosis diagnosis;
   diagnosis.rejected = {{0, 0}};
