@@ -116,8 +116,8 @@ inline constexpr std::array kBesideTimes = {0.5, 1.0, 2.0};
 
 // Whether feedback moves the inputs (feedback_test.hpp).
 inline constexpr int kFeedbackLags = 6;
-/// Poles of the means of the inputs' past beside these lags: of a measured disturbance that is read
-/// coarsely a CV that answers it would know more than six lags do, as if it moved it.
+/// Poles of the means of the inputs' past beside these lags: how long ago somebody moved an input a
+/// CV that answers it slowly would know better than six lags do, as if it moved it. Chosen.
 inline constexpr std::array kFeedbackPoles = {0.8, 0.95, 0.99};
 inline constexpr double kFeedback = 1e-3;  ///< p-value below which it does
 /// A binary or ternary test signal has so many levels; what a controller moves has hundreds.

@@ -3,7 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/monitor/calibration.hpp"
+
 namespace mpm {
+
+using calibration::held_inputs::kVarianceOfUniform;
 
 HeldInputs::HeldInputs(const LinearModel& model)
     : gains_(model.steady_gain()), time_constants_(gains_.rows(), gains_.cols()) {
@@ -23,7 +27,7 @@ int HeldInputs::heaviest(int cv, const Screen& screen, double noise, double shar
     if (input.kind() != Compression::Kind::kHeld || gains_(cv, i) == 0.0) continue;
     const double passed = std::tanh(input.held_for() / (2.0 * time_constants_(cv, i)));
     const double off = std::abs(gains_(cv, i)) * input.smallest_change() *
-                       std::sqrt(input.held_share() * passed / 3.0);
+                       std::sqrt(input.held_share() * passed * kVarianceOfUniform);
     if (off <= most) continue;
     most = off;
     heaviest = i;

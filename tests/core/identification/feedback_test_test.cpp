@@ -20,17 +20,27 @@ TEST_CASE("feedback is seen where there is some, also one without dynamics") {
   CHECK(feedback_p_value(identification_data(still.run(1500)), 0) < 1e-9);
 }
 
-// A CV that answers a disturbance knows more of it than six coarse readings do.
-TEST_CASE("a disturbance that is read coarsely is not moved by the CV that answers it") {
+// An engineer's steps, up and down in turn: the longer ago the last one was the likelier is the
+// next, and of six lags and the CV only the CV knows how long ago that is. Of 60 such tests 2 come
+// below 1e-3, without the means all.
+TEST_CASE("steps by hand are not moved by the CV that answers them") {
   int fed_back = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const VectorXd wandering = autoregressive(0.15 * white(920 + seed, 3000), 0.975);
-    MatrixXd inputs(3000, 1), cvs(3000, 1);
-    inputs.col(0) = (2.0 * wandering).array().round() / 2.0;
-    cvs.col(0) = first_order(wandering, 2.0, 15.0) + 0.05 * white(950 + seed, 3000);
+    MatrixXd inputs(4000, 1), cvs(4000, 1);
+    double level = 1.0;
+    Index until = 0;
+    for (Index k = 0; k < 4000; ++k) {
+      if (k == until) {
+        level = (level > 0.0 ? -1.0 : 1.0) * (1.0 + 0.35 * uniform(960 + seed, k));
+        until = k + 80 + static_cast<Index>(45.0 * uniform(980 + seed, k));
+      }
+      inputs(k, 0) = level;
+    }
+    cvs.col(0) =
+        first_order(inputs.col(0), 2.0, 80.0) + 0.1 * autoregressive(white(990 + seed, 4000), 0.9);
     fed_back += feedback_p_value(identification_data(recording_of(inputs, cvs)), 1) < 1e-3 ? 1 : 0;
   }
-  CHECK(fed_back <= 1);
+  CHECK(fed_back <= 2);
 }
 
 TEST_CASE("a test signal is told from what a controller moves") {
