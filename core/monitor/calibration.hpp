@@ -38,8 +38,8 @@ inline constexpr double kConvincingPValue = 1e-6;
 /// one-step errors. Chosen: a tenth of its variance, as of one that comes and goes with the input.
 namespace held_inputs {
 inline constexpr double kShareOfNoise = 0.3;
-inline constexpr double kVarianceOfUniform =
-    1.0 / 3.0;  ///< of what is anywhere within +-1. Derived
+/// Of what is anywhere within +-1. Derived.
+inline constexpr double kVarianceOfUniform = 1.0 / 3.0;
 }  // namespace held_inputs
 
 /// When data are too bad for a verdict.

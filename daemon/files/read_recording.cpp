@@ -109,6 +109,17 @@ bool moves(const Eigen::Ref<const Eigen::VectorXd>& values) {
 
 }  // namespace
 
+void leave_out_unusable(RecordingFile& file) {
+  Recording& recording = file.recording;
+  file.jumps = leave_out_jumps(recording);
+  const Eigen::Index all = recording.samples();
+  recording = without_lost_inputs(std::move(recording));
+  const Eigen::Index rows = recording.samples();
+  file.lost = all - rows;
+  if (!recording.borders.empty()) recording = without_scraps(recording);
+  file.scraps = rows - recording.samples();
+}
+
 RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit,
                              const std::string& name, const TimeChoice& choice) {
   const auto refuse = [&name](const std::string& message) {
@@ -165,13 +176,7 @@ RecordingFile read_recording(FrameSource& source, const config::UnitConfig& unit
   file.bad_tags = config::by_tag(unit, table.unusable());
   for (const auto& [tag, bad] : file.bad_tags) file.bad_values += static_cast<std::int64_t>(bad);
   table.move_to(recording);
-  file.jumps = leave_out_jumps(recording);
-  const Eigen::Index all = recording.samples();
-  recording = without_lost_inputs(std::move(recording));
-  const Eigen::Index rows = recording.samples();
-  file.lost = all - rows;
-  if (!recording.borders.empty()) recording = without_scraps(recording);
-  file.scraps = rows - recording.samples();
+  leave_out_unusable(file);
   return file;
 }
 

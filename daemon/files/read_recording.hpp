@@ -27,6 +27,10 @@ struct RecordingFile {
   std::int64_t scraps = 0;       ///< rows of runs too short to tell anything; left out
 };
 
+/// Leaves out of `file.recording` the values that no process gives, the rows in which an input was
+/// lost and the runs that are too short to tell anything, and counts them.
+void leave_out_unusable(RecordingFile& file);
+
 /// Reads all frames that `choice` takes. What is bad, missing or implausible becomes NaN. A new run
 /// begins where frames were not taken, and after a gap in which a run would forget more of its past
 /// than it keeps (longest_gap()) or an input was lost (without_lost_inputs()). Throws

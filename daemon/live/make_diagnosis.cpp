@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "core/identify/diagnosis/diagnosis.hpp"
-#include "core/identify/evidence/jumps.hpp"
-#include "core/identify/fit/runs.hpp"
 #include "daemon/files/folder_name.hpp"
 #include "daemon/files/read_recording.hpp"
 #include "daemon/live/named_cause.hpp"
@@ -21,11 +19,11 @@ namespace {
 report::DiagnosisRun prepare(const DiagnosisJob& job) {
   report::DiagnosisRun run;
   run.unit = *job.unit;
-  run.recording = job.samples.recording(job.unit->sample_time_s);
-  if (std::string text = report::left_out_text(run.unit, leave_out_jumps(run.recording));
-      !text.empty())
-    run.notices.push_back(std::move(text));
-  run.recording = without_scraps(without_lost_inputs(std::move(run.recording)));
+  files::RecordingFile data;
+  data.recording = job.samples.recording(job.unit->sample_time_s);
+  files::leave_out_unusable(data);
+  run.recording = std::move(data.recording);
+  run.notices = report::left_out_texts(run.unit, data);
   run.program = idl::version_text("mpmd");
   run.command_line = "mpmd, because of the alarm of " + files::time_folder(job.alarm_time_ns);
   run.config_file = job.unit->unit + " as mpmd runs it";

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "config/unit_config.hpp"
-#include "core/identify/evidence/jumps.hpp"
+#include "daemon/files/read_recording.hpp"
 
 namespace mpm::report {
 
-/// "1 value left out, far beyond all that the signal had been and back at once, of y3 (1)"; empty
-/// where none was.
-[[nodiscard]] std::string left_out_text(const config::UnitConfig& unit, const JumpTally& jumps);
+/// What `files::leave_out_unusable` left out, a sentence each: "1 value left out, far beyond all
+/// that the signal had been and back at once, of y3 (1)".
+[[nodiscard]] std::vector<std::string> left_out_texts(const config::UnitConfig& unit,
+                                                      const files::RecordingFile& file);
 
 }  // namespace mpm::report

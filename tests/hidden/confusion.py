@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """What `mpm diagnose` says first of nonlinear plants, beside what another program says of the same
-ones where one is given: confusion.py BUILD [--before MPM] [--seeds FIRST-LAST] [--markdown FILE]. mpm_hidden writes the cases with its hard setting, mpmsim those
-of a gain that goes with where the channel stands.
+ones where one is given: confusion.py BUILD [--before MPM] [--seeds FIRST-LAST] [--markdown FILE].
+mpm_hidden writes the cases with its hard setting, mpmsim those of a gain that goes with where the
+channel stands.
 Standard library only. Seeds below 1000 are for scores, from 100001 on for tuning."""
 import argparse
 import concurrent.futures

@@ -98,7 +98,7 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
   const auto straightened = [&](const Effect& effect) {
     const auto channels = channels_of(effect, problem.model(), problem.surroundings().model_inputs);
     if (!cause_of(effect).is_curve() || !witness.given_nonlinear.bends(channels)) return false;
-    if (!after_nonlinear) after_nonlinear = witness.of(repaired, OwnPast::kSlowToo);
+    if (!after_nonlinear) after_nonlinear = witness.of(repaired, OwnPast::kAsMonitor);
     return !after_nonlinear->bends(channels);
   };
   for (std::size_t i = 0; i < tested.size(); ++i) {

@@ -259,7 +259,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   if (!diagnosis.reason.empty()) return diagnosis;
   const ModelSpec tested = with_aux_inputs(base, measured);
   const ChannelTests tests(tested, measured, residuals);
-  const ChannelTests by_monitor(tested, measured, residuals, OwnPast::kSlowToo);
+  const ChannelTests by_monitor(tested, measured, residuals, OwnPast::kAsMonitor);
   recording.changed = change_row(tested, measured, residuals, tests);
   diagnosis.fit_samples = validation ? samples : fitted_rows(recording, settings.fit_share);
   diagnosis.validation_samples =
@@ -334,18 +334,15 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
       (made ? diagnosis.refused : diagnosis.findings).push_back(std::move(late));
     }
   diagnosis.rejected = rejected_channels(base, tests, diagnosis);
-  const std::vector<Place> too = rejected_channels(base, by_monitor, diagnosis);
-  std::erase_if(diagnosis.rejected, [&](const Place& at) {  // by both, or not
-    return std::find(too.begin(), too.end(), at) == too.end();
+  const std::vector<Place> by_monitor_too = rejected_channels(base, by_monitor, diagnosis);
+  std::erase_if(diagnosis.rejected, [&](const Place& at) {
+    return std::find(by_monitor_too.begin(), by_monitor_too.end(), at) == by_monitor_too.end();
   });
+  // Beside a change half-way the nonlinear test sees bends that are not there.
+  if (diagnosis.findings.empty()) diagnosis.bent = bent_channels(base, by_monitor, diagnosis);
   const std::size_t doubted =
       std::erase_if(diagnosis.rejected, [&](const Place& at) { return compressed.cv(at.cv); });
-  const bool repaired_some = std::find(in.begin(), in.end(), true) != in.end();
-  if (diagnosis.findings
-          .empty())  // beside a change half-way the test sees bends that are not there
-    diagnosis.bent = bent_channels(
-        base, repaired_some ? witness.of(extended, OwnPast::kSlowToo) : by_monitor, diagnosis);
-  if (!diagnosis.rejected.empty() && repaired_some)
+  if (!diagnosis.rejected.empty() && std::find(in.begin(), in.end(), true) != in.end())
     keep_rejected(ChannelTests(tested, measured, free_run_residuals(extended, recording)),
                   diagnosis.rejected);
   decide(least_explained(residuals, recording.cvs),

@@ -54,7 +54,7 @@ struct Diagnosis {
   std::optional<Finding> suspect;
   /// Channels that the calibrated test surely rejects and that nothing named or seen is about.
   std::vector<Place> rejected;
-  /// Likewise those of which its nonlinear test says that no linear model fits them.
+  /// Where nothing was found: those of which its nonlinear test says that no linear model fits.
   std::vector<Place> bent;
   std::vector<InputMovement> inputs;  ///< MVs, then DVs
   std::vector<Pulse> unanswered;      ///< of inputs: taken as not known, for the plant saw none

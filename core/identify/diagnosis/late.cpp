@@ -90,6 +90,7 @@ std::vector<Finding> begun_late(const ModelSpec& model, const ModelSpec& tested,
   const Eigen::MatrixXd residuals = free_run_residuals(model, recording);
   const ChannelTests before(tested, part(measured, 0, from), residuals.topRows(from));
   const ChannelTests since(tested, part(measured, from, rest), residuals.bottomRows(rest));
+  // These rows are mostly too few for the nonlinear test.
   const auto may_name = nameable(model, ranges, since, since, outside_shares);
   settings.may_name = [&](const Effect& effect) {
     if (effect.place.aux >= ranges.aux || !may_name(effect)) return false;

@@ -28,8 +28,9 @@ double mean_square_step(const Eigen::Ref<const VectorXd>& values) {
 }
 
 /// All rows, where there are set-points and not too many rows; else 0, and none is followed.
-Index rows_to_follow(const Recording& recording) {
-  const bool can = recording.setpoints.cols() > 0 && recording.samples() <= kMostRemembered;
+Index rows_to_follow(const Recording& recording, OwnPast past) {
+  const bool can = past == OwnPast::kLags && recording.setpoints.cols() > 0 &&
+                   recording.samples() <= kMostRemembered;
   return can ? recording.samples() : 0;
 }
 
@@ -54,8 +55,9 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       masked_(p_values_.size(), 1.0),
       bends_(p_values_.size(), false),
       setpoints_(static_cast<std::size_t>(model.cv_count), RivalSignal{.loses = false}) {
+  const Index to_follow = rows_to_follow(recording, past);
   const RegressedRecording regressed =
-      regress_recording(model, recording, residuals, rows_to_follow(recording), past);
+      regress_recording(model, recording, residuals, to_follow, past);
   if (!regressed.detector) return;
   MismatchDetector& detector = *regressed.detector;
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -76,7 +78,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       bends_[channel] = regressed.nonlinear && regressed.nonlinear->result(cv, input).verdict ==
                                                    NonlinearVerdict::kNonlinear;
     }
-    if (rows_to_follow(recording) > 0 && reject(channels_to(cv)))
+    if (to_follow > 0 && reject(channels_to(cv)))
       setpoints_[static_cast<std::size_t>(cv)] = detector.rival(
           cv, regressed.setpoints->followed(cv, detector.history(), detector.regression(cv)));
   }

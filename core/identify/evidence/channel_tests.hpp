@@ -45,7 +45,7 @@ class ChannelTests {
   }
   /// What the set-points say of a CV in which something is off, beside errors of its channels:
   /// whether the one that says most explains clearly more or less than those. Where nothing is off,
-  /// or the recording is too long to look, nothing loses or wins.
+  /// the recording is too long to look, or with the past as the monitor's, nothing loses or wins.
   [[nodiscard]] const RivalSignal& setpoint(int cv) const {
     return setpoints_[static_cast<std::size_t>(cv)];
   }
@@ -59,7 +59,7 @@ class ChannelTests {
   /// Whether other inputs undo most of what the input of some of these channels does, so that small
   /// errors of any kind are large ones of what is left.
   [[nodiscard]] bool undone(const std::vector<std::pair<int, int>>& channels) const;
-  /// Whether the nonlinear test of the monitor, where it was asked (`OwnPast::kSlowToo`), says of
+  /// Whether the nonlinear test of the monitor, where it was asked (`OwnPast::kAsMonitor`), says of
   /// some of these channels that no linear error explains what they do.
   [[nodiscard]] bool bends(const std::vector<std::pair<int, int>>& channels) const;
   /// All channels to a CV, as (CV, input).

@@ -20,7 +20,7 @@ namespace {
 RegressionShape shape_of(const ModelSpec& model, const DerivedSettings& derived, OwnPast past) {
   RegressionShape shape{model.input_count, model.cv_count, derived.fir_lags, derived.residual_order,
                         derived.tail_poles};
-  if (past == OwnPast::kSlowToo) shape.residual_poles = derived.residual_poles;
+  if (past == OwnPast::kAsMonitor) shape.residual_poles = derived.residual_poles;
   return shape;
 }
 
@@ -63,11 +63,11 @@ RegressedRecording regress_recording(const ModelSpec& model, const Recording& re
   result.detector = std::make_unique<MismatchDetector>(shape_of(model, *settings, past),
                                                        std::vector{MemoryLength{}}, depth,
                                                        settings->evaluation_stride, linear);
-  if (recording.setpoints.cols() > 0)
+  if (past == OwnPast::kLags && recording.setpoints.cols() > 0)
     result.setpoints = std::make_unique<OutsideSignals>(
         result.detector->shape(), static_cast<int>(recording.setpoints.cols()),
         settings->outside_poles, depth);
-  if (past == OwnPast::kSlowToo) {
+  if (past == OwnPast::kAsMonitor) {
     const double rate = settings->false_alarm_rate / (model.input_count * model.cv_count);
     result.nonlinear = std::make_unique<NonlinearDetector>(
         result.detector->shape(), linear,

@@ -13,10 +13,10 @@ namespace mpm {
 
 /// What of a CV's own past a regression knows.
 enum class OwnPast {
-  kLags,     ///< a loop that swings by itself, as with a sticking valve, is predicted as well by
-             ///< slow means of its past as by its input
-  kSlowToo,  ///< the monitor's: noise that wanders is predicted from far back; with its nonlinear
-             ///< test, which needs that
+  kLags,       ///< a loop that swings by itself, as with a sticking valve, is predicted as well by
+               ///< slow means of its past as by its input
+  kAsMonitor,  ///< slow means too: noise that wanders is predicted from far back, without which
+               ///< the nonlinear test, which then goes along, would see what is not there
 };
 
 /// The monitor's regression of a recording, and the recording's set-points beside it.

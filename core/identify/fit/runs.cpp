@@ -20,6 +20,8 @@ Index longest_gap(const ModelSpec& model) {
   return static_cast<Index>(std::ceil(slowest_s / model.sample_time_s));
 }
 
+Index longest_loss() { return static_cast<Index>(kShortestLongGap); }
+
 namespace {
 
 // Where `values` are unknown for too long: rows that have no CV either are a gap, not a loss.
@@ -33,7 +35,7 @@ std::vector<Run> losses(const Eigen::Ref<const Eigen::VectorXd>& values, const M
       beside += cvs.row(k).array().isFinite().any() ? 1 : 0;
       continue;
     }
-    if (static_cast<double>(beside) > kShortestLongGap) found.push_back(stretch);
+    if (beside > longest_loss()) found.push_back(stretch);
     stretch.count = beside = 0;
   }
   return found;

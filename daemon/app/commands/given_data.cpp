@@ -61,13 +61,10 @@ Recording read(const std::string& file, const config::UnitConfig& unit,
   count(data.long_gaps, "gap",
         " of more than " + std::to_string(data.longest_gap) +
             " intervals; a new run begins after each");
-  count(data.lost, "row",
-        " left out, for an input was missing for more than 20 intervals; a new run begins after");
-  count(data.scraps, "row", " left out, of runs too short to tell anything");
   count(data.out_of_order, "row", " left out, for the time does not grow");
   count(data.bad_values, "value",
         " of inputs and CVs missing or bad" + report::worst_tags(data.bad_tags));
-  if (const std::string text = report::left_out_text(unit, data.jumps); !text.empty())
+  for (const std::string& text : report::left_out_texts(unit, data))
     notices.push_back(prefix + text);
   return std::move(data.recording);
 }

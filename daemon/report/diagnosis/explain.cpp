@@ -76,7 +76,7 @@ std::string difference_headline(const DiagnosisRun& run) {
   };
   const std::vector<Finding>& findings = run.diagnosis.findings;
   const bool disturbed = !findings.empty() && run.diagnosis.unexplained.empty() &&
-                         run.diagnosis.rejected.empty() && run.diagnosis.bent.empty() &&
+                         run.diagnosis.rejected.empty() &&
                          std::all_of(findings.begin(), findings.end(), from_outside);
   const std::string model = "model of " + run.unit.unit;
   if (!disturbed) return "The " + model + " does not match the plant: ";

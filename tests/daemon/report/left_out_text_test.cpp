@@ -4,7 +4,7 @@
 
 namespace mpm::report {
 
-TEST_CASE("values that were left out are told with their tags") {
+TEST_CASE("what was left out is told, values with their tags") {
   config::UnitConfig unit;
   unit.mv.resize(1);
   unit.mv[0].tag = "u";
@@ -12,10 +12,19 @@ TEST_CASE("values that were left out are told with their tags") {
   unit.dv[0].tag = "d";
   unit.cv.resize(1);
   unit.cv[0].tag = "y";
-  CHECK(left_out_text(unit, {{0, 0}, {0}}).empty());
-  CHECK(left_out_text(unit, {{0, 2}, {1}}) ==
-        "3 values left out, far beyond all that the signal had been and back at once, of d (2), y "
-        "(1)");
+  files::RecordingFile file;
+  file.jumps = {{0, 0}, {0}};
+  CHECK(left_out_texts(unit, file).empty());
+  file.jumps = {{0, 2}, {1}};
+  file.lost = 300;
+  file.scraps = 1;
+  CHECK(left_out_texts(unit, file) ==
+        std::vector<std::string>{
+            "300 rows left out, for an input was missing for more than 20 intervals; a new run "
+            "begins after",
+            "1 row left out, of runs too short to tell anything",
+            "3 values left out, far beyond all that the signal had been and back at once, of d "
+            "(2), y (1)"});
 }
 
 }  // namespace mpm::report

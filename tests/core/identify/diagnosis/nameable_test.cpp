@@ -55,7 +55,7 @@ TEST_CASE("a curve may be named where the nonlinear test sees it, moved by feedb
   const Bench bench;
   const Recording recording = test::recording_of(u, residuals);
   const ChannelTests linear(bench.model, recording, residuals);
-  const ChannelTests nonlinear(bench.model, recording, residuals, OwnPast::kSlowToo);
+  const ChannelTests nonlinear(bench.model, recording, residuals, OwnPast::kAsMonitor);
   const std::vector<std::optional<double>> by_feedback{0.1, 0.1};
   const auto may = [&](const ChannelTests& asked, const Cause& cause, const Place& place) {
     Effect effect;

@@ -35,7 +35,6 @@ TEST_CASE("a model is said to hold beside a disturbance only where its gains are
   REQUIRE(run.diagnosis.findings.size() == 1);
   run.diagnosis.unexplained.clear();
   run.diagnosis.rejected.clear();
-  run.diagnosis.bent.clear();
   run.diagnosis.channels.assign(1, {});
   Parameter& gain = run.diagnosis.channels[0].gain_ratio;
   gain.low = 0.9;
