@@ -65,6 +65,9 @@ inline constexpr double kBlockSquare = 1.0;
 namespace rows_needed {
 inline constexpr double kPerColumn = 5.0;
 inline constexpr double kMorePerColumn = 20.0;  ///< where tails are as heavy as below
+/// Share of them below which a memory that had spoken falls silent. Chosen: a verdict comes once,
+/// not with each error beyond the clip that is still to be expected of normal noise.
+inline constexpr double kKept = 0.6;
 }  // namespace rows_needed
 
 /// Shares of clipped rows (beyond row_weights::kClip) from which on tails count as somewhat and as

@@ -24,6 +24,7 @@ struct RegressionMemory {
   double weight_square = 0.0;  ///< W2 = sum lambda^(2 age)
   int rows = 0;
   double heavy_tails = 0.0;  ///< 0..1, asks for more rows
+  bool spoke = false;        ///< since it was cleared: a few errors more do not silence it again
 
   /// Takes the first `count` rows of a batch, oldest first; consumes them.
   void take(RowBatch& batch, int count) {
@@ -39,22 +40,29 @@ struct RegressionMemory {
     factor.clear();
     weight_sum = weight_square = 0.0;
     rows = 0;
+    spoke = false;
   }
   template <class Archive>
   void archive(Archive& a) {
     // not archived: length (construction)
-    a(factor, weight_sum, weight_square, rows, heavy_tails);
+    a(factor, weight_sum, weight_square, rows, heavy_tails, spoke);
   }
   /// W1^2 / W2: rows that equal weights would need for the same precision.
   [[nodiscard]] double effective_rows() const {
     return weight_square > 0.0 ? weight_sum * weight_sum / weight_square : 0.0;
   }
   [[nodiscard]] double freedom() const { return effective_rows() - factor.columns(); }
+  /// Of the noise whose errors came meanwhile.
+  void follow_tails(double heavy) {
+    heavy_tails = heavy;
+    spoke = ready();
+  }
   /// Enough rows for the evidence to mean anything.
   [[nodiscard]] double needed_rows() const {
-    return (calibration::rows_needed::kPerColumn +
-            calibration::rows_needed::kMorePerColumn * heavy_tails) *
-           factor.columns();
+    const double needed = (calibration::rows_needed::kPerColumn +
+                           calibration::rows_needed::kMorePerColumn * heavy_tails) *
+                          factor.columns();
+    return spoke ? calibration::rows_needed::kKept * needed : needed;
   }
   [[nodiscard]] bool ready() const { return rows >= needed_rows() && ready_but_for_tails(); }
   /// Enough rows were the noise normal.

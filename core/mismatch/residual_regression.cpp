@@ -166,7 +166,7 @@ void ResidualRegression::weigh(int oldest, int newest, const RowWorkspace& work)
     ++k;
   }
   if (!noise_.known() || count == 0) return;
-  for (RegressionMemory& memory : memories_) memory.heavy_tails = noise_.heavy_tails();
+  for (RegressionMemory& memory : memories_) memory.follow_tails(noise_.heavy_tails());
 }
 
 void ResidualRegression::copy_weighed(int k, double weight, RowWorkspace& work) const {
@@ -220,7 +220,7 @@ void ResidualRegression::settle(int newest, const RegressionHistory& history, Ro
     }
   }
   for (int age = span_ - 1; age >= newest; --age) scales_.set(age, noise_.scale());
-  for (RegressionMemory& memory : memories_) memory.heavy_tails = noise_.heavy_tails();
+  for (RegressionMemory& memory : memories_) memory.follow_tails(noise_.heavy_tails());
 }
 
 // Into `left_` what the fit leaves of each row, in CV units, its leverage taken out; their s.d. by
