@@ -52,12 +52,14 @@ struct RegressionMemory {
     return weight_square > 0.0 ? weight_sum * weight_sum / weight_square : 0.0;
   }
   [[nodiscard]] double freedom() const { return effective_rows() - factor.columns(); }
-  /// Of the noise whose errors came meanwhile.
+  /// Takes what errors now say of the tails, 0..1. Asked before as well: it may have spoken by what
+  /// they said until now.
   void follow_tails(double heavy) {
+    spoke = ready();
     heavy_tails = heavy;
     spoke = ready();
   }
-  /// Enough rows for the evidence to mean anything.
+  /// Rows that it takes to speak, or to go on speaking.
   [[nodiscard]] double needed_rows() const {
     const double needed = (calibration::rows_needed::kPerColumn +
                            calibration::rows_needed::kMorePerColumn * heavy_tails) *

@@ -34,6 +34,16 @@ TEST_CASE("a verdict does not go again because of one error more") {
   CHECK_FALSE(memory.ready());
 }
 
+TEST_CASE("what spoke by the tails of before is not silenced by the next error") {
+  RegressionMemory memory = with_rows(10, 80);
+  memory.follow_tails(0.2);  // 90
+  REQUIRE_FALSE(memory.ready());
+  memory.rows = 90;
+  REQUIRE(memory.ready());
+  memory.follow_tails(0.3);
+  CHECK(memory.ready());
+}
+
 TEST_CASE("a memory that is cleared has not spoken") {
   RegressionMemory memory = with_rows(10, 100);
   memory.follow_tails(0.2);
