@@ -5,9 +5,10 @@
 namespace mpm {
 namespace {
 
-// As many rows as a memory of so many columns would have taken, each of weight 1.
-RegressionMemory with_rows(int columns, int rows) {
+// As a memory of so many columns is after so many rows of weight 1; the tails are known before.
+RegressionMemory with_rows(int columns, int rows, double tails) {
   RegressionMemory memory(columns, {});
+  memory.follow_tails(tails);
   memory.rows = rows;
   memory.weight_sum = memory.weight_square = rows;
   return memory;
@@ -15,16 +16,14 @@ RegressionMemory with_rows(int columns, int rows) {
 
 // 5 rows per column, and up to 20 more where the tails are heavy.
 TEST_CASE("a memory that has not spoken waits for the rows that its tails ask for") {
-  RegressionMemory memory = with_rows(10, 100);
-  memory.follow_tails(0.3);  // 110
+  RegressionMemory memory = with_rows(10, 100, 0.3);  // 110
   CHECK_FALSE(memory.ready());
   memory.rows = 110;
   CHECK(memory.ready());
 }
 
 TEST_CASE("a verdict does not go again because of one error more") {
-  RegressionMemory memory = with_rows(10, 100);
-  memory.follow_tails(0.2);  // 90
+  RegressionMemory memory = with_rows(10, 100, 0.2);  // 90
   REQUIRE(memory.ready());
   memory.follow_tails(0.3);
   CHECK(memory.ready());
@@ -35,8 +34,7 @@ TEST_CASE("a verdict does not go again because of one error more") {
 }
 
 TEST_CASE("what spoke by the tails of before is not silenced by the next error") {
-  RegressionMemory memory = with_rows(10, 80);
-  memory.follow_tails(0.2);  // 90
+  RegressionMemory memory = with_rows(10, 80, 0.2);  // 90
   REQUIRE_FALSE(memory.ready());
   memory.rows = 90;
   REQUIRE(memory.ready());
@@ -45,7 +43,7 @@ TEST_CASE("what spoke by the tails of before is not silenced by the next error")
 }
 
 TEST_CASE("a memory that is cleared has not spoken") {
-  RegressionMemory memory = with_rows(10, 100);
+  RegressionMemory memory = with_rows(10, 100, 0.2);
   memory.follow_tails(0.2);
   REQUIRE(memory.spoke);
   memory.clear();
