@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
@@ -234,7 +235,7 @@ struct Outcome {
 /// go on from where they were: what has gone is lost, and with it any alarm but that of the last
 /// quarter, which comes whole behind the last cut. That one may take its time: a change makes
 /// errors that look like heavy tails, with which a memory that has not spoken yet waits for 25 rows
-/// per column (calibration::rows_needed), of which there are some 55 here.
+/// per column (calibration::rows_needed), of which there are 53 here.
 Outcome run_over_cuts(const std::string& test, int cuts, Cut kind, std::uint64_t seed) {
   Machine machine(test);
   const std::vector<Frame> frames = frames_with_alarms(kind == Cut::kTorn ? kWaitedFor : 0);
