@@ -59,24 +59,17 @@ inline constexpr double kBlock = 0.26;  ///< of the test of the whole block, 1
 inline constexpr double kBlockSquare = 1.0;
 }  // namespace few_rows
 
-/// Rows that a memory must hold before anything is said. With four per column p < 1e-4 still comes
-/// seven times too often, with five as often as it should; heavy tails (t with 2.5 degrees of
-/// freedom) take up to 25. Fitted likewise (docs/validation.md)
+/// Rows that a memory must hold before anything is said. Fitted likewise (docs/validation.md)
 namespace rows_needed {
 inline constexpr double kPerColumn = 5.0;
-inline constexpr double kMorePerColumn = 20.0;  ///< where tails are as heavy as below
-/// Share of them below which a memory that had spoken falls silent. Chosen: a verdict comes once,
-/// not with each error beyond the clip that is still to be expected of normal noise.
-inline constexpr double kKept = 0.6;
 }  // namespace rows_needed
 
 /// Shares of clipped rows (beyond row_weights::kClip) from which on tails count as somewhat and as
-/// very heavy; normal noise has 0.0027. With heavy tails and 528 rows p < 0.01 came in 10 % of
-/// healthy channels. Fitted likewise (docs/validation.md)
+/// very heavy; normal noise has 0.0027. Fitted likewise (docs/validation.md)
 namespace heavy_tails {
 inline constexpr double kFromShare = 0.008;
 inline constexpr double kFullShare = 0.02;
-/// Rows that stand behind the presumption that a new CV's tails are heavy. Chosen.
+/// Rows that stand behind the presumption that they are not. Chosen.
 inline constexpr double kPriorRows = 200.0;
 }  // namespace heavy_tails
 
@@ -90,10 +83,17 @@ inline constexpr double kClip = 3.0;
 /// The same where a change is looked for: after one many rows surprise, and they are what tells of
 /// it. Chosen (tests/core/mismatch/change_scan_test.cpp).
 inline constexpr double kLenientClip = 6.0;
-/// Rows per column that give the first estimate of the noise level. Chosen: half of them are left
-/// for it.
-inline constexpr int kFirstRowsPerColumn = 2;
-/// After a fresh start as many rows are weighed together, by what the fit leaves of them, so often.
+/// Where tails are heavy a row whose leverage, in units of the noise variance, is above this counts
+/// for part of one, of a direction never seen for the least part. Chosen on such tails, seeds from
+/// 100001 on: with 4 in place of 2 p < 1e-4 comes twice as often. What is known of a direction
+/// trebles with each row that counts for a part: after four moves of an input that had stood still
+/// a fifth is whole.
+inline constexpr double kMostLeverage = 2.0;
+inline constexpr double kLeastShare = 0.02;
+/// Rows per column that give the first estimate of the noise level. Chosen: two thirds of them are
+/// left for it.
+inline constexpr int kFirstRowsPerColumn = 3;
+/// After each start as many rows are weighed together, by what the fit leaves of them, so often.
 /// Chosen: a wild row among them has lost its weight then (residual_regression_test).
 inline constexpr int kSettlingTurns = 5;
 /// Of a row that the fit follows nearly all the way no less than this is taken to be left, as a

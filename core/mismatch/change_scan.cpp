@@ -113,7 +113,7 @@ void ChangeScan::name_input(const Rows& rows, ChangePoint& change) {
 }
 
 ChangeScan::InputFit ChangeScan::best_input(const Rows& rows, int samples, bool strict) {
-  const int count = fit_input(rows, -1, samples, strict, lead_in_);
+  const double count = fit_input(rows, -1, samples, strict, lead_in_);
   const double nothing = lead_in_.residual_square(0);
   double least = std::numeric_limits<double>::infinity();
   InputFit best;
@@ -124,7 +124,7 @@ ChangeScan::InputFit ChangeScan::best_input(const Rows& rows, int samples, bool 
     best.input = input;
   }
   const int block = shape_.block();
-  const int freedom = count - shape_.lead_in() - block;
+  const double freedom = count - shape_.lead_in() - block;
   if (freedom < calibration::change_scan::kFewestFreedom || !(least > 0.0)) return best;
   best.numerator = block;
   best.denominator = freedom;
@@ -133,13 +133,15 @@ ChangeScan::InputFit ChangeScan::best_input(const Rows& rows, int samples, bool 
   return best;
 }
 
-// The last samples' rows on the lead-in and, where `input` >= 0, its block; how many they are.
-int ChangeScan::fit_input(const Rows& rows, int input, int samples, bool strict, GivensQr& factor) {
+// The last samples' rows on the lead-in and, where `input` >= 0, its block; how many they count
+// for.
+double ChangeScan::fit_input(const Rows& rows, int input, int samples, bool strict,
+                             GivensQr& factor) {
   factor.clear();
-  int count = 0;
+  double count = 0.0;
   for (int age = samples - 1; age >= 0; --age) {
-    const double weight =
-        strict ? rows.regression.row_weight(age) : rows.regression.lenient_weight(age);
+    const ResidualRegression& regression = rows.regression;
+    const double weight = strict ? regression.row_weight(age) : regression.lenient_weight(age);
     if (!(weight > 0.0)) continue;
     double* row = feed_.next_row(factor);
     rows.regression.fill_lead_in(rows.history, age, row);
@@ -149,7 +151,7 @@ int ChangeScan::fit_input(const Rows& rows, int input, int samples, bool strict,
     }
     row[factor.columns()] = rows.history.residual(rows.cv, age);
     for (int c = 0; c <= factor.columns(); ++c) row[c] *= weight;
-    ++count;
+    count += strict ? regression.row_share(age) : 1.0;
   }
   feed_.flush(factor);
   return count;

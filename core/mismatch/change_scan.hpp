@@ -87,7 +87,7 @@ class ChangeScan {
   };
   void name_input(const Rows& rows, ChangePoint& change);
   [[nodiscard]] InputFit best_input(const Rows& rows, int samples, bool strict);
-  int fit_input(const Rows& rows, int input, int samples, bool strict, GivensQr& factor);
+  double fit_input(const Rows& rows, int input, int samples, bool strict, GivensQr& factor);
 
   RegressionShape shape_;
   RowFeed feed_;

@@ -66,7 +66,7 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
   if (count == 0 || span < first + count) return std::nullopt;
   GivensQr factor(first + count, 1);
   RowFeed feed(first + count + 1);
-  int rows = 0;
+  double rows = 0.0;
   for (int age = span - 1; age >= 0; --age) {
     const double weight = regression.row_weight(age);
     if (!(weight > 0.0)) continue;
@@ -75,10 +75,10 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
     terms.fill(age, row + first);
     row[first + count] = history.residual(cv, age);
     for (int c = 0; c <= first + count; ++c) row[c] *= weight;
-    ++rows;
+    rows += regression.row_share(age);
   }
   feed.flush(factor);
-  const int freedom = rows - first - count;
+  const double freedom = rows - first - count;
   if (freedom < limits::kFreedomPerColumn * count) return std::nullopt;
   const double variance = factor.residual_square(0) / freedom;
   if (!(variance > 0.0)) return std::nullopt;

@@ -27,6 +27,7 @@ struct RegressionShape {
   std::vector<double> start_poles = {};
   int terms = 0;  ///< columns of Volterra terms behind the lead-in, of a CV that has some
   std::vector<double> residual_poles = {};  ///< q_t in (0, 1)
+  bool bounded = true;  ///< no row decides a direction where tails are heavy (`NoiseLevel`)
 
   [[nodiscard]] int block() const { return fir_lags + static_cast<int>(tail_poles.size()); }
   /// Columns of a CV's own past.

@@ -20,19 +20,18 @@ struct RegressionMemory {
 
   MemoryLength length;
   GivensQr factor;
-  double weight_sum = 0.0;     ///< W1 = sum lambda^age
-  double weight_square = 0.0;  ///< W2 = sum lambda^(2 age)
+  double weight_sum = 0.0;     ///< W1 = sum lambda^age share
+  double weight_square = 0.0;  ///< W2 = sum (lambda^age share)^2
   int rows = 0;
-  double heavy_tails = 0.0;  ///< 0..1, asks for more rows
-  bool spoke = false;        ///< since it was cleared: a few errors more do not silence it again
 
-  /// Takes the first `count` rows of a batch, oldest first; consumes them.
-  void take(RowBatch& batch, int count) {
+  /// Takes the first `count` rows of a batch, oldest first, of which each counts for its share of a
+  /// row (`RowWeight`); consumes them.
+  void take(RowBatch& batch, const double* shares, int count) {
     const double lambda = length.lambda;
     factor.update_batch(batch, count, lambda);
     for (int k = 0; k < count; ++k) {
-      weight_sum = lambda * weight_sum + 1.0;
-      weight_square = lambda * lambda * weight_square + 1.0;
+      weight_sum = lambda * weight_sum + shares[k];
+      weight_square = lambda * lambda * weight_square + shares[k] * shares[k];
     }
     rows += count;
   }
@@ -40,37 +39,23 @@ struct RegressionMemory {
     factor.clear();
     weight_sum = weight_square = 0.0;
     rows = 0;
-    spoke = false;
   }
   template <class Archive>
   void archive(Archive& a) {
     // not archived: length (construction)
-    a(factor, weight_sum, weight_square, rows, heavy_tails, spoke);
+    a(factor, weight_sum, weight_square, rows);
   }
   /// W1^2 / W2: rows that equal weights would need for the same precision.
   [[nodiscard]] double effective_rows() const {
     return weight_square > 0.0 ? weight_sum * weight_sum / weight_square : 0.0;
   }
   [[nodiscard]] double freedom() const { return effective_rows() - factor.columns(); }
-  /// Takes what errors now say of the tails, 0..1. Asked before as well: it may have spoken by what
-  /// they said until now.
-  void follow_tails(double heavy) {
-    spoke = ready();
-    heavy_tails = heavy;
-    spoke = ready();
-  }
-  /// Rows that it takes to speak, or to go on speaking.
+  /// Rows that it takes to say anything.
   [[nodiscard]] double needed_rows() const {
-    const double needed = (calibration::rows_needed::kPerColumn +
-                           calibration::rows_needed::kMorePerColumn * heavy_tails) *
-                          factor.columns();
-    return spoke ? calibration::rows_needed::kKept * needed : needed;
+    return calibration::rows_needed::kPerColumn * factor.columns();
   }
-  [[nodiscard]] bool ready() const { return rows >= needed_rows() && ready_but_for_tails(); }
-  /// Enough rows were the noise normal.
-  [[nodiscard]] bool ready_but_for_tails() const {
-    return rows >= calibration::rows_needed::kPerColumn * factor.columns() &&
-           freedom() >= factor.columns();
+  [[nodiscard]] bool ready() const {
+    return rows >= needed_rows() && freedom() >= factor.columns();
   }
 };
 

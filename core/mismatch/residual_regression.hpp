@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -25,6 +26,7 @@ struct RowWorkspace {
   RowBatch rows;     ///< as they are
   RowBatch weighed;  ///< consumed by the factors
   std::vector<int> ages;
+  std::vector<double> shares;
   std::vector<GivensQr::Preview> previews;
 };
 
@@ -82,12 +84,15 @@ class ResidualRegression {
   [[nodiscard]] int span() const { return span_; }
   /// Weight that multiplies the row of age `age`, 0 where there is none; 1 / CV units.
   [[nodiscard]] double row_weight(int age) const { return weights_.window()[age]; }
-  /// The same with rows clipped later: after a change many rows surprise, and they are what tells
-  /// of it.
+  /// What it counts for (`RowWeight`).
+  [[nodiscard]] double row_share(int age) const { return shares_.window()[age]; }
+  /// Weight with rows clipped later, each of which counts whole: after a change many rows surprise,
+  /// and they are what tells of it.
   [[nodiscard]] double lenient_weight(int age) const {
     constexpr double kLenience =
         calibration::row_weights::kLenientClip / calibration::row_weights::kClip;
-    return std::min(kLenience * row_weight(age), 1.0 / scales_.window()[age]);
+    return std::min(kLenience * row_weight(age) / std::sqrt(row_share(age)),
+                    1.0 / scales_.window()[age]);
   }
 
   /// `model`: the one that terms are made of; the history's depth is that of their windows.
@@ -95,17 +100,33 @@ class ResidualRegression {
                const RowWorkspace& work);
 
  private:
+  /// What the fit leaves of one of the first rows: its error, CV units, its leverage taken out, and
+  /// that leverage, of the whole row against all others.
+  struct FirstRow {
+    double error = 0.0;
+    double leverage = 0.0;
+  };
+
   void make_room(const VolterraTerms& terms);
   [[nodiscard]] int patience(const RowWorkspace& work) const;
   void take(int oldest, int newest, const RegressionHistory& history, RowWorkspace& work);
   void gather(int oldest, int newest, const RegressionHistory& history, RowWorkspace& work) const;
   void preview(RowWorkspace& work) const;
   void weigh(int oldest, int newest, const RowWorkspace& work);
-  void copy_weighed(int k, double weight, RowWorkspace& work) const;
+  void weigh_row(int age, const RowWeight& weight);
+  void weigh_copy(std::size_t k, double weight, RowWorkspace& work) const;
+  void copy_weighed(int age, const RegressionHistory& history, RowWorkspace& work) const;
+  [[nodiscard]] static bool full(const RowWorkspace& work);
+  void take_weighed(RegressionMemory& memory, RowWorkspace& work) const;
+  [[nodiscard]] int first_rows() const {
+    return calibration::row_weights::kFirstRowsPerColumn * columns_ + cv_;
+  }
   void begin_noise();
   void reserve_first_rows();
   void settle(int newest, const RegressionHistory& history, RowWorkspace& work);
   [[nodiscard]] double spread(int newest, const RegressionHistory& history, RowWorkspace& work);
+  [[nodiscard]] FirstRow first_row(int age, const GivensQr::Preview& left) const;
+  [[nodiscard]] double clipped_share(double scale) const;
   void slide(std::size_t index, const RegressionHistory& history, RowWorkspace& work);
   void refill(RegressionMemory& memory, int samples, const RegressionHistory& history,
               RowWorkspace& work) const;
@@ -117,14 +138,16 @@ class ResidualRegression {
   int span_ = 0;
   int waiting_ = 0;  // samples since the last fold
   std::uint64_t restarts_ = 0;
-  bool settled_ = true;  // false: since a fresh start rows are too few to be weighed
+  bool settled_ = false;  // rows since the last start are enough to be weighed
   NoiseLevel noise_;
   LagWindow weights_;  // per sample: 1 / scale, times the clip; 0 = no row, < 0: it waits
+  LagWindow shares_;   // per sample, 0..1
   LagWindow scales_;   // per sample: the noise level before it
   std::optional<VolterraTerms> terms_;
   std::vector<RegressionMemory> memories_;
-  std::vector<double> left_, sorted_;  // of the first rows since a fresh start
-  std::vector<int> slides_;            // per memory: samples since its window was rebuilt
+  std::vector<FirstRow> first_;  // since the last start
+  std::vector<double> sorted_;   // their errors
+  std::vector<int> slides_;      // per memory: samples since its window was rebuilt
 };
 
 }  // namespace mpm

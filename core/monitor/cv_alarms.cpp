@@ -64,16 +64,7 @@ void CvAlarms::hold() {
 void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
                     const Condition::Limits& limits) {
   ++since_scan_;
-  const RegressionMemory& memory = detector.memory(cv);
-  if (!memory.ready_but_for_tails())
-    spoken_ = 0;
-  else if (spoken_ > 0 || memory.ready())
-    ++spoken_;
-  if (!memory.ready()) {
-    hold();
-    if (shaken(cv, detector)) look_for_change(cv, false, detector, scan);
-    return;
-  }
+  if (!detector.memory(cv).ready()) return hold();
   if (isolating_) {
     if (!evaluated) return;
     isolating_ = false;
@@ -96,13 +87,6 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
   if (risen || suspicious) look_for_change(cv, risen, detector, scan);
 }
 
-// A change makes errors that look like heavy tails, under which a short memory that had spoken says
-// nothing: it would say nothing of the change either.
-bool CvAlarms::shaken(int cv, const MismatchDetector& detector) const {
-  return !isolating_ && spoken_ > 0 && since_scan_ >= change_search::kBetweenUrgent &&
-         detector.regression(cv).noise().surprise() > change_search::kUrgentSurprise;
-}
-
 void CvAlarms::look_for_change(int cv, bool risen, MismatchDetector& detector, ChangeScan& scan) {
   const bool quiet = std::none_of(before_.begin(), before_.end(),
                                   [](AlarmState state) { return state == AlarmState::kActive; });
@@ -117,9 +101,6 @@ void CvAlarms::look_for_change(int cv, bool risen, MismatchDetector& detector, C
     return;
   }
   if (!change || !certain(*change, risen)) return;
-  // What was there when the memory first spoke is no change since then.
-  const bool shaken_since = change->kind == ChangeKind::kBegan && change->samples < spoken_;
-  if (!detector.memory(cv).ready() && !shaken_since) return;
   // Behind the change for sure: rows of before it are what the fresh memory must not know.
   detector.start_afresh(cv, change->samples - change->resolution);
   isolating_ = true;

@@ -65,14 +65,13 @@ class CvAlarms {
   template <class Archive>
   void archive(Archive& a) {
     // not archived: before_, belief_ (empty between calls)
-    a(conditions_, spoken_, isolating_, change_, since_scan_);
+    a(conditions_, isolating_, change_, since_scan_);
   }
 
  private:
   void step(int cv, bool evaluated, MismatchDetector& detector, ChangeScan& scan,
             const Condition::Limits& limits);
   [[nodiscard]] Belief belief(std::size_t input) const;
-  [[nodiscard]] bool shaken(int cv, const MismatchDetector& detector) const;
   void look_for_change(int cv, bool risen, MismatchDetector& detector, ChangeScan& scan);
   void settle(int cv, const MismatchDetector& detector, const Condition::Limits& limits);
   [[nodiscard]] bool something_wrong(int cv, bool quiet, const MismatchDetector& detector) const;
@@ -82,7 +81,6 @@ class CvAlarms {
 
   std::vector<Condition> conditions_;
   std::vector<AlarmState> before_;
-  std::int64_t spoken_ = 0;  // samples since the memory was ready for once, as it last began
   bool isolating_ = false;
   Belief belief_;
   ChangePoint change_;

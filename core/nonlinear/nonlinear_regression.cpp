@@ -27,6 +27,7 @@ NonlinearRegression::NonlinearRegression(const RegressionShape& shape, int cv,
       terms_(model, cv, shape.tail_poles.front(), test, patience + 1),
       memory_(past_at() + past(), memory),
       batch_(memory_.factor.columns() + 1, kTogether),
+      shares_(kTogether, 1.0),
       patience_(patience),
       selection_(linear_columns(), terms_.columns()),
       taken_(static_cast<std::size_t>(terms_.groups())),
@@ -108,12 +109,13 @@ void NonlinearRegression::feed(const RegressionHistory& history,
   std::copy_n(lead_in_.begin() + 1, past(), row + past_at());
   row[columns] = history.residual(cv_, age);
   for (int c = 0; c <= columns; ++c) row[c] *= weight;
+  shares_[static_cast<std::size_t>(batched_)] = regression.row_share(age);
   if (++batched_ == kTogether) flush();
 }
 
 void NonlinearRegression::archive(Archive& a) {
   // not archived: shape_, cv_, patience_ (construction)
-  // not archived: batch_, batched_ (empty between calls)
+  // not archived: batch_, shares_, batched_ (empty between calls)
   // not archived: selection_, taken_, blamed_, bend_square_, lead_in_, past_factor_, coefficients_,
   // taken_off_, own_past_, rotated_, own_gain_, error_variance_, freedom_, linear_square_ (each
   // evaluation begins anew)
@@ -122,7 +124,7 @@ void NonlinearRegression::archive(Archive& a) {
 }
 
 void NonlinearRegression::flush() {
-  if (batched_ > 0) memory_.take(batch_, batched_);
+  if (batched_ > 0) memory_.take(batch_, shares_.data(), batched_);
   batched_ = 0;
 }
 

@@ -106,6 +106,7 @@ class NonlinearRegression {
   NonlinearTerms terms_;
   RegressionMemory memory_;
   RowBatch batch_;
+  std::vector<double> shares_;  // of the rows in it
   int batched_ = 0;
   int patience_;
   int waiting_ = 0;
@@ -115,7 +116,7 @@ class NonlinearRegression {
   TermSelection selection_;
   std::vector<bool> taken_;   // per group
   std::vector<bool> blamed_;  // per input
-  double bend_square_ = 0.0;  // what the groups taken in explain
+  double bend_square_ = 0.0;     // what the groups taken in explain
   std::vector<double> lead_in_;
   GivensQr past_factor_;
   Eigen::VectorXd coefficients_;

@@ -9,7 +9,7 @@
 namespace mpm::calibrate {
 
 /// Memories of these many rows per column are read; the fewest with which a residual variance means
-/// anything, up to well beyond what heavy tails need.
+/// anything, up to well beyond what is asked for.
 inline constexpr int kRowsPerColumn[] = {3, 4, 5, 6, 8, 10, 15, 20, 25, 30};
 
 /// One test of one channel, as F without the factor for few rows.

@@ -62,43 +62,97 @@ def freedom_of(rows):
     return np.sum(age) ** 2 / np.sum(age**2) - COLUMNS
 
 
-def weigh(x, y):
-    """Row weights 1 / (s max(1, |r| / 3 s)), r standardised by its own uncertainty."""
+def clip(error):
+    return min(error, 3.0)
+
+
+class Noise:
+    """Running s.d. of the errors, clipped, over 300 rows, and the share that was clipped."""
+
+    def __init__(self, scale, rows):
+        self.scale, self.rows = scale, min(max(rows, 1.0), 300.0)
+
+    def restart(self, scale, clipped):
+        self.scale, self.clipped, self.taken = scale, clipped, 0
+
+    def share(self, leverage):
+        """What a row counts for: where tails are heavy, less the more it says that is new."""
+        heavy = min(max((self.clipped - 0.008) / 0.012, 0.0), 1.0)
+        return min(max(2.0 / (heavy * leverage), 0.02), 1.0) if heavy > 0 else 1.0
+
+    def take(self, error, leverage, tells=True):
+        self.taken += 1
+        rows = min(200.0 + self.taken, 2000.0)
+        if leverage <= 2.0:  # what a wrong model does to others looks like heavy tails
+            self.clipped += ((1.0 if error > 3.0 else 0.0) - self.clipped) / rows
+        if not tells:
+            return
+        self.rows = min(self.rows + 1, 300.0)
+        self.scale *= np.sqrt(1 + (clip(error) ** 2 - 1) / self.rows)
+
+    def weight(self, error, share):
+        return np.sqrt(share) / self.scale * (clip(error) / error if error > 3.0 else 1.0)
+
+
+def predicted(x, xw, yw):
+    """Errors of rows x of (xw, yw)'s fit are y - x b; also the leverages x' (xw' xw)^-1 x."""
+    b, _ = fit(xw, yw)
+    norms = np.linalg.norm(xw, axis=0)
+    h = np.array([np.linalg.lstsq((xw / norms).T, row / norms, rcond=None)[0] for row in x])
+    return b, np.sum(h * h, axis=1)
+
+
+def first_rows(x, y, noise, weight, share):
+    """The first rows, by what the fit of all of them leaves of each, five times over."""
     count = len(y)
-    weight = np.ones(count)
-    scale, scale_rows, scaled = 1.0, 0.0, False
+    age = LAM ** ((count - 1 - np.arange(count)) / 2.0)
+    for turn in range(5):
+        b, h = predicted(x * weight[:, None], x * (age * weight)[:, None], y * age * weight)
+        # A row that counts for part of one has a larger error than it takes itself for.
+        error = np.abs(y - x @ b) / np.sqrt(np.maximum(0.02, 1 + h / share - 2 * h))
+        scale = np.sort(error)[count // 2] / 0.6745
+        leverages = h / np.maximum(0.02, 1 - h) / share
+        clipped = np.sum((error > 3.0 * scale) & (leverages <= 2.0))
+        rows = 200 + np.sum(leverages <= 2.0)
+        noise.restart(scale, 0.02 if turn == 0 else clipped / rows)
+        for row, leverage in enumerate(leverages):
+            share[row] = noise.share(leverage)
+            weight[row] = noise.weight(error[row] / scale, share[row])
+            noise.take(error[row] / scale, leverage)
+
+
+def weigh(x, y, cv):
+    """Row weights sqrt(share) / (s max(1, |r| / 3 s)), r standardised by its own uncertainty, and
+    the shares."""
+    count = len(y)
+    weight, share = np.ones(count), np.ones(count)
+    noise = None
     begin, waiting = 0, 0
     for k in range(count):
         waiting += 1
         if begin >= TOGETHER * COLUMNS and waiting < PATIENCE and k + 1 < count:
             continue
         waiting, end = 0, k + 1
-        if scaled:
-            age = LAM ** ((begin - 1 - np.arange(begin)) / 2.0)
-            xw = x[:begin] * (age * weight[:begin])[:, None]
-            b, _ = fit(xw, y[:begin] * age * weight[:begin])
-            norms = np.linalg.norm(xw, axis=0)
+        if noise:
+            age = LAM ** ((begin - 1 - np.arange(begin)) / 2.0) * weight[:begin]
+            b, h = predicted(x[begin:end], x[:begin] * age[:, None], y[:begin] * age)
             for row in range(begin, end):
-                h = np.linalg.lstsq((xw / norms).T, x[row] / scale / norms, rcond=None)[0]
-                # Of rows taken together: says more of a new direction than of the noise.
-                new = h @ h > 1.0 and end - begin > 1
-                error = abs(y[row] - x[row] @ b) / scale / np.sqrt(1 + h @ h)
-                clipped = min(error, 3.0)
-                weight[row] = (clipped / error if error > clipped else 1.0) / scale
-                if new:
-                    continue
-                scale_rows = min(scale_rows + 1, 300.0)
-                scale *= np.sqrt(1 + (clipped**2 - 1) / scale_rows)
-        elif end >= 2 * COLUMNS:
+                leverage = h[row - begin] / noise.scale**2
+                error = abs(y[row] - x[row] @ b) / noise.scale / np.sqrt(1 + leverage)
+                share[row] = noise.share(leverage)
+                weight[row] = noise.weight(error, share[row])
+                # Of rows taken together one may say more of a new direction than of the noise.
+                noise.take(error, leverage, leverage <= 1.0 or end - begin == 1)
+        elif end >= 3 * COLUMNS + cv:
             now = LAM ** ((k - np.arange(end)) / 2.0)
             _, sse = fit(x[:end] * now[:, None], y[:end] * now)
             freedom = freedom_of(end)
             scale = np.sqrt(sse / np.sum(now**2) * (freedom + COLUMNS) / max(freedom, 1.0))
-            scale_rows = min(max(freedom, 1.0), 300.0)
+            noise = Noise(scale, freedom)
             weight[:end] = 1.0 / scale
-            scaled = True
+            first_rows(x[:end], y[:end], noise, weight[:end], share[:end])
         begin = end
-    return weight
+    return weight, share
 
 
 def main():
@@ -106,11 +160,13 @@ def main():
     x, y = rows(u, e)
     count = len(x)
     age = LAM ** ((count - 1 - np.arange(count)) / 2.0)
-    w1, w2 = np.sum(age**2), np.sum(age**4)
-    freedom = w1 * w1 / w2 - COLUMNS
-    statistics = []
+    statistics, effective = [], []
     for j in range(N):
-        weight = weigh(x, y[j]) * age
+        weight, share = weigh(x, y[j], j)
+        weight *= age
+        w1, w2 = np.sum(age**2 * share), np.sum(age**4 * share**2)
+        effective.append(w1 * w1 / w2)
+        freedom = effective[-1] - COLUMNS
         xw, yw = x * weight[:, None], y[j] * weight
         _, full = fit(xw, yw)
         variance = full / w1 * (freedom + COLUMNS) / freedom
@@ -122,7 +178,7 @@ def main():
             line.append((without - full) / (BLOCK * variance) * w1 / w2)
         statistics.append(line)
     out = dict(numpy=np.__version__, inputs=M, cvs=N, fir_lags=LAGS, residual_order=ORDER,
-               tail_poles=POLES, samples=SAMPLES, patience=PATIENCE, effective_rows=w1 * w1 / w2,
+               tail_poles=POLES, samples=SAMPLES, patience=PATIENCE, effective_rows=effective,
                statistics=statistics, **{"lambda": LAM})
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "mismatch_detector.json")
     with open(path, "w") as file:

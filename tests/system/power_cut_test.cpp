@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
@@ -21,19 +20,17 @@ using history::AlarmEntry;
 using history::AlarmStore;
 
 constexpr int kFrames = 3600;
-constexpr int kWaitedFor = 1400;  // as long as a memory waits at most (`run_over_cuts`)
 constexpr std::size_t kChannels = 2;
 constexpr const char* kToken = "0123456789abcdef0123456789abcdef";
 
-/// The gain of u1 is half as large again as the model's in the second and the fourth quarter, which
-/// goes on for `more` frames.
-std::vector<Frame> frames_with_alarms(int more = 0) {
+/// The gain of u1 is half as large again as the model's in the second and the fourth quarter.
+std::vector<Frame> frames_with_alarms() {
   Plant right(2.0), wrong(3.0);  // the same moves
   std::vector<Frame> frames;
-  for (int i = 0; i < kFrames + more; ++i) {
+  for (int i = 0; i < kFrames; ++i) {
     const Frame& as_modelled = right.next();
     const Frame& otherwise = wrong.next();
-    frames.push_back(std::min(i / (kFrames / 4), 3) % 2 == 0 ? as_modelled : otherwise);
+    frames.push_back(i / (kFrames / 4) % 2 == 0 ? as_modelled : otherwise);
   }
   return frames;
 }
@@ -233,15 +230,13 @@ struct Outcome {
 /// All frames, with the power cut now and then; where only what was synced is left they go on from
 /// the first one that the disk no longer has, as a recording would bring it. Of a torn disk's they
 /// go on from where they were: what has gone is lost, and with it any alarm but that of the last
-/// quarter, which comes whole behind the last cut. That one may take its time: a change makes
-/// errors that look like heavy tails, with which a memory that has not spoken yet waits for 25 rows
-/// per column (calibration::rows_needed), of which there are 53 here.
+/// quarter, which comes whole behind the last cut.
 Outcome run_over_cuts(const std::string& test, int cuts, Cut kind, std::uint64_t seed) {
   Machine machine(test);
-  const std::vector<Frame> frames = frames_with_alarms(kind == Cut::kTorn ? kWaitedFor : 0);
+  const std::vector<Frame> frames = frames_with_alarms();
   std::mt19937_64 random(seed);
   std::size_t at = 0;
-  const std::size_t last = kind == Cut::kTorn ? kFrames * 3 / 4 : frames.size() - 100;
+  const std::size_t last = kind == Cut::kTorn ? frames.size() * 3 / 4 : frames.size() - 100;
   for (int left = cuts; left > 0; --left) {
     const std::size_t step = 1 + random() % (2 * last / static_cast<std::size_t>(cuts));
     const std::size_t until = std::min(at + step, last);

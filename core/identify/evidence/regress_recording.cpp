@@ -21,6 +21,7 @@ RegressionShape shape_of(const ModelSpec& model, const DerivedSettings& derived,
   RegressionShape shape{model.input_count, model.cv_count, derived.fir_lags, derived.residual_order,
                         derived.tail_poles};
   if (past == OwnPast::kAsMonitor) shape.residual_poles = derived.residual_poles;
+  shape.bounded = past == OwnPast::kAsMonitor;
   return shape;
 }
 

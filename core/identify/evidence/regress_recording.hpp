@@ -14,7 +14,8 @@ namespace mpm {
 /// What of a CV's own past a regression knows.
 enum class OwnPast {
   kLags,       ///< a loop that swings by itself, as with a sticking valve, is predicted as well by
-               ///< slow means of its past as by its input
+               ///< slow means of its past as by its input. Each row counts whole, for all that a
+               ///< step test says is in a few of them
   kAsMonitor,  ///< slow means too: noise that wanders is predicted from far back, without which
                ///< the nonlinear test, which then goes along, would see what is not there
 };

@@ -147,11 +147,12 @@ TEST_CASE("few rows and forgetting make the estimates noisier") {
   // + 6 c^2 (0.26, 1), c = columns / freedom, the factors of docs/validation.md.
   RegressionMemory memory(2, {});
   RowBatch batch(3, 1);
+  const double whole = 1.0;
   for (int k = 0; k < 42; ++k) {
     batch.row(0)[0] = 1.0;
     batch.row(0)[1] = k % 2 == 0 ? 1.0 : -1.0;
     batch.row(0)[2] = k % 4 < 2 ? 2.0 : -2.0;
-    memory.take(batch, 1);
+    memory.take(batch, &whole, 1);
   }
   const double variance = memory.factor.residual_square(0) / 40.0;
   const EstimateNoise noise = estimate_noise(memory);

@@ -53,9 +53,9 @@ TEST_CASE("the mismatch detector equals brute-force batch fits") {
     detector.update(u, e);
   }
   evaluate_all(detector);
-  CHECK(detector.memory(0).effective_rows() ==
-        Approx(oracle["effective_rows"].get<double>()).epsilon(1e-10));
   for (int j = 0; j < n; ++j) {
+    const double effective_rows = oracle["effective_rows"][static_cast<std::size_t>(j)];
+    CHECK(detector.memory(j).effective_rows() == Approx(effective_rows).epsilon(1e-10));
     for (int i = 0; i < m; ++i) {
       // The oracle's F, divided by the factor for few rows that the evaluator's comment gives.
       const double per_freedom = detector.shape().columns() / detector.memory(j).freedom();
@@ -67,12 +67,12 @@ TEST_CASE("the mismatch detector equals brute-force batch fits") {
       CHECK(evidence.block_statistic == Approx(expected).epsilon(1e-8));
       // Of three tests the best one counts, times three.
       const double block_p =
-          f_upper_tail(expected, detector.shape().block(), detector.memory(0).freedom());
+          f_upper_tail(expected, detector.shape().block(), detector.memory(j).freedom());
       CHECK(evidence.tests == 3);
       CHECK(evidence.p_value <= std::min(1.0, 3.0 * block_p) * (1.0 + 1e-6));
       CHECK(evidence.p_value ==
             Approx(std::min(1.0, 3.0 * f_upper_tail(evidence.statistic, evidence.numerator_freedom,
-                                                    detector.memory(0).freedom())))
+                                                    detector.memory(j).freedom())))
                 .epsilon(1e-9));
     }
   }

@@ -5,49 +5,35 @@
 namespace mpm {
 namespace {
 
-// As a memory of so many columns is after so many rows of weight 1; the tails are known before.
-RegressionMemory with_rows(int columns, int rows, double tails) {
-  RegressionMemory memory(columns, {});
-  memory.follow_tails(tails);
-  memory.rows = rows;
-  memory.weight_sum = memory.weight_square = rows;
+RegressionMemory with_rows(int columns, int count, double share, double lambda = 1.0) {
+  RegressionMemory memory(columns, {lambda, 0});
+  RowBatch batch(columns + 1, 1);
+  for (int k = 0; k < count; ++k) {
+    for (int c = 0; c <= columns; ++c) batch.row(0)[c] = (k + c) % (c + 2);
+    memory.take(batch, &share, 1);
+  }
   return memory;
 }
 
-// 5 rows per column, and up to 20 more where the tails are heavy.
-TEST_CASE("a memory that has not spoken waits for the rows that its tails ask for") {
-  RegressionMemory memory = with_rows(10, 100, 0.3);  // 110
-  CHECK_FALSE(memory.ready());
-  memory.rows = 110;
-  CHECK(memory.ready());
+// 5 rows per column, and as many degrees of freedom as columns.
+TEST_CASE("a memory speaks once it has rows enough") {
+  CHECK_FALSE(with_rows(4, 19, 1.0).ready());
+  CHECK(with_rows(4, 20, 1.0).ready());
+  CHECK_FALSE(with_rows(4, 20, 1.0, 0.5).ready());  // 3 effective rows
 }
 
-TEST_CASE("a verdict does not go again because of one error more") {
-  RegressionMemory memory = with_rows(10, 100, 0.2);  // 90
-  REQUIRE(memory.ready());
-  memory.follow_tails(0.3);
-  CHECK(memory.ready());
-  memory.follow_tails(1.0);  // 250, and 0.6 of them are 150
-  CHECK_FALSE(memory.ready());
-  memory.follow_tails(0.3);  // it begins to wait anew
-  CHECK_FALSE(memory.ready());
-}
-
-TEST_CASE("what spoke by the tails of before is not silenced by the next error") {
-  RegressionMemory memory = with_rows(10, 80, 0.2);  // 90
-  REQUIRE_FALSE(memory.ready());
-  memory.rows = 90;
-  REQUIRE(memory.ready());
-  memory.follow_tails(0.3);
-  CHECK(memory.ready());
-}
-
-TEST_CASE("a memory that is cleared has not spoken") {
-  RegressionMemory memory = with_rows(10, 100, 0.2);
-  memory.follow_tails(0.2);
-  REQUIRE(memory.spoke);
-  memory.clear();
-  CHECK_FALSE(memory.spoke);
+// W1^2 / W2 of equal shares, however large; of forgetting (1 + lambda) / (1 - lambda).
+TEST_CASE("effective rows are those that count") {
+  CHECK(with_rows(4, 30, 0.25).effective_rows() == Approx(30.0));
+  CHECK(with_rows(4, 30, 0.25).weight_sum == Approx(7.5));
+  CHECK(with_rows(4, 2000, 1.0, 0.95).effective_rows() == Approx(39.0));
+  RegressionMemory memory = with_rows(4, 30, 1.0);
+  const double little = 0.02;
+  RowBatch batch(5, 1);
+  for (int c = 0; c < 5; ++c) batch.row(0)[c] = c;
+  memory.take(batch, &little, 1);
+  CHECK(memory.rows == 31);
+  CHECK(memory.effective_rows() == Approx(30.02 * 30.02 / 30.0004));
 }
 
 }  // namespace

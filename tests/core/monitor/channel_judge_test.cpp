@@ -21,9 +21,10 @@ struct Bench {
     evidence.gain_error = {0.1, 0.02};
     evidence.excitation_index = evidence.excitation_index_alone = 0.01;
     RowBatch batch(3, 1);
+    const double whole = 1.0;
     for (int k = 0; k < 60; ++k) {
       for (int c = 0; c < 3; ++c) batch.row(0)[c] = k % (c + 2) == 0 ? 1.0 : 0.5;
-      memory.take(batch, 1);
+      memory.take(batch, &whole, 1);
     }
   }
   ChannelStatus judge(int input = 0) const {
