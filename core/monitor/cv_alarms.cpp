@@ -14,9 +14,11 @@ struct Evidence {
   double material = 1.0;  // p-value of "within the limits", times the memories asked
   double any = 1.0;       // p-value of "no error", likewise
   bool harmless = true;   // the long memory is sure that the error is within the limits
+  bool shown = true;      // or would show one of interest
 };
 
-Evidence combined(int cv, int input, const MismatchDetector& detector, const Belief& belief) {
+Evidence combined(int cv, int input, const MismatchDetector& detector, const Belief& belief,
+                  double shown_index) {
   Evidence evidence;
   int ready = 0;
   for (int m = 0; m < detector.memory_count(); ++m) {
@@ -28,20 +30,21 @@ Evidence combined(int cv, int input, const MismatchDetector& detector, const Bel
     evidence.any = std::min(evidence.any, channel.p_value);
   }
   evidence.harmless = detector.evidence(cv, input).harmless;
+  evidence.shown = detector.evidence(cv, input).excitation_index <= shown_index;
   evidence.material = std::min(1.0, ready * evidence.material);
   evidence.any = std::min(1.0, ready * evidence.any);
   return evidence;
 }
 
 // What the condition looks at: to raise, that there is an error, and that it matters; to clear,
-// that it does not matter, or is not there.
+// that it does not matter, or is not there and would have shown.
 double condition_p(const Evidence& evidence, AlarmState state) {
   if (state == AlarmState::kCleared)
     return evidence.material < calibration::alarms::kMattersPValue
                ? evidence.any
                : std::max(evidence.any, evidence.material);
-  const bool stays = evidence.any < calibration::alarms::kStaysPValue && !evidence.harmless;
-  return stays ? 0.0 : evidence.material;
+  const bool there = evidence.any < calibration::alarms::kStaysPValue || !evidence.shown;
+  return there && !evidence.harmless ? 0.0 : evidence.material;
 }
 
 }  // namespace
@@ -75,7 +78,7 @@ void CvAlarms::step(int cv, bool evaluated, MismatchDetector& detector, ChangeSc
   bool risen = false;
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     const AlarmState before = conditions_[i].state();
-    const Evidence evidence = combined(cv, static_cast<int>(i), detector, belief(i));
+    const Evidence evidence = combined(cv, static_cast<int>(i), detector, belief(i), shown_index_);
     const bool changed = conditions_[i].update(condition_p(evidence, before), limits);
     risen = risen || (changed && before == AlarmState::kCleared);
   }
@@ -119,7 +122,7 @@ bool CvAlarms::certain(const ChangePoint& change, bool risen) const {
 
 void CvAlarms::settle(int cv, const MismatchDetector& detector, const Condition::Limits& limits) {
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
-    const Evidence evidence = combined(cv, static_cast<int>(i), detector, belief(i));
+    const Evidence evidence = combined(cv, static_cast<int>(i), detector, belief(i), shown_index_);
     const AlarmState before = conditions_[i].state();
     if (before == AlarmState::kActive && condition_p(evidence, before) > limits.clear_above)
       conditions_[i].set(AlarmState::kCleared);
@@ -132,7 +135,7 @@ bool CvAlarms::something_wrong(int cv, bool quiet, const MismatchDetector& detec
   if (detector.regression(cv).noise().surprise() > change_search::kSuspiciousSurprise) return true;
   if (!quiet) return false;
   for (std::size_t i = 0; i < conditions_.size(); ++i)
-    if (combined(cv, static_cast<int>(i), detector, belief(i)).any <
+    if (combined(cv, static_cast<int>(i), detector, belief(i), shown_index_).any <
         change_search::kSuspiciousPValue)
       return true;
   return false;

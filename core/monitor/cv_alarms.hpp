@@ -17,7 +17,8 @@ namespace mpm {
 /// memory (`ChangeScan`), then no constant model fits the memory and healthy channels would be
 /// blamed too: only the strongest alarm rises, the CV forgets what was before the change, and it is
 /// `isolating` until enough samples have come since then. What the fresh memory then confirms stays
-/// or rises; the rest clears at once. While an alarm stands the fast memory is watched: where it
+/// or rises; the rest clears at once, but for channels that say nothing: no alarm clears where an
+/// error of interest would not show. While an alarm stands the fast memory is watched: where it
 /// disagrees with the long one, something changed again (a return to normal as a rule) and the CV
 /// forgets once more.
 ///
@@ -25,7 +26,9 @@ namespace mpm {
 /// where the plant is operated (`Curvature`); if that explains more, no channel is blamed for it.
 class CvAlarms {
  public:
-  explicit CvAlarms(int inputs) : conditions_(static_cast<std::size_t>(inputs)) {
+  /// `shown_index`: an error of interest shows up to that excitation index.
+  CvAlarms(int inputs, double shown_index)
+      : shown_index_(shown_index), conditions_(static_cast<std::size_t>(inputs)) {
     before_.reserve(conditions_.size());
   }
 
@@ -41,6 +44,9 @@ class CvAlarms {
     for (std::size_t i = 0; i < conditions_.size(); ++i)
       if (conditions_[i].state() != before_[i]) changed(static_cast<int>(i));
   }
+  /// An alarm that another monitor of the unit raised: it stands until this one's own evidence
+  /// clears it.
+  void stand(int input) { conditions_[static_cast<std::size_t>(input)].set(AlarmState::kActive); }
   /// A sample without any verdict of this CV.
   void hold();
   /// It is no channel that is wrong. Calls `changed(input)` for each alarm that cleared.
@@ -64,6 +70,7 @@ class CvAlarms {
 
   template <class Archive>
   void archive(Archive& a) {
+    // not archived: shown_index_ (construction)
     // not archived: before_, belief_ (empty between calls)
     a(conditions_, isolating_, change_, since_scan_);
   }
@@ -79,6 +86,7 @@ class CvAlarms {
                                        const Condition::Limits& limits) const;
   [[nodiscard]] bool certain(const ChangePoint& change, bool risen) const;
 
+  double shown_index_;
   std::vector<Condition> conditions_;
   std::vector<AlarmState> before_;
   bool isolating_ = false;

@@ -35,7 +35,7 @@ struct Monitor::State {
 
   /// One CV: whether its data serve, and its alarms.
   struct Cv {
-    explicit Cv(int input_count) : alarms(input_count) {}
+    Cv(int input_count, double shown_index) : alarms(input_count, shown_index) {}
     CvAlarms alarms;
     CvQuality quality;
     bool evaluated = false;    // in this sample
@@ -127,7 +127,9 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
   judged_frames.resize(Screen::kHeld);
   for (JudgedFrame& one : judged_frames) one.readings.resize(static_cast<std::size_t>(counts.cv));
   transitions.reserve(channels * Screen::kLongestDelay);  // frames that leave at once
-  for (int j = 0; j < counts.cv; ++j) cvs.emplace_back(counts.inputs());
+  for (int j = 0; j < counts.cv; ++j)
+    cvs.emplace_back(counts.inputs(),
+                     settings.gain_error_of_interest / calibration::visibility::kSeenDeviations);
   for (const SignalKind kind :
        {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction})
     counters.bad_of[static_cast<std::size_t>(kind)].resize(
@@ -461,6 +463,7 @@ const ChannelStatus& Monitor::channel(int cv, int input) const {
 const ChannelNonlinearity& Monitor::nonlinearity(int cv, int input) const {
   return state_->nonlinear.result(cv, input);
 }
+void Monitor::stand(int cv, int input) { state_->of(cv).alarms.stand(input); }
 AlarmState Monitor::alarm(int cv, int input) const { return state_->of(cv).alarms.state(input); }
 Eigen::Ref<const Eigen::VectorXd> Monitor::partial_correlations(int cv, int input) const {
   return state_->correlation.values(cv, input);

@@ -74,6 +74,10 @@ class Monitor {
   /// judged at once.
   void push(const Frame& frame);
 
+  /// An alarm that another monitor of the unit raised: it stands until this one's own evidence
+  /// clears it.
+  void stand(int cv, int input);
+
   /// Brings the reported correlations up to the last frame. Not done by `push`: rows that wait for
   /// each other cost a fraction.
   void correlate();

@@ -49,7 +49,6 @@ UnitAlarms::UnitAlarms(const config::UnitConfig& unit, const UnitOutputs& output
       desk_(unit.alarm_handling, unit.sample_time_s, names_of(channels)),
       observed_(channels.size()),
       fresh_(channels.size() + 1, false),
-      held_(channels.size(), false),
       said_(channels.size(), false) {
   for (const ChannelRecord& channel : channels) {
     AlarmStateRecord record;
@@ -146,7 +145,7 @@ void UnitAlarms::note(const std::vector<ChannelRecord>& channels,
     source_time_ns_ = channels.front().source_time_ns;
   }
   for (std::size_t i = 0; i < changes.size(); ++i)
-    if (AlarmStateRecord* alarm = find(changes[i].mv, changes[i].cv); alarm && !known(changes[i])) {
+    if (AlarmStateRecord* alarm = find(changes[i].mv, changes[i].cv); alarm) {
       std::string text = changes[i].to == AlarmChange::kActive ? texts[i] : alarm->view.message;
       *alarm = AlarmStateRecord(changes[i]);
       alarm->view.message = std::move(text);
@@ -162,8 +161,7 @@ void UnitAlarms::recall(const std::vector<ChannelRecord>& channels,
   recalled_ = true;
   note(channels, changes, texts);
   for (std::size_t i = 0; i < channels.size(); ++i)
-    observed_[i] = {channels[i].alarm == AlarmState::kActive || held_[i],
-                    meaningful(channels[i].reason)};
+    observed_[i] = {channels[i].alarm == AlarmState::kActive, meaningful(channels[i].reason)};
   fresh_.assign(fresh_.size(), false);  // `announce` tells all
 }
 
@@ -171,7 +169,7 @@ void UnitAlarms::archive(Archive& a) {
   // not archived: unit_, settings_, outputs_, journal_ (construction)
   // not archived: desk_, controller_ (`keep` has them from the journal)
   // not archived: observed_, fresh_, said_ (each frame, `recall` and `announce` say them anew)
-  a(alarms_, diagnosed_, held_, interval_);
+  a(alarms_, diagnosed_, interval_);
   a.time(source_time_ns_);
   recalled_ = recalled_ || a.reads();
 }
@@ -181,33 +179,11 @@ bool UnitAlarms::push(const std::vector<ChannelRecord>& channels,
                       const std::vector<std::string>& texts, std::int64_t wall_ns) {
   bool written = true;
   note(channels, changes, texts);
-  for (const AlarmRecord& change : changes)
-    if (!known(change)) written = say(change) && written;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    const bool own = channels[i].alarm == AlarmState::kActive;
-    if (held_[i] && (own || channels[i].verdict != Verdict::kUndetermined)) {
-      held_[i] = false;
-      if (!own) written = clear_held(i) && written;
-    }
-    observed_[i] = {own || held_[i], meaningful(channels[i].reason)};
-  }
+  for (const AlarmRecord& change : changes) written = say(change) && written;
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    observed_[i] = {channels[i].alarm == AlarmState::kActive, meaningful(channels[i].reason)};
   desk_.observe(observed_, {source_time_ns_, wall_ns});
   return settle(wall_ns, nullptr) && written;
-}
-
-// Another monitor has told it.
-bool UnitAlarms::known(const AlarmRecord& change) const {
-  const int alarm = desk_.find(change.mv, change.cv);
-  return alarm >= 0 && held_[static_cast<std::size_t>(alarm)] && change.to == AlarmChange::kActive;
-}
-
-// Now that this monitor knows the channel itself.
-bool UnitAlarms::clear_held(std::size_t i) {
-  alarms_[i].to = AlarmChange::kCleared;
-  alarms_[i].interval = interval_;
-  alarms_[i].source_time_ns = source_time_ns_;
-  fresh_[i] = true;
-  return say(alarms_[i]);
 }
 
 bool UnitAlarms::say(const AlarmRecord& change) {
@@ -230,15 +206,18 @@ bool UnitAlarms::say_cause(std::size_t i, const AlarmRecord* told) {
   return !news || outputs_.write(own);
 }
 
+bool UnitAlarms::stood(const ToldAlarms& told, std::size_t channel) const {
+  const AlarmStateRecord& alarm = alarms_[channel];
+  return told.active(alarm.mv, alarm.cv).value_or(said_[channel]);
+}
+
 bool UnitAlarms::take_over(const ToldAlarms& told, const std::vector<ChannelRecord>& channels,
                            std::int64_t wall_ns) {
   bool written = true;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     AlarmStateRecord& alarm = alarms_[i];
-    const bool own = channels[i].alarm == AlarmState::kActive,
-               stood = told.active(alarm.mv, alarm.cv).value_or(said_[i]);
-    held_[i] = stood && !own && channels[i].verdict == Verdict::kUndetermined;
-    observed_[i] = {own || held_[i], meaningful(channels[i].reason)};
+    const bool before = stood(told, i);
+    observed_[i] = {channels[i].alarm == AlarmState::kActive, meaningful(channels[i].reason)};
     const AlarmStateRecord* state = told.state(alarm.mv, alarm.cv);
     if (state != nullptr) {
       const bool active = state->to == AlarmChange::kActive;
@@ -248,13 +227,11 @@ bool UnitAlarms::take_over(const ToldAlarms& told, const std::vector<ChannelReco
       if (active || !observed_[i].active) alarm = *state;
     }
     const auto event = told.events.find({alarm.mv, alarm.cv});
-    if (stood && alarm.to != AlarmChange::kActive && event != told.events.end())
+    if (before && alarm.to != AlarmChange::kActive && event != told.events.end())
       alarm = AlarmStateRecord(event->second);  // it fell silent between the two topics
-    if (stood && !observed_[i].active)
-      written = clear_held(i) && written;
-    else if (!stood && observed_[i].active)
+    if (!before && observed_[i].active)
       written = say(alarm) && written;
-    else if (stood)
+    else if (before)
       written = say_cause(i, event == told.events.end() ? nullptr : &event->second) && written;
     said_[i] = observed_[i].active;
   }

@@ -47,12 +47,13 @@ class UnitAlarms {
   /// wrong with the channel of each in words. False where something could not be published.
   bool push(const std::vector<ChannelRecord>& channels, const std::vector<AlarmRecord>& changes,
             const std::vector<std::string>& texts, std::int64_t wall_ns);
+  /// Whether a channel's alarm stands for who reads: by what another monitor told, and where that
+  /// is silent, by what this process, or one before it, said last.
+  [[nodiscard]] bool stood(const ToldAlarms& told, std::size_t channel) const;
   /// From now on this process speaks for the unit, of whose alarms readers know `told` from
-  /// another. What they know stands as they know it, with what people did about it; of what is
-  /// otherwise, and of causes that only this process has found, they are told. An alarm that stands
-  /// for them and of whose channel nothing is known here yet goes on until something is. Where
-  /// `told` is silent, what this process, or one before it, said last counts. `channels`: as in
-  /// `push`. False as in `push`.
+  /// another. What they know stands as they know it, with what people did about it; of alarms that
+  /// stand here alone, and of causes that only this process has found, they are told. `channels`:
+  /// as in `push`, in which every alarm that `stood` stands. False as in `push`.
   bool take_over(const ToldAlarms& told, const std::vector<ChannelRecord>& channels,
                  std::int64_t wall_ns);
   /// A cause was named, at that interval; the alarm is as old as it was.
@@ -92,8 +93,6 @@ class UnitAlarms {
   void clear_unwritten(std::int64_t wall_ns);
   void stand(int alarm, std::int64_t since_ns, std::int64_t wall_ns);
   void note_acts(int alarm, const AlarmStanding& told, std::int64_t wall_ns);
-  [[nodiscard]] bool known(const AlarmRecord& change) const;
-  [[nodiscard]] bool clear_held(std::size_t i);
   bool say(const AlarmRecord& change);
   bool say_cause(std::size_t i, const AlarmRecord* told);
   void refresh(int alarm);
@@ -110,7 +109,6 @@ class UnitAlarms {
   std::vector<AlarmDesk::Observation> observed_;
   std::vector<AlarmRecord> diagnosed_;  // what this process found last of each that stands
   std::vector<bool> fresh_;             // to be written; the controller's last
-  std::vector<bool> held_;              // stands because another monitor said so
   std::vector<bool> said_;              // stands for who reads, as this process last said
   std::int64_t interval_ = 0, source_time_ns_ = 0;
   bool recalled_ = false;

@@ -370,7 +370,11 @@ void UnitPipeline::settle_role(Clock::time_point now) {
     return;
   }
   spdlog::info("{}: speaks{}", config_.unit, speaker.empty() ? "" : " in place of " + speaker);
-  bool written = alarms_.take_over(std::exchange(told_, {}), monitor_.channels(), wall_ns());
+  const ToldAlarms told = std::exchange(told_, {});
+  const std::size_t channels = monitor_.channels().size();
+  for (std::size_t i = 0; i < channels; ++i)
+    if (alarms_.stood(told, i)) monitor_.stand(i);
+  bool written = alarms_.take_over(told, monitor_.channels(), wall_ns());
   if (checkpoints_) checkpoints_->want_state();  // what was told is in no sample
   if (aligner_.counters().frames > 0) {
     for (const ChannelRecord& channel : monitor_.channels())

@@ -105,6 +105,12 @@ void UnitMonitor::archive(Archive& a) {
   tell_alarms();
 }
 
+void UnitMonitor::stand(std::size_t channel) {
+  const int cvs = config_.counts().cv, place = static_cast<int>(channel);
+  monitor_.stand(place % cvs, place / cvs);
+  filled_ = false;
+}
+
 void UnitMonitor::tell_alarms() {
   alarms_.clear();
   if (monitor_.transitions().empty()) return;

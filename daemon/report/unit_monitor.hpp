@@ -25,6 +25,9 @@ class UnitMonitor {
 
   void push(const Frame& frame);
 
+  /// As `Monitor::stand`. `channel`: its place in `channels()`.
+  void stand(std::size_t channel);
+
   /// All channels after the last frame; inputs outermost, CVs innermost.
   [[nodiscard]] const std::vector<ChannelRecord>& channels() {
     if (!filled_) fill();

@@ -10,7 +10,7 @@ namespace {
 
 // One MV and one DV to one CV: each channel has half of the unit's false-alarm rate of 0.01.
 struct Bench {
-  Bench() : memory(2, {}), alarms(2) {
+  Bench() : memory(2, {}), alarms(2, 0.1) {
     settings.false_alarm_rate = 0.01;
     settings.gain_error_of_interest = 0.25;
     evidence.p_value = 0.2;

@@ -1,6 +1,7 @@
 // What the monitor says while data are too few, or inputs move too little or together.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
 #include "tests/core/monitor/experiment.hpp"
 
@@ -32,6 +33,38 @@ TEST_CASE("before there is enough data nothing is said") {
       CHECK(monitor.channel(j, i).verdict == Verdict::kUndetermined);
       CHECK(monitor.channel(j, i).reason == Reason::kWarmingUp);
     }
+}
+
+TEST_CASE("an alarm that another monitor raised clears on evidence, once") {
+  Experiment experiment;
+  Monitor monitor = experiment.monitor();
+  monitor.stand(0, 1);
+  CHECK(monitor.alarm(0, 1) == AlarmState::kActive);
+  std::vector<AlarmTransition> all;
+  const auto push = [&](const Frame& frame) {
+    monitor.push(frame);
+    all.insert(all.end(), monitor.transitions().begin(), monitor.transitions().end());
+  };
+  SECTION("of a channel that matches") {
+    experiment.run(2000, push);
+    REQUIRE(all.size() == 1);
+    CHECK(all[0].cv == 0);
+    CHECK(all[0].input == 1);
+    CHECK(all[0].to == AlarmState::kCleared);
+  }
+  SECTION("not of one that is as wrong as was said") {
+    experiment.gain_ratio = 0.6;
+    experiment.run(2000, push);
+    CHECK(all.empty());
+    CHECK(monitor.alarm(0, 1) == AlarmState::kActive);
+  }
+  SECTION("nor of one that says nothing") {
+    experiment.still_from = 0;
+    experiment.run(2000, push);
+    CHECK(all.empty());
+    CHECK(monitor.channel(0, 1).reason == Reason::kWeakExcitation);
+    CHECK(monitor.alarm(0, 1) == AlarmState::kActive);
+  }
 }
 
 TEST_CASE("an input that stands still is undetermined") {
