@@ -30,6 +30,7 @@ NonlinearRegression::NonlinearRegression(const RegressionShape& shape, int cv,
       shares_(kTogether, 1.0),
       patience_(patience),
       selection_(linear_columns(), terms_.columns()),
+      chances_(static_cast<std::size_t>(terms_.groups())),
       taken_(static_cast<std::size_t>(terms_.groups())),
       blamed_(static_cast<std::size_t>(shape.inputs)),
       lead_in_(static_cast<std::size_t>(shape.lead_in())),
@@ -117,8 +118,8 @@ void NonlinearRegression::archive(Archive& a) {
   // not archived: shape_, cv_, patience_ (construction)
   // not archived: batch_, shares_, batched_ (empty between calls)
   // not archived: selection_, taken_, blamed_, bend_square_, lead_in_, past_factor_, coefficients_,
-  // taken_off_, own_past_, rotated_, own_gain_, error_variance_, freedom_, linear_square_ (each
-  // evaluation begins anew)
+  // taken_off_, own_past_, rotated_, own_gain_, error_variance_, freedom_, linear_square_, chances_
+  // (each evaluation begins anew)
   a(companions_, terms_, memory_, begun_, rows_at_begin_, restarts_);
   a.within(waiting_, 0, patience_ + 1);
 }
@@ -166,6 +167,10 @@ void NonlinearRegression::read(Past which) {
                     memory_.weight_square / memory_.weight_sum * limits::kInflation;
 }
 
+double NonlinearRegression::chance(int group, const TermSelection::Gain& gain) const {
+  return std::max(chance(gain), chances_[static_cast<std::size_t>(group)]);
+}
+
 double NonlinearRegression::chance(const TermSelection::Gain& gain) const {
   if (gain.columns == 0 || !(error_variance_ > 0.0)) return 1.0;
   return f_upper_tail(gain.square / error_variance_ / gain.columns, gain.columns, freedom_);
@@ -188,9 +193,12 @@ void NonlinearRegression::without_terms() {
 // The noise's own past is what is found without the terms, unless the terms surely say something:
 // each slow column beside it makes the noise seem to forget faster than it does (Kendall 1954), and
 // what it has left then passes for theirs. Where they do say something, without them it seems to
-// forget slower.
+// forget slower; but of noise that wanders they seem to say so, and then, beside them, anything. So
+// nothing is blamed that the past found without them would not blame.
 void NonlinearRegression::evaluate(double rate, double variation, ChannelNonlinearity* results) {
   read(Past::kWithoutTerms);
+  for (int g = 0; g < terms_.groups(); ++g)
+    chances_[static_cast<std::size_t>(g)] = chance(selection_.gain(terms_.columns_of_group(g)));
   if (chance(selection_.all()) < limits::kSurelySomething) read(Past::kBesideTerms);
   for (int i = 0; i < shape_.inputs; ++i) results[i] = {.tested = true};
   std::fill(taken_.begin(), taken_.end(), false);
@@ -234,7 +242,7 @@ NonlinearRegression::Explanation NonlinearRegression::best_explanation(
     double p_value = 1.0;
     for (int i = 0; i < shape_.inputs; ++i)
       if (!blamed_[static_cast<std::size_t>(i)] && terms_.has(g, i))
-        p_value = std::min(p_value, groups_with(i) * chance(gain));
+        p_value = std::min(p_value, groups_with(i) * chance(g, gain));
     if (!(p_value < rate) || !matters(gain)) continue;
     const double worth =
         gain.square / error_variance_ - gain.columns * std::log(memory_.effective_rows());
@@ -248,7 +256,7 @@ NonlinearRegression::Explanation NonlinearRegression::best_explanation(
 // As many groups are asked about an input, and the best one counts (Bonferroni).
 void NonlinearRegression::look_at(int group, const TermSelection::Gain& gain,
                                   ChannelNonlinearity* results) const {
-  const double chance_of = chance(gain);
+  const double chance_of = chance(group, gain);
   for (int i = 0; i < shape_.inputs; ++i) {
     if (blamed_[static_cast<std::size_t>(i)] || !terms_.has(group, i)) continue;
     const double p_value = std::min(1.0, groups_with(i) * chance_of);
@@ -279,7 +287,7 @@ bool NonlinearRegression::all_blamed(int group) const {
 }
 
 void NonlinearRegression::blame(const Explanation& best, ChannelNonlinearity* results) {
-  const double p_chance = chance(best.gain);
+  const double p_chance = chance(best.group, best.gain);
   for (int i = 0; i < shape_.inputs; ++i) {
     if (!terms_.has(best.group, i) || blamed_[static_cast<std::size_t>(i)]) continue;
     blamed_[static_cast<std::size_t>(i)] = true;

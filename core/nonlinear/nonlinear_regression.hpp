@@ -99,6 +99,7 @@ class NonlinearRegression {
   void see(double variation, ChannelNonlinearity* results) const;
   [[nodiscard]] int past_at() const { return linear_columns() + terms_.columns(); }
   [[nodiscard]] double chance(const TermSelection::Gain& gain) const;
+  [[nodiscard]] double chance(int group, const TermSelection::Gain& gain) const;
 
   RegressionShape shape_;
   int cv_;
@@ -114,8 +115,9 @@ class NonlinearRegression {
   int rows_at_begin_ = 0;
   std::uint64_t restarts_ = 0;  // of the linear regression when this one began
   TermSelection selection_;
-  std::vector<bool> taken_;   // per group
-  std::vector<bool> blamed_;  // per input
+  std::vector<double> chances_;  // per group, of the past without terms
+  std::vector<bool> taken_;      // per group
+  std::vector<bool> blamed_;     // per input
   double bend_square_ = 0.0;     // what the groups taken in explain
   std::vector<double> lead_in_;
   GivensQr past_factor_;
