@@ -136,12 +136,14 @@ Refit refit_rows_needed(const std::vector<Run>& runs, double level, double toler
 }
 
 Refit refit_clipped_share(const std::vector<Run>& runs, double share) {
-  return bootstrap(runs, [share](const Sample& sample) {
+  Refit refit = bootstrap(runs, [share](const Sample& sample) {
     std::vector<double> all;
     for (const Run* run : sample)
       all.insert(all.end(), run->clipped_shares.begin(), run->clipped_shares.end());
     return quantile(std::move(all), share);
   });
+  refit.larger_is_stricter = false;
+  return refit;
 }
 
 std::string tail_table(const std::vector<Run>& runs, const std::vector<double>& levels) {

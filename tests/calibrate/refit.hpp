@@ -15,10 +15,15 @@ struct Refit {
   double fitted = 0.0;
   double low = 0.0, high = 0.0;  ///< 95 % interval, by a bootstrap over runs (Efron 1979)
   std::string rule;              ///< by which it is fitted
+  /// False: of tails that count as heavy from there on, the larger, the fewer do.
+  bool larger_is_stricter = true;
 
-  /// The one in use asks for less than the fitted one by four s.d. (twice the half interval), which
-  /// chance does in 1 of 30 000 fits. Not where these loops cannot tell (infinite).
-  [[nodiscard]] bool too_lax() const { return now < fitted - 2.0 * (fitted - low); }
+  /// The one in use is laxer than the fitted one by four s.d. (twice the half interval), which
+  /// chance makes it in 1 of 30 000 fits. Not where these loops cannot tell (infinite).
+  [[nodiscard]] bool too_lax() const {
+    return larger_is_stricter ? now < fitted - 2.0 * (fitted - low)
+                              : now > fitted + 2.0 * (high - fitted);
+  }
 };
 
 /// The factor for few rows with which p < 0.05 comes in 5 % of the readings of `rows_per_column`

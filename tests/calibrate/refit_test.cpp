@@ -56,6 +56,20 @@ TEST_CASE("only a factor that asks for too little is too lax") {
   CHECK_FALSE(refit_few_rows(runs_with(0.0, 1), Test::kDirected, 5, 10).too_lax());
 }
 
+TEST_CASE("tails that count as heavy too late are too lax, too early are not") {
+  Refit refit;
+  refit.fitted = 0.02;
+  refit.low = 0.019;
+  refit.high = 0.021;
+  refit.larger_is_stricter = false;
+  refit.now = 0.015;
+  CHECK_FALSE(refit.too_lax());
+  refit.now = 0.0215;
+  CHECK_FALSE(refit.too_lax());
+  refit.now = 0.0225;
+  CHECK(refit.too_lax());
+}
+
 TEST_CASE("rows are needed up to the last that give small p-values too often") {
   std::vector<Run> runs(100);
   for (Run& run : runs)
