@@ -141,14 +141,16 @@ TEST_CASE("what people did outlives the monitor, and what nobody saw is not lost
                        std::to_string(office.bench->options.domain), "--partition",
                        office.bench->options.partition, "--alarm-journal", office.journal()},
                       office.folder.file("again.out"), office.folder.file("again.err"));
-  CHECK(idl::eventually(
+  const bool told = idl::eventually(
       [&] {
         (void)office.mpm({"alarms"});
         const std::string out = office.out();
         return out.find("u2 -> y1  out of service") != std::string::npos &&
                out.find("u1 -> y1  returned unacknowledged") != std::string::npos;
       },
-      std::chrono::seconds(20)));
+      std::chrono::seconds(20));
+  CAPTURE(office.out(), read_file(office.folder.file("again.err")));
+  CHECK(told);
   CHECK_THAT(office.out(), Contains("probe"));
 }
 
