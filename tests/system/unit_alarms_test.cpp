@@ -135,6 +135,13 @@ TEST_CASE("what people did outlives the monitor, and what nobody saw is not lost
   CHECK(office.mpm({"out-of-service", "--mv", "u2", "--cv", "y1", "--comment", "probe"}) == 0);
   CHECK(office.mpm({"shelve", "--mv", "u1", "--cv", "y1", "--once"}) == 0);
   CHECK(office.mpm({"unshelve", "--mv", "u1", "--cv", "y1"}) == 0);
+  // What is done is answered at once and written by a thread of its own: no disk delays an answer.
+  CHECK(idl::eventually(
+      [&] {
+        (void)office.mpm({"journal", "--journal", office.journal(), "--export", "json"}, false);
+        return office.out().find(R"("unshelved")") != std::string::npos;
+      },
+      std::chrono::seconds(20)));
   office.bench->daemon.send(SIGKILL);
   (void)office.bench->daemon.wait(std::chrono::seconds(10));
   const Process again({"mpmd", "--config", office.bench->folder.file("toy.yaml"), "--domain",
