@@ -20,7 +20,7 @@ using calibration::cost::kPerRotated;
 
 constexpr double kNumber = sizeof(double);
 constexpr double kTwice = 2.0;        // a lag window holds each value so often
-constexpr double kPerCv = 1.0 + 2.0;  // residual, weight and scale
+constexpr double kPerCv = 2.0 + 2.0;  // residual and weight, share and scale
 
 }  // namespace
 

@@ -167,6 +167,7 @@ void NonlinearRegression::read(Past which) {
                     memory_.weight_square / memory_.weight_sum * limits::kInflation;
 }
 
+// Beside what the past is now taken to say, and beside what it was found to say without terms.
 double NonlinearRegression::chance(int group, const TermSelection::Gain& gain) const {
   return std::max(chance(gain), chances_[static_cast<std::size_t>(group)]);
 }
