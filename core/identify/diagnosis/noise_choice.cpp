@@ -91,7 +91,8 @@ bool cuts_a_walk(const Explained& explained) {
     if (!causes::is_break(named.effect)) return false;
     return std::any_of(found.fit.cvs.begin(), found.fit.cvs.end(), [&](const CvFit& fit) {
       return fit.cv == named.effect.place.cv && !integrates(explained.problem->model(), fit.cv) &&
-             !comes_back_beside_breaks(fit.residual, causes::breaks_of(found.fit.effects, fit.cv));
+             !comes_back_beside_breaks(left_of(explained.problem->data(fit.cv), fit),
+                                       causes::breaks_of(found.fit.effects, fit.cv));
     });
   });
 }

@@ -51,6 +51,13 @@ class Errors {
     return sum.score(unseen_, seed);
   }
 
+  [[nodiscard]] CvScore innovations(std::uint64_t seed) const {
+    Sum sum(unseen_.rows());
+    for (std::size_t j = 0; j < with_.size(); ++j)
+      sum.add(unseen_.innovations(without_throughout_[j]), unseen_.innovations(throughout_[j]));
+    return sum.score(unseen_, seed);
+  }
+
   /// CVs of which the free run is better beyond doubt, and which come back to a level.
   [[nodiscard]] std::size_t better_cvs(std::uint64_t seed) const {
     std::size_t count = 0;
@@ -88,20 +95,29 @@ class Errors {
 
   void add(const ModelSpec& with, const ModelSpec& without, int cv) {
     throughout_.push_back(unseen_.residual_throughout(with, cv));
+    without_throughout_.push_back(unseen_.residual_throughout(without, cv));
     with_.emplace_back(throughout_.back().tail(unseen_.rows()));
-    without_.push_back(unseen_.residual(without, cv));
+    without_.emplace_back(without_throughout_.back().tail(unseen_.rows()));
     slowest_rows_.push_back(slowest_of_cv_s(without, cv, 1.0) / without.sample_time_s);
   }
 
   Unseen& unseen_;
   std::vector<VectorXd> with_, without_;
-  std::vector<VectorXd> throughout_;  // with, on all rows
+  std::vector<VectorXd> throughout_, without_throughout_;  // on all rows
   std::vector<double> slowest_rows_;
 };
 
+/// What is worse in the judgement of predictions or free runs. Under feedback those of the plant's
+/// own model may be: its inputs undo what disturbs it, which a model that is wrong takes for an
+/// answer; and what wanders makes a free run worse by chance. One-step errors are not taken in so,
+/// and have the last word.
+Fate worse(const Errors& errors, std::uint64_t seed) {
+  return errors.innovations(seed).gain_high > 0.0 ? Fate::kNoBetter : Fate::kRefused;
+}
+
 /// Whether a model is better at predictions, by so much that it is worth an accusation.
-Fate judged_by_predictions(const CvScore& predictions) {
-  if (!(predictions.gain_high > 0.0)) return Fate::kRefused;
+Fate judged_by_predictions(const CvScore& predictions, const Errors& errors, std::uint64_t seed) {
+  if (!(predictions.gain_high > 0.0)) return worse(errors, seed);
   const bool worth = predictions.rmse_after < (1.0 - kLeastRepair) * predictions.rmse_before;
   return worth && predictions.gain_low > 0.0 ? Fate::kRepaired : Fate::kNoBetter;
 }
@@ -122,44 +138,58 @@ Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
   // A stuck actuator opens the loop. What wanders makes a free run better or worse by chance.
   const bool open_loop = effect.edit == &causes::input_stuck() ||
                          moved_from_outside(effect, model, judges.outside_shares);
-  if (open_loop && !wanders && !(free_run.gain_high > 0.0)) return Fate::kRefused;
-  const Fate fate = judged_by_predictions(predictions);
-  const bool worse = open_loop && !(free_run.rmse_after < free_run.rmse_before);
-  return worse && fate == Fate::kRepaired ? Fate::kNoBetter : fate;
+  if (open_loop && !wanders && !(free_run.gain_high > 0.0)) return worse(errors, seed);
+  const Fate fate = judged_by_predictions(predictions, errors, seed);
+  const bool in_doubt =
+      fate == Fate::kRepaired && open_loop && !(free_run.rmse_after < free_run.rmse_before);
+  return in_doubt && !(errors.innovations(seed).gain_low > 0.0) ? Fate::kNoBetter : fate;
 }
 
 /// Each may be better beside the others, some of which have gone since, and what is left of them
 /// worse than none: in every CV those of one kind are judged once more together, and the weakest
-/// gets `fate` until they are better than none. `is_one(effect, cv)`: of that kind, in that CV;
-/// `score(errors)`: what they are judged by.
-template <class IsOne, class Score>
+/// that does not carry over in all CVs that it acts on gets `fate(errors)` until they are better
+/// than none. `is_one(effect, cv)`: of that kind, in that CV; `score(errors)`: what they are judged
+/// by.
+template <class IsOne, class Score, class FateOf>
 void judge_together(const Problem& problem, const SearchResult& found, const Judges& judges,
-                    const IsOne& is_one, const Score& score, Fate fate, Selection& selection) {
+                    const IsOne& is_one, const Score& score, const FateOf& fate,
+                    Selection& selection) {
   const int cvs = problem.model().cv_count;
   const std::vector<bool> keep(static_cast<std::size_t>(cvs), true);
+  const auto model_of = [&](const std::vector<bool>& in) {
+    return extend(problem, found, in, keep, judges.open);
+  };
+  const auto carries_over = [&](std::size_t i, const std::vector<bool>& in) {
+    const Effect& effect = found.named[i].effect;
+    if (effect.place.cv >= 0) return false;
+    std::vector<bool> others = in;
+    others[i] = false;
+    return score(Errors(effect, model_of(in), model_of(others), judges.unseen)).gain_low > 0.0;
+  };
   for (int cv = 0; cv < cvs; ++cv) {
     for (;;) {
       const std::vector<bool> in = repaired(selection);
       std::vector<bool> without = in;
-      std::optional<std::size_t> weakest;
+      std::vector<std::size_t> own;  // the weakest first
       for (const std::size_t i : selection.order) {
         const Effect& effect = found.named[i].effect;
         if (!in[i] || effect.certain || !is_one(effect, cv)) continue;
         without[i] = false;
-        if (!weakest) weakest = i;
+        own.push_back(i);
       }
-      if (!weakest) break;
-      const CvScore gain =
-          score(Errors(cv, extend(problem, found, in, keep, judges.open),
-                       extend(problem, found, without, keep, judges.open), judges.unseen));
+      if (own.empty()) break;
+      const Errors errors(cv, model_of(in), model_of(without), judges.unseen);
+      const CvScore gain = score(errors);
       if (gain.rmse_after <= gain.rmse_before) break;
-      selection.fates[*weakest] = fate;
+      const auto weakest =
+          std::find_if(own.begin(), own.end(), [&](std::size_t i) { return !carries_over(i, in); });
+      if (weakest == own.end()) break;
+      selection.fates[*weakest] = fate(errors);
     }
   }
 }
 
-/// The channels' repairs by predictions, disturbances by the free run. An effect on several CVs was
-/// judged in all of them.
+/// The channels' repairs by predictions, disturbances by the free run.
 void judge_together(const Problem& problem, const SearchResult& found, const Judges& judges,
                     Selection& selection) {
   const std::uint64_t seed = judges.unseen.seed();
@@ -168,13 +198,15 @@ void judge_together(const Problem& problem, const SearchResult& found, const Jud
       [&](const Effect& effect, int cv) {
         return cause_of(effect).acts_through_channels() && touches(effect, problem.model(), cv);
       },
-      [&](const Errors& errors) { return errors.predictions(seed); }, Fate::kRefused, selection);
+      [&](const Errors& errors) { return errors.predictions(seed); },
+      [&](const Errors& errors) { return worse(errors, seed); }, selection);
   judge_together(
       problem, found, judges,
       [](const Effect& effect, int cv) {
         return !cause_of(effect).acts_through_channels() && effect.place.cv == cv;
       },
-      [&](const Errors& errors) { return errors.free_run(seed); }, Fate::kNoBetter, selection);
+      [&](const Errors& errors) { return errors.free_run(seed); },
+      [](const Errors&) { return Fate::kNoBetter; }, selection);
 }
 
 /// Of what is repaired, the other repair without which `i` would be none; null where there is none.

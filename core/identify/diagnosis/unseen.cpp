@@ -7,6 +7,8 @@
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/horizons.hpp"
+#include "core/identify/fit/row_weights.hpp"
+#include "core/identify/fit/whitening.hpp"
 
 namespace mpm {
 
@@ -53,6 +55,20 @@ Eigen::VectorXd Unseen::prediction_errors(const Eigen::Ref<const Eigen::VectorXd
       errors.segment(first, last - first).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return errors;
+}
+
+Eigen::VectorXd Unseen::innovations(const Eigen::Ref<const Eigen::VectorXd>& residual) const {
+  const Recording& recording = simulator_.recording();
+  const Eigen::VectorXd known = residual.array().isFinite().cast<double>();
+  const Eigen::VectorXd weights = rows_with_past(known, runs_of(recording), kMostOrder);
+  Eigen::VectorXd centred = residual.array().isFinite().select(residual, 0.0);
+  centred.array() -= known.array() * centred.sum() / std::max(1.0, known.sum());
+  Whitening noise = fit_whitening(centred, weights, {.order = kMostOrder, .bound = 0.0});
+  noise.borders = recording.borders;
+  const Eigen::VectorXd errors = noise.apply(centred).cwiseAbs2();
+  return (weights.array() > 0.0)
+      .select(errors, std::numeric_limits<double>::quiet_NaN())
+      .tail(rows_);
 }
 
 Eigen::MatrixXd Unseen::free_runs(const ModelSpec& model) {

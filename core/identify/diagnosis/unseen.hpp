@@ -27,6 +27,12 @@ class Unseen {
   /// Squared prediction errors at a horizon (horizons.hpp), none across a border of runs.
   [[nodiscard]] Eigen::VectorXd prediction_errors(const Eigen::Ref<const Eigen::VectorXd>& residual,
                                                   Eigen::Index horizon) const;
+  /// Squared one-step errors on the unseen rows, of the autoregression that fits such a residual on
+  /// all rows best, about its level; NaN where they are unknown. They do not feel what an input
+  /// does because the controller saw the residual, as longer predictions and free runs do (Ljung
+  /// 1999, 13.4).
+  [[nodiscard]] Eigen::VectorXd innovations(
+      const Eigen::Ref<const Eigen::VectorXd>& residual) const;
   /// At which predictions are judged, samples; ascending.
   [[nodiscard]] const std::vector<Eigen::Index>& horizons() const { return horizons_; }
   [[nodiscard]] Eigen::Index rows() const { return rows_; }

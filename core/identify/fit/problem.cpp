@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/channel_edit.hpp"
@@ -67,6 +68,12 @@ double mean_level(const CvData& data, const CvFit& fit) {
     mean += share * (data.nuisances(first, column) * fit.beta(column));
   }
   return mean;
+}
+
+VectorXd left_of(const CvData& data, const CvFit& fit) {
+  const Index small = data.nuisances.cols() - static_cast<Index>(data.runs.size());
+  const VectorXd left = fit.residual + data.nuisances.rightCols(small) * fit.beta.tail(small);
+  return (data.known.array() > 0.0).select(left, std::numeric_limits<double>::quiet_NaN());
 }
 
 VectorXd rows_of(const CvData& data, const CvFit& fit, const Eigen::Ref<const VectorXd>& x) {
@@ -197,12 +204,7 @@ void Problem::settle(const std::vector<Effect>& effects, const Fit* fit) {
   for (int cv = 0; cv < model.cv_count; ++cv) {
     make_nuisances(model, cv);
     CvData& data = data_[static_cast<std::size_t>(cv)];
-    data.weights = data.known;
-    for (const auto& [first, count] : data.runs)
-      data.weights.segment(first, std::min<Index>(noise_.order, count)).setZero();
-    for (Index k = 0; k < data.known.size(); ++k)
-      if (data.known(k) == 0.0)
-        data.weights.segment(k, std::min<Index>(noise_.order + 1, data.known.size() - k)).setZero();
+    data.weights = rows_with_past(data.known, data.runs, noise_.order);
     if (fit)
       for (const CvFit& state : fit->cvs)
         if (state.cv == cv) reweigh(with_shocks(state, effects), data.weights);

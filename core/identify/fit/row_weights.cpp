@@ -23,6 +23,16 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
+VectorXd rows_with_past(const Eigen::Ref<const VectorXd>& known, const std::vector<Run>& runs,
+                        Index past) {
+  VectorXd rows = known;
+  for (const auto& [first, count] : runs)
+    rows.segment(first, std::min<Index>(past, count)).setZero();
+  for (Index k = 0; k < known.size(); ++k)
+    if (known(k) == 0.0) rows.segment(k, std::min<Index>(past + 1, known.size() - k)).setZero();
+  return rows;
+}
+
 void reweigh(const Eigen::Ref<const VectorXd>& innovations, VectorXd& weights) {
   const Index rows = innovations.size();
   // The local s.d. at every kHalfWindow / 2 rows, between them linear.

@@ -1,8 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
+
+#include "core/identify/fit/recording.hpp"
 
 namespace mpm {
+
+/// 1 for the rows that are known and of which so many rows before are, in the same run; 0 for all
+/// others. `known`: 1 or 0.
+[[nodiscard]] Eigen::VectorXd rows_with_past(const Eigen::Ref<const Eigen::VectorXd>& known,
+                                             const std::vector<Run>& runs, Eigen::Index past);
 
 /// Weights of rows by their innovations, so that no stretch and no outlier decides: each is divided
 /// by the variance around it relative to the whole (a robust one, over about 300 rows), and counts

@@ -53,6 +53,13 @@ inline constexpr double kWanderingNoise = -10.0;
 /// otherwise.
 inline constexpr double kSettledNoise = 12.0;
 
+/// Coefficients of the autoregression of a random walk's steps under noise. Chosen: what it forgets
+/// of such noise makes the walk seem the larger (zero at 0.93: its s.d. by a fifth).
+inline constexpr int kWalkOrder = 24;
+/// What speaks against a walk counts so many times for what would be none on it. Chosen: of noise
+/// that forgets within a block of a hundredth of the data that is 300, which bounds nothing.
+inline constexpr double kAgainstWalk = 4.0;
+
 /// A rise of the misfit at the end of a 95 % interval: chi-square, one degree of freedom.
 inline constexpr double kRise = 3.84;
 /// Reaches at which it is looked for, in s.d. that the curvature gives.
@@ -61,9 +68,6 @@ inline constexpr double kReachesOfRise[] = {1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 
 /// A constant offset is one beyond so many s.d. of the noise, and of its own estimate.
 inline constexpr double kOffsetInNoise = 1.5;
 inline constexpr double kOffsetInSd = 6.0;
-/// Of what wanders, one that a random walk from the model's level passes in one of 4000 recordings:
-/// its mean over its s.d. (20 000 walks, drawn).
-inline constexpr double kOffsetInWander = 4.0;
 inline constexpr double kOffsetConfidence = 0.99;  ///< 0..1
 /// A noise that returns to its mean by less than this share a row tells no level.
 inline constexpr double kLeastReturn = 0.02;

@@ -79,10 +79,10 @@ void name_levels(Problem& problem, const std::vector<int>& except, SearchResult&
     const double rows = std::max(1.0, independence({fit}) * data.rows);
     const double sd = std::sqrt(fit.variance / rows) / memory;
     if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd)) continue;
-    // A walk is somewhere else than at the model's level in the mean. What was cut is no measure.
-    const std::size_t breaks = causes::breaks_of(result.fit.effects, fit.cv);
-    const bool far = breaks == 0 && std::abs(level) > kOffsetInWander * noise;
-    if (!far && !comes_back_beside_breaks(fit.residual, breaks)) continue;
+    // A walk is anywhere, for nobody knows how long it has gone on.
+    if (!comes_back_beside_breaks(left_of(data, fit),
+                                  causes::breaks_of(result.fit.effects, fit.cv)))
+      continue;
     if (std::abs(level) <= range_of_new_inputs(problem, result.fit.effects, fit.cv)) continue;
     Named named;
     named.effect = causes::constant_offset(fit.cv, level, noise);

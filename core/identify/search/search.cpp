@@ -14,6 +14,7 @@
 #include "core/identify/search/refine.hpp"
 #include "core/identify/search/screening.hpp"
 #include "core/identify/search/trial.hpp"
+#include "core/identify/search/walk_odds.hpp"
 
 namespace mpm {
 namespace {
@@ -334,13 +335,14 @@ class Search {
         std::vector<Effect> fewer = all.effects;
         erase_at(fewer, i);
         const double odds =
-            odds_for(all.effects[i], all, problem_.fit(fewer, 0, all_cvs(), kWithoutOneSteps));
+            trials_.odds_of(all, i, problem_.fit(fewer, 0, all_cvs(), kWithoutOneSteps));
         named_[i].evidence = odds;
         // Of two that say the same one is enough.
         const auto same =
             std::count_if(all.effects.begin(), all.effects.end(),
                           [&](const Effect& other) { return same_form(other, all.effects[i]); });
-        const bool slow = same == 1 && cause_of(all.effects[i]).may_pass_for_noise();
+        const bool slow = same == 1 && cause_of(all.effects[i]).may_pass_for_noise() &&
+                          !cuts_a_walk(problem_, all, i);
         if (odds >= (slow ? kWanderingNoise : settings_.decisive)) continue;
         settled_.push_back(all.effects[i].place.cv);
         accepted_ = std::move(fewer);

@@ -3,25 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/identify/causes/output_disturbance.hpp"
-#include "core/identify/fit/mean_reversion.hpp"
 #include "core/identify/search/calibration.hpp"
 #include "core/identify/search/odds.hpp"
+#include "core/identify/search/walk_odds.hpp"
 
 namespace mpm {
-namespace {
-
-// A function of time alone, beside which its CV wanders all the same: any walk can be cut into
-// such.
-bool cuts_a_walk(const Trial& trial) {
-  return causes::is_break(trial.candidate) &&
-         !std::all_of(trial.fit.cvs.begin(), trial.fit.cvs.end(), [&](const CvFit& fit) {
-           return comes_back_beside_breaks(fit.residual,
-                                           causes::breaks_of(trial.fit.effects, fit.cv));
-         });
-}
-
-}  // namespace
 
 void Trials::settle(const Fit* fit) {
   {
@@ -67,15 +53,24 @@ Trial Trials::attempt(const Effect& candidate, int iterations) {
   effects.push_back(candidate);
   trial.fit = problem_.fit(std::move(effects), first_free, cvs, iterations);
   trial.candidate = trial.fit.effects.back();
-  trial.odds = odds_for(candidate, trial.fit, without(cvs));
+  trial.odds = odds_of(trial.fit, trial.fit.effects.size() - 1, without(cvs));
   // What is slow can hide in a noise model that is re-estimated without it: it then takes the noise
   // for a wandering one. So it also counts how the noise model with the cause judges the lack of
   // it.
   if (cause_of(candidate).may_pass_for_noise() && trial.odds > kWanderingNoise &&
-      !cuts_a_walk(trial))
+      !cuts_a_walk(problem_, trial.fit, trial.fit.effects.size() - 1))
     trial.odds = std::max(trial.odds, settled_odds(trial, cvs) - kSettledNoise);
   if (!material(trial)) trial.odds = std::min(trial.odds, 0.0);
   return trial;
+}
+
+// The noise model knows a walk only as far as it remembers, and takes the rest of it for an effect.
+double Trials::odds_of(const Fit& with, std::size_t effect, const Fit& without) {
+  const Effect& mine = with.effects[effect];
+  const double odds = odds_for(mine, with, without);
+  if (!(odds > 0.0)) return odds;
+  return std::min(
+      odds, most_evidence(problem_, with, effect) - mine.search_cost - cause_of(mine).rarity());
 }
 
 std::vector<Trial> Trials::attempt_all(const std::vector<Effect>& candidates, int iterations) {

@@ -1,6 +1,7 @@
 #include "core/identify/diagnosis/selection.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/extension.hpp"
@@ -139,6 +140,64 @@ TEST_CASE("repairs that are better beside each other and worse than none are ref
   const OpenChannels closed = [](int, int, bool) { return false; };
   const Selection selection = select(problem, found, {unseen, 0, closed, {0.1, 0.1}}, [] {});
   CHECK(selection.fates == std::vector<Fate>{Fate::kRefused, Fate::kRefused});
+}
+
+// The input's scale is 1.5 for the first CV and 1 for the second: there the repair is worse than
+// none, (0.25 + 0.01) / 0.01 in squares, and in the first CV as much better than none, whose answer
+// is twice as large; in both together (105 + 0.04) / 2. The given model is repaired as a whole.
+TEST_CASE("a repair of all of an input's channels is judged in all of them") {
+  Bench bench(1.5, 1.5);
+  bench.model.channels[1] = lag(1, 0, 1.0, 10.0);
+  bench.all.cvs.col(1) =
+      test::first_order(bench.all.inputs.col(0), 1.0, 10.0) + kNoise * test::white(4, kRows);
+  bench.first = part(bench.all, 0, kFitted);
+  Problem problem(bench.model, 2, bench.first, Tolerances{}, NoiseModel{});
+  SearchResult found;
+  found.fit = problem.fit({}, 0, {0, 1});
+  found.named = {{{&causes::input_scale(), {-1, 0}, {{&kGainRatio, 1.5}}}, 80.0, 1.0, {}}};
+  Unseen unseen(bench.all, kRows - kFitted, bench.model, 1);
+  const OpenChannels closed = [](int, int, bool) { return false; };
+  const Selection selection = select(problem, found, {unseen, 0, closed, {1.0, 1.0}}, [] {});
+  CHECK(selection.fates == std::vector<Fate>{Fate::kRepaired});
+}
+
+// A controller undoes what disturbs the CV: y = G u + d with u nearly -d / G. Of a model with half
+// the plant's gain the free run is off by d + G u / 2, about half of d; of the plant's own by d. So
+// free runs and predictions speak against the true gain, and it is not to be refused by them.
+TEST_CASE("what is worse only because the controller saw it is not refused") {
+  Bench bench(1.0, 1.0);
+  constexpr double kGain = 4.0;  // twice the model's
+  const VectorXd disturbance = test::autoregressive(0.1 * test::normal(7, kRows), 0.995);
+  const VectorXd outside = 0.1 * test::telegraph(8, kRows, 12);
+  const double pole = std::exp(-1.0 / 10.0);
+  VectorXd u = VectorXd::Zero(kRows), y = u;
+  double state = 0.0, integral = 0.0;
+  for (Index k = 0; k < kRows; ++k) {
+    y(k) = state + disturbance(k);
+    integral -= 0.02 * y(k);
+    u(k) = integral - 0.1 * y(k) + outside(k);
+    state = pole * state + kGain * (1.0 - pole) * u(k);
+  }
+  bench.all.inputs.col(0) = u;
+  bench.all.cvs.col(0) = y + 0.02 * test::white(9, kRows);
+  bench.first = part(bench.all, 0, kFitted);
+  Problem problem(bench.model, 2, bench.first, Tolerances{}, NoiseModel{});
+  SearchResult found;
+  found.fit = problem.fit({}, 0, {0, 1});
+  found.named = {{{&causes::gain(), {0, 0}, {{&kGainRatio, 2.0}}}, 80.0, 1.0, {}}};
+  Unseen unseen(bench.all, kRows - kFitted, bench.model, 1);
+  const VectorXd given = unseen.residual(bench.model, 0);
+  ModelSpec plants = bench.model;
+  std::get<TransferFunction>(plants.channels[0].dynamics).gain = kGain;
+  const VectorXd own = unseen.residual(plants, 0);
+  REQUIRE(own.squaredNorm() > 2.0 * given.squaredNorm());
+  const OpenChannels closed = [](int, int, bool) { return false; };
+  const Selection selection = select(problem, found, {unseen, 0, closed, {1.0, 1.0}}, [] {});
+  CHECK(selection.fates == std::vector<Fate>{Fate::kNoBetter});
+  // A gain that the plant does not have is refused as before.
+  found.named[0].effect.coordinates[0].value = 0.5;
+  const Selection wrong = select(problem, found, {unseen, 0, closed, {1.0, 1.0}}, [] {});
+  CHECK(wrong.fates == std::vector<Fate>{Fate::kRefused});
 }
 
 // Two inputs that move nearly alike; 1.5 times the gain of one and half that of the other are true.

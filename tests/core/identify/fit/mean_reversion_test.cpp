@@ -77,6 +77,18 @@ TEST_CASE("a random walk does not come back for being cut in two") {
   CHECK(slow >= kSeeds - 4);
 }
 
+// One in 1000: of 200 more than 3 with a probability of 6e-5.
+TEST_CASE("hardly a random walk comes back by the stricter rule") {
+  int walks = 0, under_noise = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const VectorXd walk = test::autoregressive(test::normal(1500 + seed, kRows), 1.0);
+    walks += comes_back_beside_breaks(walk, 0) ? 1 : 0;
+    under_noise += comes_back_beside_breaks(walk + 10.0 * test::normal(1900 + seed, kRows), 0);
+  }
+  CHECK(walks <= 3);
+  CHECK(under_noise <= 3);
+}
+
 TEST_CASE("what stands still comes back, what is unknown is not taken for anything") {
   CHECK(comes_back(VectorXd::Constant(kRows, 3.0)));
   const double unknown = std::numeric_limits<double>::quiet_NaN();
