@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 
@@ -79,6 +80,8 @@ std::function<bool(const Effect&)> nameable(const ModelSpec& model, const Signal
                        nonlinear.bends(channels_of(effect, model, ranges.inputs));
     if (outside_share(effect, model, shares) < outside_needed(effect) && !bends) return false;
     if (effect.place.aux >= ranges.aux) return may_name_setpoint(effect, tests, ranges.aux);
+    if (causes::is_constant_offset(effect))
+      return !tests.reject(tests.channels_to(effect.place.cv));
     if (!cause_of(effect).acts_through_channels()) return true;
     const std::vector<std::pair<int, int>> channels = channels_of(effect, model, ranges.inputs);
     if (bends) return true;

@@ -15,6 +15,7 @@
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/mean_reversion.hpp"
+#include "core/identify/search/walk_odds.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {
@@ -85,16 +86,14 @@ bool names_channels_of_wandering(const Explained& explained) {
 
 /// Whether a break is named of a CV that wanders beside it all the same. A bounded noise
 /// takes each piece of a walk for a drift or a shift, and its last level explains what comes next.
-bool cuts_a_walk(const Explained& explained) {
-  const SearchResult& found = explained.found;
-  return std::any_of(found.named.begin(), found.named.end(), [&](const Named& named) {
-    if (!causes::is_break(named.effect)) return false;
-    return std::any_of(found.fit.cvs.begin(), found.fit.cvs.end(), [&](const CvFit& fit) {
-      return fit.cv == named.effect.place.cv && !integrates(explained.problem->model(), fit.cv) &&
-             !comes_back_beside_breaks(left_of(explained.problem->data(fit.cv), fit),
-                                       causes::breaks_of(found.fit.effects, fit.cv));
-    });
-  });
+bool names_pieces_of_a_walk(const Explained& explained) {
+  const Fit& fit = explained.found.fit;
+  for (std::size_t i = 0; i < fit.effects.size(); ++i)
+    if (causes::is_break(fit.effects[i]) &&
+        !integrates(explained.problem->model(), fit.effects[i].place.cv) &&
+        cuts_a_walk(*explained.problem, fit, i))
+      return true;
+  return false;
 }
 
 /// Coefficients, up to `most`, of which Akaike's criterion is least.
@@ -147,7 +146,7 @@ Explained explain(const ModelSpec& model, int model_inputs, const Recording& rec
   const double with_bounded = log_error(explain_on(kBoundedNoise, train), recording, first);
   if (!(with_bounded < with_free - (blind ? kSomewhatLess : kClearlyLess))) return explained;
   Explained bounded = explain_on(kBoundedNoise, recording);
-  return cuts_a_walk(bounded) ? std::move(explained) : std::move(bounded);
+  return names_pieces_of_a_walk(bounded) ? std::move(explained) : std::move(bounded);
 }
 
 }  // namespace mpm

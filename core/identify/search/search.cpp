@@ -92,7 +92,10 @@ class Search {
       result.named.push_back(named_[i]);
     }
     widen_kinked(problem_, result, [this] { report(); });
-    name_levels(problem_, no_level_, result);
+    std::vector<int> no_level = no_level_;
+    for (const int cv : all_cvs())
+      if (!may_name(causes::constant_offset(cv, 0.0, 1.0))) no_level.push_back(cv);
+    name_levels(problem_, no_level, result);
     return result;
   }
 

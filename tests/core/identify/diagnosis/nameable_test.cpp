@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/fit/quantity.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
@@ -72,6 +73,15 @@ TEST_CASE("a curve may be named where the nonlinear test sees it, moved by feedb
   CHECK_FALSE(may(nonlinear, causes::input_polynomial(), {0, 1}));
 }
 
+TEST_CASE("no level is named of a CV of which a channel is off") {
+  const Bench bench;
+  CHECK_FALSE(bench.may(causes::constant_offset(0, 3.0, 0.1)));
+  CHECK(bench.may(causes::constant_offset(1, 3.0, 0.1)));
+  Effect later = causes::constant_offset(0, 3.0, 0.1);
+  later.onset = 500;
+  CHECK(bench.may(later));
+}
+
 TEST_CASE("a channel may be named where the test rejects it") {
   const Bench bench;
   CHECK(bench(causes::gain(), {0, 0}));
@@ -128,7 +138,9 @@ TEST_CASE("where nothing but feedback moves an input no gain or lag of it is nam
   CHECK_FALSE(bench(causes::output_scale(), {0}));
   CHECK(bench(causes::stiction(), {-1, 0}));
   CHECK(bench(causes::input_stuck(), {-1, 0}));
-  CHECK(bench(causes::step_disturbance(), {0}));
+  Effect step = causes::constant_offset(0, 3.0, 0.1);
+  step.onset = 100;
+  CHECK(bench.may(step));
   bench.shares[0] = std::nullopt;  // nobody knows
   CHECK(bench(causes::gain(), {0, 0}));
 }
