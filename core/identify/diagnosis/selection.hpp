@@ -21,8 +21,9 @@ enum class Fate {
 /// Everything named and taken into a model at first; then, the weakest first, what does not make
 /// the model better on unseen samples goes. What acts through channels is judged by predictions
 /// over the horizons (95 % interval of the bootstrap above zero), and where its inputs move mostly
-/// from outside the loop the free run may not get worse; what disturbs a CV by itself is judged by
-/// the free run, for a prediction that knows the last error does not feel a level.
+/// from outside the loop the free run may not get worse, unless one-step errors get better beyond
+/// doubt; and nothing is refused that these do not find worse. What disturbs a CV by itself is
+/// judged by the free run, for a prediction that knows the last error does not feel a level.
 struct Selection {
   std::vector<Fate> fates;         ///< of each that was named
   std::vector<double> explains;    ///< likewise: Finding::explains

@@ -26,11 +26,11 @@ constexpr double kCritical = -2.89;
 /// was let break (400 000 walks; the 1 % point is -3.50, Fuller's 1976 is -3.51); 1 % where level
 /// and slope were once, twice, or more often, where that leaves least (300 walks). (Zivot and
 /// Andrews 1992 have more negative ones for the break that speaks most for coming back.)
-/// `kFollowed`: so much more negative beside a dozen columns that forget within some blocks (1 % of
-/// 1500 walks with the drift that leaves least: -6.1 to -7.3, as they forget within two blocks or
-/// five; those of a fit are held back by a prior).
-constexpr double kFollowed = -2.4;
 constexpr double kCriticalBesideBreaks[] = {-4.22, -4.84, -5.73, -6.46};
+/// So much more negative beside a dozen columns that forget within some blocks: 1.3 to 2.4, as they
+/// forget within two blocks or five (1 % of 1500 walks with the drift that leaves least); those of
+/// a fit are held back by a prior.
+constexpr double kFollowed = -2.0;
 
 /// Means of the finite values of equal blocks; blocks without any are left out.
 std::vector<double> block_means(const Eigen::Ref<const VectorXd>& signal) {
