@@ -27,10 +27,6 @@ constexpr double kCritical = -2.89;
 /// and slope were once, twice, or more often, where that leaves least (300 walks). (Zivot and
 /// Andrews 1992 have more negative ones for the break that speaks most for coming back.)
 constexpr double kCriticalBesideBreaks[] = {-4.22, -4.84, -5.73, -6.46};
-/// So much more negative beside a dozen columns that forget within some blocks: 1.3 to 2.4, as they
-/// forget within two blocks or five (1 % of 1500 walks with the drift that leaves least); those of
-/// a fit are held back by a prior.
-constexpr double kFollowed = -2.0;
 
 /// Means of the finite values of equal blocks; blocks without any are left out.
 std::vector<double> block_means(const Eigen::Ref<const VectorXd>& signal) {
@@ -91,10 +87,9 @@ bool comes_back_beside_breaks(const Eigen::Ref<const VectorXd>& signal, std::siz
   return beyond_a_walk(signal, breaks) > 0.0;
 }
 
-double beyond_a_walk(const Eigen::Ref<const VectorXd>& signal, std::size_t breaks, bool followed) {
+double beyond_a_walk(const Eigen::Ref<const VectorXd>& signal, std::size_t breaks) {
   const double critical =
-      kCriticalBesideBreaks[std::min(breaks, std::size(kCriticalBesideBreaks) - 1)] +
-      (followed ? kFollowed : 0.0);
+      kCriticalBesideBreaks[std::min(breaks, std::size(kCriticalBesideBreaks) - 1)];
   const double deviations = std::min(0.0, statistic(signal, 0).value_or(0.0));
   return deviations * deviations - critical * critical;
 }

@@ -20,9 +20,8 @@ namespace mpm {
                                             std::size_t breaks);
 /// By how much the square of that test's statistic, which is about 2 ln of the likelihood of coming
 /// back against that of a walk, is larger than where it rejects; negative where it does not.
-/// `followed`: small errors and first states were taken off too, which can follow a walk.
 [[nodiscard]] double beyond_a_walk(const Eigen::Ref<const Eigen::VectorXd>& signal,
-                                   std::size_t breaks, bool followed = false);
+                                   std::size_t breaks);
 
 /// Whether it wanders: it does not come back, and is long enough to tell that from settling, for a
 /// CV of which the slowest time constant takes so many rows.

@@ -36,9 +36,8 @@ double against_a_walk(const Problem& problem, const Fit& fit, std::size_t effect
   const CvFit* const state = fit_of(fit, mine.place.cv);
   if (state == nullptr || !(causes::is_break(mine) || causes::is_unnamed(cause_of(mine))))
     return std::numeric_limits<double>::infinity();
-  const std::size_t breaks = causes::breaks_of(fit.effects, mine.place.cv);
-  return std::max(beyond_a_walk(left_of(problem.data(state->cv), *state), breaks),
-                  beyond_a_walk(state->residual, breaks, true));
+  return beyond_a_walk(left_of(problem.data(state->cv), *state),
+                       causes::breaks_of(fit.effects, mine.place.cv));
 }
 
 }  // namespace
