@@ -14,7 +14,7 @@ void widen_kinked(Problem& problem, SearchResult& result, const std::function<vo
 
 /// A level that is off from the first row on by far more than the noise moves it is no small error
 /// any more, but a sensor's offset or a disturbance as old as the data: adds those to `result`, but
-/// for the CVs in `except`.
+/// for the CVs in `except` and those that wander, of which no level can be told.
 void name_levels(Problem& problem, const std::vector<int>& except, SearchResult& result);
 
 }  // namespace mpm
