@@ -78,6 +78,13 @@ inline constexpr Eigen::Index kFewestMoves = 20;  ///< that show how long an inp
 /// Data that hold so many slowest time constants can tell what wanders from what settles.
 inline constexpr double kLongTimeConstants = 20.0;
 
+// A random walk (walk.hpp).
+/// Coefficients of the autoregression of a random walk's steps under noise. Chosen: what it forgets
+/// of such noise makes the walk seem the larger (zero at 0.93: its s.d. by a fifth).
+inline constexpr int kWalkOrder = 24;
+/// How often they and what is fitted beside them are set in turn.
+inline constexpr int kWalkPasses = 2;
+
 /// Of a sample: two moments are the same.
 inline constexpr double kSameMoment = 1e-6;
 

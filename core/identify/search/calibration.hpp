@@ -53,9 +53,6 @@ inline constexpr double kWanderingNoise = -10.0;
 /// otherwise.
 inline constexpr double kSettledNoise = 12.0;
 
-/// Coefficients of the autoregression of a random walk's steps under noise. Chosen: what it forgets
-/// of such noise makes the walk seem the larger (zero at 0.93: its s.d. by a fifth).
-inline constexpr int kWalkOrder = 24;
 /// What speaks against a walk counts so many times for what would be none on it. Chosen: of noise
 /// that forgets within a block of a hundredth of the data that is 300, which bounds nothing.
 inline constexpr double kAgainstWalk = 4.0;

@@ -7,6 +7,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/fit/mean_reversion.hpp"
+#include "core/identify/fit/walk.hpp"
 #include "core/identify/search/calibration.hpp"
 #include "core/identify/search/odds.hpp"
 #include "core/identify/search/trial.hpp"
@@ -80,7 +81,7 @@ void name_levels(Problem& problem, const std::vector<int>& except, SearchResult&
     const double sd = std::sqrt(fit.variance / rows) / memory;
     if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd)) continue;
     // A walk is anywhere, for nobody knows how long it has gone on.
-    if (!comes_back_beside_breaks(left_of(data, fit),
+    if (!comes_back_beside_breaks(left_beside_a_walk(data, fit),
                                   causes::breaks_of(result.fit.effects, fit.cv)))
       continue;
     if (std::abs(level) <= range_of_new_inputs(problem, result.fit.effects, fit.cv)) continue;

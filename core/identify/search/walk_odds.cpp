@@ -7,26 +7,18 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/fit/mean_reversion.hpp"
-#include "core/identify/fit/row_weights.hpp"
+#include "core/identify/fit/walk.hpp"
 #include "core/identify/search/calibration.hpp"
 
 namespace mpm {
 namespace {
 
-using Eigen::Index;
 using Eigen::VectorXd;
 
 const CvFit* fit_of(const Fit& fit, int cv) {
   for (const CvFit& state : fit.cvs)
     if (state.cv == cv) return &state;
   return nullptr;
-}
-
-VectorXd steps_of(const VectorXd& x) {
-  VectorXd steps = x;
-  steps.tail(x.size() - 1) -= x.head(x.size() - 1);
-  steps(0) = 0.0;
-  return steps;
 }
 
 /// How surely the effect's CV comes back (`beyond_a_walk`); infinite where no walk could be taken
@@ -36,7 +28,7 @@ double against_a_walk(const Problem& problem, const Fit& fit, std::size_t effect
   const CvFit* const state = fit_of(fit, mine.place.cv);
   if (state == nullptr || !(causes::is_break(mine) || causes::is_unnamed(cause_of(mine))))
     return std::numeric_limits<double>::infinity();
-  return beyond_a_walk(left_of(problem.data(state->cv), *state),
+  return beyond_a_walk(left_beside_a_walk(problem.data(state->cv), *state),
                        causes::breaks_of(fit.effects, mine.place.cv));
 }
 
@@ -51,25 +43,14 @@ double evidence_on_walk(Problem& problem, const Fit& fit, std::size_t effect) {
   const CvData& data = problem.data(cv);
   const VectorXd own =
       (problem.simulate(fit.effects, cv) - problem.simulate(others, cv)).cwiseProduct(data.known);
-  const VectorXd mine = steps_of(own), without = steps_of(state->residual + own);
-  // A step is known where both its rows are.
-  const VectorXd weights =
-      data.weights.cwiseProduct(rows_with_past(data.known, data.runs, kWalkOrder + 1));
-  const NoiseModel noise{.order = kWalkOrder, .bound = 0.0};
-  const auto whitening_of = [&](const VectorXd& steps) {
-    Whitening whitening = fit_whitening(steps, weights, noise);
-    whitening.borders = state->noise.borders;
-    return whitening;
-  };
-  const Whitening before = whitening_of(without);
-  const VectorXd errors = before.apply(without), signature = before.apply(mine);
-  const double information = signature.cwiseAbs2().dot(weights);
+  const VectorXd without = state->residual + own;
+  const WalkSteps before = walk_steps(data, *state, without);
+  const VectorXd errors = before.rows_of(without), signature = before.rows_of(own);
+  const double information = signature.squaredNorm();
   if (!(information > 0.0)) return 0.0;
-  const double size = errors.cwiseProduct(signature).dot(weights) / information;
-  const VectorXd with = without - size * mine;
-  const double left = whitening_of(with).apply(with).cwiseAbs2().dot(weights);
-  const double rows = static_cast<double>((weights.array() > 0.0).count());
-  const double evidence = rows * std::log(errors.cwiseAbs2().dot(weights) / left);
+  const VectorXd with = without - errors.dot(signature) / information * own;
+  const double left = walk_steps(data, *state, with).rows_of(with).squaredNorm();
+  const double evidence = before.rows() * std::log(errors.squaredNorm() / left);
   return std::isfinite(evidence) ? std::max(0.0, evidence) : 0.0;
 }
 
