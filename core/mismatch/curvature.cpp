@@ -2,12 +2,12 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/mismatch/calibration.hpp"
 #include "core/regression/row_feed.hpp"
 #include "core/statistics/f_distribution.hpp"
+#include "core/statistics/normal.hpp"
 
 namespace mpm {
 namespace {
@@ -29,29 +29,49 @@ double explained_by(const VolterraTerms& terms, int a, const Eigen::MatrixXd& tr
   return (rotated - fitted).squaredNorm();
 }
 
-// Two s.d. of the local gain of channel `a`, relative to the model's.
-double gain_variation(const VolterraTerms& terms, int a, const Eigen::VectorXd& coefficients,
-                      int first, double own, int span) {
-  const int count = static_cast<int>(terms.inputs().size());
-  const auto coefficient = [&](const std::array<int, 2>& columns) {
-    return (coefficients(first + columns[0]) + coefficients(first + columns[1])) / own;
-  };
-  std::vector<double> slopes;
-  slopes.reserve(terms.inputs().size());
-  for (int b = 0; b < count; ++b)
-    slopes.push_back((a == b ? 2.0 : 1.0) *
-                     coefficient(terms.product_columns(std::min(a, b), std::max(a, b))));
-  const double bend = 3 * coefficient(terms.cube_columns(a));
-  double sum = 0.0, square = 0.0;
+// How the local gain of channel `a`, relative to the model's, changes with each of the terms'
+// coefficients, about its mean over the rows: the mean of the squares, of which
+// `coefficients' * that * coefficients` is the variance of that gain.
+Eigen::MatrixXd gain_moments(const VolterraTerms& terms, int a, int span) {
+  const int inputs = static_cast<int>(terms.inputs().size());
+  Eigen::VectorXd slopes(terms.columns()), sum = Eigen::VectorXd::Zero(terms.columns());
+  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(terms.columns(), terms.columns());
   for (int age = 0; age < span; ++age) {
-    double change = bend * terms.contribution(a, age) * terms.contribution(a, age);
-    for (int b = 0; b < count; ++b)
-      change += slopes[static_cast<std::size_t>(b)] * terms.contribution(b, age);
-    sum += change;
-    square += change * change;
+    slopes.setZero();
+    for (int b = 0; b < inputs; ++b)
+      for (const int column : terms.product_columns(std::min(a, b), std::max(a, b)))
+        slopes(column) = (a == b ? 2.0 : 1.0) * terms.contribution(b, age);
+    for (const int column : terms.cube_columns(a))
+      slopes(column) = 3.0 * terms.contribution(a, age) * terms.contribution(a, age);
+    sum += slopes;
+    square.selfadjointView<Eigen::Lower>().rankUpdate(slopes);
   }
-  const double variance = std::max(square - sum * sum / span, 0.0) / span;
-  return std::min(2.0 * std::sqrt(variance), limits::kMostVariation);
+  square.selfadjointView<Eigen::Lower>().rankUpdate(sum, -1.0 / span);
+  return Eigen::MatrixXd(square.selfadjointView<Eigen::Lower>()) / span;
+}
+
+double bounded_variation(double square) {
+  return square > 0.0 ? std::min(2.0 * std::sqrt(square), limits::kMostVariation) : 0.0;
+}
+
+// For terms of which the coefficients are R^-1 `rotated`, with the covariance `variance`
+// R^-1 R^-T, relative to `own`. That covariance C alone makes tr(M C) of a variance b'M b of the
+// gain, which in turn has the variance 4 b'M C M b + 2 tr(M C M C) (Searle 1971, 2.5).
+void set_variation(const Eigen::MatrixXd& moments, const Eigen::MatrixXd& triangle,
+                   const Eigen::VectorXd& rotated, double variance, double own,
+                   Curvature::Channel& channel) {
+  const auto upper = triangle.triangularView<Eigen::Upper>();
+  const Eigen::VectorXd coefficients = upper.solve(rotated);
+  // R^-T M R^-1, which has the traces of M C and its powers.
+  const Eigen::MatrixXd half = upper.transpose().solve(moments);
+  const Eigen::MatrixXd errors = variance * upper.transpose().solve(half.transpose());
+  const double square = coefficients.dot(moments * coefficients) - errors.trace();
+  const Eigen::VectorXd slope = upper.transpose().solve(moments * coefficients);
+  const double deviation =
+      std::sqrt(4.0 * variance * slope.squaredNorm() + 2.0 * errors.squaredNorm());
+  channel.gain_variation = bounded_variation(square / (own * own));
+  channel.sure_variation =
+      bounded_variation((square - kNormalOneSided99 * deviation) / (own * own));
 }
 
 }  // namespace
@@ -105,7 +125,7 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
     Curvature::Channel& channel =
         found.channels[static_cast<std::size_t>(terms.inputs()[static_cast<std::size_t>(a)])];
     channel.p_value = f_upper_tail(explained / left_out, left_out, freedom);
-    channel.gain_variation = gain_variation(terms, a, coefficients, first, own, span);
+    set_variation(gain_moments(terms, a, span), triangle, rotated, variance, own, channel);
   }
   return found;
 }

@@ -14,11 +14,14 @@ struct Curvature {
   double p_value = 1.0;    ///< of no curvature
   /// Per input of the unit.
   struct Channel {
-    double p_value = 1.0;         ///< of none in which this input has a part
-    double gain_variation = 0.0;  ///< two s.d. of the local gain over the rows, relative
+    double p_value = 1.0;  ///< of none in which this input has a part
+    /// Two s.d. of the local gain over the rows, relative to the model's, without what noise makes
+    /// of it.
+    double gain_variation = 0.0;
+    double sure_variation = 0.0;  ///< its lower bound, 99 % one-sided
     template <class Archive>
     void archive(Archive& a) {
-      a(p_value, gain_variation);
+      a(p_value, gain_variation, sure_variation);
     }
   };
   std::vector<Channel> channels;

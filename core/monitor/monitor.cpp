@@ -361,8 +361,10 @@ Belief Monitor::State::belief(int cv) const {
 
 double Monitor::State::gain_variation(int cv, int input) const {
   const Curvature* found = detector.curvature(cv);
-  return found ? found->channels[static_cast<std::size_t>(input)].gain_variation
-               : std::numeric_limits<double>::quiet_NaN();
+  if (!found) return std::numeric_limits<double>::quiet_NaN();
+  const Curvature::Channel& channel = found->channels[static_cast<std::size_t>(input)];
+  return channel.sure_variation > 0.0 ? channel.gain_variation
+                                      : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool Monitor::State::bends(int cv, int input) const {
@@ -370,7 +372,7 @@ bool Monitor::State::bends(int cv, int input) const {
   if (!found) return false;
   const Curvature::Channel& channel = found->channels[static_cast<std::size_t>(input)];
   return channel.p_value < calibration::curvature::kChannelPValue &&
-         channel.gain_variation >
+         channel.sure_variation >
              settings.materiality[index(cv, input) % settings.materiality.size()].gain;
 }
 

@@ -6,5 +6,6 @@ namespace mpm {
 /// (tests/core/statistics/normal_test.cpp compares them with Boost.Math).
 inline constexpr double kNormalTwoSided95 = 1.96;   ///< |z| exceeds it with probability 5 %
 inline constexpr double kNormalOneSided95 = 1.645;  ///< z does
+inline constexpr double kNormalOneSided99 = 2.326;  ///< with probability 1 %
 
 }  // namespace mpm

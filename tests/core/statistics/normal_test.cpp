@@ -10,6 +10,7 @@ TEST_CASE("normal quantiles are right to the digits that are written") {
   const boost::math::normal normal;
   CHECK(kNormalTwoSided95 == Approx(boost::math::quantile(normal, 0.975)).margin(0.005));
   CHECK(kNormalOneSided95 == Approx(boost::math::quantile(normal, 0.95)).margin(0.0005));
+  CHECK(kNormalOneSided99 == Approx(boost::math::quantile(normal, 0.99)).margin(0.0005));
 }
 
 }  // namespace
