@@ -22,12 +22,13 @@ struct Series {
   [[nodiscard]] bool enough() const { return points.size() >= level_change::kFewestPoints; }
 };
 
+// Logarithms: errors are known to a share of their size.
 Series errors_of(const Trend& trend, std::size_t cv) {
   Series series;
   for (std::size_t k = 0; k < trend.periods.size(); ++k) {
     const CvPeriod& period = trend.periods[k].cvs[cv];
-    if (known(period.deviation))
-      series.add(trend, k, period.prediction_rms, period.deviation * period.prediction_rms);
+    if (known(period.deviation) && period.prediction_rms > 0.0)
+      series.add(trend, k, std::log(period.prediction_rms), period.deviation);
   }
   return series;
 }
@@ -59,19 +60,16 @@ std::optional<Change> change_of_errors(const Trend& trend, std::size_t cv, const
                                        double level) {
   const std::optional<LevelChange> found = find_level_change(series.points);
   if (!found || found->p_value > level) return std::nullopt;
-  if (found->before <= 0.0 || found->after <= 0.0) return std::nullopt;
-  const double step = std::log(found->after / found->before);
+  const double step = found->after - found->before;
   if (std::abs(step) < std::log(kLeastRatio)) return std::nullopt;
-  // Of the logarithm: errors are known to a share of their size, and the larger ones count.
-  const double deviation = found->deviation / std::max(found->before, found->after);
   Change change;
   change.cv = trend.head.cvs[cv].cv;
   change.gradual = found->gradual;
   change.first = first_of(series, *found);
   change.before = 1.0;
   change.now = std::exp(step);
-  change.low = std::exp(step - kNormalTwoSided95 * deviation);
-  change.high = std::exp(step + kNormalTwoSided95 * deviation);
+  change.low = std::exp(step - kNormalTwoSided95 * found->deviation);
+  change.high = std::exp(step + kNormalTwoSided95 * found->deviation);
   change.p_value = found->p_value;
   const std::size_t begun = found->first + (found->gradual ? 1 : 0);
   change.movement_ratio = movement(trend, series, cv, begun, series.points.size()) /
