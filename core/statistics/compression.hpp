@@ -20,7 +20,8 @@ class Compression {
   enum class Kind : unsigned char { kNone, kHeld, kInterpolated };
 
   void take(double value);
-  /// Tells of what has come of the batch, if that is enough.
+  /// Tells of what has come of the first batch, if that is enough; a whole batch tells more surely
+  /// than what came of the next.
   void conclude();
   /// As the last batch of changes was.
   [[nodiscard]] Kind kind() const { return kind_; }
