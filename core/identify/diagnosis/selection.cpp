@@ -115,11 +115,14 @@ Fate worse(const Errors& errors, std::uint64_t seed) {
   return errors.innovations(seed).gain_high > 0.0 ? Fate::kNoBetter : Fate::kRefused;
 }
 
-/// Whether a model is better at predictions, by so much that it is worth an accusation.
+/// Whether a model is better at predictions, by so much that it is worth an accusation. Where
+/// disturbances are so large that these cannot tell, one-step errors have the word.
 Fate judged_by_predictions(const CvScore& predictions, const Errors& errors, std::uint64_t seed) {
   if (!(predictions.gain_high > 0.0)) return worse(errors, seed);
+  if (!(predictions.gain_low > 0.0))
+    return errors.innovations(seed).gain_low > 0.0 ? Fate::kRepaired : Fate::kNoBetter;
   const bool worth = predictions.rmse_after < (1.0 - kLeastRepair) * predictions.rmse_before;
-  return worth && predictions.gain_low > 0.0 ? Fate::kRepaired : Fate::kNoBetter;
+  return worth ? Fate::kRepaired : Fate::kNoBetter;
 }
 
 Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -15,55 +17,53 @@ namespace {
 
 using Eigen::VectorXd;
 
-const CvFit* fit_of(const Fit& fit, int cv) {
-  for (const CvFit& state : fit.cvs)
-    if (state.cv == cv) return &state;
-  return nullptr;
-}
-
-/// How surely the effect's CV comes back (`beyond_a_walk`); infinite where no walk could be taken
-/// for the effect.
-double against_a_walk(const Problem& problem, const Fit& fit, std::size_t effect) {
-  const Effect& mine = fit.effects[effect];
-  const CvFit* const state = fit_of(fit, mine.place.cv);
-  if (state == nullptr || !(causes::is_break(mine) || causes::is_unnamed(cause_of(mine))))
-    return std::numeric_limits<double>::infinity();
-  return beyond_a_walk(left_beside_a_walk(problem.data(state->cv), *state),
-                       causes::breaks_of(fit.effects, mine.place.cv));
+/// How surely a CV of a fit comes back (`beyond_a_walk`).
+double against_a_walk(const Problem& problem, const Fit& fit, const CvFit& state) {
+  return beyond_a_walk(left_beside_a_walk(problem.data(state.cv), state),
+                       causes::breaks_of(fit.effects, state.cv));
 }
 
 }  // namespace
 
-double evidence_on_walk(Problem& problem, const Fit& fit, std::size_t effect) {
-  const int cv = fit.effects[effect].place.cv;
-  const CvFit* const state = fit_of(fit, cv);
-  if (state == nullptr || state->residual.size() < 2) return 0.0;
+std::optional<double> evidence_on_walk(Problem& problem, const Fit& fit, std::size_t effect,
+                                       const CvFit& state) {
   std::vector<Effect> others = fit.effects;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(effect));
-  const CvData& data = problem.data(cv);
+  const CvData& data = problem.data(state.cv);
   const VectorXd own =
-      (problem.simulate(fit.effects, cv) - problem.simulate(others, cv)).cwiseProduct(data.known);
-  const VectorXd without = state->residual + own;
-  const WalkSteps before = walk_steps(data, *state, without);
+      (problem.simulate(fit.effects, state.cv) - problem.simulate(others, state.cv))
+          .cwiseProduct(data.known);
+  const VectorXd without = state.residual + own;
+  const WalkSteps before = walk_steps(data, state, without);
   const VectorXd errors = before.rows_of(without), signature = before.rows_of(own);
   const double information = signature.squaredNorm();
-  if (!(information > 0.0)) return 0.0;
+  if (!(information > 0.0)) return std::nullopt;
   const VectorXd with = without - errors.dot(signature) / information * own;
-  const double left = walk_steps(data, *state, with).rows_of(with).squaredNorm();
+  const double left = walk_steps(data, state, with).rows_of(with).squaredNorm();
   const double evidence = before.rows() * std::log(errors.squaredNorm() / left);
   return std::isfinite(evidence) ? std::max(0.0, evidence) : 0.0;
 }
 
-bool cuts_a_walk(const Problem& problem, const Fit& fit, std::size_t effect) {
-  return against_a_walk(problem, fit, effect) <= 0.0;
+double most_evidence(Problem& problem, const Fit& fit, std::size_t effect) {
+  double evidence = 0.0, against = 0.0;
+  bool acts = false;
+  for (const CvFit& state : fit.cvs)
+    if (const auto of_steps = evidence_on_walk(problem, fit, effect, state)) {
+      acts = true;
+      evidence += *of_steps;
+      against += std::max(0.0, against_a_walk(problem, fit, state));
+    }
+  if (!acts) return std::numeric_limits<double>::infinity();
+  const auto numbers = static_cast<double>(fit.effects[effect].coordinates.size());
+  return evidence - numbers * std::log1p(evidence) + kAgainstWalk * against;
 }
 
-double most_evidence(Problem& problem, const Fit& fit, std::size_t effect) {
-  const double against = against_a_walk(problem, fit, effect);
-  if (!std::isfinite(against)) return against;
-  const double evidence = evidence_on_walk(problem, fit, effect);
-  const auto numbers = static_cast<double>(fit.effects[effect].coordinates.size());
-  return evidence - numbers * std::log1p(evidence) + kAgainstWalk * std::max(0.0, against);
+bool cuts_a_walk(const Problem& problem, const Fit& fit, std::size_t effect) {
+  const Effect& mine = fit.effects[effect];
+  if (!(causes::is_break(mine) || causes::is_unnamed(cause_of(mine)))) return false;
+  return std::any_of(fit.cvs.begin(), fit.cvs.end(), [&](const CvFit& state) {
+    return state.cv == mine.place.cv && against_a_walk(problem, fit, state) <= 0.0;
+  });
 }
 
 }  // namespace mpm

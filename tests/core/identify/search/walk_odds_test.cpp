@@ -29,18 +29,20 @@ VectorXd from_onset(double size, bool drifts) {
 }
 
 struct Bench {
-  VectorXd u = test::telegraph(1, kRows, 12);
+  VectorXd u;
   Recording recording;
   Problem problem;
   Fit fit;
 
-  Bench(const VectorXd& disturbance, const Effect& effect)
-      : recording(test::recording_of(u, test::first_order(u, 2.0, 10.0) + disturbance)),
+  Bench(const VectorXd& disturbance, const Effect& effect,
+        const VectorXd& input = test::telegraph(1, kRows, 12))
+      : u(input),
+        recording(test::recording_of(u, test::first_order(u, 2.0, 10.0) + disturbance)),
         problem(test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), 1, recording, Tolerances{},
                 NoiseModel{}),
         fit(problem.fit({effect}, 0, {0}, 8)) {}
 
-  double evidence() { return evidence_on_walk(problem, fit, 0); }
+  double evidence() { return evidence_on_walk(problem, fit, 0, fit.cvs[0]).value(); }
 };
 
 Effect effect_of(const Cause& cause, const char* quantity, double prior_sd) {
@@ -50,6 +52,9 @@ Effect effect_of(const Cause& cause, const char* quantity, double prior_sd) {
   return effect;
 }
 Effect step() { return effect_of(causes::step_disturbance(), "size", 2.0); }
+Effect gain() {
+  return {&causes::gain(), {0, 0}, {{&kGainRatio, 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}}};
+}
 Effect drift() { return effect_of(causes::drift_disturbance(), "rate", 0.02); }
 
 // Of n steps of s.d. s one is larger by J: n ln(1 + (J + its own)^2 / (n s^2)), that is 98 of 10 s.
@@ -89,10 +94,36 @@ TEST_CASE("only what is a function of time can cut a walk, and only a walk is cu
   CHECK_FALSE(cuts_a_walk(on_noise.problem, on_noise.fit, 0));
   CHECK(most_evidence(on_walk.problem, on_walk.fit, 0) <= on_walk.evidence());
   CHECK(most_evidence(on_noise.problem, on_noise.fit, 0) > 200.0);  // bounds nothing
-  const Effect gain{&causes::gain(), {0, 0}, {{&kGainRatio, 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}}};
-  Bench of_channel(walk(21), gain);
+  Bench of_channel(walk(21), gain());
   CHECK_FALSE(cuts_a_walk(of_channel.problem, of_channel.fit, 0));
-  CHECK(std::isinf(most_evidence(of_channel.problem, of_channel.fit, 0)));
+}
+
+// An input that wanders, too, goes with any walk, under noise of ten of its steps more than a fit
+// believes. Chance of more than 3.84 as above. An error of its channel stands out all the same: in
+// a hundred rows both walks move by what the noise is, and 30 hundreds tell 1/6 of the ratio.
+TEST_CASE("between two walks there is no evidence for a channel's error, but for a real one") {
+  int seen = 0, believed = 0, found = 0;
+  for (std::uint64_t seed = 200; seed < 260; ++seed) {
+    const VectorXd input = walk(seed + 500);
+    const VectorXd wander = walk(seed) + 10.0 * kStep * test::normal(seed + 1000, kRows);
+    Bench sound(wander, gain(), input);
+    seen += sound.evidence() > 3.84 ? 1 : 0;
+    const Fit without = sound.problem.fit({}, 0, {0}, 8);
+    believed += without.cost - sound.fit.cost > 3.84 ? 1 : 0;
+    Bench wrong(wander + test::first_order(input, 2.0, 10.0), gain(), input);
+    found += most_evidence(wrong.problem, wrong.fit, 0) > 3.84 ? 1 : 0;
+  }
+  CAPTURE(seen, believed, found);
+  CHECK(seen <= 10);
+  CHECK(believed > seen);
+  CHECK(found >= 50);
+}
+
+TEST_CASE("what adds nothing to a CV has no evidence there, and no bound") {
+  const VectorXd u = VectorXd::Zero(kRows);
+  Bench bench(walk(1), gain(), u);
+  CHECK_FALSE(evidence_on_walk(bench.problem, bench.fit, 0, bench.fit.cvs[0]));
+  CHECK(std::isinf(most_evidence(bench.problem, bench.fit, 0)));
 }
 
 }  // namespace
