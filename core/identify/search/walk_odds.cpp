@@ -41,7 +41,7 @@ std::optional<double> evidence_on_walk(Problem& problem, const Fit& fit, std::si
   const VectorXd with = without - errors.dot(signature) / information * own;
   const double left = walk_steps(data, state, with).rows_of(with).squaredNorm();
   const double evidence = before.rows() * std::log(errors.squaredNorm() / left);
-  return std::isfinite(evidence) ? std::max(0.0, evidence) : 0.0;
+  return std::isnan(evidence) ? 0.0 : std::max(0.0, evidence);
 }
 
 double most_evidence(Problem& problem, const Fit& fit, std::size_t effect) {
@@ -53,7 +53,7 @@ double most_evidence(Problem& problem, const Fit& fit, std::size_t effect) {
       evidence += *of_steps;
       against += std::max(0.0, against_a_walk(problem, fit, state));
     }
-  if (!acts) return std::numeric_limits<double>::infinity();
+  if (!acts || std::isinf(evidence)) return std::numeric_limits<double>::infinity();
   const auto numbers = static_cast<double>(fit.effects[effect].coordinates.size());
   return evidence - numbers * std::log1p(evidence) + kAgainstWalk * against;
 }

@@ -119,6 +119,12 @@ TEST_CASE("between two walks there is no evidence for a channel's error, but for
   CHECK(found >= 50);
 }
 
+TEST_CASE("without noise nothing bounds what is there") {
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  Bench bench(test::first_order(u, 0.6, 10.0), gain(), u);
+  CHECK(most_evidence(bench.problem, bench.fit, 0) > 1e4);
+}
+
 TEST_CASE("what adds nothing to a CV has no evidence there, and no bound") {
   const VectorXd u = VectorXd::Zero(kRows);
   Bench bench(walk(1), gain(), u);
