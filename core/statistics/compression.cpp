@@ -53,7 +53,7 @@ void Compression::take_change(double change) {
 }
 
 void Compression::conclude() {
-  if (smallest_change_ == 0.0 && batch_.changes >= compression::kFewestChanges) judge();
+  if (batch_.changes >= compression::kFewestChanges) judge();
 }
 
 void Compression::Batch::archive(Archive& a) {

@@ -20,8 +20,7 @@ class Compression {
   enum class Kind : unsigned char { kNone, kHeld, kInterpolated };
 
   void take(double value);
-  /// Tells of what has come of the first batch, if that is enough; a whole batch tells more surely
-  /// than what came of the next.
+  /// Tells of what has come of the batch, if that is enough.
   void conclude();
   /// As the last batch of changes was.
   [[nodiscard]] Kind kind() const { return kind_; }

@@ -99,8 +99,6 @@ inline constexpr double kDiverged = 1e100;
 
 /// What takes less than this share off the errors of predictions is not worth an accusation.
 inline constexpr double kLeastRepair = 0.03;
-/// A cause of more confidence, 0..1, has no rival that comes near. Chosen.
-inline constexpr double kNoRival = 0.9;
 /// What takes at least this share off the errors of predictions, beyond doubt, needs no other test.
 inline constexpr double kOverwhelmingGain = 0.3;
 

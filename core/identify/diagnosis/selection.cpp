@@ -115,23 +115,15 @@ Fate worse(const Errors& errors, std::uint64_t seed) {
   return errors.innovations(seed).gain_high > 0.0 ? Fate::kNoBetter : Fate::kRefused;
 }
 
-/// Whether a model is better at predictions, by so much that it is worth an accusation. Where
-/// disturbances are so large that these cannot tell, one-step errors have the word on what has no
-/// rival.
-Fate judged_by_predictions(const Named& named, const CvScore& predictions, const Errors& errors,
-                           std::uint64_t seed) {
+/// Whether a model is better at predictions, by so much that it is worth an accusation.
+Fate judged_by_predictions(const CvScore& predictions, const Errors& errors, std::uint64_t seed) {
   if (!(predictions.gain_high > 0.0)) return worse(errors, seed);
-  if (!(predictions.gain_low > 0.0)) {
-    const bool sure = named.confidence > kNoRival && errors.innovations(seed).gain_low > 0.0;
-    return sure ? Fate::kRepaired : Fate::kNoBetter;
-  }
   const bool worth = predictions.rmse_after < (1.0 - kLeastRepair) * predictions.rmse_before;
-  return worth ? Fate::kRepaired : Fate::kNoBetter;
+  return worth && predictions.gain_low > 0.0 ? Fate::kRepaired : Fate::kNoBetter;
 }
 
-Fate judged(const Named& named, const ModelSpec& model, const Errors& errors, const Judges& judges,
-            std::uint64_t seed, bool wanders, double& sure_gain) {
-  const Effect& effect = named.effect;
+Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
+            const Judges& judges, std::uint64_t seed, bool wanders, double& sure_gain) {
   const CvScore free_run = errors.free_run(seed);
   sure_gain = free_run.gain_low;
   if (!cause_of(effect).acts_through_channels()) {
@@ -147,7 +139,7 @@ Fate judged(const Named& named, const ModelSpec& model, const Errors& errors, co
   const bool open_loop = effect.edit == &causes::input_stuck() ||
                          moved_from_outside(effect, model, judges.outside_shares);
   if (open_loop && !wanders && !(free_run.gain_high > 0.0)) return worse(errors, seed);
-  const Fate fate = judged_by_predictions(named, predictions, errors, seed);
+  const Fate fate = judged_by_predictions(predictions, errors, seed);
   const bool in_doubt =
       fate == Fate::kRepaired && open_loop && !(free_run.rmse_after < free_run.rmse_before);
   return in_doubt && !(errors.innovations(seed).gain_low > 0.0) ? Fate::kNoBetter : fate;
@@ -233,7 +225,7 @@ std::optional<std::size_t> needed_by(std::size_t i, const Problem& problem,
     in[i] = false;
     const Errors errors(effect, with, extend(problem, found, in, keep, judges.open), judges.unseen);
     double sure_gain = 0.0;
-    if (judged(found.named[i], problem.model(), errors, judges, judges.unseen.seed() + i,
+    if (judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
                selection.wanders[i], sure_gain) == Fate::kRepaired ||
         sure_gain >= least)
       continue;
@@ -285,9 +277,8 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     const std::vector<bool> in = repaired(selection);
     const Errors errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen);
     selection.wanders[i] = errors.wander();
-    selection.fates[i] =
-        judged(found.named[i], problem.model(), errors, judges, judges.unseen.seed() + i,
-               selection.wanders[i], selection.sure_gains[i]);
+    selection.fates[i] = judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
+                                selection.wanders[i], selection.sure_gains[i]);
     // A slow disturbance was fitted together with small errors of the channels, which the extended
     // model does without: it may be true and still be no repair by itself.
     if (selection.fates[i] != Fate::kRefused || cause_of(effect).acts_through_channels()) continue;

@@ -57,17 +57,6 @@ TEST_CASE("a planted deadband is found") {
   CHECK_FALSE(beyond_use(historian_traits(by_exception(signal(1), 0.3))));
 }
 
-// Some thirty changes behind a whole batch: of a sensor that resolves a third of its noise some
-// have five in a row of one size, once in 200 or so.
-TEST_CASE("what few values are left behind does not make a sensor compressed") {
-  int compressed = 0;
-  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
-    const VectorXd values = rounded(test::normal(seed, 276), 0.5);
-    compressed += historian_traits(values).compressed() ? 1 : 0;
-  }
-  CHECK(compressed == 0);
-}
-
 TEST_CASE("straight lines between archived points are found") {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const HistorianTraits traits = historian_traits(interpolated(signal(seed), seed));
