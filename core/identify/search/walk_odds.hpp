@@ -20,7 +20,8 @@ namespace mpm {
 /// The most that the data can speak for an effect, 2 ln: what they do on a walk less what its
 /// numbers cost there (Laplace: each the log of what the data add to its prior's information, which
 /// is about the evidence where its size is a usual one), and as much more as they speak against the
-/// walk; of all CVs of the fit. Infinite where it adds to none.
+/// walk; of all CVs of the fit. Infinite where it adds to none, and of what is no function of time
+/// alone (`cuts_a_walk`).
 [[nodiscard]] double most_evidence(Problem& problem, const Fit& fit, std::size_t effect);
 
 /// Whether the effect is a function of time alone, or what has no name (an answer that swings with
