@@ -82,7 +82,7 @@ inline constexpr double kLongTimeConstants = 20.0;
 /// Coefficients of the autoregression of a random walk's steps under noise. Chosen: what it forgets
 /// of such noise makes the walk seem the larger (zero at 0.93: its s.d. by a fifth).
 inline constexpr int kWalkOrder = 24;
-/// How often they and what is fitted beside them are set in turn.
+/// How often these and the small errors beside them are set in turn. Chosen.
 inline constexpr int kWalkPasses = 2;
 
 /// Of a sample: two moments are the same.

@@ -70,6 +70,12 @@ double mean_level(const CvData& data, const CvFit& fit) {
   return mean;
 }
 
+VectorXd left_of(const CvData& data, const CvFit& fit) {
+  const Index small = data.nuisances.cols() - static_cast<Index>(data.runs.size());
+  const VectorXd left = fit.residual + data.nuisances.rightCols(small) * fit.beta.tail(small);
+  return (data.known.array() > 0.0).select(left, std::numeric_limits<double>::quiet_NaN());
+}
+
 VectorXd rows_of(const CvData& data, const CvFit& fit, const Eigen::Ref<const VectorXd>& x) {
   const VectorXd root = (data.weights / fit.variance).cwiseSqrt();
   return fit.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);

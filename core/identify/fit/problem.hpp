@@ -57,6 +57,11 @@ struct CvFit {
 /// gave its runs.
 [[nodiscard]] double mean_level(const CvData& data, const CvFit& fit);
 
+/// What the effects of a fit leave of a CV about the levels of its runs, NaN where unknown: the
+/// residual before first states and the channels' small errors, which shift its level and are
+/// enough to follow a walk.
+[[nodiscard]] Eigen::VectorXd left_of(const CvData& data, const CvFit& fit);
+
 /// Whitened and weighted, in s.d. of the innovations; 0 where the CV is unknown: as the rows of a
 /// fit's least squares are.
 [[nodiscard]] Eigen::VectorXd rows_of(const CvData& data, const CvFit& fit,

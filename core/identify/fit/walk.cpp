@@ -43,7 +43,7 @@ WalkSteps walk_steps(const CvData& data, const CvFit& fit,
 VectorXd left_beside_a_walk(const CvData& data, const CvFit& fit) {
   const Index small = data.nuisances.cols() - static_cast<Index>(data.runs.size());
   const auto columns = data.nuisances.rightCols(small);
-  const VectorXd off = (fit.residual + columns * fit.beta.tail(small)).cwiseProduct(data.known);
+  const VectorXd off = (data.known.array() > 0.0).select(left_of(data, fit), 0.0);
   VectorXd left = off;
   for (int pass = 0; pass < kWalkPasses; ++pass) {
     const WalkSteps steps = walk_steps(data, fit, left);

@@ -22,9 +22,9 @@ struct WalkSteps {
 [[nodiscard]] WalkSteps walk_steps(const CvData& data, const CvFit& fit,
                                    const Eigen::Ref<const Eigen::VectorXd>& wander);
 
-/// What the effects of a fit leave of a CV about the levels of its runs, NaN where unknown, beside
-/// first states and small errors of the channels as they would be if that were a random walk: set
-/// by its steps alone, for what is fitted to a level follows any walk, and makes it come back.
+/// What `left_of` leaves beside first states and small errors of the channels as they would be if
+/// that were a random walk: set by its steps alone, for what is fitted to a level follows any walk,
+/// and makes it come back.
 /// (Schmidt and Phillips 1992 set a trend so.)
 [[nodiscard]] Eigen::VectorXd left_beside_a_walk(const CvData& data, const CvFit& fit);
 

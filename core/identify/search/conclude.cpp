@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -44,15 +43,6 @@ double range_of_new_inputs(Problem& problem, const std::vector<Effect>& effects,
   return moved.maxCoeff() - moved.minCoeff();
 }
 
-/// What the effects of a fit leave of a CV about the levels of its runs, NaN where unknown: the
-/// residual before first states and the channels' small errors, which shift levels, too.
-Eigen::VectorXd before_small_errors(const CvData& data, const CvFit& fit) {
-  const Index small = data.nuisances.cols() - static_cast<Index>(data.runs.size());
-  const Eigen::VectorXd left =
-      fit.residual + data.nuisances.rightCols(small) * fit.beta.tail(small);
-  return (data.known.array() > 0.0).select(left, std::numeric_limits<double>::quiet_NaN());
-}
-
 }  // namespace
 
 void widen_kinked(Problem& problem, SearchResult& result, const std::function<void()>& tell) {
@@ -90,7 +80,7 @@ void name_levels(Problem& problem, const std::vector<int>& except, SearchResult&
     const double sd = std::sqrt(fit.variance / rows) / memory;
     if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd)) continue;
     // A walk is anywhere, for nobody knows how long it has gone on.
-    if (!comes_back_beside_breaks(before_small_errors(data, fit),
+    if (!comes_back_beside_breaks(left_of(data, fit),
                                   causes::breaks_of(result.fit.effects, fit.cv)))
       continue;
     if (std::abs(level) <= range_of_new_inputs(problem, result.fit.effects, fit.cv)) continue;

@@ -79,9 +79,9 @@ TEST_CASE("an answer that bends is found, with how much its gain varies") {
   CHECK(found.channels[1].sure_variation == 0.0);
 }
 
-// The bound is 99 %: of 40 more than 4 exceed the truth with a probability of 1e-4 (binomial). The
-// mean of the others' errors is no more than noise leaves: half of what is found of so small a bend
-// is found with an s.d. of a fifth or so. Of the channel that does not bend as many have a bound.
+// The bound is 99 %: of 40 more than 4 exceed the truth, or zero of the channel that does not bend,
+// with a probability of 1e-4 (binomial). Of a run the s.d. of the ratio is a fifth or so, of the
+// mean of twenty 0.05.
 TEST_CASE("of a gain's variation no more is sure than there is") {
   int beyond = 0, of_the_other = 0, runs = 0;
   double ratio = 0.0;
