@@ -14,18 +14,20 @@
 namespace mpm {
 namespace {
 
-// What the step response bears does not matter: usual errors by their sizes (not tested: gain and
-// time constant may be free to undo what a dead time surely does), and what is none of these as far
-// as those that are allowed and what the response bears explain it.
+// What the step response bears does not matter: of a dead time alone by its size (not tested: gain
+// and time constant may be free to undo what it surely does), and of all else as far as errors that
+// are allowed and what the response bears explain it. A model that was reduced from a plant of
+// higher order is off in its first lags, which are seen sharply, and what lags and dead time make
+// of that for later ones is hardly known.
 template <class Beyond>
-void bear(ChannelEvidence& evidence, const Beyond& beyond) {
+void bear(ChannelEvidence& evidence, std::optional<double> dead_time_alone, const Beyond& beyond) {
   const Estimate& step = evidence.step_error;
-  if (!evidence.usual) {
-    if (evidence.p_value_material < calibration::materiality::kAskedBelow)
-      evidence.p_value_material = std::max(evidence.p_value_material, beyond());
-    return;
-  }
-  if (step.value < evidence.step_limit) evidence.p_value_material = 1.0;
+  const bool by_size = evidence.usual && dead_time_alone;
+  if (by_size && std::min(step.value, *dead_time_alone) < evidence.step_limit)
+    evidence.p_value_material = 1.0;
+  if (!by_size && evidence.p_value_material < calibration::materiality::kAskedBelow)
+    evidence.p_value_material = std::max(evidence.p_value_material, beyond());
+  if (!evidence.usual) return;
   evidence.harmless =
       evidence.harmless || step.value + kNormalOneSided95 * step.deviation < evidence.step_limit;
 }
@@ -175,11 +177,12 @@ void ChannelEvaluator::judge_alone(int cv, int input, const EstimateNoise& noise
   size_step(cv, input, noise, evidence);
   // What matters is judged of small errors, as it was calibrated; how large they are is said of
   // any.
+  std::optional<double> dead_time_alone = evidence.step_error.value;
   if (evidence.p_value < calibration::error_sizes::kRefinedBelow)
-    size_error(cv, input, left, noise, evidence);
+    dead_time_alone = size_error(cv, input, left, noise, evidence);
   else if (!evidence.usual)
     estimate_free_gain(channel.gain, input, noise, evidence);
-  bear(evidence, [&] {
+  bear(evidence, dead_time_alone, [&] {
     return steps_.beyond({cv, input, materiality_.beside_allowed(), usual_, noise}, estimates_,
                          covariance_, evidence.step_limit);
   });
@@ -201,13 +204,14 @@ void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noi
   materiality_.judge(left, channel.estimate, channel.directions, joint_usual_, limits, noise,
                      evidence);
   size_step(cv, input, noise, evidence);
+  std::optional<double> dead_time_alone = evidence.step_error.value;
   if (evidence.p_value < calibration::error_sizes::kRefinedBelow) {
     const JointErrors::Freed freed = joint_.freed(input, estimates_);
     covariance_.read(freed.factor, freed.first);
     for (int r = 0; r < shape_.block(); ++r) estimate_(r) = freed.factor.z(freed.first + r, 0);
-    size_error(cv, input, estimate_.squaredNorm(), noise, evidence);
+    dead_time_alone = size_error(cv, input, estimate_.squaredNorm(), noise, evidence);
   }
-  bear(evidence, [&] {
+  bear(evidence, dead_time_alone, [&] {
     return steps_.beyond({cv, input, materiality_.beside_allowed().head(channel.estimate.size()),
                           joint_usual_, noise},
                          channel.usual, evidence.step_limit);
@@ -263,16 +267,25 @@ void ChannelEvaluator::test_usual_errors(const UsualErrorSpace& usual,
 }
 
 // With `covariance_` and `estimate_` of the input's block.
-void ChannelEvaluator::size_error(int cv, int input, double left, const EstimateNoise& noise,
-                                  ChannelEvidence& evidence) {
+std::optional<double> ChannelEvaluator::size_error(int cv, int input, double left,
+                                                   const EstimateNoise& noise,
+                                                   ChannelEvidence& evidence) {
   const auto block = static_cast<double>(estimate_.size());
   const double enough = noise.variance * (block + 2.0 * std::sqrt(2.0 * block));  // two s.d.
-  const double refined =
-      sizes_.refine({cv, input, estimates_, covariance_, estimate_, noise.variance, steps_}, left,
-                    enough, evidence);
+  const ErrorSizes::Channel channel{cv,        input,          estimates_, covariance_,
+                                    estimate_, noise.variance, steps_};
+  const double refined = sizes_.refine(channel, left, enough, evidence);
   evidence.usual = Materiality::explained(refined, estimate_.size(), noise);
-  if (!evidence.usual)
+  if (!evidence.usual) {
     estimate_free_gain(signatures_[index(cv, input)].gain, input, noise, evidence);
+    return std::nullopt;
+  }
+  constexpr double kOthers = 2.0;
+  const ErrorSizes::DeadTimeAlone alone = sizes_.dead_time_alone(channel, evidence);
+  const double more = std::max(0.0, alone.left - refined) / (kOthers * noise.variance);
+  if (f_upper_tail(more, kOthers, noise.freedom) <= calibration::usual_errors::kUnusualPValue)
+    return std::nullopt;
+  return alone.step_error;
 }
 
 // The gain as the sum of the block's coefficients over A_j(1): free of the model's shape.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/mismatch/block_covariance.hpp"
@@ -74,8 +75,10 @@ class ChannelEvaluator {
                          const EstimateNoise& noise, ChannelEvidence& evidence) const;
   /// How much of the step response the error is, by its linear sizes, and how much is borne.
   void size_step(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence) const;
-  void size_error(int cv, int input, double left, const EstimateNoise& noise,
-                  ChannelEvidence& evidence);
+  /// Of the step response, the error that a dead time alone makes, if usual errors of all kinds
+  /// explain no more of what is seen.
+  std::optional<double> size_error(int cv, int input, double left, const EstimateNoise& noise,
+                                   ChannelEvidence& evidence);
   void estimate_free_gain(double model_gain, int input, const EstimateNoise& noise,
                           ChannelEvidence& evidence);
   /// The error's coefficients on the input's block, scaled.

@@ -63,12 +63,24 @@ double ErrorSizes::refine(const Channel& channel, double left, double enough,
   return best.left;
 }
 
-ErrorSizes::Errors ErrorSizes::descend(const Channel& channel, const Eigen::Vector3d& start) {
+ErrorSizes::DeadTimeAlone ErrorSizes::dead_time_alone(const Channel& channel,
+                                                      const ChannelEvidence& evidence) {
+  const Errors from_none = descend(channel, Eigen::Vector3d::Zero(), error_column::kLater);
+  const Errors from_found =
+      descend(channel, {0.0, 0.0, evidence.dead_time_error.value}, error_column::kLater);
+  const Errors& best = from_found.left < from_none.left ? from_found : from_none;
+  change(channel, best.value);
+  return {best.left, channel.steps.of_pulse(channel.cv, channel.input, changed_)};
+}
+
+ErrorSizes::Errors ErrorSizes::descend(const Channel& channel, const Eigen::Vector3d& start,
+                                       int first) {
   Errors now;
   now.value = within(channel, start);
   now.left = leave(channel, now.value, left_);
   for (int step = 0; step < sizes::kMostSteps; ++step) {
-    for (int e = 0; e < 3; ++e) {
+    slopes_.leftCols(first).setZero();
+    for (int e = first; e < 3; ++e) {
       Eigen::Vector3d moved = now.value;
       const double by = move(channel, e, moved);
       leave(channel, moved, beside_);

@@ -39,6 +39,12 @@ class ErrorSizes {
   /// some large ones, until no more than `enough` is left. What fits best takes their place. What
   /// it leaves.
   double refine(const Channel& channel, double left, double enough, ChannelEvidence& evidence);
+  /// The best error of the dead time alone, looked for from none and from that in `evidence`.
+  struct DeadTimeAlone {
+    double left = 0.0;        ///< of the target, in squares
+    double step_error = 0.0;  ///< of the step response (`StepErrors`)
+  };
+  DeadTimeAlone dead_time_alone(const Channel& channel, const ChannelEvidence& evidence);
 
  private:
   struct Response {
@@ -55,7 +61,8 @@ class ErrorSizes {
   [[nodiscard]] const Response& response(int cv, int input) const {
     return responses_[static_cast<std::size_t>(input * cvs_ + cv)];
   }
-  [[nodiscard]] Errors descend(const Channel& channel, const Eigen::Vector3d& start);
+  /// Errors before the `first` stay where they start.
+  [[nodiscard]] Errors descend(const Channel& channel, const Eigen::Vector3d& start, int first = 0);
   /// Towards the inside where there is an end; by how much it has moved.
   double move(const Channel& channel, int error, Eigen::Vector3d& value) const;
   [[nodiscard]] Estimate step_error(const Channel& channel, const Errors& errors);
