@@ -11,6 +11,7 @@
 #include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/statement.hpp"
+#include "core/identify/search/walk_odds.hpp"
 
 namespace mpm {
 namespace {
@@ -20,6 +21,15 @@ namespace {
 bool accuses(const Effect& effect) {
   const Cause& cause = cause_of(effect);
   return effect.place.aux < 0 && (cause.acts_through_channels() || cause.is_input_block());
+}
+
+/// Whether an answer to a signal may be no more than a CV that wanders beside one that does.
+bool may_be_a_walk(Problem& problem, const SearchResult& found, std::size_t answer,
+                   const SearchSettings& settings) {
+  const Effect& effect = found.named[answer].effect;
+  if (effect.certain || !cause_of(effect).acts_through_channels()) return false;
+  const double costs = effect.search_cost + cause_of(effect).rarity();
+  return most_evidence(problem, found.fit, answer) - costs < settings.decisive;
 }
 
 /// Why a finding goes, for a person; null where it stays.
@@ -146,7 +156,11 @@ Account keep(Explained explained, const Judges& judges, const Witness& witness,
       const Effect& effect = before.named[i].effect;
       Finding& finding = findings.emplace_back(to_finding(before, i, problem));
       const char* reason =
-          why_it_goes(effect, problem, finding, kept.selection.fates[i], judges.compressed);
+          may_be_a_walk(problem, before, i, settings)
+              ? "what is left of the CV wanders, and its steps from sample to sample do not bear "
+                "it "
+                "out"
+              : why_it_goes(effect, problem, finding, kept.selection.fates[i], judges.compressed);
       out.push_back(reason != nullptr);
       finding.repaired = false;
       finding.refused =

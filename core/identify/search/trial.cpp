@@ -64,11 +64,12 @@ Trial Trials::attempt(const Effect& candidate, int iterations) {
   return trial;
 }
 
-// The noise model knows a walk only as far as it remembers, and takes the rest of it for an effect.
+// The noise model knows a walk only as far as it remembers, and takes the rest of it for a function
+// of time.
 double Trials::odds_of(const Fit& with, std::size_t effect, const Fit& without) {
   const Effect& mine = with.effects[effect];
   const double odds = odds_for(mine, with, without);
-  if (!(odds > 0.0)) return odds;
+  if (!(odds > 0.0) || !is_of_time(mine)) return odds;
   return std::min(
       odds, most_evidence(problem_, with, effect) - mine.search_cost - cause_of(mine).rarity());
 }

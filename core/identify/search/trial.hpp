@@ -50,8 +50,8 @@ class Trials {
   /// Fits the candidate in at most so many steps. The odds of what nobody would care about are at
   /// most even.
   [[nodiscard]] Trial attempt(const Effect& candidate, int iterations);
-  /// 2 ln of the odds for one effect of a fit against the fit without it, on the same CVs; no more
-  /// than `most_evidence`.
+  /// 2 ln of the odds for one effect of a fit against the fit without it, on the same CVs; of a
+  /// function of time no more than `most_evidence`.
   [[nodiscard]] double odds_of(const Fit& with, std::size_t effect, const Fit& without);
   /// Each of them, in their order.
   [[nodiscard]] std::vector<Trial> attempt_all(const std::vector<Effect>& candidates,

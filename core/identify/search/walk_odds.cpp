@@ -23,12 +23,11 @@ double against_a_walk(const Problem& problem, const Fit& fit, const CvFit& state
                        causes::breaks_of(fit.effects, state.cv));
 }
 
-/// A function of time alone, or what has no name.
-bool of_time(const Effect& effect) {
+}  // namespace
+
+bool is_of_time(const Effect& effect) {
   return causes::is_break(effect) || causes::is_unnamed(cause_of(effect));
 }
-
-}  // namespace
 
 std::optional<double> evidence_on_walk(Problem& problem, const Fit& fit, std::size_t effect,
                                        const CvFit& state) {
@@ -50,7 +49,6 @@ std::optional<double> evidence_on_walk(Problem& problem, const Fit& fit, std::si
 }
 
 double most_evidence(Problem& problem, const Fit& fit, std::size_t effect) {
-  if (!of_time(fit.effects[effect])) return std::numeric_limits<double>::infinity();
   double evidence = 0.0, against = 0.0;
   bool acts = false;
   for (const CvFit& state : fit.cvs)
@@ -66,7 +64,7 @@ double most_evidence(Problem& problem, const Fit& fit, std::size_t effect) {
 
 bool cuts_a_walk(const Problem& problem, const Fit& fit, std::size_t effect) {
   const Effect& mine = fit.effects[effect];
-  if (!of_time(mine)) return false;
+  if (!is_of_time(mine)) return false;
   return std::any_of(fit.cvs.begin(), fit.cvs.end(), [&](const CvFit& state) {
     return state.cv == mine.place.cv && against_a_walk(problem, fit, state) <= 0.0;
   });

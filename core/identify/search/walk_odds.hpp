@@ -20,13 +20,14 @@ namespace mpm {
 /// The most that the data can speak for an effect, 2 ln: what they do on a walk less what its
 /// numbers cost there (Laplace: each the log of what the data add to its prior's information, which
 /// is about the evidence where its size is a usual one), and as much more as they speak against the
-/// walk; of all CVs of the fit. Infinite where it adds to none, and of what is no function of time
-/// alone (`cuts_a_walk`).
+/// walk; of all CVs of the fit. Infinite where it adds to none.
 [[nodiscard]] double most_evidence(Problem& problem, const Fit& fit, std::size_t effect);
 
-/// Whether the effect is a function of time alone, or what has no name (an answer that swings with
-/// time, ...), and its CV wanders beside it all the same: any walk can be cut into such. False of
-/// any other effect.
+/// Whether an effect is a function of time alone, or what has no name (an answer that swings with
+/// time, ...): any walk can be cut into such.
+[[nodiscard]] bool is_of_time(const Effect& effect);
+
+/// Whether the effect is such, and its CV wanders beside it all the same.
 [[nodiscard]] bool cuts_a_walk(const Problem& problem, const Fit& fit, std::size_t effect);
 
 }  // namespace mpm

@@ -96,7 +96,6 @@ TEST_CASE("only what is a function of time can cut a walk, and only a walk is cu
   CHECK(most_evidence(on_noise.problem, on_noise.fit, 0) > 200.0);  // bounds nothing
   Bench of_channel(walk(21), gain());
   CHECK_FALSE(cuts_a_walk(of_channel.problem, of_channel.fit, 0));
-  CHECK(std::isinf(most_evidence(of_channel.problem, of_channel.fit, 0)));
 }
 
 // An input that wanders, too, goes with any walk, under noise of ten of its steps more than a fit
