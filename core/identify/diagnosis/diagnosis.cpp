@@ -345,8 +345,10 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   if (!diagnosis.rejected.empty() && std::find(in.begin(), in.end(), true) != in.end())
     keep_rejected(ChannelTests(tested, measured, free_run_residuals(extended, recording)),
                   diagnosis.rejected);
-  decide(least_explained(residuals, recording.cvs),
-         !sticking_loops(base, settings.mv_count, whole).empty(), diagnosis);
+  decide({least_explained(residuals, recording.cvs),
+          !sticking_loops(base, settings.mv_count, whole).empty(),
+          loses_a_cv(residuals, recording.cvs, diagnosis.fit_samples)},
+         diagnosis);
   if (compressed.any() && diagnosis.verdict != DiagnosisVerdict::kMismatch &&
       (doubted > 0 || diagnosis.verdict == DiagnosisVerdict::kUndetermined)) {
     diagnosis.verdict = DiagnosisVerdict::kUndetermined;

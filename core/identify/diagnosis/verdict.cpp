@@ -48,6 +48,30 @@ double least_explained(const MatrixXd& residuals, const MatrixXd& cvs) {
   return least;
 }
 
+bool loses_a_cv(const MatrixXd& residuals, const MatrixXd& cvs, Index first) {
+  for (Index cv = 0; cv < cvs.cols(); ++cv) {
+    double level = 0.0, before = 0.0, known_before = 0.0;
+    for (Index k = 0; k < first; ++k) {
+      const double error = residuals(k, cv);
+      if (!std::isfinite(error)) continue;
+      const double off = error - level;
+      level += off / ++known_before;
+      before += off * (error - level);
+    }
+    double mean = 0.0, moved = 0.0, after = 0.0, known_after = 0.0;
+    for (Index k = first; k < cvs.rows(); ++k) {
+      if (!std::isfinite(residuals(k, cv))) continue;
+      const double off = cvs(k, cv) - mean;
+      mean += off / ++known_after;
+      moved += off * (cvs(k, cv) - mean);
+      after += std::pow(residuals(k, cv) - level, 2);
+    }
+    if (known_before > 0.0 && after > moved && after * known_before > kGrown * before * known_after)
+      return true;
+  }
+  return false;
+}
+
 std::vector<int> sticking_loops(const ModelSpec& model, int mvs, const Recording& recording) {
   std::vector<int> loops;
   if (recording.setpoints.cols() == 0) return loops;
@@ -64,7 +88,7 @@ std::vector<int> sticking_loops(const ModelSpec& model, int mvs, const Recording
   return loops;
 }
 
-void decide(double explained, bool sticks, Diagnosis& diagnosis) {
+void decide(const FreeRunVerdict& free_runs, Diagnosis& diagnosis) {
   const std::ptrdiff_t blind = unknown_gains(diagnosis.channels);
   const auto strongest =
       std::max_element(diagnosis.refused.begin(), diagnosis.refused.end(),
@@ -73,7 +97,7 @@ void decide(double explained, bool sticks, Diagnosis& diagnosis) {
   diagnosis.verdict = DiagnosisVerdict::kUndetermined;
   if (!diagnosis.findings.empty() || !diagnosis.unexplained.empty())
     diagnosis.verdict = DiagnosisVerdict::kMismatch;
-  else if (sticks)
+  else if (free_runs.sticks)
     diagnosis.reason =
         "a loop swings in the shape of a sticking valve, which its model does not explain";
   else if (strong)
@@ -91,7 +115,11 @@ void decide(double explained, bool sticks, Diagnosis& diagnosis) {
     diagnosis.reason = "the inputs move too little beside the noise: the gains of " +
                        std::to_string(blind) + " of " + std::to_string(diagnosis.channels.size()) +
                        " channels are not known to within 25 %";
-  else if (explained < kLeastExplained)
+  else if (free_runs.loses)
+    diagnosis.reason =
+        "in the last samples the model's errors are much larger, and it explains a CV less well "
+        "than a constant does; of the known causes none was sure enough";
+  else if (free_runs.explained < kLeastExplained)
     diagnosis.reason = "the model explains less than " + percent_text(kLeastExplained) +
                        " of what a CV does, beyond a constant";
   else

@@ -12,8 +12,10 @@ Index fitted_rows(const Recording& recording, double share) {
   const double wanted = share * static_cast<double>(recording.samples());
   auto rows = static_cast<Index>(wanted);
   const Index changed = recording.changed.value_or(rows);
-  if (recording.borders.empty() && changed < rows)
-    return changed + static_cast<Index>(share * static_cast<double>(recording.samples() - changed));
+  const auto since = static_cast<double>(recording.samples() - changed);
+  const auto left = static_cast<double>(recording.samples() - rows);
+  if (recording.borders.empty() && recording.changed && (changed < rows || since >= share * left))
+    return changed + static_cast<Index>(share * since);
   if (recording.borders.size() < 2) return rows;
   double nearest = kFarBorder * static_cast<double>(recording.samples());
   for (const Border& border : recording.borders) {

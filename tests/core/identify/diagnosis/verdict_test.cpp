@@ -23,8 +23,8 @@ Finding finding_of(double evidence, const char* refused) {
   return finding;
 }
 
-DiagnosisVerdict verdict_of(Diagnosis diagnosis, double explained = 1.0, bool sticks = false) {
-  decide(explained, sticks, diagnosis);
+DiagnosisVerdict verdict_of(Diagnosis diagnosis, const FreeRunVerdict& free_runs = {}) {
+  decide(free_runs, diagnosis);
   // Whatever is left open says why.
   CHECK(diagnosis.reason.empty() == (diagnosis.verdict != DiagnosisVerdict::kUndetermined));
   return diagnosis.verdict;
@@ -32,8 +32,9 @@ DiagnosisVerdict verdict_of(Diagnosis diagnosis, double explained = 1.0, bool st
 
 TEST_CASE("a match is a model that explains, and that nothing speaks against") {
   CHECK(verdict_of({}) == DiagnosisVerdict::kMatch);
-  CHECK(verdict_of({}, 0.05) == DiagnosisVerdict::kUndetermined);
-  CHECK(verdict_of({}, 1.0, true) == DiagnosisVerdict::kUndetermined);
+  CHECK(verdict_of({}, {.explained = 0.05}) == DiagnosisVerdict::kUndetermined);
+  CHECK(verdict_of({}, {.sticks = true}) == DiagnosisVerdict::kUndetermined);
+  CHECK(verdict_of({}, {.loses = true}) == DiagnosisVerdict::kUndetermined);
   Diagnosis diagnosis;
   diagnosis.refused = {finding_of(10.0, "weak")};
   CHECK(verdict_of(diagnosis) == DiagnosisVerdict::kMatch);
@@ -46,14 +47,14 @@ TEST_CASE("a match is a model that explains, and that nothing speaks against") {
 TEST_CASE("the reason is that of the strongest that was refused") {
   Diagnosis diagnosis;
   diagnosis.refused = {finding_of(50.0, "strong"), finding_of(40.0, "weaker")};
-  decide(1.0, false, diagnosis);
+  decide({}, diagnosis);
   CHECK(diagnosis.reason == "what explains most was refused: strong");
 }
 
 TEST_CASE("what no linear model fits and nothing names leaves the verdict open") {
   Diagnosis diagnosis;
   diagnosis.bent = {{0, 0}};
-  decide(0.9, false, diagnosis);
+  decide({.explained = 0.9}, diagnosis);
   CHECK(diagnosis.verdict == DiagnosisVerdict::kUndetermined);
   CHECK(
       diagnosis.reason ==
@@ -63,7 +64,7 @@ TEST_CASE("what no linear model fits and nothing names leaves the verdict open")
 TEST_CASE("what the calibrated test surely rejects and nothing names leaves the verdict open") {
   Diagnosis diagnosis;
   diagnosis.rejected = {{0, 0}};
-  decide(0.9, false, diagnosis);
+  decide({.explained = 0.9}, diagnosis);
   CHECK(diagnosis.verdict == DiagnosisVerdict::kUndetermined);
   CHECK(diagnosis.reason ==
         "a model that matches would not be rejected so; what is wrong is not told");
@@ -85,6 +86,21 @@ TEST_CASE("the share that a model explains is of what a CV does beyond a constan
   CHECK(least_explained(residuals, cvs) == Approx(0.75));
   residuals.col(0).setConstant(kNaN);  // not measured
   CHECK(least_explained(residuals, cvs) == Approx(1.0));
+}
+
+// Errors of 1 about 5 in four rows, then of 3 off that level: nine times the mean square, and more
+// than the CV's own 1 about its mean, or not.
+TEST_CASE("a model loses a CV whose errors grow beyond what the CV does") {
+  VectorXd cv(8), error(8);
+  cv << 1, -1, 1, -1, 1, -1, 1, -1;
+  error << 6, 4, 6, 4, 8, 8, 8, 8;
+  CHECK(loses_a_cv(error, cv, 4));
+  CHECK_FALSE(loses_a_cv(error, 10.0 * cv, 4));
+  CHECK_FALSE(loses_a_cv(error, cv, 8));
+  error.tail(4) << 6.2, 3.8, 6.2, 3.8;  // 1.44 times
+  CHECK_FALSE(loses_a_cv(error, cv, 4));
+  error.tail(4).setConstant(kNaN);
+  CHECK_FALSE(loses_a_cv(error, cv, 4));
 }
 
 TEST_CASE("what diverges or is hardly known is not judged") {
