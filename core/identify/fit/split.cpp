@@ -13,8 +13,8 @@ Index fitted_rows(const Recording& recording, double share) {
   auto rows = static_cast<Index>(wanted);
   const Index changed = recording.changed.value_or(rows);
   const auto since = static_cast<double>(recording.samples() - changed);
-  const auto left = static_cast<double>(recording.samples() - rows);
-  if (recording.borders.empty() && recording.changed && (changed < rows || since >= share * left))
+  if (recording.borders.empty() && recording.changed &&
+      static_cast<double>(changed) <= (1.0 + kJustBehind) * static_cast<double>(rows))
     return changed + static_cast<Index>(share * since);
   if (recording.borders.size() < 2) return rows;
   double nearest = kFarBorder * static_cast<double>(recording.samples());

@@ -10,8 +10,8 @@ namespace mpm {
 /// `share` of the rows (0..1), rounded down. Of three runs or more the last are left out whole, so
 /// that what is measured is another occasion: the border nearest to that share, unless none is near
 /// (runs that are so unlike in length are cut as one would be).
-/// Where something changed within them, or so soon behind them that this share of the others knows
-/// it, what came after it is parted by that share: else few rows would know it, or none.
+/// Where something changed within them or just behind, what came after it is parted by that share:
+/// else few rows would know it, or none.
 [[nodiscard]] Eigen::Index fitted_rows(const Recording& recording, double share);
 
 }  // namespace mpm
