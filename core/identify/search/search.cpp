@@ -94,7 +94,8 @@ class Search {
     widen_kinked(problem_, result, [this] { report(); });
     std::vector<int> no_level = no_level_;
     for (const int cv : all_cvs())
-      if (!may_name(causes::constant_offset(cv, 0.0, 1.0))) no_level.push_back(cv);
+      if (!may_name(causes::constant_offset(cv, 0.0, 1.0)) && !has_error(cv))
+        no_level.push_back(cv);
     name_levels(problem_, no_level, result);
     return result;
   }
@@ -112,6 +113,13 @@ class Search {
 
   [[nodiscard]] bool may_name(const Effect& effect) const {
     return !settings_.may_name || settings_.may_name(effect);
+  }
+
+  /// Whether something of the CV's channels is named, beside which its level can be told.
+  [[nodiscard]] bool has_error(int cv) const {
+    return std::any_of(accepted_.begin(), accepted_.end(), [&](const Effect& effect) {
+      return cause_of(effect).acts_through_channels() && touches(effect, problem_.model(), cv);
+    });
   }
 
   /// All that may still be wrong, each cause's starts: what may be named, or what may not.

@@ -2,8 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
 namespace mpm {
@@ -40,6 +43,33 @@ TEST_CASE("a search names one cause after the other and then ends") {
   SearchSettings one;
   one.max_findings = 1;
   CHECK(search(problem, one).named.size() == 1);
+}
+
+// A level of 2 beside a gain of 1.3 times the model's, which by itself would shift the CV too: with
+// no levels to be named it is told where the gain is, and not where that may not be either.
+TEST_CASE("a level is told beside what is wrong with a channel, else only where it may be") {
+  const Eigen::VectorXd u = test::telegraph(1, kRows, 12);
+  const Eigen::VectorXd y =
+      (1.3 * test::first_order(u, 2.0, 10.0) + 0.1 * test::white(4, kRows)).array() + 2.0;
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  const Recording recording = test::recording_of(u, y);
+  const auto levels = [&](const std::function<bool(const Effect&)>& may_name) {
+    Problem problem(model, 1, recording, Tolerances{}, NoiseModel{});
+    SearchSettings settings;
+    settings.may_name = may_name;
+    std::vector<double> sizes;
+    for (const Named& named : search(problem, settings).named)
+      if (causes::is_constant_offset(named.effect))
+        sizes.push_back(named.effect.coordinates[0].value);
+    return sizes;
+  };
+  const auto no_level = [](const Effect& effect) { return !causes::is_constant_offset(effect); };
+  const std::vector<double> beside = levels(no_level);
+  REQUIRE(beside.size() == 1);
+  CHECK(beside[0] == Approx(2.0).margin(0.05));
+  CHECK(levels([&](const Effect& effect) {
+          return no_level(effect) && !cause_of(effect).acts_through_channels();
+        }).empty());
 }
 
 }  // namespace
