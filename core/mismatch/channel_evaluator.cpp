@@ -22,9 +22,10 @@ namespace {
 template <class Beyond>
 void bear(ChannelEvidence& evidence, std::optional<double> dead_time_alone, const Beyond& beyond) {
   const Estimate& step = evidence.step_error;
-  const bool by_size = evidence.usual && dead_time_alone;
-  if (by_size && std::min(step.value, *dead_time_alone) < evidence.step_limit)
+  if (evidence.usual &&
+      std::min(step.value, dead_time_alone.value_or(step.value)) < evidence.step_limit)
     evidence.p_value_material = 1.0;
+  const bool by_size = evidence.usual && dead_time_alone;
   if (!by_size && evidence.p_value_material < calibration::materiality::kAskedBelow)
     evidence.p_value_material = std::max(evidence.p_value_material, beyond());
   if (!evidence.usual) return;

@@ -16,6 +16,9 @@
 namespace mpm {
 namespace {
 
+constexpr const char* kWanders =
+    "what is left of the CV wanders, and its steps from sample to sample do not bear it out";
+
 /// Whether it says that a part of the plant is not as the model has it; what a measured signal or a
 /// set-point does accuses none.
 bool accuses(const Effect& effect) {
@@ -157,9 +160,7 @@ Account keep(Explained explained, const Judges& judges, const Witness& witness,
       Finding& finding = findings.emplace_back(to_finding(before, i, problem));
       const char* reason =
           may_be_a_walk(problem, before, i, settings)
-              ? "what is left of the CV wanders, and its steps from sample to sample do not bear "
-                "it "
-                "out"
+              ? kWanders
               : why_it_goes(effect, problem, finding, kept.selection.fates[i], judges.compressed);
       out.push_back(reason != nullptr);
       finding.repaired = false;

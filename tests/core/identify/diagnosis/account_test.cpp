@@ -1,8 +1,10 @@
 #include "core/identify/diagnosis/account.hpp"
 
 #include <catch2/catch.hpp>
+#include <string>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/identify/evidence/free_run_residuals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
@@ -99,6 +101,50 @@ TEST_CASE("without the test it is believed where no feedback moves the input, an
   CHECK_FALSE(names_gain(account));
   REQUIRE(account.found.suspect);
   CHECK(account.found.suspect->evidence > 30.0);
+}
+
+/// Of a CV that wanders under noise, and a signal that wanders too: whether the signal is said to
+/// act on the CV, and whether it was refused for the walk.
+struct Told {
+  bool named = false, wanders = false;
+};
+Told told_of_signal(std::uint64_t seed, double gain) {
+  constexpr Index kLong = 1500;
+  const auto walk = [](std::uint64_t of) {
+    return VectorXd(0.1 * test::autoregressive(test::normal(of, kLong), 1.0));
+  };
+  const VectorXd u = test::telegraph(seed, kLong, 12), signal = walk(seed + 1000);
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  Recording recording = test::recording_of(u, test::first_order(u, 2.0, 10.0) + walk(seed + 2000) +
+                                                  0.3 * test::normal(seed + 3000, kLong) +
+                                                  test::first_order(signal, gain, 10.0));
+  recording.aux = signal;
+  DiagnosisSettings settings;
+  settings.mv_count = 1;
+  const Diagnosis diagnosis = diagnose(model, recording, nullptr, settings);
+  const auto of_signal = [](const Finding& finding) {
+    return finding.subject.cause == &causes::unmodelled_input();
+  };
+  Told told;
+  for (const Finding& finding : diagnosis.findings) told.named |= of_signal(finding);
+  for (const Finding& finding : diagnosis.refused)
+    told.wanders |= of_signal(finding) && finding.refused.find("wanders") != std::string::npos;
+  return told;
+}
+
+// Between two walks a regression finds something (Granger and Newbold 1974); a gain of 3 moves the
+// CV by three times what it does by itself, in its steps too.
+TEST_CASE("a signal that wanders beside a CV that does acts on it only where its steps say so") {
+  int refused = 0, found = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    const Told none = told_of_signal(seed, 0.0);
+    CHECK_FALSE(none.named);
+    refused += none.wanders ? 1 : 0;
+    found += told_of_signal(seed, 3.0).named ? 1 : 0;
+  }
+  CHECK(refused >= 1);
+  CHECK(found >= 9);
 }
 
 }  // namespace
