@@ -14,11 +14,11 @@
 namespace mpm {
 namespace {
 
-// What the step response bears does not matter: of a dead time alone by its size (not tested: gain
-// and time constant may be free to undo what it surely does), and of all else as far as errors that
-// are allowed and what the response bears explain it. A model that was reduced from a plant of
+// What the step response bears does not matter: usual errors of a size that it bears, and whatever
+// errors that are allowed and what it bears explain. A model that was reduced from a plant of
 // higher order is off in its first lags, which are seen sharply, and what lags and dead time make
-// of that for later ones is hardly known.
+// of that for later ones is hardly known. But a dead time alone is judged by its size (gain and
+// time constant may be free to undo what it surely does), and so is what is hardly there.
 template <class Beyond>
 void bear(ChannelEvidence& evidence, std::optional<double> dead_time_alone, const Beyond& beyond) {
   const Estimate& step = evidence.step_error;

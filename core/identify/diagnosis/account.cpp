@@ -31,8 +31,7 @@ bool may_be_a_walk(Problem& problem, const SearchResult& found, std::size_t answ
                    const SearchSettings& settings) {
   const Effect& effect = found.named[answer].effect;
   if (effect.certain || !cause_of(effect).acts_through_channels()) return false;
-  const double costs = effect.search_cost + cause_of(effect).rarity();
-  return most_evidence(problem, found.fit, answer) - costs < settings.decisive;
+  return most_odds(problem, found.fit, answer) < settings.decisive;
 }
 
 /// Why a finding goes, for a person; null where it stays.

@@ -61,8 +61,8 @@ inline constexpr int kLongestResponse = 5000;  ///< samples
 inline constexpr double kFarBorder = 1.0 / 6.0;
 /// A change that is dated this share of the fitted rows behind them at most counts as within them:
 /// no search of them can find it, and of an actuator that is stuck from there on nothing was said.
-/// Chosen: twice as far as changes are dated wrongly.
-inline constexpr double kJustBehind = 0.05;
+/// Chosen: twice the 40 rows of some 2700 to which such a change is dated.
+inline constexpr double kJustBehind = 0.03;
 
 // Runs (runs.hpp): no shorter gap parts them, and no shorter one is kept beside others. The first
 // state and the noise model take some 20 rows of each.

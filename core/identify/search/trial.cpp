@@ -70,8 +70,7 @@ double Trials::odds_of(const Fit& with, std::size_t effect, const Fit& without) 
   const Effect& mine = with.effects[effect];
   const double odds = odds_for(mine, with, without);
   if (!(odds > 0.0) || !is_of_time(mine)) return odds;
-  return std::min(
-      odds, most_evidence(problem_, with, effect) - mine.search_cost - cause_of(mine).rarity());
+  return std::min(odds, most_odds(problem_, with, effect));
 }
 
 std::vector<Trial> Trials::attempt_all(const std::vector<Effect>& candidates, int iterations) {

@@ -48,7 +48,7 @@ std::optional<double> evidence_on_walk(Problem& problem, const Fit& fit, std::si
   return std::isnan(evidence) ? 0.0 : std::max(0.0, evidence);
 }
 
-double most_evidence(Problem& problem, const Fit& fit, std::size_t effect) {
+double most_odds(Problem& problem, const Fit& fit, std::size_t effect) {
   double evidence = 0.0, against = 0.0;
   bool acts = false;
   for (const CvFit& state : fit.cvs)
@@ -58,8 +58,10 @@ double most_evidence(Problem& problem, const Fit& fit, std::size_t effect) {
       against += std::max(0.0, against_a_walk(problem, fit, state));
     }
   if (!acts || std::isinf(evidence)) return std::numeric_limits<double>::infinity();
-  const auto numbers = static_cast<double>(fit.effects[effect].coordinates.size());
-  return evidence - numbers * std::log1p(evidence) + kAgainstWalk * against;
+  const Effect& mine = fit.effects[effect];
+  const auto numbers = static_cast<double>(mine.coordinates.size());
+  return evidence - numbers * std::log1p(evidence) + kAgainstWalk * against - mine.search_cost -
+         cause_of(mine).rarity();
 }
 
 bool cuts_a_walk(const Problem& problem, const Fit& fit, std::size_t effect) {

@@ -17,11 +17,11 @@ namespace mpm {
 [[nodiscard]] std::optional<double> evidence_on_walk(Problem& problem, const Fit& fit,
                                                      std::size_t effect, const CvFit& state);
 
-/// The most that the data can speak for an effect, 2 ln: what they do on a walk less what its
-/// numbers cost there (Laplace: each the log of what the data add to its prior's information, which
-/// is about the evidence where its size is a usual one), and as much more as they speak against the
-/// walk; of all CVs of the fit. Infinite where it adds to none.
-[[nodiscard]] double most_evidence(Problem& problem, const Fit& fit, std::size_t effect);
+/// The most that the odds for an effect can be, 2 ln: what the data say for it on a walk less what
+/// its numbers cost there (Laplace: each the log of what the data add to its prior's information,
+/// which is about the evidence where its size is a usual one) and its search and rarity, and as
+/// much more as they speak against the walk; of all CVs of the fit. Infinite where it adds to none.
+[[nodiscard]] double most_odds(Problem& problem, const Fit& fit, std::size_t effect);
 
 /// Whether an effect is a function of time alone, or what has no name (an answer that swings with
 /// time, ...): any walk can be cut into such.

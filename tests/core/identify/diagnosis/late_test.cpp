@@ -53,7 +53,7 @@ TEST_CASE("what began before is not named again, and nothing where nothing begin
   }
 }
 
-constexpr Index kMany = 1800, kLate = 1290;
+constexpr Index kMany = 1800, kLate = 1260;
 
 /// Diagnosed where the gain is `before` times the model's until row `change`, then `since` times.
 Diagnosis diagnosed(double before, double since, Index change = kLate, double noise = 0.1) {
@@ -76,9 +76,9 @@ TEST_CASE("a channel that changes late by too little to matter is not named") {
     CHECK_FALSE(finding.subject.cause->acts_through_channels());
 }
 
-// Row 1230 is just behind the border of 1200: what comes after it is parted anew.
+// Row 1215 is just behind the border of 1200: what comes after it is parted anew.
 TEST_CASE("a channel that changes late is named, and repaired just behind the border alone") {
-  for (const Index change : {kLate, Index{1230}}) {
+  for (const Index change : {kLate, Index{1215}}) {
     CAPTURE(change);
     const Diagnosis diagnosis = diagnosed(1.0, 1.6, change);
     REQUIRE_FALSE(diagnosis.findings.empty());

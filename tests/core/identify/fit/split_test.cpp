@@ -23,13 +23,13 @@ TEST_CASE("one run or two are cut at the share of the rows") {
   CHECK(fitted_rows(of_lengths({1000}), 2.0 / 3) == 666);
   CHECK(fitted_rows(of_lengths({500, 500}), 2.0 / 3) == 666);
   CHECK(fitted_rows(of_lengths({500, 500}), 0.25) == 250);
-  // What came after a change is parted by that share, if it is in the part that is fitted, or less
-  // than a twentieth of that behind it.
+  // What came after a change is parted by that share, if it is in the part that is fitted, or no
+  // more than 3 % of that behind it.
   Recording changed = of_lengths({1000});
   changed.changed = 400;
   CHECK(fitted_rows(changed, 2.0 / 3) == 800);
-  changed.changed = 690;
-  CHECK(fitted_rows(changed, 2.0 / 3) == 896);
+  changed.changed = 680;
+  CHECK(fitted_rows(changed, 2.0 / 3) == 893);
   changed.changed = 700;
   CHECK(fitted_rows(changed, 2.0 / 3) == 666);
 }

@@ -92,8 +92,8 @@ TEST_CASE("only what is a function of time can cut a walk, and only a walk is cu
   CHECK(cuts_a_walk(on_walk.problem, on_walk.fit, 0));
   Bench on_noise(kStep * test::normal(21, kRows), drift());
   CHECK_FALSE(cuts_a_walk(on_noise.problem, on_noise.fit, 0));
-  CHECK(most_evidence(on_walk.problem, on_walk.fit, 0) <= on_walk.evidence());
-  CHECK(most_evidence(on_noise.problem, on_noise.fit, 0) > 200.0);  // bounds nothing
+  CHECK(most_odds(on_walk.problem, on_walk.fit, 0) <= on_walk.evidence());
+  CHECK(most_odds(on_noise.problem, on_noise.fit, 0) > 200.0);  // bounds nothing
   Bench of_channel(walk(21), gain());
   CHECK_FALSE(cuts_a_walk(of_channel.problem, of_channel.fit, 0));
 }
@@ -121,7 +121,7 @@ TEST_CASE("between two walks there is no evidence for a channel's error, but for
 
 TEST_CASE("without noise nothing bounds what is there") {
   Bench bench(from_onset(1.0, false), step());
-  CHECK(most_evidence(bench.problem, bench.fit, 0) > 1e4);
+  CHECK(most_odds(bench.problem, bench.fit, 0) > 1e4);
 }
 
 TEST_CASE("what adds nothing to a CV has no evidence there") {
