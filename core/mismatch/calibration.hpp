@@ -73,6 +73,18 @@ inline constexpr double kFullShare = 0.02;
 inline constexpr double kPriorRows = 200.0;
 }  // namespace heavy_tails
 
+/// When what is older than kMemories is forgotten at once, for an input moved then as it has not
+/// since: looked kLooks times in that time, so that nothing outlives two memories; where what a
+/// column holds since is less than kOutweighed of what it would be if it had always moved alike. An
+/// input that has rested for the last kLately-th of it is left alone. Chosen: an input that moved
+/// three times as far before has more than that share.
+namespace older_movement {
+inline constexpr double kMemories = 1.75;
+inline constexpr int kLately = 4;
+inline constexpr int kLooks = 8;
+inline constexpr double kOutweighed = 1.0 / 3.0;
+}  // namespace older_movement
+
 /// How rows are weighed by their own prediction errors.
 namespace row_weights {
 /// Rows over which the noise level is followed, and the error in s.d. beyond which a row is trusted

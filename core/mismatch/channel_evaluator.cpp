@@ -56,6 +56,7 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
   if (limits_.size() == 1) limits_.resize(signatures_.size(), limits_.front());
   if (limits_.size() != signatures_.size())
     throw std::invalid_argument("materiality limits: one per channel, or one for all");
+  given_limits_ = limits_;
 }
 
 void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
@@ -65,8 +66,12 @@ void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
   limits.gain_alone = true;
 }
 
+void ChannelEvaluator::give_back_limits(int cv) {
+  for (int i = 0; i < shape_.inputs; ++i) limits_[index(cv, i)] = given_limits_[index(cv, i)];
+}
+
 void ChannelEvaluator::archive(Archive& a) {
-  // not archived: shape_, signatures_ (construction)
+  // not archived: shape_, signatures_, given_limits_ (construction)
   // not archived: explained_, estimates_, covariance_, excitation_, usual_, joint_, joint_usual_,
   // materiality_, steps_, sizes_, estimate_, directions_, error_, joint_error_, slow_noise_ (each
   // evaluation begins anew)

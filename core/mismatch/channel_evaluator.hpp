@@ -45,6 +45,8 @@ class ChannelEvaluator {
   /// An error of the gain or the time constant up to `limit` (relative) matters in this channel no
   /// longer, if it did, nor does what is no such error beside its gain.
   void widen_limits(int cv, int input, double limit);
+  /// As they were given, of a CV's channels.
+  void give_back_limits(int cv);
   /// Evidence of all inputs to one CV into `evidence` (as many as inputs); the memory is ready.
   void evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence);
   /// What is explained of a CV's residual beyond its own past, in squares.
@@ -92,6 +94,7 @@ class ChannelEvaluator {
   RegressionShape shape_;
   std::vector<ChannelSignatures> signatures_;  // input-major
   std::vector<MaterialityLimits> limits_;      // likewise
+  std::vector<MaterialityLimits> given_limits_;
 
   InputEstimates estimates_;    // of the CV last evaluated
   BlockCovariance covariance_;  // of the input at hand

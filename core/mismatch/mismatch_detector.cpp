@@ -16,6 +16,7 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
       memory_count_(static_cast<int>(memories.size())),
       model_(model),
       history_(shape, remembered),
+      older_(shape, memories.empty() ? 1.0 : memories.front().lambda, remembered),
       curvatures_(static_cast<std::size_t>(shape.cvs)),
       work_(shape.columns() + VolterraTerms::most_columns(), patience),
       evaluator_(shape, model, std::move(limits)),
@@ -28,6 +29,22 @@ void MismatchDetector::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
                               const Eigen::Ref<const Eigen::VectorXd>& residuals) {
   history_.push(inputs, residuals);
   for (ResidualRegression& regression : regressions_) regression.add_sample(history_, work_);
+  if (!older_.outweighs(history_)) return;
+  for (int j = 0; j < shape_.cvs; ++j)
+    if (regression(j).memory(0).rows > older_.depth()) forget_older(j);
+}
+
+// And what was made of it.
+void MismatchDetector::forget_older(int cv) {
+  ResidualRegression& regression = regressions_[static_cast<std::size_t>(cv)];
+  regression.fold(history_, work_);
+  std::optional<Curvature>& found = curvatures_[static_cast<std::size_t>(cv)];
+  if (found) {
+    found.reset();
+    evaluator_.give_back_limits(cv);
+    regression.leave_out_terms();
+  }
+  regression.start_afresh(older_.depth(), history_, work_);
 }
 
 void MismatchDetector::skip(std::int64_t missing) {
@@ -83,7 +100,7 @@ bool MismatchDetector::take_in_curvature(int cv, double least) {
 void MismatchDetector::archive(Archive& a) {
   // not archived: shape_, memory_count_, model_ (construction)
   // not archived: work_ (empty between calls)
-  a(history_, curvatures_, evaluator_, evidence_, explained_);
+  a(history_, older_, curvatures_, evaluator_, evidence_, explained_);
   for (ResidualRegression& regression : regressions_)
     regression.archive(a, model_, history_, work_);
   for (const std::optional<Curvature>& found : curvatures_)

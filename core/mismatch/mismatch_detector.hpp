@@ -9,6 +9,7 @@
 #include "core/mismatch/channel_evaluator.hpp"
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/curvature.hpp"
+#include "core/mismatch/older_movement.hpp"
 #include "core/mismatch/outside_signals.hpp"
 #include "core/mismatch/regression_history.hpp"
 #include "core/mismatch/residual_regression.hpp"
@@ -100,6 +101,7 @@ class MismatchDetector {
   void archive(Archive& a);
 
  private:
+  void forget_older(int cv);
   [[nodiscard]] std::size_t first_evidence(int cv, int memory) const {
     return static_cast<std::size_t>((memory * shape_.cvs + cv) * shape_.inputs);
   }
@@ -108,6 +110,7 @@ class MismatchDetector {
   int memory_count_;
   LinearModel model_;
   RegressionHistory history_;
+  OlderMovement older_;
   std::vector<ResidualRegression> regressions_;       // per CV
   std::vector<std::optional<Curvature>> curvatures_;  // per CV
   RowWorkspace work_;

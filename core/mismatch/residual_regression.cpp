@@ -47,13 +47,18 @@ ResidualRegression::ResidualRegression(const RegressionShape& shape, int cv,
 void ResidualRegression::take_in(VolterraTerms terms, const RegressionHistory& history,
                                  RowWorkspace& work) {
   fold(history, work);
-  make_room(terms);
+  make_room(shape_.columns() + terms.columns());
   terms_ = std::move(terms);
   start_afresh(span_, history, work);
 }
 
-void ResidualRegression::make_room(const VolterraTerms& terms) {
-  columns_ += terms.columns() - (terms_ ? terms_->columns() : 0);
+void ResidualRegression::leave_out_terms() {
+  terms_.reset();
+  make_room(shape_.columns());
+}
+
+void ResidualRegression::make_room(int columns) {
+  columns_ = columns;
   for (RegressionMemory& memory : memories_) memory = RegressionMemory(columns_, memory.length);
   reserve_first_rows();
 }
@@ -71,7 +76,7 @@ void ResidualRegression::archive(Archive& a, const LinearModel& model,
     a.require(VolterraTerms::possible(inputs, model), "terms that no CV has");
     if (a.reads()) {
       VolterraTerms terms(model, cv_, std::move(inputs), history.depth());
-      make_room(terms);
+      make_room(shape_.columns() + terms.columns());
       terms_ = std::move(terms);
     }
     a(*terms_);

@@ -73,6 +73,9 @@ class ResidualRegression {
   /// surprising under what is now forgotten may be usual after it.
   void start_afresh(int samples, const RegressionHistory& history, RowWorkspace& work);
 
+  /// Without the terms that were taken in; a fresh start is to follow. Allocates.
+  void leave_out_terms();
+
   /// How often it has begun afresh.
   [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
 
@@ -107,7 +110,7 @@ class ResidualRegression {
     double leverage = 0.0;
   };
 
-  void make_room(const VolterraTerms& terms);
+  void make_room(int columns);
   [[nodiscard]] int patience(const RowWorkspace& work) const;
   void take(int oldest, int newest, const RegressionHistory& history, RowWorkspace& work);
   void gather(int oldest, int newest, const RegressionHistory& history, RowWorkspace& work) const;

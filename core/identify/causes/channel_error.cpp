@@ -1,10 +1,13 @@
 #include "core/identify/causes/channel_error.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/priors.hpp"
 #include "core/identify/fit/channel_edit.hpp"
+#include "core/model/linear_model.hpp"
 #include "core/text/number_text.hpp"
 
 namespace mpm {
@@ -24,6 +27,11 @@ constexpr std::size_t kMomentsPerOnset = 8;
 constexpr double kLeastGainRatio = 0.02, kMostGainRatio = 20.0;
 constexpr double kMostLogRatio = 2.5;
 constexpr double kMostDeadTime = 60.0;
+
+/// A step response has settled within this share of its end; one that never does is looked at for
+/// so many lags, and none for more samples.
+constexpr double kSettled = 0.05, kRisingLags = 3.0;
+constexpr int kLongestStep = 10000;
 
 /// Steps of finite differences: small beside what is told apart, large beside rounding.
 constexpr double kRatioStep = 0.01;
@@ -118,6 +126,31 @@ int material_errors(const Effect& effect, const Tolerances& materiality) {
          beyond(effect.value(kTimeConstantRatio, 0.0),
                 std::log(1.0 + materiality.log_time_constant)) +
          beyond(effect.value(kDeadTimeError, 0.0), materiality.dead_time_samples);
+}
+
+double share_of_step(const Effect& effect, const Surroundings& surroundings,
+                     const ModelSpec& model) {
+  for (const ChannelSpec& channel : model.channels) {
+    if (channel.cv != effect.place.cv || channel.input != effect.place.input) continue;
+    ModelSpec edited = alone(channel, surroundings.sample_time_s);
+    const LinearModel given(edited);
+    Effect here = effect;
+    here.place = place_of(edited.channels.front());
+    edit_channels(here, surroundings, edited);
+    const double rising =
+        kRisingLags * given.slowest_time_constant_samples() + given.longest_dead_time_samples();
+    const int samples = std::max(given.settling_samples(kSettled, kLongestStep),
+                                 static_cast<int>(std::min<double>(rising, kLongestStep)));
+    const auto response = [samples](const LinearModel& of) {
+      Eigen::VectorXd step = of.impulse_response(0, 0, samples + 1);
+      std::partial_sum(step.begin(), step.end(), step.begin());
+      return step;
+    };
+    const Eigen::VectorXd without = response(given);
+    const double size = without.norm();
+    return size > 0.0 ? (response(LinearModel(edited)) - without).norm() / size : 0.0;
+  }
+  return 0.0;
 }
 
 void SingleChannelError::apply(const Effect& effect, const Surroundings& surroundings,

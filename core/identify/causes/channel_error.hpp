@@ -34,6 +34,12 @@ void edit_channels(const Effect& effect, const Surroundings& surroundings, Model
 /// How many of a channel's errors in the effect are beyond what a model may be wrong by.
 [[nodiscard]] int material_errors(const Effect& effect, const Tolerances& materiality);
 
+/// What the effect, an error of one channel, does to the channel's step response, as a share of it:
+/// by root mean squares, until the given one settles (the ramp of one that never does, for a few
+/// lags); 0 where the model has no such channel.
+[[nodiscard]] double share_of_step(const Effect& effect, const Surroundings& surroundings,
+                                   const ModelSpec& model);
+
 /// One error of a channel by itself: gain, time constant or dead time.
 class SingleChannelError : public Cause {
  public:

@@ -315,11 +315,16 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
     diagnosis.before = free_runs(first, model);
     diagnosis.after = free_runs(first, extended);
   }
-  // What began later is less in the mean of all rows than since then.
+  // What the step response bears does not matter whatever its numbers are, unless it is much of it;
+  // a dead time alone is judged by its size. And what began later is less in the mean of all rows
+  // than since then.
   const MayMatter may_matter = [&](const Effect& effect) {
     const auto channels = channels_of(effect, model, base.input_count);
     const bool in_all = tests.may_matter(channels);
-    if (in_all || effect.onset == 0) return in_all;
+    if (effect.onset == 0)
+      return in_all && (material_errors(effect, kSmall) == 0 || !tests.bears(channels) ||
+                        share_of_step(effect, problem.surroundings(), model) > kMuchOfStep);
+    if (in_all) return true;
     const Index rest = samples - effect.onset;
     return ChannelTests(tested, part(measured, effect.onset, rest), residuals.bottomRows(rest))
         .may_matter(channels);

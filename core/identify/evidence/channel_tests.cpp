@@ -51,6 +51,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
     : cvs_(model.cv_count),
       p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)),
       harmless_(p_values_.size(), 1.0),
+      borne_(p_values_.size(), 1.0),
       wrong_(p_values_.size(), 0.0),
       masked_(p_values_.size(), 1.0),
       bends_(p_values_.size(), false),
@@ -72,6 +73,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
       p_values_[channel] = evidence.p_value;
       harmless_[channel] = harmless_p_value_of(evidence, detector.memory(cv).freedom());
+      borne_[channel] = evidence.p_value_material;
       if (evidence.excitation_index_alone > 0.0 && std::isfinite(evidence.excitation_index))
         masked_[channel] = evidence.excitation_index / evidence.excitation_index_alone;
       wrong_[channel] = evidence.statistic * steps;
@@ -101,6 +103,13 @@ bool ChannelTests::reject(const std::vector<std::pair<int, int>>& channels, doub
     tested += 1.0;
   }
   return tested > 0.0 && smallest * tested <= level;
+}
+
+bool ChannelTests::bears(const std::vector<std::pair<int, int>>& channels, double level) const {
+  return std::all_of(channels.begin(), channels.end(), [&](const std::pair<int, int>& each) {
+    const auto channel = static_cast<std::size_t>(each.second * cvs_ + each.first);
+    return channel >= borne_.size() || borne_[channel] > level;
+  });
 }
 
 bool ChannelTests::undone(const std::vector<std::pair<int, int>>& channels) const {

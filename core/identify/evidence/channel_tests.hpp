@@ -56,6 +56,11 @@ class ChannelTests {
   /// Whether the error of some of these channels may matter: "too small" has at most this p-value.
   [[nodiscard]] bool may_matter(const std::vector<std::pair<int, int>>& channels,
                                 double level = kMayMatter) const;
+  /// Whether the monitor would raise no alarm for any of these channels, whatever the sizes of
+  /// their errors: "what it does to the step response bears no more than the limits" has more than
+  /// this p-value for each.
+  [[nodiscard]] bool bears(const std::vector<std::pair<int, int>>& channels,
+                           double level = kMayMatter) const;
   /// Whether other inputs undo most of what the input of some of these channels does, so that small
   /// errors of any kind are large ones of what is left.
   [[nodiscard]] bool undone(const std::vector<std::pair<int, int>>& channels) const;
@@ -69,6 +74,7 @@ class ChannelTests {
   int cvs_;
   std::vector<std::optional<double>> p_values_;  // per channel, input-major
   std::vector<double> harmless_;                 // likewise
+  std::vector<double> borne_;                    // likewise
   std::vector<double> wrong_;                    // likewise
   std::vector<double> masked_;                   // likewise: s.d. of its gain to that of it alone
   std::vector<bool> bends_;                      // likewise

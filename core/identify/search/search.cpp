@@ -199,13 +199,32 @@ class Search {
         jump ? trials_.without(touched(trials[0].candidate, problem_)) : trials[0].fit;
     trials_.settle(&weighing);
     std::vector<Effect> best;
-    for (std::size_t i = 0; i < std::min(kTriedAgain, trials.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kTriedAgain, trials.size()); ++i) {
       best.push_back(trials[i].candidate);
+      Effect& effect = best.back();
+      if (jump && told_by_shock(effect, weighing))
+        effect.search_cost = std::min(effect.search_cost, cost_of_cvs());
+    }
     std::vector<Trial> again = trials_.attempt_all(best, kSecondTrialSteps);
     std::sort(again.begin(), again.end(), more_probable);
     if (again[0].odds < settings_.decisive) return false;
     accept(again);
     return true;
+  }
+
+  [[nodiscard]] double cost_of_cvs() const {
+    return cost_of(static_cast<std::size_t>(problem_.model().cv_count));
+  }
+
+  /// Whether a step stands where the CV has its largest shock, which then tells the moment whatever
+  /// comes after it: among all moments nobody had to search.
+  [[nodiscard]] static bool told_by_shock(const Effect& effect, const Fit& without) {
+    const bool at_once = effect.edit->jumps() && effect.coordinates.size() == 1;
+    return at_once && effect.onset > 0 &&
+           std::any_of(without.cvs.begin(), without.cvs.end(), [&](const CvFit& state) {
+             return state.cv == effect.place.cv && std::abs(state.innovations(effect.onset)) ==
+                                                       state.innovations.cwiseAbs().maxCoeff();
+           });
   }
 
   void refine(Trial& trial, const Trial& best) {

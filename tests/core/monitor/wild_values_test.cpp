@@ -204,5 +204,38 @@ TEST_CASE("values that no instrument gives count as bad") {
   CHECK(outcome({}, true, {SignalKind::kMv, 1e153, 500, 3}, 600).bad_values == 3);
 }
 
+// A gateway that swings an MV a thousand times as far about where it stands, or thirty times for
+// longer, is no jump that a screen could tell from an operator's step.
+TEST_CASE("an input that swings as it never does is forgotten within two memories", "[trials]") {
+  for (const double gain_ratio : {1.0, 0.75})
+    for (const auto& [factor, lasts] : {std::pair{1000.0, 100}, std::pair{30.0, 400}}) {
+      CAPTURE(gain_ratio, factor, lasts);
+      test::OpenLoopUnit unit;
+      unit.gain_ratio = gain_ratio;
+      const auto last = [&, factor = factor, lasts = lasts](double times) {
+        Monitor monitor(unit.model, unit.counts, {true, true}, {}, {});
+        double mean = 0.0, count = 0.0;
+        unit.run(1500 + lasts + 2 * kMemory, [&](Frame frame) {
+          double& value = frame[SignalKind::kMv].values(0);
+          if (frame.interval < 1500)
+            mean += (value - mean) / ++count;
+          else if (frame.interval < 1500 + lasts)
+            value = mean + times * (value - mean);
+          monitor.push(frame);
+        });
+        std::vector<double> sizes;
+        for (int cv = 0; cv < 2; ++cv) {
+          const ChannelStatus& status = monitor.channel(cv, 0);
+          sizes.push_back(static_cast<double>(status.verdict));
+          sizes.push_back(status.smallest_error);
+        }
+        return sizes;
+      };
+      const std::vector<double> healthy = last(1.0), injured = last(factor);
+      for (std::size_t i = 0; i < healthy.size(); ++i)
+        CHECK(injured[i] == Approx(healthy[i]).epsilon(0.2));
+    }
+}
+
 }  // namespace
 }  // namespace mpm

@@ -72,5 +72,43 @@ TEST_CASE("a level is told beside what is wrong with a channel, else only where 
         }).empty());
 }
 
+/// In how many of 12 records with such noise a step is named.
+int steps_named(const std::function<Eigen::VectorXd(std::uint64_t seed)>& noise) {
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  int named = 0;
+  for (std::uint64_t seed = 40; seed < 52; ++seed) {
+    const Eigen::VectorXd u = test::telegraph(seed, kRows, 12);
+    const Recording recording =
+        test::recording_of(u, test::first_order(u, 2.0, 10.0) + noise(seed + 100));
+    Problem problem(model, 1, recording, Tolerances{}, NoiseModel{});
+    for (const Named& each : search(problem, SearchSettings{}).named)
+      named += each.effect.edit == &causes::step_disturbance() && each.effect.onset > 0 ? 1 : 0;
+  }
+  return named;
+}
+
+// Without the shock's row what speaks for a step is that without one the noise would have to be a
+// walk: n (1 - p) / (1 + p) = 33 for a pole of 0.93. Of that a search among all rows (900 / 4
+// moments) would take 11, and the priors of size and noise some 10: 3 of the 12 were named so. A
+// shock that dies away as all of the noise does leaves nothing of the kind.
+TEST_CASE(
+    "a step is named where a shock tells its row and the level stays, not where it dies away") {
+  constexpr Index kShock = 450;
+  constexpr double kInnovation = 0.1, kPole = 0.93;
+  const auto innovations = [&](std::uint64_t seed) {
+    return Eigen::VectorXd(kInnovation * test::normal(seed, kRows));
+  };
+  CHECK(steps_named([&](std::uint64_t seed) {
+          Eigen::VectorXd noise = test::autoregressive(innovations(seed), kPole);
+          noise.tail(kRows - kShock).array() += 2.0;
+          return noise;
+        }) >= 8);
+  CHECK(steps_named([&](std::uint64_t seed) {
+          Eigen::VectorXd shocks = innovations(seed);
+          shocks(kShock) += 2.0;
+          return test::autoregressive(shocks, kPole);
+        }) <= 2);
+}
+
 }  // namespace
 }  // namespace mpm
