@@ -26,6 +26,10 @@ void load_name(const Map& root, UnitConfig& config) {
     value->error("must not hold '/', since files are named after the unit");
     return;
   }
+  if (*name == "." || *name == "..") {
+    value->error("must not be '" + *name + "', since files are named after the unit");
+    return;
+  }
   config.unit = *name;
 }
 

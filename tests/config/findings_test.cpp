@@ -226,6 +226,9 @@ TEST_CASE("Mistakes in the head of a file are told at their place") {
       {"unit: a/b\nsample_time: 1\nsignals: {mv: u1, cv: y1}\nmodel: {channels: {cv: y1, mv: u1, "
        "gain: 1}}\n",
        "u.yaml:1:7: error: unit: must not hold '/', since files are named after the unit"},
+      {"unit: ..\nsample_time: 1\nsignals: {mv: u1, cv: y1}\nmodel: {channels: {cv: y1, mv: u1, "
+       "gain: 1}}\n",
+       "u.yaml:1:7: error: unit: must not be '..', since files are named after the unit"},
       {"unit: t\nsample_time: 1\n", "u.yaml:1:1: error: `signals` is missing"},
       {"unit: t\nsample_time: 1\nsignals: {mv: u1}\n",
        "u.yaml:3:10: error: signals: `cv` needs at least one controlled variable"},
