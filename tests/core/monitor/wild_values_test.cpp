@@ -212,7 +212,7 @@ TEST_CASE("an input that swings as it never does is forgotten within two memorie
       CAPTURE(gain_ratio, factor, lasts);
       test::OpenLoopUnit unit;
       unit.gain_ratio = gain_ratio;
-      const auto last = [&, factor = factor, lasts = lasts](double times) {
+      const auto last = [&, lasts = lasts](double times) {
         Monitor monitor(unit.model, unit.counts, {true, true}, {}, {});
         double mean = 0.0, count = 0.0;
         unit.run(1500 + lasts + 2 * kMemory, [&](Frame frame) {
