@@ -17,6 +17,7 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
       model_(model),
       history_(shape, remembered),
       older_(shape, memories.empty() ? 1.0 : memories.front().lambda, remembered),
+      forgetful_(shape.cvs),
       curvatures_(static_cast<std::size_t>(shape.cvs)),
       work_(shape.columns() + VolterraTerms::most_columns(), patience),
       evaluator_(shape, model, std::move(limits)),
@@ -29,12 +30,14 @@ void MismatchDetector::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
                               const Eigen::Ref<const Eigen::VectorXd>& residuals) {
   history_.push(inputs, residuals);
   for (ResidualRegression& regression : regressions_) regression.add_sample(history_, work_);
-  if (!older_.outweighs(history_)) return;
-  for (int j = 0; j < shape_.cvs; ++j)
-    if (regression(j).memory(0).rows > older_.depth()) forget_older(j);
+  if (older_.outweighs(history_)) forgetful_ = 0;
+  if (forgetful_ == shape_.cvs) return;
+  if (regression(forgetful_).memory(0).rows > older_.depth()) forget_older(forgetful_);
+  ++forgetful_;
 }
 
-// And what was made of it.
+// And what was made of it. One CV after the other, sample by sample: each takes as long as
+// thousands of samples do.
 void MismatchDetector::forget_older(int cv) {
   ResidualRegression& regression = regressions_[static_cast<std::size_t>(cv)];
   regression.fold(history_, work_);
@@ -100,6 +103,7 @@ bool MismatchDetector::take_in_curvature(int cv, double least) {
 void MismatchDetector::archive(Archive& a) {
   // not archived: shape_, memory_count_, model_ (construction)
   // not archived: work_ (empty between calls)
+  a.within(forgetful_, 0, shape_.cvs);
   a(history_, older_, curvatures_, evaluator_, evidence_, explained_);
   for (ResidualRegression& regression : regressions_)
     regression.archive(a, model_, history_, work_);

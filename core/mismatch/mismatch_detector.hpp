@@ -111,6 +111,7 @@ class MismatchDetector {
   LinearModel model_;
   RegressionHistory history_;
   OlderMovement older_;
+  int forgetful_;                                     // the next CV to forget it; cvs: none
   std::vector<ResidualRegression> regressions_;       // per CV
   std::vector<std::optional<Curvature>> curvatures_;  // per CV
   RowWorkspace work_;
