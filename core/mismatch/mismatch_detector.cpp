@@ -36,8 +36,8 @@ void MismatchDetector::update(const Eigen::Ref<const Eigen::VectorXd>& inputs,
   ++forgetful_;
 }
 
-// And what was made of it. One CV after the other, sample by sample: each takes as long as
-// thousands of samples do.
+// The CV's regression begins anew with the last `older_.depth()` samples, without a curvature that
+// older ones may have shown. One CV a sample: each takes as long as thousands of samples do.
 void MismatchDetector::forget_older(int cv) {
   ResidualRegression& regression = regressions_[static_cast<std::size_t>(cv)];
   regression.fold(history_, work_);

@@ -1,6 +1,7 @@
 #include "core/identify/diagnosis/account.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -34,9 +35,26 @@ bool may_be_a_walk(Problem& problem, const SearchResult& found, std::size_t answ
   return most_odds(problem, found.fit, answer) < settings.decisive;
 }
 
+/// Whether a CV that is controlled would hardly answer an input any more. It looks so whatever its
+/// gain is where the controller undoes a disturbance that is slower than the noise is believed to
+/// be: inputs move, and the CV stays where it was.
+bool silences(const Effect& effect, const Finding& finding, const Problem& problem,
+              const Judges& judges) {
+  const Parameter* gain = finding.find(kGainRatio);
+  if (gain == nullptr || !(std::abs(gain->value) < kHardlyAnswers)) return false;
+  const auto channels = channels_of(effect, problem.model(), problem.surroundings().model_inputs);
+  return std::any_of(channels.begin(), channels.end(), [&](const std::pair<int, int>& channel) {
+    const auto cv = static_cast<std::size_t>(channel.first);
+    const auto input = static_cast<std::size_t>(channel.second);
+    return cv < judges.controlled.size() && judges.controlled[cv] &&
+           input < judges.outside_shares.size() &&
+           judges.outside_shares[input].value_or(1.0) < kNoFeedback;
+  });
+}
+
 /// Why a finding goes, for a person; null where it stays.
 const char* why_it_goes(const Effect& effect, const Problem& problem, const Finding& finding,
-                        Fate fate, const Compressed& compressed) {
+                        Fate fate, const Judges& judges) {
   const Cause& cause = cause_of(effect);
   if (effect.certain || causes::is_unnamed(cause)) return nullptr;
   if (fate == Fate::kRefused) return why_not_in_model(fate);
@@ -44,7 +62,9 @@ const char* why_it_goes(const Effect& effect, const Problem& problem, const Find
     return why_not_in_model(fate);
   if (cause.contradicted(effect, problem)) return "the measurements themselves speak against it";
   if (cause.may_be_nothing(finding)) return "its interval includes that it does nothing";
-  return compressed.may_have_made(finding) ? kMadeByCompression : nullptr;
+  if (silences(effect, finding, problem, judges))
+    return "a CV that its controller holds against a disturbance looks as if it hardly answered";
+  return judges.compressed.may_have_made(finding) ? kMadeByCompression : nullptr;
 }
 
 /// Whether what an accusation explains follows a set-point rather, once everything else that was
@@ -160,7 +180,7 @@ Account keep(Explained explained, const Judges& judges, const Witness& witness,
       const char* reason =
           may_be_a_walk(problem, before, i, settings)
               ? kWanders
-              : why_it_goes(effect, problem, finding, kept.selection.fates[i], judges.compressed);
+              : why_it_goes(effect, problem, finding, kept.selection.fates[i], judges);
       out.push_back(reason != nullptr);
       finding.repaired = false;
       finding.refused =

@@ -22,4 +22,8 @@ struct ChannelEstimate {
 /// How many gains the data do not tell, so that a match would mean nothing.
 [[nodiscard]] std::ptrdiff_t unknown_gains(const std::vector<ChannelEstimate>& estimates);
 
+/// Whether some gain is off beyond doubt, and by more than is small: a model that is said to match
+/// would be contradicted by its own estimates.
+[[nodiscard]] bool has_gain_off(const std::vector<ChannelEstimate>& estimates);
+
 }  // namespace mpm

@@ -79,10 +79,25 @@ Worth worth_of(std::size_t i, const Account& kept, const Judges& judges,
   return overwhelms ? Worth::kFinding : Worth::kUnproved;
 }
 
+/// The jump that was not named, beside all that was.
+Finding to_doubted(Problem& problem, const SearchResult& found) {
+  SearchResult alone;
+  alone.named = {*found.doubted};
+  std::vector<Effect> effects = found.fit.effects;
+  effects.push_back(found.doubted->effect);
+  alone.fit =
+      problem.fit(effects, effects.size() - 1, touched(effects.back(), problem), kEstimateSteps);
+  alone.named.front().effect = alone.fit.effects.back();
+  Finding finding = to_finding(alone, 0, problem);
+  finding.repaired = false;
+  finding.refused = "only its first sample speaks for it, and noise makes shocks, too";
+  return finding;
+}
+
 /// What was named, as findings, and what has no name; most important first, what no repair removes
 /// last.
-void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
-           const MayMatter& may_matter, Diagnosis& diagnosis) {
+void state(const Account& kept, const Recording& fitted, const Judges& judges,
+           const ChannelTests& tests, const MayMatter& may_matter, Diagnosis& diagnosis) {
   Problem& problem = *kept.problem;
   const SearchResult& found = kept.found;
   const Selection& selection = kept.selection;
@@ -90,6 +105,9 @@ void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
   std::vector<bool> unclear(static_cast<std::size_t>(problem.model().cv_count), false);
   const auto mark_unclear = [&](const Effect& effect) {
     for (const int cv : touched(effect, problem)) unclear[static_cast<std::size_t>(cv)] = true;
+  };
+  const auto moves_of = [&](const Effect& effect) {
+    return moves(fitted.aux.col(effect.place.aux));
   };
   const auto alone = [&](std::size_t i) {
     const int cv = found.named[i].effect.place.cv;
@@ -105,7 +123,8 @@ void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
     finding.repaired = selection.fates[i] == Fate::kRepaired;
     const bool of_setpoint = effect.place.aux >= judges.aux;
     const char* not_setpoint =
-        of_setpoint ? why_not_setpoint(effect, alone(i), tests, judges.aux) : nullptr;
+        of_setpoint ? why_not_setpoint(effect, alone(i), moves_of(effect), tests, judges.aux)
+                    : nullptr;
     finding.refused = not_setpoint != nullptr ? not_setpoint
                       : of_setpoint           ? "a set-point is no input of a model"
                                               : why_not_in_model(selection.fates[i]);
@@ -139,6 +158,10 @@ void state(const Account& kept, const Judges& judges, const ChannelTests& tests,
     diagnosis.suspect->subject = subject_of(found.suspect->effect);
     diagnosis.suspect->evidence = found.suspect->evidence;
     mark_unclear(found.suspect->effect);
+  }
+  if (found.doubted) {
+    diagnosis.refused.push_back(to_doubted(problem, found));
+    mark_unclear(found.doubted->effect);
   }
   // Where structure is missing what is left is no noise.
   for (const Cause* cause : causes::all())
@@ -235,6 +258,14 @@ Recording without_unanswered(const ModelSpec& model, const Recording& recording,
   return without(recording, none);
 }
 
+/// Per CV, whether it has a set-point.
+std::vector<bool> controlled(const Recording& recording) {
+  std::vector<bool> with;
+  for (Index cv = 0; cv < recording.setpoints.cols(); ++cv)
+    with.push_back(recording.setpoints.col(cv).array().isFinite().any());
+  return with;
+}
+
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
 Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {
@@ -275,7 +306,8 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
       nameable(model, {settings.mv_count, base.input_count, aux}, tests, by_monitor, outside);
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
-  const Judges judges{unseen, aux,
+  const Judges judges{unseen,
+                      aux,
                       [&](int cv, int input, bool wrong) {
                         // Where only a disturbance was found they soak up what it leaves.
                         const auto i = static_cast<std::size_t>(input);
@@ -283,7 +315,9 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
                                (tests.reject({{cv, input}}) ||
                                 (i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside));
                       },
-                      outside, compressed};
+                      outside,
+                      compressed,
+                      controlled(measured)};
   const Witness witness{tests, by_monitor, [&](const ModelSpec& repaired, OwnPast past) {
                           return ChannelTests(tested, measured,
                                               free_run_residuals(repaired, recording), past);
@@ -329,7 +363,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
     return ChannelTests(tested, part(measured, effect.onset, rest), residuals.bottomRows(rest))
         .may_matter(channels);
   };
-  state(kept, judges, tests, may_matter, diagnosis);
+  state(kept, fitted, judges, tests, may_matter, diagnosis);
   if (!validation)
     for (Finding& late :
          begun_late(extended, tested, recording, measured, diagnosis.fit_samples,

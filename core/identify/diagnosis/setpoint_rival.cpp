@@ -4,6 +4,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/priors.hpp"
+#include "core/identify/diagnosis/calibration.hpp"
 
 namespace mpm {
 namespace {
@@ -22,9 +23,23 @@ bool own_setpoint_undecided(const ChannelTests& tests, int cv) {
   return setpoint.signal == cv && !setpoint.loses;
 }
 
-const char* why_not_setpoint(const Effect& effect, bool alone, const ChannelTests& tests,
+int moves(const Eigen::Ref<const Eigen::VectorXd>& signal) {
+  int count = 0;
+  double direction = 0.0;
+  for (Eigen::Index k = 1; k < signal.size(); ++k) {
+    const double step = signal(k) - signal(k - 1);
+    const double now = step > 0.0 ? 1.0 : step < 0.0 ? -1.0 : 0.0;
+    if (now != 0.0 && now != direction) ++count;
+    direction = now;
+  }
+  return count;
+}
+
+const char* why_not_setpoint(const Effect& effect, bool alone, int moves, const ChannelTests& tests,
                              int first) {
   if (is_own(effect, first)) return kOwnSetpoint;
+  if (moves < kFewestSetpointMoves)
+    return "the set-point moved too seldom: what disturbs the CV may go with it by chance";
   return alone && tests.setpoint(effect.place.cv).loses
              ? "the test of the channels explains clearly more by an error of theirs than the "
                "set-point does"

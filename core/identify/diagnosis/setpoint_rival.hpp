@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "core/identify/causes/finding.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/fit/effect.hpp"
@@ -23,9 +25,14 @@ inline constexpr const char* kOwnSetpoint =
 /// Whether the test does not decide between the channels of a CV and its own set-point.
 [[nodiscard]] bool own_setpoint_undecided(const ChannelTests& tests, int cv);
 
+/// How often a signal moves: stretches of rows on which it rises, or falls.
+[[nodiscard]] int moves(const Eigen::Ref<const Eigen::VectorXd>& signal);
+
 /// Why what a set-point is said to do is no finding, for a person; null where it may be one.
-/// `alone`: nothing else was found in the CV that would hide the channels' word.
-[[nodiscard]] const char* why_not_setpoint(const Effect& effect, bool alone,
+/// `alone`: nothing else was found in the CV that would hide the channels' word. `moves`: of the
+/// set-point in the rows that were fitted; what goes on by itself goes with a few of them by
+/// chance.
+[[nodiscard]] const char* why_not_setpoint(const Effect& effect, bool alone, int moves,
                                            const ChannelTests& tests, int first);
 
 /// Where the test does not decide: the own set-point becomes a rival of what is laid to channels of

@@ -115,6 +115,10 @@ void decide(const FreeRunVerdict& free_runs, Diagnosis& diagnosis) {
     diagnosis.reason = "the inputs move too little beside the noise: the gains of " +
                        std::to_string(blind) + " of " + std::to_string(diagnosis.channels.size()) +
                        " channels are not known to within 25 %";
+  else if (has_gain_off(diagnosis.channels))
+    diagnosis.reason = "by its estimate the gain of a channel is off by more than " +
+                       percent_text(kSmall.gain) +
+                       ", beyond doubt, which the calibrated test of the channels does not confirm";
   else if (free_runs.loses)
     diagnosis.reason =
         "in the last samples the model's errors are much larger, and it explains a CV less well "

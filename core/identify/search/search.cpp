@@ -64,6 +64,7 @@ class Search {
     rewrite();
     SearchResult result = conclude();
     result.suspect = suspect();
+    result.doubted = doubted_;
     return result;
   }
 
@@ -80,6 +81,7 @@ class Search {
     drop_superfluous(0);
     SearchResult result = conclude();
     result.suspect = found.suspect;
+    result.doubted = found.doubted;
     return result;
   }
 
@@ -176,6 +178,7 @@ class Search {
   }
 
   bool find_one() {
+    doubted_.reset();
     trials_.settle(last_.cvs.empty() ? nullptr : &last_);
     std::vector<Trial> trials = trials_.attempt_all(shortlist(true), kTrialSteps);
     if (trials.empty()) return false;
@@ -207,7 +210,10 @@ class Search {
     }
     std::vector<Trial> again = trials_.attempt_all(best, kSecondTrialSteps);
     std::sort(again.begin(), again.end(), more_probable);
-    if (again[0].odds < settings_.decisive) return false;
+    if (again[0].odds < settings_.decisive) {
+      if (jump) doubted_ = Named{trials[0].candidate, trials[0].odds, 0.0, {}};
+      return false;
+    }
     accept(again);
     return true;
   }
@@ -392,6 +398,7 @@ class Search {
   std::vector<int> settled_;   // CVs; -1: of effects on several
   std::vector<int> no_level_;  // CVs of which no constant offset is to be named
   Trials trials_;
+  std::optional<Named> doubted_;
   std::vector<CvFit> nulls_;  // of this round, one per CV; what the screening looks at
   std::optional<Screening> screening_;
   Fit last_;

@@ -45,6 +45,9 @@ struct SearchResult {
   Fit fit;                   ///< all of them together, all CVs
   /// What would explain more than all that was named and may not be named; the most probable one.
   std::optional<Named> suspect;
+  /// A jump for which only its first row speaks, as for a shock of the noise, so that it was not
+  /// named: that of the last round.
+  std::optional<Named> doubted;
 };
 
 /// Finds what explains the data, one cause after the other: the most probable of all candidates is

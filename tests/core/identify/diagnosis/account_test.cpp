@@ -25,6 +25,7 @@ struct Bench {
   Unseen unseen;
   std::vector<std::optional<double>> shares;
   SearchSettings settings;
+  std::vector<bool> controlled;
 
   /// From row `rests` on the input stands still.
   Bench(double fitted, double not_fitted, double outside_share, Index rests = kRows)
@@ -51,7 +52,7 @@ struct Bench {
   Account take() {
     const ChannelTests given = test(model);
     return account_for(
-        model, 1, first, {unseen, 0, {}, shares},
+        model, 1, first, {unseen, 0, {}, shares, {}, controlled},
         {given, given, [this](const ModelSpec& of, OwnPast past) { return test(of, past); }},
         settings);
   }
@@ -84,6 +85,24 @@ TEST_CASE("what the test is sure of is named though the unseen rows hold no move
   const Account account = Bench(1.5, 1.5, 1.0, 530).take();
   CHECK(names_gain(account));
   for (const Fate fate : account.selection.fates) CHECK(fate == Fate::kNoBetter);
+}
+
+// What the inputs do and the CV does not looks the same beside a controller that undoes what
+// disturbs the CV. Test signals from outside (0.99) do not undo anything.
+TEST_CASE("no gain of hardly anything is named of a CV that is controlled") {
+  const auto take = [](double gain, double outside_share, bool controlled) {
+    Bench bench(gain, gain, outside_share);
+    bench.controlled = {controlled};
+    bench.settings.may_name = [](const Effect& effect) { return effect.edit == &causes::gain(); };
+    return bench.take();
+  };
+  CHECK(names_gain(take(0.2, 0.8, false)));
+  CHECK(names_gain(take(0.2, 0.99, true)));
+  CHECK(names_gain(take(0.5, 0.8, true)));
+  const Account account = take(0.2, 0.8, true);
+  CHECK_FALSE(names_gain(account));
+  REQUIRE_FALSE(account.refused.empty());
+  CHECK(account.refused.front().refused.find("its controller holds") != std::string::npos);
 }
 
 // Half of the gain is 0.7 of the CV's s.d., far more than the noise: the errors of predictions fall

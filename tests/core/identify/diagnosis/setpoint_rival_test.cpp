@@ -15,6 +15,7 @@ using Eigen::VectorXd;
 using test::lag;
 
 constexpr Index kRows = 1500;
+constexpr int kOften = 20;
 constexpr int kFirst = 0;  // no aux signals: the first behind them is the first CV's set-point
 
 /// Two CVs with an input each. What the set-points do comes on top of the CVs; the first input
@@ -59,13 +60,25 @@ TEST_CASE("whether a CV's own set-point may be named the test of its channels sa
 
 TEST_CASE("what a set-point is said to do is refused where it loses alone, or is the CV's own") {
   const Bench wrong(1.5, 0.0), hidden(1.0, 1.0);
-  const char* own = why_not_setpoint(setpoint(0, 0), false, hidden.tests, kFirst);
+  const char* own = why_not_setpoint(setpoint(0, 0), false, kOften, hidden.tests, kFirst);
   REQUIRE(own != nullptr);
   CHECK(std::string(own) == kOwnSetpoint);
-  CHECK(why_not_setpoint(setpoint(0, 1), true, wrong.tests, kFirst) != nullptr);
-  CHECK(why_not_setpoint(setpoint(0, 1), false, wrong.tests, kFirst) == nullptr);
-  CHECK(why_not_setpoint(setpoint(0, 1), true, hidden.tests, kFirst) == nullptr);
-  CHECK(why_not_setpoint(setpoint(1, 0), true, wrong.tests, kFirst) == nullptr);
+  CHECK(why_not_setpoint(setpoint(0, 1), true, kOften, wrong.tests, kFirst) != nullptr);
+  CHECK(why_not_setpoint(setpoint(0, 1), false, kOften, wrong.tests, kFirst) == nullptr);
+  CHECK(why_not_setpoint(setpoint(0, 1), true, kOften, hidden.tests, kFirst) == nullptr);
+  CHECK(why_not_setpoint(setpoint(1, 0), true, kOften, wrong.tests, kFirst) == nullptr);
+}
+
+// Up, rest, a ramp down, up again behind it without a rest, rest, and on up: four.
+TEST_CASE("a set-point that moves a few times explains nothing for sure") {
+  VectorXd signal(10);
+  signal << 0, 1, 1, 0.5, 0, 2, 2, 3, 3, 3;
+  CHECK(moves(signal) == 4);
+  CHECK(moves(VectorXd::Ones(10)) == 0);
+  const Bench hidden(1.0, 1.0);
+  const char* seldom = why_not_setpoint(setpoint(1, 0), true, 4, hidden.tests, kFirst);
+  REQUIRE(seldom != nullptr);
+  CHECK(std::string(seldom).find("too seldom") != std::string::npos);
 }
 
 TEST_CASE("undecided, a CV's own set-point takes its share of the confidence in a channel") {

@@ -78,6 +78,22 @@ TEST_CASE("only a strong suspect leaves the verdict open") {
   CHECK(verdict_of(diagnosis) == DiagnosisVerdict::kUndetermined);
 }
 
+// A 95 % interval of 0.06 either side is an s.d. of 0.03.
+TEST_CASE("a model is no match whose gain is off by its own estimate") {
+  const auto with_gain = [](double value, double reach) {
+    Diagnosis diagnosis;
+    diagnosis.channels.resize(2);
+    for (ChannelEstimate& channel : diagnosis.channels)
+      channel.gain_ratio = {&kGainRatio, 1.0, 0.9, 1.1};
+    diagnosis.channels[1].gain_ratio = {&kGainRatio, value, value - reach, value + reach};
+    return diagnosis;
+  };
+  CHECK(verdict_of(with_gain(0.83, 0.06)) == DiagnosisVerdict::kUndetermined);
+  CHECK(verdict_of(with_gain(1.17, 0.06)) == DiagnosisVerdict::kUndetermined);
+  CHECK(verdict_of(with_gain(0.83, 0.12)) == DiagnosisVerdict::kMatch);
+  CHECK(verdict_of(with_gain(1.08, 0.01)) == DiagnosisVerdict::kMatch);  // small
+}
+
 // y = 1, -1, 1, -1: variance 1. Left of it 0.5, -0.5, ...: a quarter. A constant error counts not.
 TEST_CASE("the share that a model explains is of what a CV does beyond a constant") {
   MatrixXd cvs(4, 2), residuals(4, 2);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/identify/causes/catalog.hpp"
@@ -108,6 +109,36 @@ TEST_CASE(
           shocks(kShock) += 2.0;
           return test::autoregressive(shocks, kPole);
         }) <= 2);
+}
+
+/// What is found in a CV that wanders, all else of which is as the model has it. `shock`: at one
+/// row, in s.d. of the walk's steps.
+SearchResult found_in_walk(std::uint64_t seed, Index row, double shock) {
+  const Eigen::VectorXd u = test::telegraph(seed, kRows, 12);
+  Eigen::VectorXd steps = 0.1 * test::normal(seed + 100, kRows);
+  steps(row) += 0.1 * shock;
+  const Recording recording =
+      test::recording_of(u, test::first_order(u, 2.0, 10.0) + test::autoregressive(steps, 1.0));
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  Problem problem(model, 1, recording, Tolerances{}, NoiseModel{});
+  return search(problem, SearchSettings{});
+}
+
+// Of a walk nobody can tell whether a shock of it or something else has moved it. That one row
+// stands out by 10 s.d. is seen all the same: 100, less what the search (11) and the priors cost.
+TEST_CASE("a shock of a walk is told as a step, or as one that is doubted; a walk alone is not") {
+  constexpr Index kShock = 450;
+  int told = 0;
+  for (std::uint64_t seed = 60; seed < 72; ++seed) {
+    CAPTURE(seed);
+    const SearchResult found = found_in_walk(seed, kShock, 10.0);
+    const std::optional<Named> step = found.named.empty() ? found.doubted : found.named.front();
+    told += step && step->evidence > 30.0 && step->effect.onset == kShock ? 1 : 0;
+    const SearchResult nothing = found_in_walk(seed, kShock, 0.0);
+    CHECK(nothing.named.empty());
+    CHECK((!nothing.doubted || nothing.doubted->evidence < 30.0));
+  }
+  CHECK(told >= 9);
 }
 
 }  // namespace
