@@ -25,9 +25,13 @@ class InputScale : public Cause {
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const double members = cost_of(static_cast<std::size_t>(outlook.inputs()));
-    for (int input = 0; input < outlook.inputs(); ++input)
-      if (outlook.cvs_of(input).size() > 1)
-        found.push_back(effect({-1, input}, {gain_ratio_coordinate()}, members));
+    for (int input = 0; input < outlook.inputs(); ++input) {
+      if (outlook.cvs_of(input).size() <= 1) continue;
+      found.push_back(effect({-1, input}, {gain_ratio_coordinate()}, members));
+      for (const Eigen::Index onset : error_onsets(outlook.problem.recording()))
+        found.push_back(
+            effect({-1, input}, {gain_ratio_coordinate()}, members + error_onset_cost(), onset));
+    }
   }
 
   [[nodiscard]] double rarity() const override { return kNoRarity; }

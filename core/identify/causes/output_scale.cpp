@@ -25,9 +25,12 @@ class OutputScale : public Cause {
       const auto channels =
           std::count_if(model.channels.begin(), model.channels.end(),
                         [cv](const ChannelSpec& channel) { return channel.cv == cv; });
-      if (channels > 1)
-        found.push_back(effect({cv}, {gain_ratio_coordinate()},
-                               cost_of(static_cast<std::size_t>(model.cv_count))));
+      if (channels <= 1) continue;
+      const double members = cost_of(static_cast<std::size_t>(model.cv_count));
+      found.push_back(effect({cv}, {gain_ratio_coordinate()}, members));
+      for (const Eigen::Index onset : error_onsets(outlook.problem.recording()))
+        found.push_back(
+            effect({cv}, {gain_ratio_coordinate()}, members + error_onset_cost(), onset));
     }
   }
 

@@ -75,7 +75,7 @@ bool follows_setpoint(const Problem& problem, const SearchResult& found, std::ve
   if (std::find(others.begin(), others.end(), true) == others.end()) return false;
   const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
   const ChannelTests tests =
-      witness.of(extend(problem, found, others, keep, judges.open), OwnPast::kLags);
+      witness.of(stages_of(problem, found, others, keep, judges.open), OwnPast::kLags);
   const std::vector<int> cvs = touched(found.named[accusation].effect, problem);
   return std::any_of(cvs.begin(), cvs.end(), [&](int cv) { return tests.setpoint(cv).wins; });
 }
@@ -123,7 +123,7 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
   for (std::size_t i = 0; i < tested.size(); ++i) any = any || concerned(i);
   if (!any) return reasons;
   const std::vector<bool> keep(static_cast<std::size_t>(problem.model().cv_count), true);
-  const ModelSpec repaired = extend(problem, found, tested, keep, judges.open);
+  const std::vector<Stage> repaired = stages_of(problem, found, tested, keep, judges.open);
   const ChannelTests after = witness.of(repaired, OwnPast::kLags);
   std::optional<ChannelTests> after_nonlinear;
   // Of a curve that the nonlinear test called for its word counts.

@@ -1,19 +1,22 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "core/identify/causes/finding.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
+#include "core/identify/evidence/free_run_residuals.hpp"
 #include "core/identify/fit/effect.hpp"
 
 namespace mpm {
 
-/// The calibrated test of the channels: of the given model, and of another with the same inputs and
-/// set-points behind them; and, beside it, the monitor's with its nonlinear test.
+/// The calibrated test of the channels: of the given model, and of what the plant is said to have
+/// been, with the same inputs and set-points behind them; and, beside it, the monitor's with its
+/// nonlinear test.
 struct Witness {
   const ChannelTests& given;
   const ChannelTests& given_nonlinear;
-  std::function<ChannelTests(const ModelSpec&, OwnPast)> of;
+  std::function<ChannelTests(const std::vector<Stage>&, OwnPast)> of;
 };
 
 /// What it says of a repair, ever more in its favour.

@@ -65,13 +65,15 @@ enum class Worth { kFinding, kSmall, kUnproved };
 /// Whether the calibrated test says that what an effect does to its channels may matter.
 using MayMatter = std::function<bool(const Effect&)>;
 
-/// An error of a channel that the calibrated test finds too small to matter is small where its own
-/// numbers are; else one of the two is wrong: the test, where predictions gain overwhelmingly.
+/// An error of a channel, or a scale that has changed, that the calibrated test finds too small to
+/// matter is small where its own numbers are; else one of the two is wrong: the test, where
+/// predictions gain overwhelmingly.
 Worth worth_of(std::size_t i, const Account& kept, const Judges& judges,
                const MayMatter& may_matter) {
   const Effect& effect = kept.found.named[i].effect;
   const Problem& problem = *kept.problem;
-  if (!is_error_of_channel(effect) || may_matter(effect)) return Worth::kFinding;
+  const bool judged = is_error_of_channel(effect) || (is_scale(effect) && effect.onset > 0);
+  if (!judged || may_matter(effect)) return Worth::kFinding;
   if (material_errors(effect, kSmall) == 0) return Worth::kSmall;
   const bool overwhelms = kept.selection.fates[i] == Fate::kRepaired &&
                           kept.selection.sure_gains[i] >= kOverwhelmingGain &&
@@ -318,7 +320,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
                       outside,
                       compressed,
                       controlled(measured)};
-  const Witness witness{tests, by_monitor, [&](const ModelSpec& repaired, OwnPast past) {
+  const Witness witness{tests, by_monitor, [&](const std::vector<Stage>& repaired, OwnPast past) {
                           return ChannelTests(tested, measured,
                                               free_run_residuals(repaired, recording), past);
                         }};

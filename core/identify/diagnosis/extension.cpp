@@ -11,7 +11,7 @@ namespace mpm {
 using Eigen::Index;
 
 ModelSpec extend(const Problem& problem, const SearchResult& found, const std::vector<bool>& in,
-                 const std::vector<bool>& keep, const OpenChannels& open) {
+                 const std::vector<bool>& keep, const OpenChannels& open, Index at) {
   ModelSpec model = problem.model();
   std::vector<bool> touched(keep.size(), false), wrong = touched;
   for (std::size_t i = 0; i < found.named.size(); ++i) {
@@ -22,7 +22,8 @@ ModelSpec extend(const Problem& problem, const SearchResult& found, const std::v
         touched[static_cast<std::size_t>(cv)] = true;
         if (cause_of(effect).acts_through_channels()) wrong[static_cast<std::size_t>(cv)] = true;
       }
-    apply(effect, problem.surroundings(), model);
+    if (effect.onset <= at || effect.edit->knows_onset())
+      apply(effect, problem.surroundings(), model);
   }
   for (const CvFit& fit : found.fit.cvs) {
     const auto j = static_cast<std::size_t>(fit.cv);
@@ -47,6 +48,21 @@ ModelSpec extend(const Problem& problem, const SearchResult& found, const std::v
     }
   }
   return model;
+}
+
+std::vector<Stage> stages_of(const Problem& problem, const SearchResult& found,
+                             const std::vector<bool>& in, const std::vector<bool>& keep,
+                             const OpenChannels& open) {
+  std::vector<Index> rows = {0};
+  for (std::size_t i = 0; i < found.named.size(); ++i) {
+    const Effect& effect = found.named[i].effect;
+    if (in[i] && !effect.edit->knows_onset()) rows.push_back(effect.onset);
+  }
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  std::vector<Stage> stages;
+  for (const Index row : rows) stages.push_back({row, extend(problem, found, in, keep, open, row)});
+  return stages;
 }
 
 ModelSpec finish(const ModelSpec& extended, const ModelSpec& base, std::vector<int>& used) {

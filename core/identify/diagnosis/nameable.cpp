@@ -47,17 +47,12 @@ bool is_error_of_channel(const Effect& effect) {
   return cause_of(effect).together_with_others() != nullptr;
 }
 
-namespace {
-
-/// Whether it is all through an error of gains, time constants or dead times, which the calibrated
-/// test sees where it can be seen at all; a valve frees gain and lags beside its own.
-bool is_linear_error(const Effect& effect) {
-  return !cause_of(effect).is_input_block() &&
+// A valve frees gain and lags beside its own.
+bool is_scale(const Effect& effect) {
+  return !is_error_of_channel(effect) && !cause_of(effect).is_input_block() &&
          (effect.find(kGainRatio) != nullptr || effect.find(kTimeConstantRatio) != nullptr ||
           effect.find(kDeadTimeError) != nullptr);
 }
-
-}  // namespace
 
 std::vector<std::pair<int, int>> channels_of(const Effect& effect, const ModelSpec& model,
                                              int model_inputs) {
@@ -85,8 +80,9 @@ std::function<bool(const Effect&)> nameable(const ModelSpec& model, const Signal
     if (!cause_of(effect).acts_through_channels()) return true;
     const std::vector<std::pair<int, int>> channels = channels_of(effect, model, ranges.inputs);
     if (bends) return true;
+    // What began later is less in the mean of all rows than since then.
     const bool has_to_matter =
-        cause_of(effect).is_curve() || (is_linear_error(effect) && !is_error_of_channel(effect));
+        cause_of(effect).is_curve() || (is_scale(effect) && effect.onset == 0);
     return tests.reject(channels) && (!has_to_matter || tests.may_matter(channels));
   };
 }

@@ -25,6 +25,10 @@ struct SignalRanges {
 /// Whether it is an error of one channel's gain, time constants or dead time, or of several.
 [[nodiscard]] bool is_error_of_channel(const Effect& effect);
 
+/// Whether it is such an error of all channels of an input or of a CV alike, which the calibrated
+/// test sees where it can be seen at all.
+[[nodiscard]] bool is_scale(const Effect& effect);
+
 /// Which effects may be named: what acts through channels where the calibrated test rejects those
 /// (`model`'s), a curve or another linear error than a channel's where what it rejects may matter:
 /// in a free run errors that matter in no channel may add up, so that a CV that two inputs move

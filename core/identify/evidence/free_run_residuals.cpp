@@ -39,4 +39,13 @@ MatrixXd free_run_residuals(const ModelSpec& model, const Recording& recording) 
   return residuals;
 }
 
+MatrixXd free_run_residuals(const std::vector<Stage>& stages, const Recording& recording) {
+  MatrixXd residuals = free_run_residuals(stages.front().model, recording);
+  for (std::size_t i = 1; i < stages.size(); ++i) {
+    const Index rows = recording.samples() - stages[i].first;
+    residuals.bottomRows(rows) = free_run_residuals(stages[i].model, recording).bottomRows(rows);
+  }
+  return residuals;
+}
+
 }  // namespace mpm

@@ -46,15 +46,14 @@ struct Bench {
     return test::recording_of(u, y);
   }
 
-  [[nodiscard]] ChannelTests test(const ModelSpec& of, OwnPast past = OwnPast::kLags) const {
-    return {model, all, free_run_residuals(of, all), past};
-  }
   Account take() {
-    const ChannelTests given = test(model);
-    return account_for(
-        model, 1, first, {unseen, 0, {}, shares, {}, controlled},
-        {given, given, [this](const ModelSpec& of, OwnPast past) { return test(of, past); }},
-        settings);
+    const ChannelTests given(model, all, free_run_residuals(model, all));
+    return account_for(model, 1, first, {unseen, 0, {}, shares, {}, controlled},
+                       {given, given,
+                        [this](const std::vector<Stage>& of, OwnPast past) {
+                          return ChannelTests(model, all, free_run_residuals(of, all), past);
+                        }},
+                       settings);
   }
 };
 

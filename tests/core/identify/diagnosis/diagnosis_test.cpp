@@ -102,6 +102,47 @@ TEST_CASE("a hidden gain is named, measured and repaired") {
   CHECK(diagnosis.channels[0].gain_ratio.value == Approx(1.4).margin(0.05));
 }
 
+/// Two CVs of two inputs. From `kChanged` on the first input acts `actuator` times, the first CV's
+/// sensor shows `sensor` times and the first channel answers `channel` times as much as before.
+constexpr Index kLonger = 2400, kChanged = 1000;
+Diagnosis diagnosis_of_change(double actuator, double sensor, double channel) {
+  MatrixXd u(kLonger, 2), acts(kLonger, 2), y(kLonger, 2);
+  u << test::telegraph(1, kLonger, 12), test::telegraph(3, kLonger, 9);
+  acts = u;
+  acts.col(0).tail(kLonger - kChanged) *= actuator;
+  VectorXd own = acts.col(0);
+  own.tail(kLonger - kChanged) *= channel;
+  y.col(0) = test::first_order(own, 2.0, 10.0) + test::first_order(acts.col(1), -1.0, 5.0);
+  y.col(0).tail(kLonger - kChanged) *= sensor;
+  y.col(1) = test::first_order(acts.col(0), 1.0, 5.0) + test::first_order(acts.col(1), 1.5, 10.0);
+  for (int cv = 0; cv < 2; ++cv)
+    y.col(cv) +=
+        0.1 * test::autoregressive(test::normal(static_cast<std::uint64_t>(7 + cv), kLonger), 0.5);
+  return diagnose(test::model_of({lag(0, 0, 2.0, 10.0), lag(0, 1, -1.0, 5.0), lag(1, 0, 1.0, 5.0),
+                                  lag(1, 1, 1.5, 10.0)},
+                                 2, 2),
+                  test::recording_of(u, y), nullptr, {.mv_count = 2});
+}
+
+TEST_CASE("a span or an actuator that changes half-way is named as such, with its moment") {
+  const auto named = [](const Diagnosis& diagnosis, const Subject& subject, double ratio) {
+    CHECK(diagnosis.verdict == DiagnosisVerdict::kMismatch);
+    REQUIRE(diagnosis.findings.size() == 1);
+    const Finding& finding = diagnosis.findings.front();
+    CHECK(finding.subject == subject);
+    CHECK(finding.confidence > 0.9);
+    REQUIRE(finding.find(kGainRatio) != nullptr);
+    CHECK(finding.find(kGainRatio)->value == Approx(ratio).margin(0.04));
+    REQUIRE(finding.onset_s);
+    CHECK(*finding.onset_s == Approx(static_cast<double>(kChanged)).margin(20.0));
+    CHECK(finding.repaired);
+  };
+  named(diagnosis_of_change(1.0, 0.75, 1.0), {&causes::output_scale(), {0}}, 0.75);
+  named(diagnosis_of_change(0.7, 1.0, 1.0), {&causes::input_scale(), {-1, 0}}, 0.7);
+  named(diagnosis_of_change(1.0, 1.0, 0.7), {&causes::gain(), {0, 0}}, 0.7);
+  CHECK(diagnosis_of_change(1.0, 1.0, 1.0).verdict == DiagnosisVerdict::kMatch);
+}
+
 // What a stranger tries first: +-1 on the input, and a plant that answers twice as strongly. Two
 // levels and an offset hold any curve, and a valve that sticks for less than a move is none.
 TEST_CASE("a gain is no curve, no offset and no sticking valve to a binary test signal") {

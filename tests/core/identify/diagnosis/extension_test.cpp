@@ -103,6 +103,24 @@ TEST_CASE("small errors and levels go into the model beside what was found") {
   CHECK(std::get<TransferFunction>(nothing.channels[1].dynamics).gain == 1.0);
 }
 
+TEST_CASE("a plant has a stage from where each of what was found begins") {
+  const Bench bench;
+  SearchResult found = found_with({&causes::gain(), {0, 0}, {{&kGainRatio, 1.3}}, 100});
+  found.named.push_back({{&causes::gain(), {1, 0}, {{&kGainRatio, 2.0}}}, 42.0, 0.98, {}});
+  const std::vector<Stage> stages = stages_of(bench.problem, found, {true, true}, {true, true});
+  const auto gain = [&](std::size_t stage, std::size_t channel) {
+    return std::get<TransferFunction>(stages[stage].model.channels[channel].dynamics).gain;
+  };
+  REQUIRE(stages.size() == 2);
+  CHECK(stages[0].first == 0);
+  CHECK(gain(0, 0) == 2.0);
+  CHECK(gain(0, 1) == 2.0);
+  CHECK(stages[1].first == 100);
+  CHECK(gain(1, 0) == Approx(2.6));
+  CHECK(gain(1, 1) == 2.0);
+  CHECK(stages_of(bench.problem, found, {false, true}, {true, true}).size() == 1);
+}
+
 // Of two aux signals the second is used: it becomes the input after the model's.
 TEST_CASE("aux signals that no channel uses are no inputs of the finished model") {
   const ModelSpec base = Bench::two_cvs();

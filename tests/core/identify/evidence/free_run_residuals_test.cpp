@@ -35,5 +35,18 @@ TEST_CASE("what a right model leaves is the noise, and a clipped value leaves no
   CHECK(clips > 10);
 }
 
+// A sensor of which the span is 1.3 times as wide from a row on.
+TEST_CASE("what a plant that changed leaves is the noise before and behind it") {
+  constexpr Index kChanged = 200;
+  const VectorXd u = test::telegraph(1, kRows, 12), noise = 0.1 * test::white(2, kRows);
+  VectorXd y = test::first_order(u, 2.0, 10.0);
+  y.tail(kRows - kChanged) *= 1.3;
+  const std::vector<Stage> stages = {
+      {0, test::model_of({test::lag(0, 0, 2.0, 10.0)}, 1, 1)},
+      {kChanged, test::model_of({test::lag(0, 0, 2.6, 10.0)}, 1, 1)}};
+  const MatrixXd residuals = free_run_residuals(stages, test::recording_of(u, y + noise));
+  CHECK((residuals - noise).bottomRows(kRows - 100).cwiseAbs().maxCoeff() < 0.01);
+}
+
 }  // namespace
 }  // namespace mpm
