@@ -22,22 +22,23 @@ class PlayOfInput : public InputBlockCause {
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     for (const BlockPlace& at : curve_places(outlook)) {
       const double range = at.input.range();
-      for (const double share : kStarts)
-        found.push_back(effect(at.place,
-                               {{.quantity = &kWidth,
-                                 .value = share * range,
-                                 .prior_mean = 0.0,
-                                 .prior_sd = kUsualWidth * range,
-                                 .step = kStep * share * range,
-                                 .low = kLeastWidth * range,
-                                 .high = range}},
-                               cost_of(at.members)));
+      for (const BlockOnset& begins : block_onsets(outlook))
+        for (const double share : kStarts)
+          found.push_back(effect(at.place,
+                                 {{.quantity = &kWidth,
+                                   .value = share * range,
+                                   .prior_mean = 0.0,
+                                   .prior_sd = kUsualWidth * range,
+                                   .step = kStep * share * range,
+                                   .low = kLeastWidth * range,
+                                   .high = range}},
+                                 cost_of(at.members) + begins.cost, begins.row));
     }
   }
 
   [[nodiscard]] std::vector<Effect> closer_look(const Effect& mine,
                                                 const std::vector<Effect>& tried) const override {
-    return sticking_near(mine.value(kWidth, 0.0), mine.place.input, tried);
+    return sticking_near(mine, mine.value(kWidth, 0.0), tried);
   }
   [[nodiscard]] Stepping stepping(const Effect& mine) const override {
     return width_stepping(mine);

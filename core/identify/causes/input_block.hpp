@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@ struct BlockPlace {
   std::size_t members;  ///< places there are in the model
 };
 
+/// Where a block may come into force, and what looking there costs.
+struct BlockOnset {
+  Eigen::Index row;
+  double cost;
+};
+
 /// A cause that puts a static block before an input's channels; one block per place.
 class InputBlockCause : public Cause {
  public:
@@ -41,6 +48,9 @@ class InputBlockCause : public Cause {
   /// Of these, where the input has been at so many levels: on fewer a curve through them is a
   /// straight line with an offset, and nothing tells them apart.
   [[nodiscard]] static std::vector<BlockPlace> curve_places(const Outlook& outlook, int levels = 3);
+  /// From the start, and from where the calibrated test sees a change, if it does: elsewhere a
+  /// valve's many starts would take too long.
+  [[nodiscard]] static std::vector<BlockOnset> block_onsets(const Outlook& outlook);
   /// A gain to the model's, not in its logarithm.
   [[nodiscard]] static Coordinate plain_ratio(const Quantity& quantity);
   /// A number that bends what is straight.

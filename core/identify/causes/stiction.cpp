@@ -52,13 +52,15 @@ class StickingValve : public InputBlockCause {
       if (!at.whole_input) continue;
       const double range = at.input.range();
       const double cost = cost_of(2 * at.members);
-      for (const double share : kBands)
-        for (const double jump : kJumps)
-          for (const int variant : {0, kSlipsOnce}) {
-            Effect valve = effect(at.place, widths(share * range, jump, kUsualWidth, range), cost);
-            valve.variant = variant;
-            found.push_back(std::move(valve));
-          }
+      for (const BlockOnset& begins : block_onsets(outlook))
+        for (const double share : kBands)
+          for (const double jump : kJumps)
+            for (const int variant : {0, kSlipsOnce}) {
+              Effect valve = effect(at.place, widths(share * range, jump, kUsualWidth, range),
+                                    cost + begins.cost, begins.row);
+              valve.variant = variant;
+              found.push_back(std::move(valve));
+            }
       if (outlook.cvs_of(at.place.input).size() > 1) continue;
       for (const ChannelSpec& channel : outlook.model().channels)
         if (channel.input == at.place.input)
@@ -72,7 +74,7 @@ class StickingValve : public InputBlockCause {
 
   [[nodiscard]] std::vector<Effect> closer_look(const Effect& mine,
                                                 const std::vector<Effect>& tried) const override {
-    return sticking_near(mine.value(kBand, 0.0), mine.place.input, tried);
+    return sticking_near(mine, mine.value(kBand, 0.0), tried);
   }
   [[nodiscard]] Stepping stepping(const Effect& mine) const override {
     return width_stepping(mine);
@@ -154,9 +156,11 @@ Effect other_width(const Effect& mine, double reach, int index) {
   return other;
 }
 
-std::vector<Effect> sticking_near(double width, int input, const std::vector<Effect>& tried) {
+std::vector<Effect> sticking_near(const Effect& mine, double width,
+                                  const std::vector<Effect>& tried) {
   const auto like = std::find_if(tried.begin(), tried.end(), [&](const Effect& effect) {
-    return effect.edit == &stiction() && effect.place.input == input;
+    return effect.edit == &stiction() && effect.place.input == mine.place.input &&
+           (effect.onset > 0) == (mine.onset > 0);
   });
   std::vector<Effect> found;
   if (like == tried.end()) return found;
@@ -166,6 +170,7 @@ std::vector<Effect> sticking_near(double width, int input, const std::vector<Eff
       for (const int variant : {0, kSlipsOnce}) {
         Effect effect = *like;
         effect.variant = variant;
+        effect.onset = mine.onset;
         effect.coordinates[0].value = factor * width;
         effect.coordinates[1].value = jump * factor * width;
         effect.coordinates[0].step = kStep * factor * width;

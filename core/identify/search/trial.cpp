@@ -65,11 +65,12 @@ Trial Trials::attempt(const Effect& candidate, int iterations) {
 }
 
 // The noise model knows a walk only as far as it remembers, and takes the rest of it for a function
-// of time.
+// of time, or for what a channel that changes moves the level by.
 double Trials::odds_of(const Fit& with, std::size_t effect, const Fit& without) {
   const Effect& mine = with.effects[effect];
   const double odds = odds_for(mine, with, without);
-  if (!(odds > 0.0) || !is_of_time(mine)) return odds;
+  const bool changes = mine.onset > 0 && cause_of(mine).acts_through_channels();
+  if (!(odds > 0.0) || !(changes || is_of_time(mine))) return odds;
   return std::min(odds, most_odds(problem_, with, effect));
 }
 

@@ -51,7 +51,7 @@ class Trials {
   /// most even.
   [[nodiscard]] Trial attempt(const Effect& candidate, int iterations);
   /// 2 ln of the odds for one effect of a fit against the fit without it, on the same CVs; of a
-  /// function of time no more than `most_odds`.
+  /// function of time, and of a channel that changes, no more than `most_odds`.
   [[nodiscard]] double odds_of(const Fit& with, std::size_t effect, const Fit& without);
   /// Each of them, in their order.
   [[nodiscard]] std::vector<Trial> attempt_all(const std::vector<Effect>& candidates,

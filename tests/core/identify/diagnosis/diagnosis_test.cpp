@@ -143,6 +143,39 @@ TEST_CASE("a span or an actuator that changes half-way is named as such, with it
   CHECK(diagnosis_of_change(1.0, 1.0, 1.0).verdict == DiagnosisVerdict::kMatch);
 }
 
+/// What a valve makes of its commands that sticks from a row on: it rests until the force beats the
+/// static friction, then slips up to the kinetic one (He, Wang, Pottmann and Qin 2007).
+VectorXd stuck_from(Index row, double band, double jump, const VectorXd& commands) {
+  VectorXd valve = commands;
+  for (Index k = row; k < commands.size(); ++k) {
+    const double force = commands(k) - valve(k - 1);
+    const bool slips = std::abs(force) >= (band + jump) / 2.0;
+    valve(k) = slips ? commands(k) - std::copysign((band - jump) / 2.0, force) : valve(k - 1);
+  }
+  return valve;
+}
+
+TEST_CASE("a valve that begins to stick half-way is named, with its moment") {
+  constexpr double kBand = 0.6, kJump = 0.25;
+  const VectorXd u = 0.1 * test::autoregressive(test::normal(31, kLonger), 0.98);
+  const VectorXd valve = stuck_from(kChanged, kBand, kJump, u);
+  MatrixXd y(kLonger, 2);
+  y << test::first_order(valve, 2.0, 10.0), test::first_order(valve, -1.0, 5.0);
+  for (int cv = 0; cv < 2; ++cv)
+    y.col(cv) += 0.05 * test::normal(static_cast<std::uint64_t>(41 + cv), kLonger);
+  const Diagnosis diagnosis =
+      diagnose(test::model_of({lag(0, 0, 2.0, 10.0), lag(1, 0, -1.0, 5.0)}, 1, 2),
+               test::recording_of(u, y), nullptr, {.mv_count = 1});
+  REQUIRE(diagnosis.findings.size() == 1);
+  const Finding& finding = diagnosis.findings.front();
+  CHECK(finding.subject == Subject{&causes::stiction(), {-1, 0}});
+  REQUIRE(finding.parameters.size() == 2);
+  CHECK(finding.parameters[0].value == Approx(kBand).margin(0.05));
+  CHECK(finding.parameters[1].value == Approx(kJump).margin(0.08));
+  REQUIRE(finding.onset_s);
+  CHECK(*finding.onset_s == Approx(static_cast<double>(kChanged)).margin(60.0));
+}
+
 // What a stranger tries first: +-1 on the input, and a plant that answers twice as strongly. Two
 // levels and an offset hold any curve, and a valve that sticks for less than a move is none.
 TEST_CASE("a gain is no curve, no offset and no sticking valve to a binary test signal") {
