@@ -102,8 +102,9 @@ bool swings_by_itself(const Effect& effect, const Judges& judges) {
 /// What the calibrated test does not bear out goes, unless it overwhelms; where feedback moves the
 /// input, what leaves the test anything to see goes. So does an accusation that makes predictions
 /// no better beyond doubt, unless the test was sure of a channel's error on all rows and sees all
-/// of it gone: the unseen ones may hold too little movement to tell. Why, for a person; null where
-/// it stays. `findings`: of what was found, in order.
+/// of it gone: the unseen ones may hold too little movement to tell. (Not where it began later:
+/// what may begin anywhere leaves the test less to see by itself.) Why, for a person; null where it
+/// stays. `findings`: of what was found, in order.
 std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult& found,
                                      const std::vector<Finding>& findings,
                                      const Selection& selection, const Judges& judges,
@@ -156,7 +157,7 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
           "without it the CV follows a set-point, and better than any error of its channels";
     else if (selection.fates[i] == Fate::kNoBetter &&
              !((says == Confirmation::kTrace || says == Confirmation::kNothingOfAll) &&
-               is_channel_error(findings[i])))
+               effect.onset == 0 && is_channel_error(findings[i])))
       reasons[i] = why_not_in_model(Fate::kNoBetter);
   }
   return reasons;

@@ -61,6 +61,7 @@ std::vector<Stage> stages_of(const Problem& problem, const SearchResult& found,
   std::sort(rows.begin(), rows.end());
   rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   std::vector<Stage> stages;
+  stages.reserve(rows.size());
   for (const Index row : rows) stages.push_back({row, extend(problem, found, in, keep, open, row)});
   return stages;
 }

@@ -55,7 +55,7 @@ TEST_CASE("a model that is right matches") {
 TEST_CASE("an error too small to matter is told as one, and for nothing else") {
   constexpr Index kLong = 3000;
   constexpr double kDeadTime = 3.0, kSlow = 150.0;
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
     CAPTURE(seed);
     VectorXd u(kLong), y(kLong), measured(kLong);
     VectorXd inside = VectorXd::Zero(kLong + 4);
