@@ -62,6 +62,7 @@ const char* why_it_goes(const Effect& effect, const Problem& problem, const Find
     return why_not_in_model(fate);
   if (cause.contradicted(effect, problem)) return "the measurements themselves speak against it";
   if (cause.may_be_nothing(finding)) return "its interval includes that it does nothing";
+  if (const char* why = why_not_step(effect, problem.model(), problem.recording())) return why;
   if (silences(effect, finding, problem, judges))
     return "a CV that its controller holds against a disturbance looks as if it hardly answered";
   return judges.compressed.may_have_made(finding) ? kMadeByCompression : nullptr;
@@ -100,11 +101,13 @@ bool swings_by_itself(const Effect& effect, const Judges& judges) {
 }
 
 /// What the calibrated test does not bear out goes, unless it overwhelms; where feedback moves the
-/// input, what leaves the test anything to see goes. So does an accusation that makes predictions
-/// no better beyond doubt, unless the test was sure of a channel's error on all rows and sees all
-/// of it gone: the unseen ones may hold too little movement to tell. (Not where it began later:
-/// what may begin anywhere leaves the test less to see by itself.) Why, for a person; null where it
-/// stays. `findings`: of what was found, in order.
+/// input, what leaves the test anything to see goes; anywhere, what leaves it something and makes
+/// the free run worse: of a CV that wanders, or whose structure is missing, better predictions
+/// alone prove too little. So does an accusation that makes predictions no better beyond doubt,
+/// unless the test was sure of a channel's error on all rows and sees all of it gone: the unseen
+/// ones may hold too little movement to tell. (Not where it began later: what may begin anywhere
+/// leaves the test less to see by itself.) Why, for a person; null where it stays. `findings`: of
+/// what was found, in order.
 std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult& found,
                                      const std::vector<Finding>& findings,
                                      const Selection& selection, const Judges& judges,
@@ -150,6 +153,10 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
       reasons[i] = "with it the test of the channels sees no less wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
+    else if (accuses(effect) && says < Confirmation::kNothing && selection.explains[i] < 0.0)
+      reasons[i] =
+          "with it the free run of unseen samples is worse, and the test of the channels "
+          "still sees something wrong";
     else if (accuses(effect) && own_setpoint_is_simpler(found, i, says, witness.given))
       reasons[i] = kOwnSetpoint;
     else if (accuses(effect) && follows_setpoint(problem, found, tested, i, judges, witness))

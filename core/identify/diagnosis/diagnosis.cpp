@@ -366,14 +366,16 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
         .may_matter(channels);
   };
   state(kept, fitted, judges, tests, may_matter, diagnosis);
-  if (!validation)
-    for (Finding& late :
-         begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
-                    {settings.mv_count, base.input_count, aux}, outside, search_settings)) {
-      const bool made = compressed.may_have_made(late);
-      if (made) late.refused = kMadeByCompression;
-      (made ? diagnosis.refused : diagnosis.findings).push_back(std::move(late));
+  if (!validation) {
+    Late late = begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
+                           {settings.mv_count, base.input_count, aux}, outside, search_settings);
+    for (Finding& finding : late.findings) {
+      const bool made = compressed.may_have_made(finding);
+      if (made) finding.refused = kMadeByCompression;
+      (made ? diagnosis.refused : diagnosis.findings).push_back(std::move(finding));
     }
+    diagnosis.refused.insert(diagnosis.refused.end(), late.doubted.begin(), late.doubted.end());
+  }
   diagnosis.rejected = rejected_channels(base, tests, diagnosis);
   const std::vector<Place> by_monitor_too = rejected_channels(base, by_monitor, diagnosis);
   std::erase_if(diagnosis.rejected, [&](const Place& at) {

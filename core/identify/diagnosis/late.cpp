@@ -7,6 +7,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
+#include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/statement.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/evidence/free_run_residuals.hpp"
@@ -40,8 +41,8 @@ Index late_from(Index first) {
 
 }  // namespace
 
-std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const Recording& recording,
-                               Index first, const SearchSettings& asked) {
+Late find_late(const ModelSpec& model, int model_inputs, const Recording& recording, Index first,
+               const SearchSettings& asked) {
   Problem problem(model, model_inputs, recording, Tolerances{},
                   free_noise(model, model_inputs, recording));
   std::vector<int> cvs(static_cast<std::size_t>(model.cv_count));
@@ -59,7 +60,7 @@ std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const R
     };
     found = search(problem, settings);
   }
-  std::vector<Finding> late;
+  Late late;
   for (std::size_t i = 0; i < found.named.size(); ++i) {
     const Effect& effect = found.named[i].effect;
     const Cause& cause = cause_of(effect);
@@ -67,25 +68,26 @@ std::vector<Finding> find_late(const ModelSpec& model, int model_inputs, const R
     if (causes::is_unnamed(cause) || cause.is_input_block() || effect.onset < from) continue;
     Finding finding = to_finding(found, i, problem);
     if (cause.may_be_nothing(finding)) continue;
-    late.push_back(std::move(finding));
+    finding.repaired = false;
+    const char* other = why_not_step(effect, model, recording);
+    finding.refused = other != nullptr ? other : kNotJudged;
+    (other != nullptr ? late.doubted : late.findings).push_back(std::move(finding));
   }
   const double begin = problem.surroundings().start_s +
                        static_cast<double>(from) * problem.surroundings().sample_time_s;
   for (const Cause* cause : causes::all())
-    for (Finding& finding : cause->left_in(problem, found.fit))
-      if (finding.refused.empty() && *finding.onset_s >= begin) late.push_back(std::move(finding));
-  for (Finding& finding : late) {
-    finding.repaired = false;
-    finding.refused = kNotJudged;
-  }
+    for (Finding& finding : cause->left_in(problem, found.fit)) {
+      if (!finding.refused.empty() || *finding.onset_s < begin) continue;
+      finding.repaired = false;
+      finding.refused = kNotJudged;
+      late.findings.push_back(std::move(finding));
+    }
   return late;
 }
 
-std::vector<Finding> begun_late(const ModelSpec& model, const ModelSpec& tested,
-                                const Recording& recording, const Recording& measured, Index first,
-                                const SignalRanges& ranges,
-                                const std::vector<std::optional<double>>& outside_shares,
-                                SearchSettings settings) {
+Late begun_late(const ModelSpec& model, const ModelSpec& tested, const Recording& recording,
+                const Recording& measured, Index first, const SignalRanges& ranges,
+                const std::vector<std::optional<double>>& outside_shares, SearchSettings settings) {
   const Index from = late_from(first), rest = recording.samples() - from;
   const Eigen::MatrixXd residuals = free_run_residuals(model, recording);
   const ChannelTests before(tested, part(measured, 0, from), residuals.topRows(from));
@@ -98,9 +100,9 @@ std::vector<Finding> begun_late(const ModelSpec& model, const ModelSpec& tested,
     const auto channels = channels_of(effect, model, ranges.inputs);
     return since.reject(channels, kBeyondDoubt) && !before.reject(channels, kBeyondDoubt);
   };
-  std::vector<Finding> late = find_late(model, ranges.inputs, recording, first, settings);
+  Late late = find_late(model, ranges.inputs, recording, first, settings);
   // Taken in, so that no other cause is named for it; told only where it may matter.
-  std::erase_if(late, [&](const Finding& finding) {
+  std::erase_if(late.findings, [&](const Finding& finding) {
     const Place& place = finding.subject.place;
     return finding.subject.cause->together_with_others() != nullptr &&
            !since.may_matter({{place.cv, place.input}});

@@ -1,13 +1,28 @@
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/priors.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
+#include "core/identify/fit/channel_edit.hpp"
 
 namespace mpm {
 namespace {
+
+constexpr double kMostRows = 1e9;
+
+/// Rows in which the quickest channel of a CV answers: its dead time and its slowest lag.
+Eigen::Index rows_of_answer(const ModelSpec& model, int cv) {
+  double quickest = std::numeric_limits<double>::infinity();
+  for (const ChannelSpec& channel : model.channels)
+    if (channel.cv == cv)
+      quickest = std::min(quickest, removable_dead_time_s(channel, model.sample_time_s) +
+                                        slowest_time_constant_s(channel, model.sample_time_s));
+  return static_cast<Eigen::Index>(std::min(std::ceil(quickest / model.sample_time_s), kMostRows));
+}
 
 bool is_own(const Effect& effect, int first) { return effect.place.aux == first + effect.place.cv; }
 
@@ -43,6 +58,20 @@ const char* why_not_setpoint(const Effect& effect, bool alone, int moves, const 
   return alone && tests.setpoint(effect.place.cv).loses
              ? "the test of the channels explains clearly more by an error of theirs than the "
                "set-point does"
+             : nullptr;
+}
+
+const char* why_not_step(const Effect& effect, const ModelSpec& model, const Recording& signals) {
+  const int cv = effect.place.cv;
+  if (!effect.edit->jumps() || effect.onset == 0 || cv >= signals.setpoints.cols()) return nullptr;
+  const Eigen::Index before =
+      std::max<Eigen::Index>(0, effect.onset - 1 - rows_of_answer(model, cv));
+  const double moved =
+      signals.setpoints(effect.onset, cv) - signals.setpoints(before, cv);  // NaN where unknown
+  const double size = effect.coordinates.front().value;
+  return moved * size > 0.0 && std::abs(moved) > kAnswersSetpoint * std::abs(size)
+             ? "the CV's set-point stepped just before, the same way: its loop's answer, as of a "
+               "valve that slips, looks the same"
              : nullptr;
 }
 

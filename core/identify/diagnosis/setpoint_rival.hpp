@@ -5,6 +5,7 @@
 #include "core/identify/causes/finding.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/fit/effect.hpp"
+#include "core/identify/fit/recording.hpp"
 
 /// Channels against set-points. Under feedback inputs are what set-points and CVs make them: what a
 /// wrong channel does can be said by a set-point too, beside another noise, and the other way
@@ -34,6 +35,12 @@ inline constexpr const char* kOwnSetpoint =
 /// chance.
 [[nodiscard]] const char* why_not_setpoint(const Effect& effect, bool alone, int moves,
                                            const ChannelTests& tests, int first);
+
+/// Why a step of a CV is no disturbance, for a person; null where it may be one. `signals`: what
+/// the problem was made of, row for row. A step just after the CV's set-point's, and the same way,
+/// is the loop's answer to it: a valve that sticks slips so.
+[[nodiscard]] const char* why_not_step(const Effect& effect, const ModelSpec& model,
+                                       const Recording& signals);
 
 /// Where the test does not decide: the own set-point becomes a rival of what is laid to channels of
 /// the CV, as probable beside it as before any data, and takes its share of the confidence.

@@ -44,6 +44,10 @@ inline constexpr double kBetterStep = 1e-6;
 inline constexpr int kFirstReach = 12;
 inline constexpr int kWidestBlindReach = 20;
 
+/// A CV's largest shock tells a moment where it is so many times as large as any other. Of 1000
+/// rows of Gaussian noise one in some 400 has such a shock: exp(-(1.5^2 - 1) 3.1^2 / 2).
+inline constexpr double kLargestShock = 1.5;
+
 /// Of what the data themselves show.
 inline constexpr double kSeenInData = 1000.0;
 /// A cause that noise could pass for is taken if re-estimated noise models speak no more than this

@@ -8,6 +8,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
+#include "core/identify/fit/calibration.hpp"
 #include "core/identify/search/calibration.hpp"
 #include "core/identify/search/conclude.hpp"
 #include "core/identify/search/odds.hpp"
@@ -222,14 +223,20 @@ class Search {
     return cost_of(static_cast<std::size_t>(problem_.model().cv_count));
   }
 
-  /// Whether a step stands where the CV has its largest shock, which then tells the moment whatever
-  /// comes after it: among all moments nobody had to search.
+  /// Whether a step stands where the CV has by far its largest shock, which then tells the moment
+  /// whatever comes after it: among all moments nobody had to search.
   [[nodiscard]] static bool told_by_shock(const Effect& effect, const Fit& without) {
     const bool at_once = effect.edit->jumps() && effect.coordinates.size() == 1;
     return at_once && effect.onset > 0 &&
            std::any_of(without.cvs.begin(), without.cvs.end(), [&](const CvFit& state) {
-             return state.cv == effect.place.cv && std::abs(state.innovations(effect.onset)) ==
-                                                       state.innovations.cwiseAbs().maxCoeff();
+             if (state.cv != effect.place.cv) return false;
+             const Eigen::Index behind =
+                 std::min(effect.onset + kShockRows, state.innovations.size());
+             const double others =
+                 std::max(state.innovations.head(effect.onset).lpNorm<Eigen::Infinity>(),
+                          state.innovations.tail(state.innovations.size() - behind)
+                              .lpNorm<Eigen::Infinity>());
+             return std::abs(state.innovations(effect.onset)) > kLargestShock * others;
            });
   }
 

@@ -21,7 +21,7 @@ std::vector<Finding> late_in(const VectorXd& added, std::uint64_t seed) {
   const Recording recording =
       test::recording_of(u, test::first_order(u, 2.0, 10.0) + noise + added);
   const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
-  return find_late(model, 1, recording, kFitted, {});
+  return find_late(model, 1, recording, kFitted, {}).findings;
 }
 
 VectorXd step_at(Index row) {

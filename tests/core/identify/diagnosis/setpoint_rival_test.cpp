@@ -1,6 +1,7 @@
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 
 #include "core/identify/causes/catalog.hpp"
@@ -79,6 +80,33 @@ TEST_CASE("a set-point that moves a few times explains nothing for sure") {
   const char* seldom = why_not_setpoint(setpoint(1, 0), true, 4, hidden.tests, kFirst);
   REQUIRE(seldom != nullptr);
   CHECK(std::string(seldom).find("too seldom") != std::string::npos);
+}
+
+// The channel has no dead time and a lag of 10 rows: what comes within 11 rows of the set-point's
+// step may be its doing.
+TEST_CASE("a step that comes with its own set-point's, and the same way, is no disturbance") {
+  constexpr Index kStep = 100;
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  Recording signals = test::recording_of(VectorXd::Zero(200), VectorXd::Zero(200));
+  const auto doubted = [&](double size, Index onset) {
+    Effect effect = of(causes::step_disturbance(), {0});
+    effect.onset = onset;
+    effect.coordinates = {{.value = size}};
+    return why_not_step(effect, model, signals) != nullptr;
+  };
+  CHECK_FALSE(doubted(2.0, kStep + 5));  // no set-point
+  signals.setpoints = MatrixXd::Zero(200, 1);
+  CHECK_FALSE(doubted(2.0, kStep + 5));  // it stands still
+  signals.setpoints.bottomRows(200 - kStep).setOnes();
+  CHECK(doubted(2.0, kStep));
+  CHECK(doubted(2.0, kStep + 5));
+  CHECK_FALSE(doubted(2.0, kStep - 1));
+  CHECK_FALSE(doubted(2.0, kStep + 12));
+  CHECK_FALSE(doubted(-2.0, kStep + 5));
+  CHECK_FALSE(doubted(5.0, kStep + 5));  // more than a set-point's step explains
+  CHECK_FALSE(doubted(2.0, 0));
+  signals.setpoints.row(kStep - 11).setConstant(std::nan(""));
+  CHECK_FALSE(doubted(2.0, kStep));  // it is not known where it was
 }
 
 TEST_CASE("undecided, a CV's own set-point takes its share of the confidence in a channel") {

@@ -111,6 +111,20 @@ TEST_CASE(
         }) <= 2);
 }
 
+// As above, but the CV jumps by nearly as much at other rows too, as where a valve slips again and again:
+// no shock tells the step's row then, and the search among all takes 11 of the evidence.
+TEST_CASE("among shocks of its size a step's tells no row") {
+  constexpr Index kShock = 450;
+  constexpr double kInnovation = 0.1, kPole = 0.93;
+  CHECK(steps_named([&](std::uint64_t seed) {
+          Eigen::VectorXd shocks = kInnovation * test::normal(seed, kRows);
+          for (const Index row : {150, 300, 600, 750}) shocks(row) += row % 4 == 0 ? 2.0 : -2.0;
+          Eigen::VectorXd noise = test::autoregressive(shocks, kPole);
+          noise.tail(kRows - kShock).array() += 2.4;
+          return noise;
+        }) <= 4);
+}
+
 /// What is found in a CV that wanders, all else of which is as the model has it. `shock`: at one
 /// row, in s.d. of the walk's steps.
 SearchResult found_in_walk(std::uint64_t seed, Index row, double shock) {
