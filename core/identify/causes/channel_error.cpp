@@ -107,18 +107,17 @@ bool has_own_gain(const ChannelSpec& channel) {
 
 Place place_of(const ChannelSpec& channel) { return {channel.cv, channel.input}; }
 
-std::vector<Index> error_onsets(const Recording& recording) {
-  std::vector<Index> onsets;
-  for (int i = 0; i < kOnsets; ++i) {
+std::vector<ErrorOnset> error_onsets(const Recording& recording, bool elsewhere) {
+  const double cost = cost_of(kMomentsPerOnset * kOnsets);
+  std::vector<ErrorOnset> onsets = {{}};
+  for (int i = 0; elsewhere && i < kOnsets; ++i) {
     const double share =
         kOnsetMargin + (1.0 - 2.0 * kOnsetMargin) * (i + 0.5) / static_cast<double>(kOnsets);
-    onsets.push_back(static_cast<Index>(share * static_cast<double>(recording.samples())));
+    onsets.push_back({static_cast<Index>(share * static_cast<double>(recording.samples())), cost});
   }
-  if (recording.changed) onsets.push_back(*recording.changed);
+  if (recording.changed) onsets.push_back({*recording.changed, cost});
   return onsets;
 }
-
-double error_onset_cost() { return cost_of(kMomentsPerOnset * kOnsets); }
 
 int material_errors(const Effect& effect, const Tolerances& materiality) {
   const auto beyond = [](double error, double limit) { return std::abs(error) >= limit ? 1 : 0; };

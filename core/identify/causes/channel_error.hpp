@@ -26,10 +26,15 @@ void edit_channels(const Effect& effect, const Surroundings& surroundings, Model
 [[nodiscard]] bool has_own_gain(const ChannelSpec& channel);
 [[nodiscard]] Place place_of(const ChannelSpec& channel);
 
-/// Rows from which on an error may have begun inside the data, the one that was seen among them,
-/// and what each costs beside one that was there throughout.
-[[nodiscard]] std::vector<Eigen::Index> error_onsets(const Recording& recording);
-[[nodiscard]] double error_onset_cost();
+/// Where an error may begin, and what looking there costs beside one that was there throughout.
+struct ErrorOnset {
+  Eigen::Index row = 0;
+  double cost = 0.0;
+};
+/// From the start, and inside the data: where a change was seen, if one was, and at `elsewhere`,
+/// moments all over them.
+[[nodiscard]] std::vector<ErrorOnset> error_onsets(const Recording& recording,
+                                                   bool elsewhere = true);
 
 /// How many of a channel's errors in the effect are beyond what a model may be wrong by.
 [[nodiscard]] int material_errors(const Effect& effect, const Tolerances& materiality);

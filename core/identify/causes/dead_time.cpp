@@ -24,14 +24,15 @@ class DeadTime : public SingleChannelError {
     const double members = cost_of(outlook.model().channels.size());
     for (const ChannelSpec& channel : outlook.model().channels) {
       const double removable = removable_samples(channel, outlook.sample_time_s());
-      for (const double start : dead_time_starts(removable))
-        found.push_back(
-            effect(place_of(channel), {dead_time_coordinate(start, removable)}, members));
-      for (const Eigen::Index onset : error_onsets(outlook.problem.recording())) {
+      for (const ErrorOnset& begins : error_onsets(outlook.recording())) {
         const auto add = [&](double start) {
           found.push_back(effect(place_of(channel), {dead_time_coordinate(start, removable)},
-                                 members + error_onset_cost(), onset));
+                                 members + begins.cost, begins.row));
         };
+        if (begins.row == 0) {
+          for (const double start : dead_time_starts(removable)) add(start);
+          continue;
+        }
         for (const double start : kLaterFromOnset) add(start);
         if (removable > 0.0)
           add(removable >= -kSoonerFromOnset ? kSoonerFromOnset : -kSoonerShare * removable);

@@ -22,7 +22,7 @@ class PlayOfInput : public InputBlockCause {
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     for (const BlockPlace& at : curve_places(outlook)) {
       const double range = at.input.range();
-      for (const BlockOnset& begins : block_onsets(outlook))
+      for (const ErrorOnset& begins : block_onsets(outlook))
         for (const double share : kStarts)
           found.push_back(effect(at.place,
                                  {{.quantity = &kWidth,

@@ -15,10 +15,9 @@ class Gain : public SingleChannelError {
     const double members = cost_of(outlook.model().channels.size());
     for (const ChannelSpec& channel : outlook.model().channels) {
       if (!has_own_gain(channel)) continue;
-      found.push_back(effect(place_of(channel), {gain_ratio_coordinate()}, members));
-      for (const Eigen::Index onset : error_onsets(outlook.problem.recording()))
-        found.push_back(effect(place_of(channel), {gain_ratio_coordinate()},
-                               members + error_onset_cost(), onset));
+      for (const ErrorOnset& begins : error_onsets(outlook.recording()))
+        found.push_back(effect(place_of(channel), {gain_ratio_coordinate()}, members + begins.cost,
+                               begins.row));
     }
   }
 

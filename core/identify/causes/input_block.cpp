@@ -56,11 +56,8 @@ std::vector<BlockPlace> InputBlockCause::curve_places(const Outlook& outlook, in
   return places;
 }
 
-std::vector<BlockOnset> InputBlockCause::block_onsets(const Outlook& outlook) {
-  std::vector<BlockOnset> onsets = {{0, 0.0}};
-  if (const auto changed = outlook.recording().changed)
-    onsets.push_back({*changed, error_onset_cost()});
-  return onsets;
+std::vector<ErrorOnset> InputBlockCause::block_onsets(const Outlook& outlook) {
+  return error_onsets(outlook.recording(), false);
 }
 
 Coordinate InputBlockCause::plain_ratio(const Quantity& quantity) {

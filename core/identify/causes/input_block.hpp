@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
 
 #include "core/identify/causes/cause.hpp"
+#include "core/identify/causes/channel_error.hpp"
 #include "core/identify/causes/spread.hpp"
 
 namespace mpm {
@@ -21,12 +21,6 @@ struct BlockPlace {
   Spread input;         ///< how the input moves
   bool whole_input;     ///< it acts on all CVs of the input
   std::size_t members;  ///< places there are in the model
-};
-
-/// Where a block may come into force, and what looking there costs.
-struct BlockOnset {
-  Eigen::Index row;
-  double cost;
 };
 
 /// A cause that puts a static block before an input's channels; one block per place.
@@ -50,7 +44,7 @@ class InputBlockCause : public Cause {
   [[nodiscard]] static std::vector<BlockPlace> curve_places(const Outlook& outlook, int levels = 3);
   /// From the start, and from where the calibrated test sees a change, if it does: elsewhere a
   /// valve's many starts would take too long.
-  [[nodiscard]] static std::vector<BlockOnset> block_onsets(const Outlook& outlook);
+  [[nodiscard]] static std::vector<ErrorOnset> block_onsets(const Outlook& outlook);
   /// A gain to the model's, not in its logarithm.
   [[nodiscard]] static Coordinate plain_ratio(const Quantity& quantity);
   /// A number that bends what is straight.

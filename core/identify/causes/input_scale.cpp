@@ -27,10 +27,9 @@ class InputScale : public Cause {
     const double members = cost_of(static_cast<std::size_t>(outlook.inputs()));
     for (int input = 0; input < outlook.inputs(); ++input) {
       if (outlook.cvs_of(input).size() <= 1) continue;
-      found.push_back(effect({-1, input}, {gain_ratio_coordinate()}, members));
-      for (const Eigen::Index onset : error_onsets(outlook.problem.recording()))
+      for (const ErrorOnset& begins : error_onsets(outlook.recording()))
         found.push_back(
-            effect({-1, input}, {gain_ratio_coordinate()}, members + error_onset_cost(), onset));
+            effect({-1, input}, {gain_ratio_coordinate()}, members + begins.cost, begins.row));
     }
   }
 

@@ -27,10 +27,8 @@ class OutputScale : public Cause {
                         [cv](const ChannelSpec& channel) { return channel.cv == cv; });
       if (channels <= 1) continue;
       const double members = cost_of(static_cast<std::size_t>(model.cv_count));
-      found.push_back(effect({cv}, {gain_ratio_coordinate()}, members));
-      for (const Eigen::Index onset : error_onsets(outlook.problem.recording()))
-        found.push_back(
-            effect({cv}, {gain_ratio_coordinate()}, members + error_onset_cost(), onset));
+      for (const ErrorOnset& begins : error_onsets(outlook.recording()))
+        found.push_back(effect({cv}, {gain_ratio_coordinate()}, members + begins.cost, begins.row));
     }
   }
 

@@ -52,7 +52,7 @@ class StickingValve : public InputBlockCause {
       if (!at.whole_input) continue;
       const double range = at.input.range();
       const double cost = cost_of(2 * at.members);
-      for (const BlockOnset& begins : block_onsets(outlook))
+      for (const ErrorOnset& begins : block_onsets(outlook))
         for (const double share : kBands)
           for (const double jump : kJumps)
             for (const int variant : {0, kSlipsOnce}) {

@@ -18,11 +18,17 @@ class TimeConstant : public SingleChannelError {
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const double members = cost_of(outlook.model().channels.size());
     for (const ChannelSpec& channel : outlook.model().channels) {
-      for (const double start : kStarts)
-        found.push_back(effect(place_of(channel), {time_constant_coordinate(start)}, members));
-      for (const Eigen::Index onset : error_onsets(outlook.problem.recording()))
-        found.push_back(effect(place_of(channel), {time_constant_coordinate(kStartFromOnset)},
-                               members + error_onset_cost(), onset));
+      for (const ErrorOnset& begins : error_onsets(outlook.recording())) {
+        const auto add = [&](double start) {
+          found.push_back(effect(place_of(channel), {time_constant_coordinate(start)},
+                                 members + begins.cost, begins.row));
+        };
+        if (begins.row > 0) {
+          add(kStartFromOnset);
+        } else {
+          for (const double start : kStarts) add(start);
+        }
+      }
     }
   }
 

@@ -43,10 +43,11 @@ bool silences(const Effect& effect, const Finding& finding, const Problem& probl
   const Parameter* gain = finding.find(kGainRatio);
   if (gain == nullptr || !(std::abs(gain->value) < kHardlyAnswers)) return false;
   const auto channels = channels_of(effect, problem.model(), problem.surroundings().model_inputs);
+  const Eigen::MatrixXd& setpoints = problem.recording().setpoints;
   return std::any_of(channels.begin(), channels.end(), [&](const std::pair<int, int>& channel) {
-    const auto cv = static_cast<std::size_t>(channel.first);
+    const int cv = channel.first;
     const auto input = static_cast<std::size_t>(channel.second);
-    return cv < judges.controlled.size() && judges.controlled[cv] &&
+    return cv < setpoints.cols() && setpoints.col(cv).array().isFinite().any() &&
            input < judges.outside_shares.size() &&
            judges.outside_shares[input].value_or(1.0) < kNoFeedback;
   });

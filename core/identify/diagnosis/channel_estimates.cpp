@@ -64,7 +64,8 @@ bool has_gain_off(const std::vector<ChannelEstimate>& estimates) {
   return std::any_of(estimates.begin(), estimates.end(), [](const ChannelEstimate& estimate) {
     const double off = std::abs(estimate.gain_ratio.value - 1.0);
     const double sd = (estimate.gain_ratio.high - estimate.gain_ratio.low) / (2.0 * kNormalReach);
-    return off > kSmall.gain && off > kBeyondDoubtSd * sd;
+    return off - kSmall.gain > kNormalReach * sd ||
+           (off > kSmall.gain && off > kBeyondDoubtSd * sd);
   });
 }
 

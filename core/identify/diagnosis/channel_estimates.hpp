@@ -22,8 +22,8 @@ struct ChannelEstimate {
 /// How many gains the data do not tell, so that a match would mean nothing.
 [[nodiscard]] std::ptrdiff_t unknown_gains(const std::vector<ChannelEstimate>& estimates);
 
-/// Whether some gain is off beyond doubt, and by more than is small: a model that is said to match
-/// would be contradicted by its own estimates.
+/// Whether some gain is off by more than is small, surely (95 %), or at least that much and off
+/// beyond doubt: a model that is said to match would be contradicted by its own estimates.
 [[nodiscard]] bool has_gain_off(const std::vector<ChannelEstimate>& estimates);
 
 }  // namespace mpm

@@ -260,14 +260,6 @@ Recording without_unanswered(const ModelSpec& model, const Recording& recording,
   return without(recording, none);
 }
 
-/// Per CV, whether it has a set-point.
-std::vector<bool> controlled(const Recording& recording) {
-  std::vector<bool> with;
-  for (Index cv = 0; cv < recording.setpoints.cols(); ++cv)
-    with.push_back(recording.setpoints.col(cv).array().isFinite().any());
-  return with;
-}
-
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
 Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {
@@ -308,8 +300,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
       nameable(model, {settings.mv_count, base.input_count, aux}, tests, by_monitor, outside);
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
-  const Judges judges{unseen,
-                      aux,
+  const Judges judges{unseen, aux,
                       [&](int cv, int input, bool wrong) {
                         // Where only a disturbance was found they soak up what it leaves.
                         const auto i = static_cast<std::size_t>(input);
@@ -317,9 +308,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
                                (tests.reject({{cv, input}}) ||
                                 (i < outside.size() && outside[i].value_or(0.0) >= kMostlyOutside));
                       },
-                      outside,
-                      compressed,
-                      controlled(measured)};
+                      outside, compressed};
   const Witness witness{tests, by_monitor, [&](const std::vector<Stage>& repaired, OwnPast past) {
                           return ChannelTests(tested, measured,
                                               free_run_residuals(repaired, recording), past);
@@ -381,6 +370,13 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   std::erase_if(diagnosis.rejected, [&](const Place& at) {
     return std::find(by_monitor_too.begin(), by_monitor_too.end(), at) == by_monitor_too.end();
   });
+  // What has begun half-way drowns in the test of all rows, and a monitor remembers no more either.
+  if (diagnosis.findings.empty() && diagnosis.rejected.empty()) {
+    const Index half = samples / 2;
+    const ChannelTests of_half(tested, part(measured, samples - half, half),
+                               residuals.bottomRows(half), OwnPast::kAsMonitor);
+    diagnosis.rejected = rejected_channels(base, of_half, diagnosis);
+  }
   // Beside a change half-way the nonlinear test sees bends that are not there.
   if (diagnosis.findings.empty()) diagnosis.bent = bent_channels(base, by_monitor, diagnosis);
   const std::size_t doubted =

@@ -25,8 +25,8 @@ struct SignalRanges {
 /// Whether it is an error of one channel's gain, time constants or dead time, or of several.
 [[nodiscard]] bool is_error_of_channel(const Effect& effect);
 
-/// Whether it is such an error of all channels of an input or of a CV alike, which the calibrated
-/// test sees where it can be seen at all.
+/// Whether it holds such an error of all channels of an input or of a CV alike, or of one beside a
+/// state that bends: the calibrated test sees it where it can be seen at all.
 [[nodiscard]] bool is_scale(const Effect& effect);
 
 /// Which effects may be named: what acts through channels where the calibrated test rejects those

@@ -42,7 +42,6 @@ struct Judges {
   OpenChannels open;
   const std::vector<std::optional<double>>& outside_shares;  ///< per input
   Compressed compressed = {};
-  std::vector<bool> controlled = {};  ///< per CV: it has a set-point; none where empty
 };
 
 /// `tell` is called before each and may throw to end it all. What has no name repairs nothing, what

@@ -118,7 +118,7 @@ void decide(const FreeRunVerdict& free_runs, Diagnosis& diagnosis) {
   else if (has_gain_off(diagnosis.channels))
     diagnosis.reason = "by its estimate the gain of a channel is off by more than " +
                        percent_text(kSmall.gain) +
-                       ", beyond doubt, which the calibrated test of the channels does not confirm";
+                       ", which the calibrated test of the channels does not confirm";
   else if (free_runs.loses)
     diagnosis.reason =
         "in the last samples the model's errors are much larger, and it explains a CV less well "

@@ -25,7 +25,6 @@ struct Bench {
   Unseen unseen;
   std::vector<std::optional<double>> shares;
   SearchSettings settings;
-  std::vector<bool> controlled;
 
   /// From row `rests` on the input stands still. `wanders`: seed of a walk of the CV; 0 for none.
   Bench(double fitted, double not_fitted, double outside_share, Index rests = kRows,
@@ -51,7 +50,7 @@ struct Bench {
 
   Account take() {
     const ChannelTests given(model, all, free_run_residuals(model, all));
-    return account_for(model, 1, first, {unseen, 0, {}, shares, {}, controlled},
+    return account_for(model, 1, first, {unseen, 0, {}, shares},
                        {given, given,
                         [this](const std::vector<Stage>& of, OwnPast past) {
                           return ChannelTests(model, all, free_run_residuals(of, all), past);
@@ -120,7 +119,7 @@ TEST_CASE("what makes a free run worse is named only where it leaves the test no
 TEST_CASE("no gain of hardly anything is named of a CV that is controlled") {
   const auto take = [](double gain, double outside_share, bool controlled) {
     Bench bench(gain, gain, outside_share);
-    bench.controlled = {controlled};
+    if (controlled) bench.first.setpoints = Eigen::MatrixXd::Zero(kFitted, 1);
     bench.settings.may_name = [](const Effect& effect) { return effect.edit == &causes::gain(); };
     return bench.take();
   };

@@ -90,6 +90,8 @@ TEST_CASE("a model is no match whose gain is off by its own estimate") {
   };
   CHECK(verdict_of(with_gain(0.83, 0.06)) == DiagnosisVerdict::kUndetermined);
   CHECK(verdict_of(with_gain(1.17, 0.06)) == DiagnosisVerdict::kUndetermined);
+  CHECK(verdict_of(with_gain(1.24, 0.12)) == DiagnosisVerdict::kUndetermined);  // 1.12 at least
+  CHECK(verdict_of(with_gain(1.24, 0.15)) == DiagnosisVerdict::kMatch);
   CHECK(verdict_of(with_gain(0.83, 0.12)) == DiagnosisVerdict::kMatch);
   CHECK(verdict_of(with_gain(1.08, 0.01)) == DiagnosisVerdict::kMatch);  // small
 }

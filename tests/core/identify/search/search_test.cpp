@@ -111,8 +111,8 @@ TEST_CASE(
         }) <= 2);
 }
 
-// As above, but the CV jumps by nearly as much at other rows too, as where a valve slips again and again:
-// no shock tells the step's row then, and the search among all takes 11 of the evidence.
+// As above, but the CV jumps by nearly as much at other rows too, as where a valve slips again and
+// again: no shock tells the step's row then, and the search among all takes 11 of the evidence.
 TEST_CASE("among shocks of its size a step's tells no row") {
   constexpr Index kShock = 450;
   constexpr double kInnovation = 0.1, kPole = 0.93;
