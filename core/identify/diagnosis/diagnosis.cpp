@@ -124,9 +124,9 @@ void state(const Account& kept, const Recording& fitted, const Judges& judges,
     add_own_setpoint(effect, tests, judges.aux, finding);
     finding.repaired = selection.fates[i] == Fate::kRepaired;
     const bool of_setpoint = effect.place.aux >= judges.aux;
-    const char* not_setpoint =
-        of_setpoint ? why_not_setpoint(effect, alone(i), moves_of(effect), tests, judges.aux)
-                    : nullptr;
+    const char* not_setpoint = of_setpoint ? why_not_setpoint(found.named[i], alone(i),
+                                                              moves_of(effect), tests, judges.aux)
+                                           : nullptr;
     finding.refused = not_setpoint != nullptr ? not_setpoint
                       : of_setpoint           ? "a set-point is no input of a model"
                                               : why_not_in_model(selection.fates[i]);

@@ -50,9 +50,12 @@ int moves(const Eigen::Ref<const Eigen::VectorXd>& signal) {
   return count;
 }
 
-const char* why_not_setpoint(const Effect& effect, bool alone, int moves, const ChannelTests& tests,
+const char* why_not_setpoint(const Named& named, bool alone, int moves, const ChannelTests& tests,
                              int first) {
+  const Effect& effect = named.effect;
   if (is_own(effect, first)) return kOwnSetpoint;
+  if (named.evidence < kStrongEvidence)
+    return "a set-point acts through inputs: that it does more the data say too weakly";
   if (moves < kFewestSetpointMoves)
     return "the set-point moved too seldom: what disturbs the CV may go with it by chance";
   return alone && tests.setpoint(effect.place.cv).loses

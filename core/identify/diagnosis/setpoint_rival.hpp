@@ -6,6 +6,7 @@
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/fit/effect.hpp"
 #include "core/identify/fit/recording.hpp"
+#include "core/identify/search/search.hpp"
 
 /// Channels against set-points. Under feedback inputs are what set-points and CVs make them: what a
 /// wrong channel does can be said by a set-point too, beside another noise, and the other way
@@ -29,11 +30,11 @@ inline constexpr const char* kOwnSetpoint =
 /// How often a signal moves: stretches of rows on which it rises, or falls.
 [[nodiscard]] int moves(const Eigen::Ref<const Eigen::VectorXd>& signal);
 
-/// Why what a set-point is said to do is no finding, for a person; null where it may be one.
-/// `alone`: nothing else was found in the CV that would hide the channels' word. `moves`: of the
-/// set-point in the rows that were fitted; what goes on by itself goes with a few of them by
-/// chance.
-[[nodiscard]] const char* why_not_setpoint(const Effect& effect, bool alone, int moves,
+/// Why what a set-point is said to do is no finding, for a person; null where it may be one: what a
+/// set-point does but through inputs takes strong evidence. `alone`: nothing else was found in the
+/// CV that would hide the channels' word. `moves`: of the set-point in the rows that were fitted;
+/// what goes on by itself goes with a few of them by chance.
+[[nodiscard]] const char* why_not_setpoint(const Named& named, bool alone, int moves,
                                            const ChannelTests& tests, int first);
 
 /// Why a step of a CV is no disturbance, for a person; null where it may be one. `signals`: what

@@ -51,6 +51,13 @@ Effect of(const Cause& cause, const Place& place) {
 
 Effect setpoint(int cv, int aux) { return of(causes::unmodelled_input(), {cv, -1, aux}); }
 
+Named strongly(int cv, int aux) {
+  Named named;
+  named.effect = setpoint(cv, aux);
+  named.evidence = 40.0;
+  return named;
+}
+
 TEST_CASE("whether a CV's own set-point may be named the test of its channels says") {
   const Bench wrong(1.5, 0.0), hidden(1.0, 1.0);
   CHECK_FALSE(may_name_setpoint(setpoint(0, 0), wrong.tests, kFirst));
@@ -61,13 +68,16 @@ TEST_CASE("whether a CV's own set-point may be named the test of its channels sa
 
 TEST_CASE("what a set-point is said to do is refused where it loses alone, or is the CV's own") {
   const Bench wrong(1.5, 0.0), hidden(1.0, 1.0);
-  const char* own = why_not_setpoint(setpoint(0, 0), false, kOften, hidden.tests, kFirst);
+  const char* own = why_not_setpoint(strongly(0, 0), false, kOften, hidden.tests, kFirst);
   REQUIRE(own != nullptr);
   CHECK(std::string(own) == kOwnSetpoint);
-  CHECK(why_not_setpoint(setpoint(0, 1), true, kOften, wrong.tests, kFirst) != nullptr);
-  CHECK(why_not_setpoint(setpoint(0, 1), false, kOften, wrong.tests, kFirst) == nullptr);
-  CHECK(why_not_setpoint(setpoint(0, 1), true, kOften, hidden.tests, kFirst) == nullptr);
-  CHECK(why_not_setpoint(setpoint(1, 0), true, kOften, wrong.tests, kFirst) == nullptr);
+  CHECK(why_not_setpoint(strongly(0, 1), true, kOften, wrong.tests, kFirst) != nullptr);
+  CHECK(why_not_setpoint(strongly(0, 1), false, kOften, wrong.tests, kFirst) == nullptr);
+  CHECK(why_not_setpoint(strongly(0, 1), true, kOften, hidden.tests, kFirst) == nullptr);
+  CHECK(why_not_setpoint(strongly(1, 0), true, kOften, wrong.tests, kFirst) == nullptr);
+  Named weakly = strongly(1, 0);
+  weakly.evidence = 25.0;
+  CHECK(why_not_setpoint(weakly, true, kOften, wrong.tests, kFirst) != nullptr);
 }
 
 // Up, rest, a ramp down, up again behind it without a rest, rest, and on up: four.
@@ -77,7 +87,7 @@ TEST_CASE("a set-point that moves a few times explains nothing for sure") {
   CHECK(moves(signal) == 4);
   CHECK(moves(VectorXd::Ones(10)) == 0);
   const Bench hidden(1.0, 1.0);
-  const char* seldom = why_not_setpoint(setpoint(1, 0), true, 4, hidden.tests, kFirst);
+  const char* seldom = why_not_setpoint(strongly(1, 0), true, 4, hidden.tests, kFirst);
   REQUIRE(seldom != nullptr);
   CHECK(std::string(seldom).find("too seldom") != std::string::npos);
 }
