@@ -2,9 +2,12 @@
 """Runs `mpm diagnose` on the cases of expected.json and scores what it says by that table.
 
     table.py [--mpm PROGRAM] [--half tuning|scoring] [--case NAME...] DATA_FOLDER OUTPUT_FOLDER
+    table.py [--mpm PROGRAM] --hold docs/cases.md DATA_FOLDER OUTPUT_FOLDER
 
 Prints the counts and a line per case as markdown. The cut recordings go to OUTPUT_FOLDER/data, each
-run's report to a folder of its own beside it. Exit code 1 if a run failed.
+run's report to a folder of its own beside it. Exit code 1 if a run failed. With --hold the cases of
+both halves that are quick by that file's tables are run, and exit code 1 says that an outcome is
+another one than is written there; 77 that there are no recordings.
 
 An answer is a cause (something is named), nothing (nothing is, verdict match) or cannot tell
 (nothing is, another verdict, or the data refused as too short). Noise alone, where it is allowed,
@@ -24,6 +27,7 @@ names nothing. It counts as
 import argparse
 import collections
 import json
+import os
 import pathlib
 import resource
 import signal
@@ -35,6 +39,8 @@ OUTCOMES = ("right", "partly", "cannot tell", "wrong", "harmful", "failed")
 TIME_LIMIT_S = 120
 WORSE = 1.1
 WILD_RATIO = 20.0
+QUICK_S = 3.0
+NO_RECORDINGS = 77
 
 
 def matches(finding, wanted):
@@ -175,6 +181,36 @@ def rows_of(case, report, took, outcome, why):
         first, last = ["", "", ""], ["", "", ""]
 
 
+def written(path):
+    """Case: outcome, of those that took QUICK_S at most, as the tables of `path` say."""
+    outcomes = {}
+    for line in path.read_text().splitlines():
+        cells = [cell.strip() for cell in line.split("|")]
+        if len(cells) > 4 and cells[2].startswith("**") and float(cells[3]) <= QUICK_S:
+            outcomes[cells[1]] = cells[2].split("**")[1]
+    return outcomes
+
+
+def hold(options, expected, cut):
+    """How many outcomes are not as written."""
+    said = written(options.hold)
+    others = ran = 0
+    for case in expected:
+        if case["name"] not in said:
+            continue
+        if not (cut / f"{case['data']}.csv").exists():
+            print(f"{case['name']}: SKIPPED, no data")
+            continue
+        ran += 1
+        report, _, failure = run(case, options, cut)
+        outcome, why = judge(case, report) if report is not None else ("failed", failure)
+        if outcome != said[case["name"]]:
+            others += 1
+            print(f"{case['name']}: {outcome} ({why}), written: {said[case['name']]}")
+    print(f"{ran} cases, {others} with another outcome than {options.hold} says")
+    return others
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--mpm", default=str(ROOT / "build/release/bin/mpm"), help="the program")
@@ -182,14 +218,22 @@ def main():
     parser.add_argument("--case", nargs="*", help="only these")
     parser.add_argument("--limit", type=int, default=TIME_LIMIT_S,
                         help="seconds of processor time per run")
+    parser.add_argument("--hold", type=pathlib.Path, help="the document whose outcomes are held")
     parser.add_argument("data", help="folder with the public recordings")
     parser.add_argument("out", type=pathlib.Path, help="folder for what is written")
     options = parser.parse_args()
 
+    if options.hold:
+        options.data = os.environ.get("MPM_DATA_DIR", options.data)
+        if not pathlib.Path(options.data).is_dir():
+            print(f"SKIPPED: no recordings in {options.data}; MPM_DATA_DIR names their folder")
+            sys.exit(NO_RECORDINGS)
     cut = options.out / "data"
     subprocess.run([sys.executable, str(ROOT / "docs/cases/prepare.py"), options.data, str(cut)],
                    check=True)
     expected = json.loads((ROOT / "docs/cases/expected.json").read_text())["cases"]
+    if options.hold:
+        sys.exit(1 if hold(options, expected, cut) else 0)
     table, counts, plants = [], collections.Counter(), {}
     for case in expected:
         if case["half"] != options.half or (options.case and case["name"] not in options.case):
