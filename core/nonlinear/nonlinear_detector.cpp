@@ -42,7 +42,7 @@ void NonlinearDetector::evaluate(int cv, const MismatchDetector& linear) {
   if (!on()) return;
   take(cv, linear);
   NonlinearRegression& regression = regressions_[static_cast<std::size_t>(cv)];
-  if (!regression.ready()) return silence(cv);
+  if (!regression.ready()) return await_rows(cv);
   ChannelNonlinearity* results = &results_[static_cast<std::size_t>(cv * inputs_)];
   regression.evaluate(settings_.channel_rate, settings_.variation, results);
   for (int i = 0; i < inputs_; ++i) judge(results[i]);
@@ -58,6 +58,15 @@ void NonlinearDetector::judge(ChannelNonlinearity& result) const {
   result.verdict = !unlikely && result.smallest_variation <= settings_.variation
                        ? NonlinearVerdict::kLinear
                        : NonlinearVerdict::kUndetermined;
+}
+
+// To the linear test a valve that saturates now and then is one change after the other, and each
+// one starts afresh. So what was found bent stays so until it can be asked anew.
+void NonlinearDetector::await_rows(int cv) {
+  for (int i = 0; i < inputs_; ++i) {
+    ChannelNonlinearity& result = results_[static_cast<std::size_t>(cv * inputs_ + i)];
+    if (result.verdict != NonlinearVerdict::kNonlinear) result = {.tested = on()};
+  }
 }
 
 void NonlinearDetector::archive(Archive& a) {

@@ -32,7 +32,8 @@ class NonlinearDetector {
   void take(int cv, const MismatchDetector& linear);
   /// After it skipped so many samples (>= 1).
   void skip(std::int64_t missing, const MismatchDetector& linear);
-  /// Takes what waits and brings the results of a CV's channels up to date.
+  /// Takes what waits and brings the results of a CV's channels up to date. After a fresh start of
+  /// the linear test what was `nonlinear` stays so until there are rows enough again.
   void evaluate(int cv, const MismatchDetector& linear);
   /// As of the last `evaluate`; undetermined before the first one, or where the test is off.
   [[nodiscard]] const ChannelNonlinearity& result(int cv, int input) const {
@@ -48,6 +49,7 @@ class NonlinearDetector {
 
  private:
   void judge(ChannelNonlinearity& result) const;
+  void await_rows(int cv);
 
   Settings settings_;
   int inputs_;

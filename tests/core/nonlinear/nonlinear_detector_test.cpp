@@ -49,6 +49,25 @@ TEST_CASE("a fresh start of the linear test is one of the nonlinear test, too") 
   });
 }
 
+TEST_CASE("what was found bent stays so after a fresh start until it can be asked anew") {
+  const bool mended = GENERATE(false, true);
+  test::BentPlant plant{.seed = 13, .square = 0.1, .samples = 3000};
+  plant.follow([&](int k, MismatchDetector& linear, NonlinearDetector& nonlinear) {
+    if (k == 1449 && mended) plant.square = 0.0;
+    if (k == 1450) linear.start_afresh(0, 50);
+    if (k != 1449 && k != 1500 && k != 2999) return;
+    linear.fold(0);
+    nonlinear.evaluate(0, linear);
+    CAPTURE(mended, k);
+    CHECK(nonlinear.result(0, 0).verdict ==
+          (k == 2999 && mended ? NonlinearVerdict::kLinear : NonlinearVerdict::kNonlinear));
+    if (k == 1500) CHECK(nonlinear.result(0, 1).verdict == NonlinearVerdict::kUndetermined);
+    if (k != 2999) return;
+    nonlinear.silence(0);
+    CHECK(nonlinear.result(0, 0).verdict == NonlinearVerdict::kUndetermined);
+  });
+}
+
 TEST_CASE("a test that is off says that it is") {
   const RegressionShape shape{2, 1, 12, 4, {0.9355}};
   const LinearModel model(test::BentPlant::spec());
