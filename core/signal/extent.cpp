@@ -11,6 +11,7 @@ namespace mpm {
 using calibration::extent::kDigits;
 using calibration::extent::kIsolated;
 using calibration::extent::kLongestBurst;
+using calibration::extent::kTooFar;
 
 Extent::Verdict Extent::learn(double value) {
   if (known()) {
@@ -24,7 +25,7 @@ Extent::Verdict Extent::learn(double value) {
 
 // A burst leaves at least so many of them close together. What lies far from these, once, and was
 // back there from one value to the next, is an excursion; what comes back step by step, or twice,
-// is none.
+// is none, unless it was too far away for any process.
 Extent::Verdict Extent::judge_first() {
   constexpr std::size_t kClose = kFirst - kLongestBurst;
   std::array<double, kFirst> sorted = first_;
@@ -40,12 +41,16 @@ Extent::Verdict Extent::judge_first() {
   while (end != first_.end() && (end == begin || isolated(*end) || !back(*end, *(end - 1)))) ++end;
   const bool is_one = begin != first_.end() && (end == first_.end() || isolated(*(end - 1))) &&
                       std::none_of(end, first_.end(), isolated);
+  const Extent closest = *this;
+  bool wild = is_one;
   for (auto value = first_.begin(); value != first_.end(); ++value) {
-    if (is_one && value >= begin && value < end) continue;
+    const bool too_far = closest.width() > 0.0 && closest.beyond(*value) > kTooFar;
+    wild = wild || too_far;
+    if (too_far || (is_one && value >= begin && value < end)) continue;
     low_ = std::min(low_, *value);
     high_ = std::max(high_, *value);
   }
-  if (!is_one) return {};
+  if (!is_one) return {wild, 0};
   return {end != first_.end(), end == first_.end() ? static_cast<int>(end - begin) : 0};
 }
 

@@ -390,6 +390,7 @@ bool Screen::absurd(SignalKind kind, int index, Range& range) {
     const Extent home = range.former;
     range = Range{};
     range.extent = home;
+    mark_isolated(kind, index, range, 1);
     anew_ = true;  // it was not there in truth
     return false;
   }
@@ -434,11 +435,16 @@ void Screen::follow_excursion(SignalKind kind, int index, Range& range) {
   if (begins) range.out = std::max(range.out, 1);
 }
 
-void Screen::reject_excursion(SignalKind kind, int index, Range& range) {
-  for (int frames = range.out > 0 ? 1 : 0; frames < held_; ++frames)
+// Of the frames that nobody has yet.
+void Screen::mark_isolated(SignalKind kind, int index, const Range& range, int first) {
+  for (int frames = first; frames < held_; ++frames)
     if (ago(frames)[kind].usable(index) &&
         range.extent.beyond(ago(frames)[kind].values(index)) > calibration::extent::kIsolated)
       mark(kind, index, frames, &ScreenCounters::spikes);
+}
+
+void Screen::reject_excursion(SignalKind kind, int index, Range& range) {
+  mark_isolated(kind, index, range, range.out > 0 ? 1 : 0);
   range.out = 0;
   repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(index)].forget_ends();
   if (!std::exchange(range.taken, false)) return;

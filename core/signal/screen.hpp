@@ -176,6 +176,7 @@ class Screen {
   [[nodiscard]] std::span<const SignalKind> screened() const;
   [[nodiscard]] bool absurd(SignalKind kind, int index, Range& range);
   void follow_excursion(SignalKind kind, int index, Range& range);
+  void mark_isolated(SignalKind kind, int index, const Range& range, int first);
   void reject_excursion(SignalKind kind, int index, Range& range);
   void end_excursion(SignalKind kind, int index, Range& range);
   void learn_range(SignalKind kind);

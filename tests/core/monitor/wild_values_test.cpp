@@ -24,6 +24,7 @@ struct Injury {
   int index = 0;             // of the signal
   bool alternating = false;  // in sign, around the value that it had
   double around = 0.0;
+  int every = 1;  // of its samples, this one and the others are as they were
 
   [[nodiscard]] double at(int sample) const {
     return around + (alternating && sample % 2 != 0 ? -value : value);
@@ -42,7 +43,8 @@ Outcome outcome(const test::OpenLoopUnit& unit, bool predictions, const Injury& 
   Outcome result;
   unit.run(samples, [&](Frame frame) {
     const auto at = static_cast<int>(frame.interval) - injury.from;
-    if (at >= 0 && at < injury.samples) frame[injury.kind].values(injury.index) = injury.at(at);
+    if (at >= 0 && at < injury.samples && at % injury.every == 0)
+      frame[injury.kind].values(injury.index) = injury.at(at);
     monitor.push(frame);
     for (const AlarmTransition& moved : monitor.transitions())
       result.transitions += std::to_string(moved.cv) + std::to_string(moved.input) + ' ';
@@ -192,12 +194,17 @@ TEST_CASE("what a signal said while it was elsewhere is forgotten once it is bac
   for (const double value : {1e6, 1e9})
     for (const bool predictions : {true, false})
       check_healed(1.0, predictions, {SignalKind::kMv, value, 1500, 100});
+  for (const double value : {1e13, 1e60})
+    for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv})
+      check_healed(0.75, true, {kind, value, 1500, 100});
 }
 
 TEST_CASE("a wild value among the first is forgotten too") {
   for (const double value : {1e6, 1e60, 1e200})
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv})
       for (const int from : {0, 5}) check_healed(1.0, true, {kind, value, from, 1});
+  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv})
+    check_healed(0.75, true, {.kind = kind, .value = 1e13, .from = 1, .samples = 8, .every = 3});
 }
 
 TEST_CASE("values that no instrument gives count as bad") {
