@@ -108,7 +108,7 @@ void CvAlarms::look_for_change(int cv, bool risen, MismatchDetector& detector, C
   detector.start_afresh(cv, change->samples - change->resolution);
   isolating_ = true;
   change_ = *change;
-  if (!quiet || change->kind == ChangeKind::kEnded) return;
+  if (!quiet || change->kind == ChangeKind::kEnded || !belief_.in_all()) return;
   // Of a change from quiet only the likeliest channel is blamed until the CV is isolated.
   for (std::size_t i = 0; i < conditions_.size(); ++i)
     conditions_[i].set(static_cast<int>(i) == change->input ? AlarmState::kActive

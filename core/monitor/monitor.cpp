@@ -216,6 +216,7 @@ void Monitor::State::follow_compression() {
 
 void Monitor::State::begin_anew(int cv) {
   detector.start_afresh(cv, 0);
+  nonlinear.silence(cv);
   of(cv).settled = 0;
 }
 
@@ -344,7 +345,7 @@ void Monitor::State::judge_channels() {
                    .alarms = of(j).alarms,
                    .mvs_still = mvs_still,
                    .at_limit = reader.inputs().at_limit(i),
-                   .confounder = of(j).rival.wins ? counts.inputs() + of(j).rival.signal : -1,
+                   .confounder = !of(j).rival.loses ? counts.inputs() + of(j).rival.signal : -1,
                    .peak = against_line ? correlation.peak(j, i) : CorrelationPeak{},
                    .mean_line = line,
                    .gain_variation = gain_variation(j, i),

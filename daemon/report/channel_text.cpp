@@ -33,7 +33,15 @@ struct Interval {
 // "0.0404 t/h per %"; empty where the units are not known.
 std::string with_units(const std::string& effect, const ChannelFile& file) {
   if (file.mv_unit.empty() || file.cv_unit.empty()) return "";
-  return effect + " " + printable(file.cv_unit) + " per " + printable(file.mv_unit);
+  return effect + " " + printable(file.cv_unit) + (file.integrating_gain != 0.0 ? "/s" : "") +
+         " per " + printable(file.mv_unit);
+}
+
+/// In the units of the unit file, whose gain of an integrating channel is per s.
+double effect_of(const ChannelRecord& channel, const ChannelFile& file) {
+  return file.integrating_gain != 0.0 && channel.model_gain != 0.0
+             ? channel.effect_size * file.integrating_gain / channel.model_gain
+             : channel.effect_size;
 }
 
 Interval gain_percent(const ChannelRecord& channel) {
@@ -59,13 +67,16 @@ Part gain_part(const ChannelRecord& channel, const ChannelFile& file) {
   if (!file.modelled) {
     const std::string effect = number_text(channel.effect_size);
     const std::string in_units = with_units(effect, file);
-    return {"gain", "answers, where the model has nothing: gain " +
+    const bool for_a_while = Interval{channel.effect_low, channel.effect_high}.holds(0.0);
+    return {"gain", std::string("answers") + (for_a_while ? " for a while" : "") +
+                        ", where the model has nothing: gain " +
                         (in_units.empty() ? effect : in_units) + " (" +
-                        interval_text(channel.effect_low, channel.effect_high) + ")"};
+                        interval_text(channel.effect_low, channel.effect_high) +
+                        (for_a_while ? ", perhaps none)" : ")")};
   }
   if (!channel.gain_resolved()) return {"gain", "gain not known"};
   const Interval percent = gain_percent(channel);
-  const std::string in_units = with_units(signed_text(channel.effect_size, 3), file);
+  const std::string in_units = with_units(signed_text(effect_of(channel, file), 3), file);
   return {"gain",
           "gain " + signed_text(channel.percent_of_gain(channel.effect_size)) + " % (" +
               percent.text() + (in_units.empty() ? "" : "; " + in_units) + ")",
@@ -160,6 +171,12 @@ ChannelFile channel_file(const config::UnitConfig& unit, const std::string& mv,
                     return unit.input_tag(channel.input) == mv &&
                            unit.cv[static_cast<std::size_t>(channel.cv)].tag == cv;
                   });
+  for (const ChannelSpec& channel : channels) {
+    const auto* function = std::get_if<TransferFunction>(&channel.dynamics);
+    if (function != nullptr && function->integrating && unit.input_tag(channel.input) == mv &&
+        unit.cv[static_cast<std::size_t>(channel.cv)].tag == cv)
+      file.integrating_gain = function->gain;
+  }
   return file;
 }
 
@@ -173,7 +190,10 @@ std::string mismatch_text(const ChannelRecord& channel, const ChannelFile& file)
     const Part time_constant = time_constant_part(channel);
     const Part dead_time = dead_time_part(channel, file);
     const bool all_ok = gain.ok && time_constant.ok && dead_time.ok;
-    text = gain.text(all_ok) + ", " + time_constant.text(all_ok) + ", " + dead_time.text(all_ok);
+    text = gain.text(all_ok) + ", ";
+    if (file.integrating_gain == 0.0 || channel.time_constant_resolved())
+      text += time_constant.text(all_ok) + ", ";
+    text += dead_time.text(all_ok);
   } else if (file.modelled) {
     text += std::string(", and not of that alone: the dynamics or the dead time differ") +
             (channel.material ? " by much" : "");
@@ -215,7 +235,8 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
     case Reason::kConfounded:
       return "what is off in " + printable(channel.cv) + " follows " +
              printable(channel.confounder) +
-             ", which is no input of the model: something that moves with it acts on " +
+             ", which is no input of the model, no less than it follows the inputs: something that "
+             "moves with it may act on " +
              printable(channel.cv);
     case Reason::kBadData:
       return channel.confounder.empty()

@@ -14,6 +14,7 @@ namespace mpm::report {
 /// What a unit file knows of a channel besides.
 struct ChannelFile {
   bool modelled = true;  ///< the model has it: a gain error in per cent of it means something
+  double integrating_gain = 0.0;  ///< its gain, per s, where it integrates; else 0
   std::string mv_unit, cv_unit;
   double sample_time_s = 0.0;                           ///< 0 = not known
   double gain_limit = calibration::materiality::kGain;  ///< errors up to it do not matter, relative

@@ -37,6 +37,37 @@ TEST_CASE("what the data do not resolve is no number") {
         "gain ok, and not of that alone: the dynamics or the dead time differ by much");
 }
 
+TEST_CASE("what the model lacks may answer for a while and have no gain") {
+  ChannelRecord channel = mismatch("FIC-101", "AI-201");
+  ChannelFile file = channel_file(column(), "FIC-101", "AI-201");
+  file.modelled = false;
+  channel.effect_size = 0.02;
+  channel.effect_low = 0.01;
+  channel.effect_high = 0.03;
+  CHECK(mismatch_text(channel, file).find("answers, where the model has nothing: gain 0.02") == 0);
+  channel.effect_low = -0.01;
+  const std::string text = mismatch_text(channel, file);
+  CHECK(text.find("answers for a while, where the model has nothing: gain 0.02") == 0);
+  CHECK(text.find("(-0.01 to 0.03, perhaps none)") != std::string::npos);
+}
+
+TEST_CASE("the gain of an integrating channel is said as the unit file gives it, per s") {
+  ChannelRecord channel = mismatch("FIC-101", "AI-201");
+  ChannelFile file = channel_file(column(), "FIC-101", "AI-201");
+  CHECK(file.integrating_gain == 0.0);
+  file.integrating_gain = -0.02;
+  channel.model_gain = -0.8;  // what it rises by in 40 s
+  channel.effect_size = -0.24;
+  channel.effect_low = -0.32;
+  channel.effect_high = -0.16;
+  channel.time_constant_ratio = std::nan("");
+  const std::string text = mismatch_text(channel, file);
+  INFO(text);
+  CHECK(text.find("gain +30 % (20 to 40; -0.006 ") == 0);
+  CHECK(text.find("/s per ") != std::string::npos);
+  CHECK(text.find("time constant") == std::string::npos);
+}
+
 TEST_CASE("of a mismatch in which all is nearly as modelled the numbers are said") {
   ChannelRecord channel = mismatch("FIC-101", "AI-201");
   const ChannelFile file = channel_file(column(), "FIC-101", "AI-201");
