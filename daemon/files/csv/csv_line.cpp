@@ -82,6 +82,8 @@ bool LineReader::next() {
       if (line_.size() > 1 &&
           (line_.substr(0, 2) == "\xFF\xFE" || line_.substr(0, 2) == "\xFE\xFF"))
         fail(1, "is UTF-16 text; save it as UTF-8");
+      if (line_.find('\r') + 1 < line_.size() && line_.find('\r') != std::string::npos)
+        fail(1, "its lines end with a carriage return alone; save it with line feeds");
       if (line_.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
         line_.erase(0, kByteOrderMark.size());
     }

@@ -18,6 +18,7 @@ constexpr int kLinesAbove = 20;     // that may stand above a header
 constexpr int kRowsBelow = 3;       // that may stand between a header and the first time
 constexpr std::size_t kRows = 200;  // read of any file
 constexpr double kSecondsPerNs = 1e-9;
+constexpr double kTogether = 0.25;  // of the sample time: what a scan takes, and what is not late
 
 bool is_date(const TimeStyle& times, std::string_view text) {
   return times.format ? times.format->parse(text).has_value() : parse_calendar(text).has_value();
@@ -318,12 +319,14 @@ CsvFormat find_format(LineReader& lines, const TimeStyle& times, double sample_t
     return_to(lines, first_line);
     header = split_header(lines, find_delimiter(lines.text()));
     lines.fail(header.front().column,
-               "the first column must be `time`, not '" + std::string(header.front().text) + "'");
+               "the first column must be `time`, not '" + std::string(header.front().text) +
+                   "'; if that holds times, say how they are written with --time-format");
   }
   CsvFormat format;
   format.delimiter = found->delimiter;
   format.times = times;
   format.layout = found->layout;
+  format.together_ns = std::llround(kTogether * sample_time_s / kSecondsPerNs);
   return_to(lines, found->line);
   header = split_header(lines, format.delimiter);
   take_zone(header, format.layout.time, format.times);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct CsvFormat {
   Layout layout = {};
   DateOrder order = DateOrder::kUnknown;  ///< of dates that may be read either way
   bool zero_is_good = false;              ///< in quality codes; not those of `<tag>.quality`
+  /// Samples of tags with times of their own that may be a row, 0 = none.
+  std::int64_t together_ns = 0;
 
   [[nodiscard]] bool decimal_comma() const { return delimiter != ','; }
 };

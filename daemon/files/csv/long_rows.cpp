@@ -28,9 +28,7 @@ class LongRows : public SampleRows {
     if (!sorted) gather();
   }
 
-  [[nodiscard]] bool has_own_times() const override {
-    return tag_times_.count() >= kFewestTimes && tag_times_.apart();
-  }
+  [[nodiscard]] bool has_own_times() const override { return times() >= kFewestTimes && apart(); }
 
  private:
   /// Notes every tag; true if the time of those that count never goes back: then also their times.
@@ -46,7 +44,7 @@ class LongRows : public SampleRows {
       if (slot == nullptr || is_remark()) continue;
       const std::int64_t time_ns = read_time(lines_, cells_, columns_.time, times_, tag());
       sorted = sorted && (first || time_ns >= last_ns);
-      if (sorted) tag_times_.add(*slot, time_ns);
+      if (sorted) note_time(*slot, time_ns);
       last_ns = time_ns;
       first = false;
     }

@@ -24,7 +24,7 @@ class PairRows : public SampleRows {
     gather();
   }
 
-  [[nodiscard]] bool has_own_times() const override { return tag_times_.apart(); }
+  [[nodiscard]] bool has_own_times() const override { return apart(); }
 
   [[nodiscard]] bool has_lines() const override { return true; }
   [[nodiscard]] std::optional<Next> next_of(SignalKind kind, std::size_t index) const override {

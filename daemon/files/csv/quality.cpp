@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -18,7 +19,7 @@ struct Named {
 };
 
 /// As `plain_name` gives them.
-constexpr std::array<Named, 32> kColumns = {{
+constexpr std::array<Named, 33> kColumns = {{
     {"opcquality", QualityKind::kCode},
     {"opcqualitycode", QualityKind::kCode},
     {"quality", QualityKind::kCode},
@@ -50,6 +51,7 @@ constexpr std::array<Named, 32> kColumns = {{
     {"substituted", QualityKind::kDoubtFlag},
     {"issubstituted", QualityKind::kDoubtFlag},
     {"confidence", QualityKind::kConfidence},
+    {"percentgood", QualityKind::kConfidence},
     {"conf", QualityKind::kConfidence},
 }};
 
@@ -96,6 +98,9 @@ constexpr std::array<std::pair<std::string_view, Quality>, 37> kWords = {{
 
 // AVEVA Historian's.
 constexpr std::int64_t kZeroGood = 0, kZeroBad = 1, kZeroDoubtful = 16, kZeroFirst = 133;
+
+constexpr int kHexadecimal = 16;
+constexpr double kLargestCode = 4294967295.0;  // 32 bits
 
 constexpr std::int64_t kFullConfidence = 100, kHalfConfidence = 50;
 
@@ -155,8 +160,16 @@ int quality_rank(std::string_view name) {
 std::optional<std::int64_t> quality_code(std::string_view text) {
   std::int64_t code = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), code);
-  if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return code;
+  if (status == std::errc() && end == text.data() + text.size()) return code;
+  if (text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
+    const char* const last = text.data() + text.size();
+    const auto hex = std::from_chars(text.data() + 2, last, code, kHexadecimal);
+    return hex.ec == std::errc() && hex.ptr == last ? std::optional(code) : std::nullopt;
+  }
+  const std::optional<double> value = parse_value(text, false);  // 192.0
+  if (!value || *value != std::floor(*value) || std::abs(*value) > kLargestCode)
+    return std::nullopt;
+  return static_cast<std::int64_t>(*value);
 }
 
 bool fits_zero_is_good(std::int64_t code) {

@@ -22,12 +22,17 @@ void fill(std::array<std::vector<Value>, kSignalKindCount>& tags, const SignalCo
 
 }  // namespace
 
-TagTimes::TagTimes(const SignalCounts& counts) { fill(tags_, counts, Tag()); }
+TagTimes::TagTimes(const SignalCounts& counts, std::int64_t within_ns) : within_ns_(within_ns) {
+  fill(tags_, counts, Tag());
+}
 
 void TagTimes::add(const Slot& slot, std::int64_t time_ns) {
-  if (count_ == 0 || time_ns != last_ns_) ++count_;
-  last_ns_ = time_ns;
   Tag& tag = tags_[static_cast<std::size_t>(slot.kind)][static_cast<std::size_t>(slot.index)];
+  const bool again = tag.last == count_ && time_ns != begin_ns_;
+  if (count_ == 0 || time_ns - begin_ns_ > within_ns_ || again) {
+    ++count_;
+    begin_ns_ = time_ns;
+  }
   if (tag.count == 0) tag.first = count_;
   if (tag.last == count_) return;
   tag.last = count_;
@@ -53,7 +58,11 @@ bool SampleRows::next(Frame& frame) {
   fill(told_, counts_, false);
   fill(next_, counts_, kNoSample);
   frame.source_time_ns = pending_->time_ns;
-  while (pending_ && pending_->time_ns == frame.source_time_ns) {
+  const std::int64_t within_ns =
+      tag_times_.apart() && !near_times_.apart() ? format_.together_ns : 0;
+  while (pending_ &&
+         (pending_->time_ns == frame.source_time_ns ||
+          (pending_->time_ns - frame.source_time_ns <= within_ns && !told(pending_->slot)))) {
     put(*pending_, frame);
     pending_ = next_sample();
   }
@@ -75,8 +84,18 @@ void SampleRows::gather() {
     of_tag = i;
   }
   tag_times_ = TagTimes(counts_);
-  for (const Sample& sample : all) tag_times_.add(sample.slot, sample.time_ns);
+  near_times_ = TagTimes(counts_, format_.together_ns);
+  for (const Sample& sample : all) note_time(sample.slot, sample.time_ns);
   gathered_ = std::move(all);
+}
+
+void SampleRows::note_time(const Slot& slot, std::int64_t time_ns) {
+  tag_times_.add(slot, time_ns);
+  near_times_.add(slot, time_ns);
+}
+
+bool SampleRows::told(const Slot& slot) const {
+  return told_[static_cast<std::size_t>(slot.kind)][static_cast<std::size_t>(slot.index)];
 }
 
 const Sample* SampleRows::following(SignalKind kind, std::size_t index) const {

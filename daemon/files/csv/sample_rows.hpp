@@ -27,7 +27,8 @@ struct Sample {
 /// Whether the tags of a file are sampled together, or each has times of its own.
 class TagTimes {
  public:
-  explicit TagTimes(const SignalCounts& counts);
+  /// Samples of different tags count as of one time up to so much later than the first of them.
+  explicit TagTimes(const SignalCounts& counts, std::int64_t within_ns = 0);
 
   /// Times never go back.
   void add(const Slot& slot, std::int64_t time_ns);
@@ -42,11 +43,14 @@ class TagTimes {
     std::int64_t first = 0, last = 0, count = 0;  // in numbers of times, from 1
   };
   std::array<std::vector<Tag>, kSignalKindCount> tags_;
+  std::int64_t within_ns_;
   std::int64_t count_ = 0;
-  std::int64_t last_ns_ = 0;
+  std::int64_t begin_ns_ = 0;  // of the last one
 };
 
-/// Frames of samples that come one by one: those of one time make a row.
+/// Frames of samples that come one by one: those of one time make a row; or those of nearly one
+/// time
+/// (`CsvFormat::together_ns`), where each tag has times of its own and they go together so.
 class SampleRows : public RowSource {
  public:
   SampleRows(LineReader& lines, const CsvFormat& format, const SignalCounts& counts,
@@ -55,8 +59,9 @@ class SampleRows : public RowSource {
         format_(format),
         times_(format.times, format.order),
         notices_(notices),
+        counts_(counts),
         tag_times_(counts),
-        counts_(counts) {}
+        near_times_(counts, format.together_ns) {}
 
   [[nodiscard]] bool next(Frame& frame) override;
   [[nodiscard]] const Told* told() const override { return &told_; }
@@ -79,14 +84,20 @@ class SampleRows : public RowSource {
   std::vector<std::string>& notices_;
   std::vector<Cell> cells_;  ///< of the line at hand
   ReadTally tally_;
-  TagTimes tag_times_;  ///< once gathered; else for who comes to know them
+  /// Of a sample, for who comes to know them without gathering them.
+  void note_time(const Slot& slot, std::int64_t time_ns);
+  [[nodiscard]] std::int64_t times() const { return tag_times_.count(); }
+  /// Whether the tags are not sampled together, not even nearly.
+  [[nodiscard]] bool apart() const { return tag_times_.apart() && near_times_.apart(); }
 
  private:
   std::optional<Sample> next_sample();
   void tell();
   void put(const Sample& sample, Frame& frame);
+  [[nodiscard]] bool told(const Slot& slot) const;
 
   SignalCounts counts_;
+  TagTimes tag_times_, near_times_;
   std::optional<std::vector<Sample>> gathered_;
   std::size_t at_ = 0;  ///< in `gathered_`
   std::optional<Sample> pending_;

@@ -182,7 +182,11 @@ TEST_CASE("Bad input is an error at its place") {
       {"", "d.csv:1:1: error: the file is empty"},
       {"# only a comment\n", "d.csv:1:1: error: the file is empty"},
       {"time,u1,u2,y1\n", "d.csv:1:1: error: no data below the header"},
-      {"u1,u2,y1\n1,2,3\n", "d.csv:1:1: error: the first column must be `time`, not 'u1'"},
+      {"u1,u2,y1\n1,2,3\n",
+       "d.csv:1:1: error: the first column must be `time`, not 'u1'; if "
+       "that holds times, say how they are written with --time-format"},
+      {"time,u1\r0,1\r1,2\r",
+       "d.csv:1:1: error: its lines end with a carriage return alone; save it with line feeds"},
       {"time,u1,u3,y1\n0,1,2,3\n",
        "d.csv:1:1: error: the file does not hold mv 'u2' (did you mean 'u3'?)"},
       {"time,u1,u2,temperature\n0,1,2,3\n",

@@ -44,7 +44,8 @@ TEST_CASE("Names may stand above the line that names the time") {
 TEST_CASE("A first column of dates is the time, whatever it is called") {
   CHECK(found("Horodatage,a\n2026-02-01 00:00,1\n").format.layout.time.time == 0);
   CHECK_THROWS_WITH(found("Horodatage,a\n17,1\n"),
-                    "d.csv:1:1: error: the first column must be `time`, not 'Horodatage'");
+                    "d.csv:1:1: error: the first column must be `time`, not 'Horodatage'; if that "
+                    "holds times, say how they are written with --time-format");
 }
 
 TEST_CASE("The codes of all rows tell what zero means") {

@@ -27,6 +27,11 @@ TEST_CASE("Codes are those of OPC, or of Ignition") {
   for (const char* code : {"256", "261", "1073742080"}) CHECK(quality(code) == Quality::kUncertain);
   for (const char* code : {"300", "404", "500", "516", "-2147483132", "2147483648"})
     CHECK(quality(code) == Quality::kBad);
+  // As numbers with decimals, or in hexadecimal.
+  for (const char* code : {"192.0", "0xC0", "1.92E2"}) CHECK(quality(code) == Quality::kGood);
+  for (const char* code : {"24.0", "0x18", "0"}) CHECK(quality(code) == Quality::kBad);
+  for (const char* code : {"192.5", "0x", "0xG0", "1e99"})
+    CHECK_FALSE(quality_code(code).has_value());
 }
 
 TEST_CASE("Where zero is good the other codes are few") {
@@ -46,6 +51,7 @@ TEST_CASE("Flags and percentages are told by the column's name") {
   CHECK(quality_kind("Good") == QualityKind::kGoodFlag);
   CHECK(quality_kind("Validity") == QualityKind::kGoodFlag);
   CHECK(quality_kind("Questionable") == QualityKind::kDoubtFlag);
+  CHECK(quality_kind("PercentGood") == QualityKind::kConfidence);
   CHECK(quality_kind("Confidence [%]") == QualityKind::kConfidence);
   CHECK(quality_kind("Quality Detail") == QualityKind::kCode);
   CHECK_FALSE(quality_kind("Value"));

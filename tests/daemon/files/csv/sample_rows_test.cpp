@@ -34,6 +34,32 @@ TEST_CASE("A tag that comes late is measured from there") {
   CHECK_FALSE(times.apart());
 }
 
+TEST_CASE("Tags that are sampled one shortly after the other are nearly together") {
+  TagTimes near(kCounts, 15), exact(kCounts);
+  for (int k = 0; k < 40; ++k)
+    for (TagTimes* times : {&near, &exact}) {
+      times->add(kInput, 60 * k + k % 3);
+      times->add(kOutput, 60 * k + 10 + k % 5);
+    }
+  CHECK_FALSE(near.apart());
+  CHECK(near.count() == 40);
+  CHECK(exact.apart());
+  for (int k = 40; k < 80; ++k) {  // 20 later: a row each
+    near.add(kInput, 60 * k);
+    near.add(kOutput, 60 * k + 20);
+  }
+  CHECK(near.count() == 120);
+}
+
+TEST_CASE("A tag that comes twice within so much begins a row") {
+  TagTimes near(kCounts, 15);
+  for (int k = 0; k < 40; ++k) {
+    near.add(kInput, 6 * k);
+    near.add(kOutput, 6 * k);
+  }
+  CHECK(near.count() == 40);
+}
+
 TEST_CASE("Two tags in turn are apart") {
   TagTimes times(kCounts);
   for (int k = 0; k < 40; ++k) times.add(k % 2 == 0 ? kInput : kOutput, k);
