@@ -240,10 +240,12 @@ void SampleLog::begin_file() {
   blocks_.fill(0);
   std::error_code failed;
   if (!fs::exists(folder_, failed)) {
-    fs::create_directories(folder_, failed);
-    if (!failed)
-      fs::permissions(folder_, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec,
-                      failed);
+    if (!fs::create_directories(folder_, failed) && failed) {
+      errno = failed.value();
+      return fail("cannot be made");
+    }
+    fs::permissions(folder_, fs::perms::owner_all | fs::perms::group_read | fs::perms::group_exec,
+                    failed);
     // Its name, and that of the folder of all units: whatever will be synced in there rests on
     // them.
     const fs::path all_units = fs::path(folder_).parent_path();

@@ -84,6 +84,7 @@ void UnitAlarms::keep(AlarmJournal& journal, std::int64_t wall_ns) {
           .message = before.message;
       refresh(alarm);
     }
+  refresh(AlarmDesk::kController);  // the journal may tell of it before its channels
   if (recalled_) {
     stand_unknown(wall_ns);
     clear_unwritten(wall_ns);

@@ -1,13 +1,16 @@
 #include "daemon/live/unit_alarms.hpp"
 
 #include <catch2/catch.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "daemon/live/alarm_journal.hpp"
 #include "idl/output_readers.hpp"
 #include "idl/output_writers.hpp"
 #include "tests/daemon/report/sample_channels.hpp"
 #include "tests/idl/test_domain.hpp"
+#include "tests/system/process.hpp"
 
 namespace mpm::live {
 namespace {
@@ -124,6 +127,25 @@ TEST_CASE("who takes over tells the cause that it alone has found, once") {
     CHECK(desk.state().view.message == "gain not known");
     CHECK(desk.told().empty());
   }
+}
+
+TEST_CASE("after a restart the controller's alarm counts the channels that stand as before") {
+  const test::TemporaryFolder folder;
+  const std::string path = folder.file("alarms.sqlite");
+  std::string message;
+  {
+    AlarmJournal journal(path);
+    Desk desk("alarms-restart");
+    desk.alarms.keep(journal, 0);
+    desk.sample(true, true);
+    CHECK(desk.alarms.controller().channels == 1);
+    message = desk.alarms.controller().view.message;
+  }
+  AlarmJournal journal(path);
+  Desk desk("alarms-restart");
+  desk.alarms.keep(journal, 0);
+  CHECK(desk.alarms.controller().channels == 1);
+  CHECK(desk.alarms.controller().view.message == message);
 }
 
 TEST_CASE("the text of an alarm that has cleared says so") {
