@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/noise_change.hpp"
 #include "core/text/number_text.hpp"
@@ -11,6 +13,20 @@ constexpr Quantity kVarianceRatio{"variance_ratio", Form::kPlain, Unit::kOfModel
 
 /// What is beyond doubt is said with this confidence.
 constexpr double kConfidence = 0.99;
+
+/// Share of readings that are the one before from which on a CV is so coarse that its errors come
+/// and go with its steps: as where the monitor doubts it (core/monitor, coarse_readings).
+constexpr double kCoarse = 0.45;
+
+bool is_coarse(const Eigen::Ref<const Eigen::VectorXd>& cv) {
+  double same = 0.0, count = 0.0;
+  for (Eigen::Index k = 1; k < cv.size(); ++k) {
+    if (!std::isfinite(cv(k)) || !std::isfinite(cv(k - 1))) continue;
+    same += cv(k) == cv(k - 1) ? 1.0 : 0.0;
+    ++count;
+  }
+  return same > kCoarse * count;
+}
 
 /// A CV is louder or quieter from a moment on. No edit of the model: it is looked for in what the
 /// last fit leaves.
@@ -26,7 +42,7 @@ class Noise : public Cause {
     std::vector<Finding> found;
     for (const CvFit& of_cv : fit.cvs) {
       const std::optional<NoiseChange> change = find_noise_change(of_cv, problem.data(of_cv.cv));
-      if (!change) continue;
+      if (!change || is_coarse(problem.recording().cvs.col(of_cv.cv))) continue;
       Finding finding;
       finding.subject = {this, {of_cv.cv}};
       finding.parameters = {{&kVarianceRatio, change->ratio, change->low, change->high}};

@@ -61,12 +61,15 @@ class Errors {
   /// CVs of which the free run is better beyond doubt, and which come back to a level.
   [[nodiscard]] std::size_t better_cvs(std::uint64_t seed) const {
     std::size_t count = 0;
-    for (std::size_t j = 0; j < with_.size(); ++j) {
-      Sum sum(unseen_.rows());
-      sum.add(without_[j].cwiseAbs2(), with_[j].cwiseAbs2());
-      if (sum.score(unseen_, seed).gain_low > 0.0 && comes_back(throughout_[j])) ++count;
-    }
+    for (std::size_t j = 0; j < with_.size(); ++j)
+      if (free_run_of(j, seed).gain_low > 0.0 && comes_back(throughout_[j])) ++count;
     return count;
+  }
+  /// Whether the free run of some CV is worse beyond doubt.
+  [[nodiscard]] bool some_cv_is_worse(std::uint64_t seed) const {
+    for (std::size_t j = 0; j < with_.size(); ++j)
+      if (free_run_of(j, seed).gain_high < 0.0) return true;
+    return false;
   }
   [[nodiscard]] std::size_t cvs() const { return with_.size(); }
   /// Whether what is left of some CV wanders.
@@ -92,6 +95,12 @@ class Errors {
     }
     VectorXd before, after;
   };
+
+  [[nodiscard]] CvScore free_run_of(std::size_t j, std::uint64_t seed) const {
+    Sum sum(unseen_.rows());
+    sum.add(without_[j].cwiseAbs2(), with_[j].cwiseAbs2());
+    return sum.score(unseen_, seed);
+  }
 
   void add(const ModelSpec& with, const ModelSpec& without, int cv) {
     throughout_.push_back(unseen_.residual_throughout(with, cv));
@@ -127,10 +136,11 @@ Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
   const CvScore free_run = errors.free_run(seed);
   sure_gain = free_run.gain_low;
   if (!cause_of(effect).acts_through_channels()) {
-    // What loads several CVs through one actuator shows in more than one of them.
-    const bool by_one =
-        effect.place.cv < 0 && errors.better_cvs(seed) < std::min(kLoaded, errors.cvs());
-    if (free_run.gain_low > 0.0) return by_one ? Fate::kNoBetter : Fate::kRepaired;
+    // What loads several CVs through one actuator shows in more than one of them, and against none.
+    const bool doubtful =
+        effect.place.cv < 0 && (errors.better_cvs(seed) < std::min(kLoaded, errors.cvs()) ||
+                                errors.some_cv_is_worse(seed));
+    if (free_run.gain_low > 0.0) return doubtful ? Fate::kNoBetter : Fate::kRepaired;
     return free_run.rmse_after < free_run.rmse_before ? Fate::kNoBetter : Fate::kRefused;
   }
   const CvScore predictions = errors.predictions(seed);

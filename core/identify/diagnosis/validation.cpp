@@ -69,9 +69,14 @@ CvScore score(const Eigen::Ref<const VectorXd>& measured, const Eigen::Ref<const
   const VectorXd new_errors = (measured - after).cwiseAbs2();
   CvScore result = score_errors(old_errors, new_errors, block, seed);
   double mean = 0.0, spread = 0.0, count = 0.0;
-  for (const double value : measured)
-    if (std::isfinite(value)) mean += value, ++count;
+  for (Index k = 0; k < measured.size(); ++k) {
+    if (!std::isfinite(measured(k))) continue;
+    mean += measured(k);
+    result.level_after += measured(k) - after(k);
+    ++count;
+  }
   mean /= std::max(1.0, count);
+  result.level_after /= std::max(1.0, count);
   for (const double value : measured)
     if (std::isfinite(value)) spread += (value - mean) * (value - mean);
   if (spread > 0.0) {

@@ -12,6 +12,7 @@ namespace mpm {
 struct CvScore {
   double rmse_before = 0.0, rmse_after = 0.0;  ///< CV units
   double fit_before = 0.0, fit_after = 0.0;    ///< 100 (1 - |y - ysim| / |y - mean y|)
+  double level_after = 0.0;                    ///< mean of y - ysim, CV units
   /// 95 % block-bootstrap interval of 1 - rmse_after / rmse_before.
   double gain_low = 0.0, gain_high = 0.0;
   bool refused = false;  ///< an extension was fitted and did not carry over
@@ -33,7 +34,7 @@ struct CvScore {
                             const Eigen::Ref<const Eigen::VectorXd>& after, Eigen::Index block,
                             std::uint64_t seed);
 
-/// The same from squared errors; fits stay 0.
+/// The same from squared errors; fits and levels stay 0.
 [[nodiscard]] CvScore score_errors(const Eigen::Ref<const Eigen::VectorXd>& before,
                                    const Eigen::Ref<const Eigen::VectorXd>& after,
                                    Eigen::Index block, std::uint64_t seed);

@@ -48,6 +48,10 @@ inline constexpr int kWidestBlindReach = 20;
 /// rows of Gaussian noise one in some 400 has such a shock: exp(-(1.5^2 - 1) 3.1^2 / 2).
 inline constexpr double kLargestShock = 1.5;
 
+/// An actuator's fault that makes the variance of what is left of some CV so many times as large is
+/// none. Chosen: what wanders makes it up to 1.5 times as large by chance.
+inline constexpr double kSpreads = 2.0;
+
 /// Of what the data themselves show.
 inline constexpr double kSeenInData = 1000.0;
 /// A cause that noise could pass for is taken if re-estimated noise models speak no more than this

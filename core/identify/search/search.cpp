@@ -185,7 +185,10 @@ class Search {
     if (trials.empty()) return false;
     std::sort(trials.begin(), trials.end(), more_probable);
     look_closer(trials_, *screening_, trials);
-    std::erase_if(trials, [this](const Trial& trial) { return !may_name(trial.candidate); });
+    std::erase_if(trials, [this](const Trial& trial) {
+      return !may_name(trial.candidate) || spreads_a_cv(trial);
+    });
+    if (trials.empty()) return false;
     std::sort(trials.begin(), trials.end(), more_probable);
     // The best one first: how far behind the others are decides whether they are worth it.
     refine(trials[0], trials[0]);
@@ -238,6 +241,26 @@ class Search {
                               .lpNorm<Eigen::Infinity>());
              return std::abs(state.innovations(effect.onset)) > kLargestShock * others;
            });
+  }
+
+  /// Whether what an actuator is said to do to all its CVs moves one of them that did not move so:
+  /// a noise that wanders takes the level that it leaves there for its own.
+  [[nodiscard]] bool spreads_a_cv(const Trial& trial) {
+    const Effect& effect = trial.candidate;
+    if (effect.place.cv >= 0 || cause_of(effect).acts_through_channels()) return false;
+    const Fit& without = trials_.without(touched(effect, problem_));
+    const auto spread = [this](const CvFit& fit) {
+      const Eigen::VectorXd left = left_of(problem_.data(fit.cv), fit);
+      double sum = 0.0, square = 0.0, count = 0.0;
+      for (const double value : left)
+        if (std::isfinite(value)) sum += value, square += value * value, ++count;
+      return square - sum * sum / std::max(count, 1.0);
+    };
+    return std::any_of(trial.fit.cvs.begin(), trial.fit.cvs.end(), [&](const CvFit& with) {
+      const auto same = std::find_if(without.cvs.begin(), without.cvs.end(),
+                                     [&](const CvFit& fit) { return fit.cv == with.cv; });
+      return same != without.cvs.end() && spread(with) > kSpreads * spread(*same);
+    });
   }
 
   void refine(Trial& trial, const Trial& best) {

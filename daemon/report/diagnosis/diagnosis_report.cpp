@@ -135,6 +135,7 @@ Json scores_json(const DiagnosisRun& run) {
                     {"fit_before", score.fit_before},
                     {"fit_after", score.fit_after},
                     {"gain_interval", {score.gain_low, score.gain_high}},
+                    {"level_after", score.level_after},
                     {"refused", score.refused},
                     {"unit", run.unit.cv[cv].unit},
                     {"horizons", horizons_json(score, run.condensing.every)}});
@@ -330,6 +331,7 @@ std::string to_text(const DiagnosisRun& run) {
             ", which the calibrated test of the channels does not confirm\n";
   for (const Unexplained& left : diagnosis.unexplained)
     text += "\n  " + unexplained_text(run, left) + '\n';
+  for (const std::string& moved : moved_levels(run)) text += "\n  " + moved + '\n';
   if (!diagnosis.scores.empty()) text += score_table(run);
   if (run.closed_loop) text += loop_table(run);
   return text;

@@ -14,6 +14,9 @@
 namespace mpm::report {
 namespace {
 
+/// Share of a free run's squared error from which on a level is most of it. Chosen.
+constexpr double kMostlyLevel = 0.5;
+
 /// The CV that gained most: "On samples that no fit has seen, ...".
 std::string gain_of_extension(const DiagnosisRun& run) {
   const SignalNames names = names_of(run);
@@ -156,6 +159,24 @@ std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left) {
   unnamed.subject = left.subject;
   text += left.subject.cause->sentence(unnamed, names);
   return text + " (p " + number_text(left.p_value, 2) + ")";
+}
+
+std::vector<std::string> moved_levels(const DiagnosisRun& run) {
+  std::vector<std::string> texts;
+  for (std::size_t cv = 0; cv < run.diagnosis.scores.size(); ++cv) {
+    const CvScore& score = run.diagnosis.scores[cv];
+    const double share = score.level_after / score.rmse_after;
+    if (!(score.fit_after < 0.0 && share * share > kMostlyLevel)) continue;
+    const config::CvSignal& signal = run.unit.cv.at(cv);
+    texts.push_back(
+        signal.tag + " lies " + number_text(std::abs(score.level_after), 2) +
+        (signal.unit.empty() ? "" : " " + signal.unit) +
+        (score.level_after > 0.0 ? " above" : " below") +
+        " its simulation on unseen samples, which is more than it moves: what is not "
+        "measured has moved its level, or its sensor drifts. A disturbance that wanders "
+        "looks the same");
+  }
+  return texts;
 }
 
 }  // namespace mpm::report

@@ -438,6 +438,7 @@ nlohmann::ordered_json page_data(const DiagnosisRun& run) {
   json["unexplained"] = Json::array();
   for (const Unexplained& left : diagnosis.unexplained)
     json["unexplained"].push_back(unexplained_text(run, left));
+  for (const std::string& moved : moved_levels(run)) json["unexplained"].push_back(moved);
   json["refused"] = refused_json(run);
   if (run.performance) json["control"] = control_section(*run.performance, run.unit.sample_time_s);
   json["errors"] = errors_json(run);

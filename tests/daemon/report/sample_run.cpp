@@ -212,7 +212,8 @@ report::DiagnosisRun matching_run() {
   run.diagnosis.refused.clear();
   run.diagnosis.unexplained.clear();
   run.closed_loop.reset();
-  for (CvScore& each : run.diagnosis.scores) each = {0.1, 0.1, 80.0, 80.0, 0.0, 0.0, false, {}};
+  for (CvScore& each : run.diagnosis.scores)
+    each = {0.1, 0.1, 80.0, 80.0, 0.0, 0.0, 0.0, false, {}};
   return run;
 }
 

@@ -39,6 +39,7 @@ TEST_CASE("errors and fits of two simulations") {
   CHECK(result.rmse_after == Approx(0.5));
   CHECK(result.fit_before == Approx(100.0 * (1.0 - 2.0 / std::sqrt(1.25))));
   CHECK(result.fit_after == Approx(100.0 * (1.0 - 0.5 / std::sqrt(1.25))));
+  CHECK(result.level_after == Approx(-0.25));
   CHECK_FALSE(result.refused);
 }
 
@@ -47,6 +48,7 @@ TEST_CASE("rows that were not measured take no part in a score") {
   measured << 1.0, kUnknown, -1.0, 1.0, kUnknown, -1.0;
   before(1) = after(4) = 1e6;
   const CvScore result = score(measured, before, after, 1, 1);
+  CHECK(result.level_after == 0.0);
   CHECK(result.rmse_before == 1.0);
   CHECK(result.rmse_after == 1.0);
   CHECK(result.fit_before == Approx(0.0).margin(1e-12));

@@ -114,6 +114,25 @@ TEST_CASE("a match has no findings and an undetermined verdict a reason") {
   CHECK(report::to_json(run)["details"] == "Too little moves.");
 }
 
+TEST_CASE("a level that has moved by more than the CV does is said, and no other") {
+  DiagnosisRun run = matching_run();
+  const auto says = [&](const std::string& text) {
+    return report::to_text(run).find(text) != std::string::npos;
+  };
+  CHECK_FALSE(says("its simulation on unseen samples"));
+  CvScore& score = run.diagnosis.scores[1];
+  score.fit_after = -20.0;
+  score.rmse_after = 0.5;
+  score.level_after = -0.4;
+  CHECK(says("y2 lies 0.4 "));
+  CHECK(says(" below its simulation on unseen samples"));
+  score.level_after = 0.3;  // less than half of the squared error
+  CHECK_FALSE(says("its simulation on unseen samples"));
+  score.level_after = 0.4;
+  score.fit_after = 1.0;
+  CHECK_FALSE(says("its simulation on unseen samples"));
+}
+
 TEST_CASE("what is not a number is null, and the report stays JSON") {
   DiagnosisRun run = sample_run(600);
   run.diagnosis.scores[0].rmse_after = std::nan("");
