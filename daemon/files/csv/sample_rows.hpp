@@ -48,9 +48,8 @@ class TagTimes {
   std::int64_t begin_ns_ = 0;  // of the last one
 };
 
-/// Frames of samples that come one by one: those of one time make a row; or those of nearly one
-/// time
-/// (`CsvFormat::together_ns`), where each tag has times of its own and they go together so.
+/// Frames of samples that come one by one: those of one time make a row. Where each tag has times
+/// of its own, but they nearly go together, those of nearly one time do (`CsvFormat::together_ns`).
 class SampleRows : public RowSource {
  public:
   SampleRows(LineReader& lines, const CsvFormat& format, const SignalCounts& counts,

@@ -1,6 +1,8 @@
 #include "daemon/files/times/time_choice.hpp"
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 
 #include "config/finding.hpp"
 #include "daemon/files/times/local_times.hpp"
@@ -16,10 +18,22 @@ constexpr std::int64_t kCalendarNs = 315'532'800'000'000'000;
   throw config::InputError({option, 0, 0, config::Severity::kError, "", message});
 }
 
+/// 28/3/2026 has the day first, whatever the file is like; 4/3/2026 may be either.
+std::optional<std::int64_t> in_the_only_order(const std::string& text,
+                                              const std::shared_ptr<const TimeZone>& zone) {
+  std::string problem;
+  const auto day_first = LocalTimes({zone, nullptr}, DateOrder::kDayFirst).read(text, "", problem);
+  const auto month_first =
+      LocalTimes({zone, nullptr}, DateOrder::kMonthFirst).read(text, "", problem);
+  if (day_first && month_first && *day_first != *month_first) return std::nullopt;
+  return day_first ? day_first : month_first;
+}
+
 std::int64_t time_of(const std::string& option, const std::string& text, const TimeStyle& times) {
   std::string problem;
   std::optional<std::int64_t> time_ns = LocalTimes({times.zone, nullptr}).read(text, "", problem);
   if (!time_ns && times.format) time_ns = LocalTimes(times).read(text, "", problem);
+  if (!time_ns && !times.format) time_ns = in_the_only_order(text, times.zone);
   if (!time_ns) refuse(option, "'" + text + "' " + problem);
   return *time_ns;
 }

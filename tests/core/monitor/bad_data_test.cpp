@@ -147,6 +147,29 @@ TEST_CASE("implausible values are a part of the bad ones at every moment") {
   CHECK(monitor.counters().implausible.frozen > 400);
 }
 
+// Steps of ten s.d. of the noise, about as far as a CV moves: what changes with them is no change.
+TEST_CASE("a sound CV that is read in steps raises no alarm and no mismatch") {
+  constexpr double kStep = 0.8;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    CAPTURE(seed);
+    test::OpenLoopUnit unit;
+    unit.seed = seed;
+    unit.graded = true;
+    Monitor monitor(unit.model, unit.counts, {false, false}, {}, {});
+    int alarms = 0;
+    unit.run(3000, [&](Frame frame) {
+      auto& values = frame[SignalKind::kCv].values;
+      values = (values.array() / kStep).round() * kStep;
+      monitor.push(frame);
+      alarms += static_cast<int>(monitor.transitions().size());
+    });
+    CHECK(alarms == 0);
+    for (int cv = 0; cv < 2; ++cv)
+      for (int input = 0; input < 2; ++input)
+        CHECK(monitor.channel(cv, input).verdict != Verdict::kMismatch);
+  }
+}
+
 TEST_CASE("gaps, bad values and repeats are counted and skew nothing") {
   const Experiment experiment;
   Monitor monitor = experiment.monitor();

@@ -143,6 +143,9 @@ TEST_CASE("after a restart the controller's alarm counts the channels that stand
   }
   AlarmJournal journal(path);
   Desk desk("alarms-restart");
+  desk.channels[0] = report::mismatch(kMv, kCv);
+  desk.channels[0].alarm = AlarmState::kActive;
+  desk.alarms.recall(desk.channels, {desk.change(AlarmChange::kActive)}, {"gain not known"});
   desk.alarms.keep(journal, 0);
   CHECK(desk.alarms.controller().channels == 1);
   CHECK(desk.alarms.controller().view.message == message);

@@ -23,6 +23,15 @@ TEST_CASE("the first time is taken, the last no more, and what is excluded neith
   const TimeChoice as_in_file({"01/02/2024 00:00", "", {}}, day_first);
   CHECK(as_in_file.takes(1'706'745'600'000'000'000));  // date -u -d 2024-02-01 +%s
   CHECK_FALSE(as_in_file.takes(1'706'745'599'000'000'000));
+  // The thirteenth month is none: of either order, without anybody saying which.
+  for (const char* first : {"28/2/2024 01:00", "2/28/2024 1:00:00 AM"}) {
+    const TimeChoice either({first, "", {}}, {std::make_shared<TimeZone>("UTC"), nullptr});
+    CHECK(either.takes(1'709'082'000'000'000'000));  // date -u -d '2024-02-28 1:00' +%s
+    CHECK_FALSE(either.takes(1'709'081'999'000'000'000));
+  }
+  CHECK_THROWS_AS(
+      TimeChoice({"4/3/2024 01:00", "", {}}, {std::make_shared<TimeZone>("UTC"), nullptr}),
+      config::InputError);
   const TimeChoice dates({"2024-01-01T01:00:00+01:00", "", {}});
   CHECK(dates.takes(19723 * 86400 * kSecond));
   CHECK_FALSE(dates.takes(19723 * 86400 * kSecond - 1));
