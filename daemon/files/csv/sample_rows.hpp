@@ -77,17 +77,18 @@ class SampleRows : public RowSource {
   /// What comes after the last row's sample of a tag; null where nothing does or is gathered.
   [[nodiscard]] const Sample* following(SignalKind kind, std::size_t index) const;
 
+  /// Of a sample, for who comes to know them without gathering them.
+  void note_time(const Slot& slot, std::int64_t time_ns);
+  [[nodiscard]] std::int64_t times() const { return tag_times_.count(); }
+  /// Whether the tags are not sampled together, not even nearly; once gathered, or all noted.
+  [[nodiscard]] bool apart() const { return tag_times_.apart() && near_times_.apart(); }
+
   LineReader& lines_;
   CsvFormat format_;
   LocalTimes times_;
   std::vector<std::string>& notices_;
   std::vector<Cell> cells_;  ///< of the line at hand
   ReadTally tally_;
-  /// Of a sample, for who comes to know them without gathering them.
-  void note_time(const Slot& slot, std::int64_t time_ns);
-  [[nodiscard]] std::int64_t times() const { return tag_times_.count(); }
-  /// Whether the tags are not sampled together, not even nearly.
-  [[nodiscard]] bool apart() const { return tag_times_.apart() && near_times_.apart(); }
 
  private:
   std::optional<Sample> next_sample();
