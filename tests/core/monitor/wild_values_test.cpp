@@ -162,6 +162,28 @@ TEST_CASE("a signal that is in another unit for an hour leaves no trace", "[tria
     }
 }
 
+// Longer than it takes to believe it, and so large that a sample of it outweighs all that follows.
+TEST_CASE("a signal that is 1e12 times as large for five minutes is forgotten once it is back") {
+  for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv}) {
+    CAPTURE(static_cast<int>(kind));
+    test::OpenLoopUnit unit;
+    unit.gain_ratio = 0.75;
+    const auto verdicts = [&](double factor) {
+      Monitor monitor(unit.model, unit.counts, {true, true}, {}, {});
+      unit.run(1800 + 2 * kMemory, [&](Frame frame) {
+        if (frame.interval >= 1500 && frame.interval < 1800) frame[kind].values *= factor;
+        monitor.push(frame);
+      });
+      std::string result;
+      for (int cv = 0; cv < 2; ++cv)
+        for (int input = 0; input < 2; ++input)
+          result += std::to_string(static_cast<int>(monitor.channel(cv, input).verdict));
+      return result;
+    };
+    CHECK(verdicts(1e12) == verdicts(1.0));
+  }
+}
+
 // The input has stood still for 40 samples.
 TEST_CASE("a burst upon a step that has not yet stayed is told from the step") {
   check_healed(1.0, false, {SignalKind::kMv, 2140.0, 47, 5});

@@ -140,6 +140,13 @@ TEST_CASE("after a restart the controller's alarm counts the channels that stand
     desk.sample(true, true);
     CHECK(desk.alarms.controller().channels == 1);
     message = desk.alarms.controller().view.message;
+    // What is said last of the channel is younger than what is said of the controller's alarm.
+    AlarmCommand seen;
+    seen.unit = desk.unit.unit;
+    seen.mv = kMv;
+    seen.cv = kCv;
+    seen.user = "operator";
+    REQUIRE(desk.alarms.apply(seen, 0).accepted);
   }
   AlarmJournal journal(path);
   Desk desk("alarms-restart");
