@@ -80,9 +80,10 @@ void load_signals(const Value* section, UnitConfig& config) {
   if (section == nullptr) return;
   const Map map = section->map({"mv", "dv", "cv", "aux", "raw", "calc"});
   TagReader tags;
+  const std::vector<std::string> limited_keys = {"tag", "unit", "description", "low", "high"};
   const std::vector<std::string> input_keys = {"tag", "unit", "description"};
-  read_list(map, "mv", {"tag", "unit", "description", "low", "high"}, tags, config.mv);
-  read_list(map, "dv", input_keys, tags, config.dv);
+  read_list(map, "mv", limited_keys, tags, config.mv);
+  read_list(map, "dv", limited_keys, tags, config.dv);
   read_list(map, "cv", {"tag", "unit", "description", "prediction", "setpoint", "low", "high"},
             tags, config.cv);
   read_list(map, "aux", input_keys, tags, config.aux);

@@ -21,7 +21,8 @@ struct InputSignal {
   std::string tag;
   std::string unit;  ///< engineering unit, for display
   std::string description;
-  SignalLimits limits = {};  ///< hard ones of an MV, its units; of no other
+  /// Hard ones of an MV, what the instrument of a DV gives; signal units. None of other signals.
+  SignalLimits limits = {};
 };
 
 struct CvSignal {

@@ -25,12 +25,14 @@ McapFrames::McapFrames(const std::vector<std::string>& paths, const config::Unit
     : unit_(unit),
       purpose_(purpose),
       calculator_(unit),
+      ranges_(unit, purpose),
       aligner_(
           unit.counts(), look_into(paths, purpose),
           [this](const Frame& frame) {
             last_frame_ns_ = now_ns_;
             ready_.push_back(frame);
             calculator_.fill(ready_.back());
+            ranges_.mark(ready_.back());
           },
           files::aligner_settings(unit)),
       samples_(paths),

@@ -13,6 +13,7 @@
 #include "daemon/files/calculator.hpp"
 #include "daemon/files/csv/tag_table.hpp"
 #include "daemon/files/frame_source.hpp"
+#include "daemon/files/input_ranges.hpp"
 
 namespace mpm::bag {
 
@@ -46,6 +47,7 @@ class McapFrames : public files::FrameSource {
   std::vector<std::string> notices_;
   std::deque<Frame> ready_;
   files::Calculator calculator_;
+  files::InputRanges ranges_;
   Aligner aligner_;
   SampleStream samples_;
   std::int64_t patience_ns_;

@@ -17,6 +17,7 @@
 #include "daemon/bus/trouble.hpp"
 #include "daemon/bus/unit_inputs.hpp"
 #include "daemon/files/calculator.hpp"
+#include "daemon/files/input_ranges.hpp"
 #include "daemon/history/journal.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/checkpoints.hpp"
@@ -157,6 +158,7 @@ class UnitPipeline {
   UnitAlarms alarms_;
   PerformanceWindow performance_;
   files::Calculator calculator_;
+  files::InputRanges ranges_;
   Frame calculated_;  // a copy of the aligner's, with what is calculated
   Aligner aligner_;
   std::optional<LiveDiagnosis> diagnosis_;

@@ -8,8 +8,8 @@
 
 #include "config/finding.hpp"
 #include "daemon/files/csv/averaged_rows.hpp"
-#include "daemon/files/csv/calculated_rows.hpp"
 #include "daemon/files/csv/held_rows.hpp"
+#include "daemon/files/csv/prepared_rows.hpp"
 #include "daemon/files/csv/spread_rows.hpp"
 
 namespace mpm::files {
@@ -65,7 +65,7 @@ void CsvReader::open(const config::UnitConfig& unit, const TimeStyle& times) {
   const int header_line = lines_.number();
   rows_ = read_rows(lines_, format, header, tags_, counts, row_notices_);
   if (rows_->has_own_times()) hold(counts);
-  if (!unit.calc.empty()) rows_ = std::make_unique<CalculatedRows>(std::move(rows_), unit);
+  rows_ = std::make_unique<PreparedRows>(std::move(rows_), unit, purpose_);
   const std::vector<std::string> told = tags_.notices();
   notices_.insert(notices_.begin(), told.begin(), told.end());
 

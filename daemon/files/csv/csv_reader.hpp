@@ -20,7 +20,7 @@ namespace mpm::files {
 /// Where each tag has times of its own, its values are held from one to the next or lie on the line
 /// to it (`HeldRows`); minutes without seconds are spread (`SpreadRows`); to judge a unit, rows at
 /// least twice as dense as its sample_time are averaged down to it (`AveragedRows`). Each is noted.
-/// Calculated signals are computed in each row (`CalculatedRows`).
+/// Calculated signals are computed in each row (`PreparedRows`).
 ///
 /// Frame k of a file is numbered round((t - t_first) / sample_time); rows whose time does not grow
 /// keep their number, for the monitor to judge.

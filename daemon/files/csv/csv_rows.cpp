@@ -4,7 +4,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "daemon/files/csv/calculated_rows.hpp"
+#include "daemon/files/csv/prepared_rows.hpp"
 
 namespace mpm::files {
 namespace {
@@ -66,7 +66,8 @@ CsvRows::CsvRows(const std::string& path, const TimeStyle& times, const config::
   tags_ = std::make_unique<TagTable>(unit);
   const SignalCounts counts = unit.counts();
   rows_ = read_rows(lines_, format_, header, *tags_, counts, notices_);
-  if (!unit.calc.empty()) rows_ = std::make_unique<CalculatedRows>(std::move(rows_), unit);
+  if (!unit.calc.empty())
+    rows_ = std::make_unique<PreparedRows>(std::move(rows_), unit, Purpose::kKeep);
 }
 
 void CsvRows::call_as(const config::UnitConfig& known, int header_line,

@@ -8,6 +8,7 @@
 
 #include "config/unit_config.hpp"
 #include "core/signal/frame.hpp"
+#include "daemon/files/purpose.hpp"
 
 namespace mpm::files {
 
@@ -16,9 +17,6 @@ struct Slot {
   SignalKind kind = SignalKind::kMv;
   int index = 0;
 };
-
-/// What a file is read for: to judge the unit, or to keep whatever of it is there.
-enum class Purpose { kJudge, kKeep };
 
 /// The measured tags of a unit and which of them a file holds. A name that is no tag is read as one
 /// where it can only be that tag, decorated (`tag_names`): no name in the file is that tag, and no
