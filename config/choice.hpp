@@ -20,7 +20,9 @@ struct Choice {
   return std::array{Choice<CorrelationKind>{"lagged_partial", CorrelationKind::kLaggedPartial},
                     Choice<CorrelationKind>{"partial", CorrelationKind::kPartial},
                     Choice<CorrelationKind>{"conventional", CorrelationKind::kConventional},
-                    Choice<CorrelationKind>{"alternative", CorrelationKind::kAlternative}};
+                    Choice<CorrelationKind>{"alternative", CorrelationKind::kAlternative},
+                    Choice<CorrelationKind>{"spearman", CorrelationKind::kSpearman},
+                    Choice<CorrelationKind>{"rank_partial", CorrelationKind::kRankPartial}};
 }
 [[nodiscard]] constexpr auto choices(ThresholdKind /*which*/) {
   return std::array{Choice<ThresholdKind>{"f_test", ThresholdKind::kFTest},

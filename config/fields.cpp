@@ -18,7 +18,8 @@ const std::vector<Field<MonitorSettings>>& monitor_fields() {
       {"gain_error_of_interest", &S::gain_error_of_interest, kPositive,
        "relative; larger errors must be visible to say match"},
       {"correlation", &S::correlation, kAny,
-       "what is reported: lagged_partial | partial | conventional | alternative"},
+       "what is reported: lagged_partial | partial | conventional | alternative | spearman | "
+       "rank_partial"},
       {"threshold", &S::threshold, kAny, "f_test | mean_line (the thesis's; not calibrated)"},
       {"nonlinear", &S::nonlinear, kAny, "polynomial | kernel | random_features | off"},
       {"controlling_lags", &S::controlling_lags, {.low = 1, .high = 10000}, "samples"},

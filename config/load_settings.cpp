@@ -56,6 +56,9 @@ void load_monitor(const Value* section, const UnitConfig& unit, MonitorSettings&
     load_materiality(*materiality, unit, monitor);
   if (monitor.first_lag > monitor.last_lag)
     place_of(map, "first_lag", "last_lag").error("first_lag must not be above last_lag");
+  if (of_ranks(monitor.correlation) && monitor.threshold == ThresholdKind::kMeanLine)
+    place_of(map, "threshold", "correlation")
+        .error("mean_line is no threshold of rank correlations");
   if (map.find("memory") != nullptr && monitor.memory_s > 0.0 &&
       monitor.memory_s <= unit.sample_time_s)
     map.find("memory")->error("must be longer than the sample time");

@@ -9,6 +9,11 @@ enum class CorrelationKind {
   kPartial,        ///< (3.14): u~_i(t)
   kConventional,   ///< (3.4) at every lag: nothing
   kAlternative,    ///< (3.16): u~_i(t) and u(t-1), ..., u(t-g), its own past too
+  kSpearman,       ///< of ranks, nothing (`RankCorrelation`, as the next)
+  kRankPartial,    ///< of ranks, those of u~_i(t)
 };
+[[nodiscard]] constexpr bool of_ranks(CorrelationKind kind) {
+  return kind == CorrelationKind::kSpearman || kind == CorrelationKind::kRankPartial;
+}
 
 }  // namespace mpm

@@ -16,7 +16,7 @@ constexpr double kTiny = std::numeric_limits<double>::min();
 // Before any member is built from it.
 LaggedCorrelation::Shape checked(LaggedCorrelation::Shape shape, double lambda) {
   if (shape.inputs < 1 || shape.cvs < 1 || shape.controlling_lags < 0 || shape.last_lag < 0 ||
-      shape.first_lag > shape.last_lag || !(lambda > 0.0 && lambda <= 1.0))
+      shape.first_lag > shape.last_lag || !(lambda > 0.0 && lambda <= 1.0) || of_ranks(shape.kind))
     throw std::invalid_argument("impossible shape of the lagged correlation");
   if (shape.kind == CorrelationKind::kPartial || shape.kind == CorrelationKind::kConventional)
     shape.controlling_lags = 0;

@@ -195,13 +195,21 @@ inline constexpr double kSlowerThanLags = 2.0;
 }  // namespace regression_shape
 
 /// What a monitor takes (`monitor_cost`). Measured, `./run bench`: seconds for each entry of a
-/// factor that a row is rotated into, for each that an evaluation inverts, and for each lag of a
-/// pulse and number of what it is projected on where the size of an error is fitted.
+/// factor that a row is rotated into, for each that an evaluation inverts, for each lag of a pulse
+/// and number of what it is projected on where the size of an error is fitted, and for each rank
+/// that a sample moves.
 namespace cost {
 inline constexpr double kPerRotated = 2e-10;
 inline constexpr double kPerInverted = 1e-10;
 inline constexpr double kPerFitted = 4e-8;
+inline constexpr double kPerRanked = 1.3e-9;
 }  // namespace cost
+
+/// Samples that rank correlations are over, at most: sums of their squares stay whole numbers.
+/// Derived: (10^6)^3 / 3 is below 2^63.
+namespace correlations {
+inline constexpr double kMostRanked = 1e6;
+}  // namespace correlations
 
 /// No setting counts more samples than these: an int holds them, and nobody waits for them.
 inline constexpr double kMostSamples = 1e9;

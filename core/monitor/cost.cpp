@@ -16,11 +16,13 @@ namespace {
 
 using calibration::cost::kPerFitted;
 using calibration::cost::kPerInverted;
+using calibration::cost::kPerRanked;
 using calibration::cost::kPerRotated;
 
 constexpr double kNumber = sizeof(double);
-constexpr double kTwice = 2.0;        // a lag window holds each value so often
-constexpr double kPerCv = 2.0 + 2.0;  // residual and weight, share and scale
+constexpr double kNumberAndRank = 1.5;  // a rank takes half as much
+constexpr double kTwice = 2.0;          // a lag window holds each value so often
+constexpr double kPerCv = 2.0 + 2.0;    // residual and weight, share and scale
 
 }  // namespace
 
@@ -61,12 +63,15 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
                      static_cast<double>(derived.residual_poles.size()) +
                      static_cast<double>(calibration::simulation::kStartPoles.size());
   const double scan = kTwice * kTwice * calibration::change_scan::kMoments * led * (led + 1.0);
+  const bool ranked = of_ranks(derived.correlation);
+  const double ranks = (inputs + responses) * derived.ranked;
+  const double correlated = ranked ? kNumberAndRank * ranks : tree;
   cost.bytes = kNumber * (history + factors + nonlinear + 2.0 * cvs * terms * terms +
-                          2.0 * evaluation + tree + shapes + scan);
-  cost.seconds = kPerRotated * (factors + nonlinear + tree) +
-                 kPerInverted * cvs *
-                     (memories * std::pow(inputs * block, 3) + std::pow(terms, 3)) /
-                     derived.evaluation_stride;
+                          2.0 * evaluation + correlated + shapes + scan);
+  cost.seconds =
+      kPerRotated * (factors + nonlinear) + (ranked ? kPerRanked * ranks : kPerRotated * tree) +
+      kPerInverted * cvs * (memories * std::pow(inputs * block, 3) + std::pow(terms, 3)) /
+          derived.evaluation_stride;
   const double past =
       2.0 + derived.residual_order + static_cast<double>(derived.residual_poles.size());
   cost.seconds_alarmed = cost.seconds + kPerFitted * cvs * memories * (derived.fir_lags + lags) *

@@ -60,6 +60,7 @@ void derive_memories(const ModelSpec& spec, const MonitorSettings& monitor,
   const double fast = effective(monitor.fast_memory_s, memories::kFastEffectiveSamples,
                                 memories::kFastRowsPerColumn);
   derived.lambda = forgetting(lasting);
+  derived.ranked = whole(std::min(lasting, calibration::correlations::kMostRanked));
   if (monitor.sliding_window)
     derived.memories.push_back({1.0, whole(lasting)});
   else

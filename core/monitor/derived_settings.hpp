@@ -12,6 +12,7 @@ namespace mpm {
 /// Settings with every "derive" filled in, in samples.
 struct DerivedSettings {
   double lambda = 1.0;                         ///< forgetting factor of the partial correlations
+  int ranked = 0;                              ///< samples that rank correlations are over
   std::vector<MemoryLength> memories;          ///< of the mismatch detector: long, fast
   int remembered = 0;                          ///< samples that a CV can start afresh from
   int evaluation_stride = 1;                   ///< samples from one evaluation of a CV to the next

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <variant>
 
 #include "core/mismatch/lagged_correlation.hpp"
 #include "core/monitor/derived_settings.hpp"
 #include "core/monitor/unit_inputs.hpp"
 #include "core/monitor/unit_residuals.hpp"
+#include "core/nonlinear/rank_correlation.hpp"
 #include "core/signal/frame.hpp"
 
 namespace mpm {
@@ -26,26 +28,31 @@ class ReportedCorrelation {
   /// Takes a sample; where a value has been unknown for long, the rows break off.
   void take(const UnitInputs& inputs, const UnitResiduals& residuals);
   /// The samples so far and the next one are not neighbours.
-  void close_window() { correlation_.close_window(); }
+  void close_window() {
+    std::visit([](auto& correlation) { correlation.close_window(); }, correlation_);
+  }
 
   /// As of the last sample; nothing happens where it was done already.
   void evaluate();
   /// Of the last `evaluate`:
   [[nodiscard]] CorrelationPeak peak(int cv, int input) const;
+  /// Of correlations that are not of ranks (`LaggedCorrelation`).
   [[nodiscard]] double mean_line() const;
   [[nodiscard]] Eigen::Ref<const Eigen::VectorXd> values(int cv, int input) const {
-    return correlation_.correlations(cv, input);
+    return std::visit([&](const auto& correlation) { return correlation.correlations(cv, input); },
+                      correlation_);
   }
 
   template <class Archive>
   void archive(Archive& a) {
-    // not archived: first_lag_ (construction)
-    a(correlation_, current_);
+    // not archived: first_lag_, last_lag_ (construction)
+    std::visit([&a](auto& correlation) { correlation.archive(a); }, correlation_);
+    a(current_);
   }
 
  private:
-  int first_lag_;
-  LaggedCorrelation correlation_;
+  int first_lag_, last_lag_;
+  std::variant<LaggedCorrelation, RankCorrelation> correlation_;
   bool current_ = false;  // knows the last sample
 };
 

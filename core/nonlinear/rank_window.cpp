@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "core/archive/archive.hpp"
@@ -31,24 +32,21 @@ void RankWindow::push(const Eigen::Ref<const Eigen::VectorXd>& values) {
 void RankWindow::replace(int signal, std::size_t slot, double value) {
   double* values = values_.data() + first(signal);
   std::int32_t* doubled = doubled_.data() + first(signal);
-  const auto count = static_cast<std::size_t>(count_);
-  if (count == length_) {
-    const double gone = values[slot];
-    for (std::size_t l = 0; l < count; ++l)
-      doubled[l] -= 2 * static_cast<std::int32_t>(gone < values[l]) +
-                    static_cast<std::int32_t>(gone == values[l]);
-  }
+  const bool full = static_cast<std::size_t>(count_) == length_;
+  const double gone = full ? values[slot] : std::numeric_limits<double>::infinity();
   values[slot] = value;
   std::int32_t own = 0;
-  const std::size_t filled = std::max(count, slot + 1);
+  const std::size_t filled = full ? length_ : slot + 1;
   for (std::size_t l = 0; l < filled; ++l) {
-    const auto above = static_cast<std::int32_t>(value < values[l]);
-    const auto same = static_cast<std::int32_t>(value == values[l]);
-    const auto below = static_cast<std::int32_t>(value > values[l]);
-    doubled[l] += 2 * above + same;
-    own += 2 * below + same;
+    const double each = values[l];
+    const auto above = static_cast<std::int32_t>(value < each);
+    const auto same = static_cast<std::int32_t>(value == each);
+    doubled[l] += 2 * above + same - 2 * static_cast<std::int32_t>(gone < each) -
+                  static_cast<std::int32_t>(gone == each);
+    own += 2 * above + same;
   }
-  doubled[slot] = own + 1;
+  // Those above it and itself are known, the others are below.
+  doubled[slot] = 2 * static_cast<std::int32_t>(filled) - own + 1;
 }
 
 void RankWindow::archive(Archive& a) {

@@ -243,9 +243,9 @@ TEST_CASE("Mistakes in the head of a file are told at their place") {
       {"unit: t\nsample_time: 1\nsignals: {mv: {tag: u1, low: x}, cv: y1}\nmodel: {channels: {cv: "
        "y1, mv: u1, gain: 1}}\n",
        "u.yaml:3:30: error: signals.mv.low: must be a number, not 'x'"},
-      {"unit: t\nsample_time: 1\nsignals: {mv: u1, dv: {tag: d1, low: 0}, cv: y1}\nmodel: "
+      {"unit: t\nsample_time: 1\nsignals: {mv: u1, aux: {tag: a1, low: 0}, cv: y1}\nmodel: "
        "{channels: {cv: y1, mv: u1, gain: 1}}\n",
-       "u.yaml:3:33: error: signals.dv.low: unknown key (known: tag, unit, description)"},
+       "u.yaml:3:34: error: signals.aux.low: unknown key (known: tag, unit, description)"},
       {"- 1\n- 2\n",
        "u.yaml:1:1: error: a unit file is a map of keys such as `unit:` and "
        "`signals:`"},

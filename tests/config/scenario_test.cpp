@@ -351,9 +351,12 @@ TEST_CASE("Every mistake in a scenario is told at its place") {
        "folder/s.yaml:1:29: error: monitor.controlling_lags: must be >= 1 and <= 10000, not 0"},
       {"monitor: {correlation: lagged}\n",
        "folder/s.yaml:1:24: error: monitor.correlation: must be one of lagged_partial, partial, "
-       "conventional, alternative, not 'lagged'"},
+       "conventional, alternative, spearman, rank_partial, not 'lagged'"},
       {"monitor: {threshold: [f_test]}\n",
        "folder/s.yaml:1:22: error: monitor.threshold: must be a text, not a list"},
+      {"monitor: {correlation: spearman, threshold: mean_line}\n",
+       "folder/s.yaml:1:45: error: monitor.threshold: mean_line is no threshold of rank "
+       "correlations"},
       {"monitor: {first_lag: 21}\n",
        "folder/s.yaml:1:22: error: monitor.first_lag: first_lag must not be above last_lag"},
       {"monitor: {memory: 1}\n",

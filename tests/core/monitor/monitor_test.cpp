@@ -227,6 +227,30 @@ TEST_CASE("the mean line decides where the settings say so, on the correlation t
   CHECK(monitor.channel(0, 1).verdict == Verdict::kMismatch);
 }
 
+TEST_CASE(
+    "rank correlations are reported where the settings say so, and no verdict rests on them") {
+  Experiment experiment;
+  experiment.gain_ratio = 0.75;
+  Monitor usual = experiment.monitor();
+  MonitorSettings settings;
+  settings.correlation = GENERATE(CorrelationKind::kSpearman, CorrelationKind::kRankPartial);
+  Monitor ranked(experiment.model, experiment.counts, {true, true}, settings, {});
+  experiment.run(2000, [&](const Frame& frame) {
+    usual.push(frame);
+    ranked.push(frame);
+  });
+  ranked.correlate();
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 2; ++i) {
+      CHECK(ranked.channel(j, i).verdict == usual.channel(j, i).verdict);
+      CHECK(ranked.channel(j, i).p_value == usual.channel(j, i).p_value);
+    }
+  // The plant's gain is less negative than the model says: as of the others.
+  CHECK(ranked.channel(0, 1).partial_correlation > 0.1);
+  CHECK(ranked.channel(0, 1).lag >= 1);
+  CHECK(std::abs(ranked.channel(1, 0).partial_correlation) < 0.1);
+}
+
 TEST_CASE("units of any size give the same verdicts") {
   // Input 0 in units 2^20 larger, CV 1 in units 2^20 smaller: powers of two, so that no rounding
   // differs and the statistics are the same to the last digits.

@@ -47,7 +47,7 @@ TEST_CASE("mpm detect takes the monitor settings of a scenario, and nothing else
   CHECK(read_file(folder.file("err")) ==
         folder.file("bad.yaml") +
             ":1:24: error: monitor.correlation: must be one of lagged_partial, partial, "
-            "conventional, alternative, not 'none'\n");
+            "conventional, alternative, spearman, rank_partial, not 'none'\n");
 }
 
 }  // namespace

@@ -1,0 +1,108 @@
+#include "core/nonlinear/rank_correlation.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/allocation_counter.hpp"
+#include "tests/core/counter_noise.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int kFirstLag = -2, kLastLag = 5, kLength = 400;
+
+// Two inputs that move together, and a CV that follows the cube of the first three samples later.
+double input(int which, int k) {
+  return test::uniform(1, k) + 0.5 * test::uniform(2 + static_cast<std::uint64_t>(which), k);
+}
+double residual(int k) { return std::pow(input(0, k - 3), 3) + 0.1 * test::uniform(9, k); }
+
+RankCorrelation after(int samples, bool partial, int gap_at = -1) {
+  RankCorrelation correlation({2, 1, kFirstLag, kLastLag, partial}, kLength);
+  for (int k = 0; k < samples; ++k) {
+    if (k == gap_at) correlation.close_window();
+    correlation.update(Eigen::Vector2d(input(0, k), input(1, k)),
+                       Eigen::VectorXd::Constant(1, residual(k)));
+  }
+  correlation.evaluate();
+  return correlation;
+}
+
+// The same rows in a window of their own: oracle, by another way.
+double of_rows(int samples, int lag, bool partial) {
+  RankWindow window(3, kLength);
+  for (int t = 2; t + kLastLag < samples; ++t)
+    window.push(Eigen::Vector3d(input(0, t), input(1, t), residual(t + lag)));
+  const std::vector<int> held = {1};
+  return partial ? window.partial_coefficient(0, 2, held) : window.coefficient(0, 2);
+}
+
+TEST_CASE("rank correlations are those of the rows of each lag") {
+  for (const bool partial : {false, true})
+    for (const int samples : {200, 700}) {  // a window that is not full, and one that slides
+      const RankCorrelation correlation = after(samples, partial);
+      for (int lag = kFirstLag; lag <= kLastLag; ++lag) {
+        CAPTURE(partial, samples, lag);
+        // Rows begin where the first lag has its first sample.
+        CHECK(correlation.correlations(0, 0)(lag - kFirstLag) ==
+              Approx(of_rows(samples, lag, partial)).margin(1e-12));
+      }
+    }
+}
+
+// The ranks of a cube are those of what it is of: 1 at its lag but for the noise.
+TEST_CASE("what bends is seen at its lag, and held inputs take their part away") {
+  const RankCorrelation plain = after(1000, false), partial = after(1000, true);
+  const auto at = [](const RankCorrelation& correlation, int which) {
+    return correlation.correlations(0, which)(3 - kFirstLag);
+  };
+  CHECK(at(plain, 0) > 0.95);
+  CHECK(at(plain, 1) > 0.5);
+  CHECK(at(partial, 0) > 0.9);
+  CHECK(std::abs(at(partial, 1)) < 0.2);
+}
+
+TEST_CASE("no row of ranks spans a gap") {
+  // All that is after the gap is within the window: what was before it makes no difference but for
+  // the rows before.
+  RankCorrelation with({2, 1, kFirstLag, kLastLag, false}, 3);
+  for (int k = 0; k < 6; ++k)
+    with.update(Eigen::Vector2d(k, -k), Eigen::VectorXd::Constant(1, 2.0 * k));
+  with.close_window();
+  with.update(Eigen::Vector2d(9.0, 9.0), Eigen::VectorXd::Constant(1, 0.0));
+  with.evaluate();
+  CHECK(with.correlations(0, 0).isZero());  // no row yet: eight samples are needed
+}
+
+TEST_CASE("a signal that stands still has no rank correlation") {
+  for (const bool partial : {false, true}) {
+    RankCorrelation correlation({2, 1, 0, 2, partial}, 50);
+    for (int k = 0; k < 60; ++k)
+      correlation.update(Eigen::Vector2d(4.0, input(0, k)),
+                         Eigen::VectorXd::Constant(1, residual(k)));
+    correlation.evaluate();
+    CHECK(correlation.correlations(0, 0).isZero());
+    CHECK_FALSE(correlation.correlations(0, 1).isZero());
+  }
+}
+
+TEST_CASE("taking and asking for rank correlations allocates nothing") {
+  RankCorrelation correlation({2, 1, kFirstLag, kLastLag, true}, kLength);
+  const Eigen::Vector2d inputs(1.0, 2.0);
+  const Eigen::VectorXd residuals = Eigen::VectorXd::Constant(1, 3.0);
+  const std::uint64_t before = test::allocation_count();
+  for (int k = 0; k < 20; ++k) correlation.update(inputs, residuals);
+  correlation.evaluate();
+  CHECK(test::allocation_count() == before);
+}
+
+TEST_CASE("impossible shapes of rank correlations are refused") {
+  CHECK_THROWS_AS(RankCorrelation({0, 1, 0, 2, false}, 50), std::invalid_argument);
+  CHECK_THROWS_AS(RankCorrelation({1, 1, 3, 2, false}, 50), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mpm
