@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/mismatch/calibration.hpp"
 #include "core/mismatch/signature.hpp"
@@ -20,7 +21,7 @@ using calibration::cost::kPerRanked;
 using calibration::cost::kPerRotated;
 
 constexpr double kNumber = sizeof(double);
-constexpr double kNumberAndRank = 1.5;  // a rank takes half as much
+constexpr double kRank = sizeof(std::int32_t);
 constexpr double kTwice = 2.0;          // a lag window holds each value so often
 constexpr double kPerCv = 2.0 + 2.0;    // residual and weight, share and scale
 
@@ -65,7 +66,7 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   const double scan = kTwice * kTwice * calibration::change_scan::kMoments * led * (led + 1.0);
   const bool ranked = of_ranks(derived.correlation);
   const double ranks = (inputs + responses) * derived.ranked;
-  const double correlated = ranked ? kNumberAndRank * ranks : tree;
+  const double correlated = ranked ? (1.0 + kRank / kNumber) * ranks : tree;
   cost.bytes = kNumber * (history + factors + nonlinear + 2.0 * cvs * terms * terms +
                           2.0 * evaluation + correlated + shapes + scan);
   cost.seconds =
