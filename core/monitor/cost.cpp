@@ -22,8 +22,8 @@ using calibration::cost::kPerRotated;
 
 constexpr double kNumber = sizeof(double);
 constexpr double kRank = sizeof(std::int32_t);
-constexpr double kTwice = 2.0;          // a lag window holds each value so often
-constexpr double kPerCv = 2.0 + 2.0;    // residual and weight, share and scale
+constexpr double kTwice = 2.0;        // a lag window holds each value so often
+constexpr double kPerCv = 2.0 + 2.0;  // residual and weight, share and scale
 
 }  // namespace
 

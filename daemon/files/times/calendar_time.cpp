@@ -1,5 +1,6 @@
 #include "daemon/files/times/calendar_time.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -93,7 +94,10 @@ bool take_date(Cursor& cursor, CalendarTime& time) {
   if (named ? second == '\0' : second != separator) return false;
   if (!named && separator != '.') {
     time.two_numbers = true;
-    return fill(time, take_year(cursor), first, month);
+    const std::size_t before = cursor.rest().size();
+    const int year = take_year(cursor);
+    time.short_year = before - cursor.rest().size() == 2;
+    return fill(time, year, first, month);
   }
   return fill(time, take_year(cursor), month, first);
 }
@@ -140,12 +144,33 @@ bool take_clock(Cursor& cursor, bool compact, CalendarTime& time) {
 
 }  // namespace
 
+const char* name_of(DateOrder order) {
+  switch (order) {
+    case DateOrder::kDayFirst:
+      return "day";
+    case DateOrder::kMonthFirst:
+      return "month";
+    case DateOrder::kYearFirst:
+      return "year";
+    case DateOrder::kUnknown:
+      break;
+  }
+  return "";
+}
+
 std::optional<LocalTime> CalendarTime::local(DateOrder order) const {
   if (two_numbers && order == DateOrder::kUnknown) return std::nullopt;
-  const bool swapped = two_numbers && order == DateOrder::kDayFirst;
-  const std::chrono::year_month_day date{
-      std::chrono::year(year), std::chrono::month(static_cast<unsigned>(swapped ? day : month)),
-      std::chrono::day(static_cast<unsigned>(swapped ? month : day))};
+  int y = year, m = month, d = day;
+  if (two_numbers && order == DateOrder::kDayFirst) std::swap(m, d);
+  if (two_numbers && order == DateOrder::kYearFirst) {
+    if (!short_year) return std::nullopt;
+    y = full_year(month);
+    m = day;
+    d = year % 100;
+  }
+  const std::chrono::year_month_day date{std::chrono::year(y),
+                                         std::chrono::month(static_cast<unsigned>(m)),
+                                         std::chrono::day(static_cast<unsigned>(d))};
   if (!date.ok()) return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
   return LocalTime{86400 * days + second_of_day, fraction_ns};
@@ -209,15 +234,16 @@ std::int64_t fraction_ns_of(std::string_view digits) {
 
 std::string format_like(std::string_view text, DateOrder order) {
   Cursor cursor(text);
-  const bool day_first = order == DateOrder::kDayFirst;
   cursor.take_digits();
   const char separator = cursor.peek();
   cursor.take(separator);
   cursor.take_digits();
   cursor.take(separator);
-  std::string format = std::string(day_first ? "%d" : "%m") + separator +
-                       (day_first ? "%m" : "%d") + separator +
-                       (cursor.take_digits().size() == 4 ? "%Y" : "%y");
+  const std::string year = cursor.take_digits().size() == 4 ? "%Y" : "%y";
+  std::string format = order == DateOrder::kDayFirst     ? "%d@%m@" + year
+                       : order == DateOrder::kMonthFirst ? "%m@%d@" + year
+                                                         : year + "@%m@%d";
+  std::replace(format.begin(), format.end(), '@', separator);
   if (cursor.done()) return format;
   const bool half_day = text.back() == 'M' || text.back() == 'm';
   const std::size_t seconds = text.find(':', text.find(':') + 1);

@@ -15,14 +15,20 @@ struct LocalTime {
   std::int64_t fraction_ns = 0;
 };
 
-/// Of a date of two numbers and a year, 03/04/2026: what only the whole file can tell.
-enum class DateOrder { kUnknown, kDayFirst, kMonthFirst };
+/// Of a date of two numbers and a year, 03/04/2026, or of three numbers, 26/03/04: what only the
+/// whole file can tell. The year comes first or last.
+enum class DateOrder { kUnknown, kDayFirst, kMonthFirst, kYearFirst };
+
+/// What comes first: "day", "month", "year"; empty where that is unknown.
+[[nodiscard]] const char* name_of(DateOrder order);
 
 /// A date and a time of day as they are written.
 struct CalendarTime {
   int year = 0, month = 0, day = 0;
   /// `month` and `day` are two numbers as they stand, of which nothing tells which is which.
   bool two_numbers = false;
+  /// The year too is two digits, the last ones: the year may come first (`month`) and the day last.
+  bool short_year = false;
   int second_of_day = 0;  ///< up to 86400, where it is written as 24:00
   std::int64_t fraction_ns = 0;
   std::optional<int> zone_s;  ///< east of UTC, where it is written

@@ -1,11 +1,10 @@
 #include "daemon/files/times/date_order.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace mpm::files {
 namespace {
-
-constexpr int kMonths = 12;
 
 // Clocks that are set to winter time go back so far.
 constexpr std::int64_t kClockChangeS = 3600;
@@ -18,7 +17,8 @@ constexpr std::int64_t kMonthStepS = 86400 * 20;
 
 void DateOrderFinder::Reading::add(const CalendarTime& time, std::string_view series) {
   const std::optional<LocalTime> local = time.local(order);
-  if (!local) return;
+  possible = possible && local;
+  if (!possible) return;
   const auto found = last_s.find(series);
   if (found == last_s.end()) {
     last_s.emplace(series, local->seconds);
@@ -32,31 +32,51 @@ void DateOrderFinder::Reading::add(const CalendarTime& time, std::string_view se
 
 void DateOrderFinder::add(const CalendarTime& time, std::string_view series) {
   if (!time.two_numbers || settled()) return;
-  // As it stands the first number is kept as the month.
-  if (time.month > kMonths) by_number_ = DateOrder::kDayFirst;
-  if (time.day > kMonths) by_number_ = DateOrder::kMonthFirst;
-  day_first_.add(time, series);
-  month_first_.add(time, series);
+  const auto may_be = [&time](const Reading& reading) {
+    return reading.possible && time.local(reading.order);
+  };
+  if (std::none_of(readings_.begin(), readings_.end(), may_be)) return;  // it is no date
+  any_ = true;
+  for (Reading& reading : readings_)
+    if (reading.possible) reading.add(time, series);
+}
+
+std::vector<const DateOrderFinder::Reading*> DateOrderFinder::possible() const {
+  std::vector<const Reading*> found;
+  for (const Reading& reading : readings_)
+    if (any_ && reading.possible) found.push_back(&reading);
+  return found;
+}
+
+DateOrder DateOrderFinder::order_of_rows() const {
+  std::vector<const Reading*> left = possible();
+  std::erase_if(left, [](const Reading* reading) { return reading->goes_back; });
+  if (left.size() == 1) return left.front()->order;
+  std::sort(left.begin(), left.end(), [](const Reading* one, const Reading* other) {
+    return one->longest_s < other->longest_s;
+  });
+  const bool follow =
+      left.size() > 1 && left[0]->longest_s <= kDayStepS && left[1]->longest_s >= kMonthStepS;
+  return follow ? left.front()->order : DateOrder::kUnknown;
 }
 
 DateOrder DateOrderFinder::order() const {
-  if (settled()) return by_number_;
-  if (day_first_.goes_back != month_first_.goes_back)
-    return day_first_.goes_back ? DateOrder::kMonthFirst : DateOrder::kDayFirst;
-  if (day_first_.goes_back) return DateOrder::kUnknown;
-  if (day_first_.longest_s <= kDayStepS && month_first_.longest_s >= kMonthStepS)
-    return DateOrder::kDayFirst;
-  if (month_first_.longest_s <= kDayStepS && day_first_.longest_s >= kMonthStepS)
-    return DateOrder::kMonthFirst;
-  return DateOrder::kUnknown;
+  std::vector<const Reading*> left = possible();
+  if (left.size() == 1) return left.front()->order;
+  const DateOrder by_rows = order_of_rows();
+  std::erase_if(left, [](const Reading* each) { return each->order == DateOrder::kYearFirst; });
+  return by_rows == DateOrder::kUnknown && left.size() == 1 ? left.front()->order : by_rows;
 }
 
 std::string DateOrderFinder::notice() const {
   const DateOrder found = order();
   if (settled() || found == DateOrder::kUnknown) return {};
-  return std::string("dates are read ") +
-         (found == DateOrder::kDayFirst ? "day first" : "month first") +
-         ": in the other order the rows would not follow one another";
+  const std::string read = "dates are read " + std::string(name_of(found)) + " first";
+  if (order_of_rows() == DateOrder::kUnknown)
+    return read +
+           ": two digits at the end are taken for the year; if they are the day, say how it "
+           "is written with --time-format";
+  return read + ": in the other order the rows would not follow one another";
 }
 
 }  // namespace mpm::files

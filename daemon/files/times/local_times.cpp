@@ -16,6 +16,10 @@ bool looks_compact(std::string_view text) {
          text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+bool may_be_a_date(const CalendarTime& written) {
+  return written.local(DateOrder::kDayFirst) || written.local(DateOrder::kMonthFirst);
+}
+
 }  // namespace
 
 std::optional<std::int64_t> LocalTimes::read(std::string_view text, std::string_view series,
@@ -27,7 +31,7 @@ std::optional<std::int64_t> LocalTimes::read(std::string_view text, std::string_
     return std::nullopt;
   }
   if (!written) return read_number(text, problem);
-  if (written->two_numbers && order_ == DateOrder::kUnknown) {
+  if (written->two_numbers && order_ == DateOrder::kUnknown && may_be_a_date(*written)) {
     problem =
         "may be day or month first, and nothing in the file tells: say it with --time-format '" +
         format_like(text, DateOrder::kDayFirst) + "' or '" +
@@ -37,9 +41,8 @@ std::optional<std::int64_t> LocalTimes::read(std::string_view text, std::string_
   const std::optional<LocalTime> local = written->local(order_);
   if (!local) {
     problem = "is no day of the calendar";
-    if (written->two_numbers)
-      problem += order_ == DateOrder::kDayFirst ? ": the dates of the file have the day first"
-                                                : ": the dates of the file have the month first";
+    if (written->two_numbers && order_ != DateOrder::kUnknown)
+      problem += ": the dates of the file have the " + std::string(name_of(order_)) + " first";
     return std::nullopt;
   }
   dates_ = true;
