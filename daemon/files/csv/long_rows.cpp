@@ -67,7 +67,7 @@ class LongRows : public SampleRows {
       if (!lines_.next()) return false;
       lines_.split(format_.delimiter, cells_);
     } while (is_empty(cells_) && ++tally_.empty_rows > 0);
-    return check_width(lines_, cells_, columns_.width, notices_);
+    return check_width(lines_, format_.delimiter, cells_, columns_.width, notices_);
   }
 
   /// Neither a value nor a time: units below the header, counts below the data.

@@ -84,7 +84,7 @@ class PairRows : public SampleRows {
       if (!lines_.next()) return false;
       lines_.split(format_.delimiter, cells_);
     } while (is_no_data());
-    return check_width(lines_, cells_, format_.layout.width, notices_);
+    return check_width(lines_, format_.delimiter, cells_, format_.layout.width, notices_);
   }
 
   /// Rows of nothing, and before the first time units, words, how many values follow.

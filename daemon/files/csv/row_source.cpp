@@ -46,6 +46,15 @@ void count(std::string_view word, std::map<std::string, std::uint64_t, std::less
     ++counts[std::string()];
 }
 
+// (4000 rows), (4000 rows affected), 1 row
+bool is_row_count(std::string_view text) {
+  if (text.starts_with('(') && text.ends_with(')')) text = text.substr(1, text.size() - 2);
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  const std::string_view rest = text.substr(digits);
+  return digits > 0 && (rest == " row" || rest == " rows" || rest.starts_with(" row affected") ||
+                        rest.starts_with(" rows affected") || rest == " rows selected.");
+}
+
 }  // namespace
 
 void ReadTally::tell(std::vector<std::string>& notices) const {
@@ -149,8 +158,18 @@ void clear(Frame& frame, const SignalCounts& counts) {
   }
 }
 
-bool check_width(const LineReader& lines, const std::vector<Cell>& cells, std::size_t width,
+bool check_width(LineReader& lines, char delimiter, std::vector<Cell>& cells, std::size_t width,
                  std::vector<std::string>& notices) {
+  if (cells.size() == 1 && width > 1 && is_row_count(cells.front().text)) {
+    notices.push_back("line " + std::to_string(lines.number()) + ", " +
+                      std::string(cells.front().text) + ", ends the data");
+    while (lines.next()) {  // what such a tool says besides
+      lines.split(delimiter, cells);
+      if (cells.size() >= width)
+        lines.fail(1, "more rows behind their number: give one table a file");
+    }
+    return false;
+  }
   if (cells.size() < width) {
     if (lines.complete())
       lines.fail(cells.back().column,

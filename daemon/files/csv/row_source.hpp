@@ -99,9 +99,10 @@ class RowSource {
 [[nodiscard]] bool is_empty(const std::vector<Cell>& cells);
 /// Gives the frame its size and makes every value missing.
 void clear(Frame& frame, const SignalCounts& counts);
-/// False for a last line that was cut off while being written (noted); InputError where the number
-/// of cells is wrong otherwise.
-[[nodiscard]] bool check_width(const LineReader& lines, const std::vector<Cell>& cells,
+/// False, and noted, at the end of the data: for a last line that was cut off while being written,
+/// or one where a database says how many rows it gave; InputError where the number of cells is
+/// wrong otherwise. `cells` are those of the line.
+[[nodiscard]] bool check_width(LineReader& lines, char delimiter, std::vector<Cell>& cells,
                                std::size_t width, std::vector<std::string>& notices);
 
 }  // namespace mpm::files

@@ -39,7 +39,8 @@ class WideRows : public RowSource {
       lines_.split(format_.delimiter, cells_);
     } while (is_no_data());
     begun_ = true;
-    if (!check_width(lines_, cells_, format_.layout.width, notices_)) return end();
+    if (!check_width(lines_, format_.delimiter, cells_, format_.layout.width, notices_))
+      return end();
     clear(frame, counts_);
     frame.source_time_ns = read_time(lines_, cells_, format_.layout.time, times_);
     for (const Column& column : values_) {

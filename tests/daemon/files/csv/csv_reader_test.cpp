@@ -117,6 +117,32 @@ TEST_CASE("What is ignored or simulated is said once") {
   CHECK(reader("time,u1,u2,y1,p1,amb\n0,1,2,3,4,5\n").notices().empty());
 }
 
+TEST_CASE("The number of rows that a database adds ends the data") {
+  for (const char* count : {"(2 rows)", "(2 rows affected)", "2 rows selected."}) {
+    CsvReader csv = reader("time,u1,u2,y1,p1,amb\n0,1,2,3,4,5\n1,1,2,3,4,5\n\n" +
+                           std::string(count) + "\n\nCompletion time: 2026-03-28T10:00:00\n");
+    Frame frame;
+    int rows = 0;
+    while (csv.next(frame)) ++rows;
+    CHECK(rows == 2);
+    CHECK(csv.notices() ==
+          std::vector<std::string>{"line 5, " + std::string(count) + ", ends the data"});
+  }
+  const auto problem = [](const std::string& rest) {
+    try {
+      CsvReader csv = reader("time,u1,u2,y1,p1,amb\n0,1,2,3,4,5\n" + rest);
+      Frame frame;
+      while (csv.next(frame)) continue;
+    } catch (const config::InputError& error) {
+      return error.finding().message;
+    }
+    return std::string();
+  };
+  CHECK(problem("(1 row)\n1,1,2,3,4,5\n") ==
+        "more rows behind their number: give one table a file");
+  CHECK(problem("(some rows)\n1,1,2,3,4,5\n") == "has 1 cell, the header 6");
+}
+
 TEST_CASE("Intervals are counted from the first row and survive gaps, repeats and steps back") {
   const std::vector<Frame> frames = frames_of(
       "time,u1,u2,y1\n100,1,2,3\n101.02,1,2,3\n101.99,1,2,3\n107,1,2,3\n107,1,2,3\n"
