@@ -148,6 +148,12 @@ Cells cells_at(sqlite3_stmt* row) {
   return cells;
 }
 
+std::optional<std::pair<std::uint64_t, std::uint64_t>> file_at(const std::string& path) {
+  struct stat there {};
+  if (stat(path.c_str(), &there) != 0) return std::nullopt;
+  return std::pair<std::uint64_t, std::uint64_t>(there.st_dev, there.st_ino);
+}
+
 /// In words, for SQLite has one for all: what there is instead of a file that may be read.
 void check_readable(const std::string& path) {
   struct stat there {};
@@ -219,11 +225,14 @@ AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most
       throw std::runtime_error(path + ": is no journal of alarms of this version");
     const Statement last = prepare("SELECT link FROM event ORDER BY id DESC LIMIT 1");
     if (sqlite3_step(last.get()) == SQLITE_ROW) link_ = text_at(last.get(), 0);
+    opened_ = file_at(path);
   } catch (...) {
     sqlite3_close(database_);
     throw;
   }
 }
+
+bool AlarmStore::in_place() const { return opened_ && file_at(path_) == opened_; }
 
 AlarmStore::~AlarmStore() { sqlite3_close(database_); }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/alarm/alarm_settings.hpp"
@@ -63,6 +64,9 @@ class AlarmStore {
   AlarmStore(const AlarmStore&) = delete;
   AlarmStore& operator=(const AlarmStore&) = delete;
 
+  /// Whether the file that was opened still is where it was: what is written to one that somebody
+  /// has removed is lost, and SQLite does not say so.
+  [[nodiscard]] bool in_place() const;
   /// All of them, or none.
   void append(const std::vector<AlarmEntry>& entries);
   /// In the order of writing.
@@ -91,7 +95,8 @@ class AlarmStore {
   std::string path_;
   std::int64_t most_;
   sqlite3* database_ = nullptr;
-  std::string link_;  // of the last entry
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> opened_;  // device and inode
+  std::string link_;                                               // of the last entry
 };
 
 }  // namespace mpm::history

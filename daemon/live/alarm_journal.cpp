@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMostWaiting = 10'000;  // entries, about 5 MB
 constexpr std::chrono::seconds kRetry{1};
+constexpr std::chrono::seconds kLook{5};  // whether the file is still there
 
 }  // namespace
 
@@ -85,6 +86,8 @@ void AlarmJournal::open() {
 // With what SQLite keeps beside it: all of it may be wanted by who mends it.
 void AlarmJournal::put_aside(const std::string& why) {
   store_.reset();
+  std::error_code unknown;
+  const bool removed = !std::filesystem::exists(path_, unknown);
   const std::string name =
       path_ + ".damaged-" + files::formatted_utc(std::time(nullptr), "%Y%m%dT%H%M%SZ");
   for (const char* part : {"", "-wal", "-shm"}) {
@@ -94,6 +97,11 @@ void AlarmJournal::put_aside(const std::string& why) {
     if (failed) throw std::runtime_error(why + "; it cannot be put aside: " + failed.message());
   }
   const MutexLock lock(mutex_);
+  if (removed) {
+    put_aside_ = "the journal of alarms was removed while it was written: what was in " + path_ +
+                 " is lost, and a new one was begun";
+    return;
+  }
   put_aside_ = "the journal of alarms is damaged (" + why + "): it is kept as " + name +
                ", and a new one was begun";
 }
@@ -118,18 +126,21 @@ void AlarmJournal::sync_samples(const std::vector<history::AlarmEntry>& entries)
 void AlarmJournal::run() {
   MutexLock lock(mutex_);
   while (true) {
-    while (!stopped_ && waiting_.empty() && damage_.empty()) changed_.wait(lock);
-    if (waiting_.empty() && damage_.empty()) return;
+    const auto look = std::chrono::steady_clock::now() + kLook;
+    while (!stopped_ && waiting_.empty() && damage_.empty() && changed_.wait_until(lock, look)) {
+    }
+    if (stopped_ && waiting_.empty() && damage_.empty()) return;
     std::vector<history::AlarmEntry> batch = std::exchange(waiting_, {});
     const std::string damage = std::exchange(damage_, {});
     lock.unlock();
     std::string problem;
     try {
-      if (!damage.empty()) put_aside(damage);
+      const bool moved = store_ && !store_->in_place();
+      if (moved || !damage.empty()) put_aside(moved ? "another file is in its place" : damage);
       if (!store_) open();
       sync_samples(batch);
       try {
-        store_->append(batch);
+        if (!batch.empty()) store_->append(batch);
       } catch (const history::DamagedStore& error) {
         put_aside(error.what());
         open();

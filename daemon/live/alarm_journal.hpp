@@ -15,7 +15,7 @@ namespace mpm::live {
 
 /// Writes what happens to alarms into their journal, in a thread of its own: a disk that is slow or
 /// full delays no sample. What cannot be written now waits, up to a limit. A file that is damaged
-/// is put aside under another name, and a new one begun.
+/// is put aside under another name, and a new one begun, as where somebody has removed it.
 class AlarmJournal {
  public:
   /// Makes or opens the file; where that cannot be done now it is tried again and again.
@@ -34,7 +34,7 @@ class AlarmJournal {
   [[nodiscard]] std::vector<history::AlarmEntry> before(const std::string& unit);
   /// Why nothing can be written; empty: all is well.
   [[nodiscard]] std::string problem() const;
-  /// What was put aside and why, in words; empty: nothing was.
+  /// What was put aside and why, or that the file was removed, in words; empty: neither.
   [[nodiscard]] std::string put_aside() const;
   [[nodiscard]] const std::string& path() const { return path_; }
 

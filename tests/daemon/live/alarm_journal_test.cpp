@@ -89,6 +89,33 @@ TEST_CASE("a damaged file is put aside, and a new one begun, whenever the damage
   CHECK(kept == 1);
 }
 
+TEST_CASE("a journal that is removed while it is written is begun anew, and that is said") {
+  const test::TemporaryFolder folder;
+  const bool with_folder = GENERATE(true, false);
+  const std::string state = folder.file("state");
+  const std::string path = state + "/alarms.sqlite";
+  std::filesystem::create_directory(state);
+  AlarmJournal journal(path);
+  journal.push(entry(1));
+  for (int i = 0; i < 500 && entries(path) < 1; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  REQUIRE(entries(path) == 1);
+  std::filesystem::remove_all(with_folder ? state : path);
+  journal.push(entry(2));
+  if (with_folder) {  // as long as it is away, it is said; what comes waits
+    for (int i = 0; i < 500 && journal.problem().empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    CHECK_THAT(journal.problem(), Catch::Matchers::Contains(path));
+    std::filesystem::create_directory(state);
+  }
+  for (int i = 0; i < 500 && journal.before("shell").empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  CHECK_THAT(journal.put_aside(), Catch::Matchers::Contains("was removed while it was written"));
+  REQUIRE(journal.before("shell").size() == 1);
+  CHECK(journal.before("shell")[0].what == "2");
+  CHECK(entries(path) == 1);
+}
+
 TEST_CASE("what waits for a disk that stays away does not fill the memory") {
   const test::TemporaryFolder folder;
   AlarmJournal journal(folder.file("never/alarms.sqlite"));
