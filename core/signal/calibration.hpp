@@ -78,9 +78,9 @@ inline constexpr int kLongestBurst = 10;
 /// may have moved on meanwhile.
 inline constexpr double kHome = 1.0;
 inline constexpr double kBackShare = 0.1;
-/// So many widths outside, any value is none of the process, until so many have come in a row that
-/// did not repeat the one before; of one signal alone fewer are enough, as where its unit is
-/// another one for an hour: what happens to a plant moves several.
+/// So many widths outside, any value is none of the process, until so many have come in a row; of
+/// one signal alone fewer are enough, as where its unit is another one for an hour: what happens to
+/// a plant moves several.
 inline constexpr double kTooFar = 1e4;
 inline constexpr double kTooFarAlone = 1e3;
 inline constexpr int kPatience = 60;

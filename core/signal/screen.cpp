@@ -400,9 +400,7 @@ bool Screen::absurd(SignalKind kind, int index, Range& range) {
                                      : calibration::extent::kTooFar;
   const bool far =
       range.extent.known() && range.extent.width() > 0.0 && range.extent.beyond(value) > limit;
-  // A signal that lives there moves; what stands for a missing value repeats, for however long.
-  const bool repeats = range.far > 0 && value == ago(1)[kind].values(index);
-  range.far = !far ? 0 : repeats ? range.far : range.far + 1;
+  range.far = far ? range.far + 1 : 0;
   if (!far) return false;
   if (range.far <= calibration::extent::kPatience) {
     mark(kind, index, 0, &ScreenCounters::spikes);

@@ -141,7 +141,7 @@ class Screen {
   /// One signal's range.
   struct Range {
     Extent extent;
-    int far = 0;    // values in a row that are absurdly far outside, without repetitions
+    int far = 0;    // values in a row that are absurdly far outside
     Extent former;  // where it was before it stayed there
     bool left = false;
     int out = 0;          // frames of an excursion

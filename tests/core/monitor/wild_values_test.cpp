@@ -221,16 +221,6 @@ TEST_CASE("what a signal said while it was elsewhere is forgotten once it is bac
       check_healed(0.75, true, {kind, value, 1500, 100});
 }
 
-// However long: a signal that lives elsewhere moves there.
-TEST_CASE("a number that stands for a missing value raises nothing and leaves no trace") {
-  for (const bool predictions : {true, false})
-    for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv}) {
-      const Injury injury{kind, -99999.0, 1500, 2000};
-      check_healed(1.0, predictions, injury);
-      CHECK(outcome({}, predictions, injury, 3600).bad_values >= 2000);
-    }
-}
-
 TEST_CASE("a wild value among the first is forgotten too") {
   for (const double value : {1e6, 1e60, 1e200})
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv})
