@@ -196,8 +196,8 @@ inline constexpr double kSlowerThanLags = 2.0;
 
 /// What a monitor takes (`monitor_cost`). Measured, `./run bench`: seconds for each entry of a
 /// factor that a row is rotated into, for each that an evaluation inverts, for each lag of a pulse
-/// and number of what it is projected on where the size of an error is fitted, and for each rank
-/// that a sample moves.
+/// and number of what it is projected on where the size of an error is fitted; and for each rank
+/// that a sample moves (docs/nonlinear.md).
 namespace cost {
 inline constexpr double kPerRotated = 2e-10;
 inline constexpr double kPerInverted = 1e-10;

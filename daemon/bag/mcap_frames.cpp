@@ -24,15 +24,13 @@ McapFrames::McapFrames(const std::vector<std::string>& paths, const config::Unit
                        files::Purpose purpose)
     : unit_(unit),
       purpose_(purpose),
-      calculator_(unit),
-      ranges_(unit, purpose),
+      rules_(unit, purpose),
       aligner_(
           unit.counts(), look_into(paths, purpose),
           [this](const Frame& frame) {
             last_frame_ns_ = now_ns_;
             ready_.push_back(frame);
-            calculator_.fill(ready_.back());
-            ranges_.mark(ready_.back());
+            rules_.apply(ready_.back());
           },
           files::aligner_settings(unit)),
       samples_(paths),

@@ -10,10 +10,9 @@
 #include "core/signal/aligner.hpp"
 #include "daemon/bag/contents.hpp"
 #include "daemon/bag/sample_stream.hpp"
-#include "daemon/files/calculator.hpp"
 #include "daemon/files/csv/tag_table.hpp"
 #include "daemon/files/frame_source.hpp"
-#include "daemon/files/input_ranges.hpp"
+#include "daemon/files/unit_rules.hpp"
 
 namespace mpm::bag {
 
@@ -46,8 +45,7 @@ class McapFrames : public files::FrameSource {
   files::Purpose purpose_;
   std::vector<std::string> notices_;
   std::deque<Frame> ready_;
-  files::Calculator calculator_;
-  files::InputRanges ranges_;
+  files::UnitRules rules_;
   Aligner aligner_;
   SampleStream samples_;
   std::int64_t patience_ns_;

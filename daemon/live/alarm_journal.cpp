@@ -99,7 +99,7 @@ void AlarmJournal::put_aside(const std::string& why) {
   const MutexLock lock(mutex_);
   if (removed) {
     put_aside_ = "the journal of alarms was removed while it was written: what was in " + path_ +
-                 " is lost, and a new one was begun";
+                 " is lost, and it begins anew";
     return;
   }
   put_aside_ = "the journal of alarms is damaged (" + why + "): it is kept as " + name +

@@ -64,15 +64,13 @@ UnitPipeline::UnitPipeline(const config::UnitConfig& config, const idl::OutputWr
       alarms_(config, outputs_, monitor_.channels()),
       performance_(report::performance_setup(config),
                    config.monitor.performance_window_s / config.sample_time_s),
-      calculator_(config),
-      ranges_(config),
+      rules_(config),
       calculated_(config.counts()),
       aligner_(
           config.counts(), files::needed_kinds(config),
           [this](const Frame& frame) {
             calculated_ = frame;
-            calculator_.fill(calculated_);
-            ranges_.mark(calculated_);
+            rules_.apply(calculated_);
             recalling_ ? recall_frame(calculated_) : on_frame(calculated_);
           },
           files::aligner_settings(config)),
@@ -215,7 +213,7 @@ void UnitPipeline::recall_frame(const Frame& frame) {
 
 // All that the samples have made, as far as what is said of them depends on it.
 void UnitPipeline::archive(Archive& a) {
-  // not archived: config_, outputs_, calculator_, ranges_, patience_, observer_ (construction)
+  // not archived: config_, outputs_, rules_, patience_, observer_ (construction)
   // not archived: samples_, journal_, checkpoints_ (the disk)
   // not archived: recalling_, calculated_ (empty between calls)
   // not archived: absence_ (before this process)
@@ -239,8 +237,7 @@ std::string UnitPipeline::recall(const UnitSamples& samples) {
       config_.counts(), files::needed_kinds(config_),
       [this](const Frame& frame) {
         calculated_ = frame;
-        calculator_.fill(calculated_);
-        ranges_.mark(calculated_);
+        rules_.apply(calculated_);
         observer_->on_recalled(calculated_, nullptr);
       },
       files::aligner_settings(config_));

@@ -16,8 +16,7 @@
 #include "core/signal/aligner.hpp"
 #include "daemon/bus/trouble.hpp"
 #include "daemon/bus/unit_inputs.hpp"
-#include "daemon/files/calculator.hpp"
-#include "daemon/files/input_ranges.hpp"
+#include "daemon/files/unit_rules.hpp"
 #include "daemon/history/journal.hpp"
 #include "daemon/host/rate_limiter.hpp"
 #include "daemon/live/checkpoints.hpp"
@@ -157,8 +156,7 @@ class UnitPipeline {
   report::UnitMonitor monitor_;
   UnitAlarms alarms_;
   PerformanceWindow performance_;
-  files::Calculator calculator_;
-  files::InputRanges ranges_;
+  files::UnitRules rules_;
   Frame calculated_;  // a copy of the aligner's, with what is calculated
   Aligner aligner_;
   std::optional<LiveDiagnosis> diagnosis_;

@@ -3,9 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "daemon/files/calculator.hpp"
 #include "daemon/files/csv/row_source.hpp"
-#include "daemon/files/input_ranges.hpp"
+#include "daemon/files/unit_rules.hpp"
 
 namespace mpm::files {
 
@@ -14,19 +13,17 @@ namespace mpm::files {
 class PreparedRows : public RowSource {
  public:
   PreparedRows(std::unique_ptr<RowSource> rows, const config::UnitConfig& unit, Purpose purpose)
-      : rows_(std::move(rows)), calculator_(unit), ranges_(unit, purpose) {}
+      : rows_(std::move(rows)), rules_(unit, purpose) {}
 
   [[nodiscard]] bool next(Frame& frame) override {
     if (!rows_->next(frame)) return false;
-    calculator_.fill(frame);
-    ranges_.mark(frame);
+    rules_.apply(frame);
     return true;
   }
 
  private:
   std::unique_ptr<RowSource> rows_;
-  Calculator calculator_;
-  InputRanges ranges_;
+  UnitRules rules_;
 };
 
 }  // namespace mpm::files

@@ -9,9 +9,11 @@ namespace {
 // Clocks that are set to winter time go back so far.
 constexpr std::int64_t kClockChangeS = 3600;
 
-// Rows follow one another by days at most, where the other order makes steps of about a month.
+// Rows follow one another by days at most, where another order makes steps of about a month; by
+// less than those where it makes steps of a year.
 constexpr std::int64_t kDayStepS = 86400 * 3 / 2;
 constexpr std::int64_t kMonthStepS = 86400 * 20;
+constexpr std::int64_t kYearStepS = 86400 * 300;
 
 }  // namespace
 
@@ -41,6 +43,10 @@ void DateOrderFinder::add(const CalendarTime& time, std::string_view series) {
     if (reading.possible) reading.add(time, series);
 }
 
+bool DateOrderFinder::settled() const {
+  return any_ && std::ranges::count_if(readings_, &Reading::possible) == 1;
+}
+
 std::vector<const DateOrderFinder::Reading*> DateOrderFinder::possible() const {
   std::vector<const Reading*> found;
   for (const Reading& reading : readings_)
@@ -55,9 +61,11 @@ DateOrder DateOrderFinder::order_of_rows() const {
   std::sort(left.begin(), left.end(), [](const Reading* one, const Reading* other) {
     return one->longest_s < other->longest_s;
   });
-  const bool follow =
-      left.size() > 1 && left[0]->longest_s <= kDayStepS && left[1]->longest_s >= kMonthStepS;
-  return follow ? left.front()->order : DateOrder::kUnknown;
+  const auto follow = [&left](std::int64_t most_s, std::int64_t others_s) {
+    return left.size() > 1 && left[0]->longest_s <= most_s && left[1]->longest_s >= others_s;
+  };
+  return follow(kDayStepS, kMonthStepS) || follow(kMonthStepS, kYearStepS) ? left.front()->order
+                                                                           : DateOrder::kUnknown;
 }
 
 DateOrder DateOrderFinder::order() const {
@@ -76,7 +84,7 @@ std::string DateOrderFinder::notice() const {
     return read +
            ": two digits at the end are taken for the year; if they are the day, say how it "
            "is written with --time-format";
-  return read + ": in the other order the rows would not follow one another";
+  return read + ": in another order the rows would not follow one another";
 }
 
 }  // namespace mpm::files

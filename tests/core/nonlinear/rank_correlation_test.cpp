@@ -22,17 +22,17 @@ double residual(int k, double noise) {
   return std::pow(input(0, k - 3), 3) + noise * test::uniform(9, k);
 }
 
-RankCorrelation after(int samples, bool partial, double noise = 0.1) {
+RankCorrelation after(int samples, bool partial, double noise) {
   RankCorrelation correlation({2, 1, kFirstLag, kLastLag, partial}, kLength);
-  for (int k = 0; k < samples; ++k) {
+  for (int k = 0; k < samples; ++k)
     correlation.update(Eigen::Vector2d(input(0, k), input(1, k)),
                        Eigen::VectorXd::Constant(1, residual(k, noise)));
-  }
   correlation.evaluate();
   return correlation;
 }
 
-// The same rows in a window of their own: oracle, by another way.
+// The same rows in a window of their own, the first where the first lag has its first sample: by
+// another way.
 double of_rows(int samples, int lag, bool partial) {
   RankWindow window(3, kLength);
   for (int t = 2; t + kLastLag < samples; ++t)
@@ -44,10 +44,9 @@ double of_rows(int samples, int lag, bool partial) {
 TEST_CASE("rank correlations are those of the rows of each lag") {
   for (const bool partial : {false, true})
     for (const int samples : {200, 700}) {  // a window that is not full, and one that slides
-      const RankCorrelation correlation = after(samples, partial);
+      const RankCorrelation correlation = after(samples, partial, 0.1);
       for (int lag = kFirstLag; lag <= kLastLag; ++lag) {
         CAPTURE(partial, samples, lag);
-        // Rows begin where the first lag has its first sample.
         CHECK(correlation.correlations(0, 0)(lag - kFirstLag) ==
               Approx(of_rows(samples, lag, partial)).margin(1e-12));
       }
@@ -66,16 +65,21 @@ TEST_CASE("what bends is seen at its lag, and held inputs take their part away")
   CHECK(at(partial, 1) == 0.0);
 }
 
+// Eight samples make the first row. Those before the gap rise together, those after it oppose each
+// other: a row across it would tell.
 TEST_CASE("no row of ranks spans a gap") {
-  // All that is after the gap is within the window: what was before it makes no difference but for
-  // the rows before.
-  RankCorrelation with({2, 1, kFirstLag, kLastLag, false}, 3);
-  for (int k = 0; k < 6; ++k)
-    with.update(Eigen::Vector2d(k, -k), Eigen::VectorXd::Constant(1, 2.0 * k));
-  with.close_window();
-  with.update(Eigen::Vector2d(9.0, 9.0), Eigen::VectorXd::Constant(1, 0.0));
-  with.evaluate();
-  CHECK(with.correlations(0, 0).isZero());  // no row yet: eight samples are needed
+  RankCorrelation correlation({1, 1, kFirstLag, kLastLag, false}, kLength);
+  const auto push = [&correlation](double input, double residual) {
+    correlation.update(Eigen::VectorXd::Constant(1, input), Eigen::VectorXd::Constant(1, residual));
+  };
+  for (int k = 0; k < 7; ++k) push(k, k);
+  correlation.close_window();
+  for (int k = 0; k < 7; ++k) push(k, -k);
+  correlation.evaluate();
+  CHECK(correlation.correlations(0, 0).isZero());
+  for (int k = 7; k < 17; ++k) push(k, -k);
+  correlation.evaluate();
+  CHECK(correlation.correlations(0, 0).isApproxToConstant(-1.0));
 }
 
 TEST_CASE("a signal that stands still has no rank correlation") {

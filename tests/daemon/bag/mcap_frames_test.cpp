@@ -2,6 +2,7 @@
 #include <map>
 
 #include "daemon/bag/mcap_frame_writer.hpp"
+#include "daemon/bag/mcap_frames.hpp"
 #include "daemon/mcap/read/ordered_reader.hpp"
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/daemon/mcap/files.hpp"
@@ -58,6 +59,22 @@ TEST_CASE("A CSV without one signal of the unit becomes no recording") {
   CHECK(bench.error("a.csv", "a.mcap", bench.with_unit()) ==
         bench.folder.file("a.csv") +
             ":1:1: error: the file holds no signal of unit 'small'; it holds a, b");
+}
+
+// 2.7 and above: eight times 0.3 beyond 0.3.
+TEST_CASE(
+    "What an input cannot be by its limits is marked in a recording, and kept by who keeps it") {
+  Bench bench;
+  write_recording(bench, "a.mcap", all_columns());
+  bench.unit.mv[0].limits = {0.0, 0.3};
+  const auto usable = [&bench](files::Purpose purpose) {
+    bag::McapFrames frames({bench.folder.file("a.mcap")}, bench.unit, purpose);
+    int count = 0;
+    for (Frame frame; frames.next(frame);) count += frame[SignalKind::kMv].usable(0) ? 1 : 0;
+    return count;
+  };
+  CHECK(usable(files::Purpose::kJudge) == 27);
+  CHECK(usable(files::Purpose::kKeep) == 40);
 }
 
 }  // namespace

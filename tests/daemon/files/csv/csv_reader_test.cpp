@@ -117,6 +117,21 @@ TEST_CASE("What is ignored or simulated is said once") {
   CHECK(reader("time,u1,u2,y1,p1,amb\n0,1,2,3,4,5\n").notices().empty());
 }
 
+TEST_CASE("What an input cannot be by its limits is marked in each row") {
+  config::UnitConfig config = unit();
+  config.mv[1].limits = {0.0, 10.0};
+  const std::vector<Frame> frames =
+      frames_of("time,u1,u2,y1\n0,-9999,2,3\n1,1,-9999,3\n2,1,11,3\n", config);
+  REQUIRE(frames.size() == 3);
+  const auto usable = [&frames](std::size_t row, int index) {
+    return frames[row][SignalKind::kMv].usable(index);
+  };
+  CHECK(usable(0, 0));  // it has none
+  CHECK(usable(0, 1));
+  CHECK_FALSE(usable(1, 1));
+  CHECK(usable(2, 1));
+}
+
 TEST_CASE("The number of rows that a database adds ends the data") {
   for (const char* count : {"(2 rows)", "(2 rows affected)", "2 rows selected."}) {
     CsvReader csv = reader("time,u1,u2,y1,p1,amb\n0,1,2,3,4,5\n1,1,2,3,4,5\n\n" +

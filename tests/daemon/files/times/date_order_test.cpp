@@ -41,6 +41,8 @@ TEST_CASE("Two digits at the front may be the year") {
   CHECK(order_of({"28/03/26 10:00", "29/03/26 10:00"}) == DateOrder::kDayFirst);
   CHECK(order_of({"03/28/26 10:00", "03/29/26 10:00"}) == DateOrder::kMonthFirst);
   CHECK(order_of({"10/11/12 10:00", "10/11/13 10:00"}) == DateOrder::kYearFirst);
+  CHECK(order_of({"26/03/27 10:00", "26/03/30 10:00"}) == DateOrder::kYearFirst);  // a weekend
+  CHECK(order_of({"27/03/26 10:00", "30/03/26 10:00"}) == DateOrder::kDayFirst);
   CHECK(order_of({"26.03.28 10:00", "26.03.29 10:00"}) == DateOrder::kUnknown);  // dots: day first
 }
 
