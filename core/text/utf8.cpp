@@ -1,5 +1,6 @@
 #include "core/text/utf8.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace mpm {
@@ -63,6 +64,22 @@ std::string utf8_from_latin1(std::string_view text) {
     result += static_cast<char>(0x80U | (byte_of(c) & 0x3FU));
   }
   return result;
+}
+
+void make_blanks_plain(std::string& text) {
+  constexpr std::string_view kBlanks[] = {"\u00A0", "\u2007", "\u2009", "\u202F"};
+  std::size_t from = text.find_first_of("\xC2\xE2");
+  if (from == std::string::npos) return;
+  std::size_t to = from;
+  while (from < text.size()) {
+    const std::string_view rest = std::string_view(text).substr(from);
+    std::size_t blank = 0;
+    for (const std::string_view one : kBlanks)
+      if (rest.starts_with(one)) blank = one.size();
+    text[to++] = blank > 0 ? ' ' : text[from];
+    from += std::max<std::size_t>(blank, 1);
+  }
+  text.resize(to);
 }
 
 }  // namespace mpm

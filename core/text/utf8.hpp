@@ -16,4 +16,8 @@ namespace mpm {
 /// A text in ISO 8859-1, which any bytes are.
 [[nodiscard]] std::string utf8_from_latin1(std::string_view text);
 
+/// Blanks at which no line may break, or of another width (U+00A0, U+2007, U+2009, U+202F), become
+/// plain ones: what spreadsheets and browsers write before PM, or between a number and its unit.
+void make_blanks_plain(std::string& text);
+
 }  // namespace mpm

@@ -103,6 +103,7 @@ void LineReader::check_text() {
   if (line_.find('\0') != std::string::npos) fail(1, "is no text file: it holds a zero byte");
   latin1_ = latin1_ || find_invalid_utf8(line_) != std::string::npos;
   if (latin1_) line_ = utf8_from_latin1(line_);
+  make_blanks_plain(line_);
 }
 
 void LineReader::close_quote() {

@@ -21,6 +21,7 @@ struct Cell {
 
 /// Non-empty lines that are no `#` comment. Takes off the byte order mark and carriage returns.
 /// From the first line on that is no UTF-8 all are taken as ISO 8859-1, and turned into UTF-8.
+/// Blanks of any width are plain ones.
 class LineReader {
  public:
   LineReader(std::unique_ptr<std::istream> input, std::string name);

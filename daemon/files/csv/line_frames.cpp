@@ -116,13 +116,20 @@ class JsonRows : public LineFrames::Rows {
  private:
   nlohmann::json parse() const {
     std::string name;  // of the member at hand
+    std::set<std::string> names;
+    std::optional<std::string> twice;
     const auto note_name = [&](int depth, nlohmann::json::parse_event_t event,
                                nlohmann::json& key) {
-      if (event == nlohmann::json::parse_event_t::key) name = key.get<std::string>();
+      if (event == nlohmann::json::parse_event_t::key) {
+        name = key.get<std::string>();
+        if (depth == 1 && !names.insert(name).second) twice = name;
+      }
       return depth <= kDeepest;  // what is below is no value, and would cost memory
     };
     try {
-      return nlohmann::json::parse(lines_.text(), note_name);
+      nlohmann::json line = nlohmann::json::parse(lines_.text(), note_name);
+      if (twice) fail_at(*twice, in_quotes(*twice) + " is given twice");
+      return line;
     } catch (const nlohmann::json::parse_error& error) {
       lines_.fail(static_cast<int>(error.byte), "is no JSON");
     } catch (const nlohmann::json::exception&) {  // a number that no double holds

@@ -55,6 +55,19 @@ bool is_row_count(std::string_view text) {
                         rest.starts_with(" rows affected") || rest == " rows selected.");
 }
 
+/// How what is no number ought to be exported.
+const char* advice_on(std::string_view text) {
+  if (text.find(',') != std::string_view::npos)
+    return "export it with a decimal point and without thousands separators";
+  const std::size_t behind = text.find_first_not_of("+-.0123456789");
+  const std::string_view rest = text.substr(std::min(behind, text.size()));
+  const std::size_t word = rest.find_first_not_of(' ');
+  const bool unit = rest.starts_with('%') || rest.starts_with("\u00B0") || word > 0;
+  if (behind == 0 || word == std::string_view::npos || !unit) return "leave empty what is missing";
+  const bool digit = rest[word] >= '0' && rest[word] <= '9';
+  return digit ? "export it without thousands separators" : "export it without its unit";
+}
+
 }  // namespace
 
 void ReadTally::tell(std::vector<std::string>& notices) const {
@@ -99,10 +112,7 @@ double read_value(const LineReader& lines, const CsvFormat& format, const Cell& 
     return std::numeric_limits<double>::quiet_NaN();
   }
   if (!value) {
-    lines.fail(cell.column, "'" + printable(cell.text) + "' is no number; " +
-                                (comma ? "export it with a decimal point and without thousands "
-                                         "separators"
-                                       : "leave empty what is missing"));
+    lines.fail(cell.column, "'" + printable(cell.text) + "' is no number; " + advice_on(cell.text));
   }
   if (comma && std::isfinite(*value)) ++tally.decimal_commas;
   if (format.decimal_comma() && cell.text.find('.') != std::string_view::npos)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/text/utf8.hpp"
 #include "daemon/files/csv/cell.hpp"
 
 namespace mpm::files {
@@ -84,6 +85,7 @@ std::vector<std::string> plain_tags(std::string_view name) {
 
 std::string folded(std::string_view name) {
   std::string text(name);
+  make_blanks_plain(text);
   for (char& c : text)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   return text;

@@ -16,7 +16,7 @@ namespace mpm::files {
 /// The name without a unit or a word for the value behind it: `Q1.Value` is `Q1`.
 [[nodiscard]] std::string_view without_value_word(std::string_view name);
 
-/// Letters of ASCII in lower case.
+/// Letters of ASCII in lower case, blanks of any width as plain ones.
 [[nodiscard]] std::string folded(std::string_view name);
 
 }  // namespace mpm::files

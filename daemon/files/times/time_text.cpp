@@ -92,15 +92,19 @@ std::optional<EpochTime> parse_epoch(std::string_view text) {
       {{"milliseconds", 1'000}, {"microseconds", 1'000'000}, {"nanoseconds", 1'000'000'000}}};
   Cursor cursor(text);
   const std::string_view digits = cursor.take_digits(19);
+  const std::string_view fraction = cursor.take('.') ? cursor.take_digits() : std::string_view();
   if (!cursor.done()) return std::nullopt;
   std::uint64_t number = 0;
   for (const char c : digits) number = 10 * number + static_cast<std::uint64_t>(c - '0');
-  for (const Unit& unit : kUnits)
-    if (number / unit.per_second >= kEarliestEpochS &&
-        number / unit.per_second < static_cast<std::uint64_t>(kLatestNs / kNsPerSecond))
-      return EpochTime{static_cast<std::int64_t>(number) *
-                           (kNsPerSecond / static_cast<std::int64_t>(unit.per_second)),
-                       unit.name};
+  for (const Unit& unit : kUnits) {
+    if (number / unit.per_second < kEarliestEpochS ||
+        number / unit.per_second >= static_cast<std::uint64_t>(kLatestNs / kNsPerSecond))
+      continue;
+    const std::int64_t unit_ns = kNsPerSecond / static_cast<std::int64_t>(unit.per_second);
+    return EpochTime{static_cast<std::int64_t>(number) * unit_ns +
+                         fraction_ns_of(fraction) * unit_ns / kNsPerSecond,
+                     unit.name};
+  }
   return std::nullopt;
 }
 

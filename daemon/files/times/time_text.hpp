@@ -16,8 +16,8 @@ namespace mpm::files {
 [[nodiscard]] std::optional<std::int64_t> parse_seconds(std::string_view text,
                                                         std::string& problem);
 
-/// Milli-, micro- or nanoseconds since 1970, told by how large the number is: a whole number that
-/// lies between 1998 and 2115 in one of them and in no other. Nothing for any other text.
+/// Milli-, micro- or nanoseconds since 1970, told by how large the number is: one that lies between
+/// 1998 and 2115 in one of them and in no other. Nothing for any other text.
 struct EpochTime {
   std::int64_t time_ns = 0;
   const char* unit = "";

@@ -9,6 +9,7 @@
 #include "daemon/files/csv/cell.hpp"
 #include "daemon/files/csv/csv_line.hpp"
 #include "daemon/files/csv/csv_reader.hpp"
+#include "daemon/files/csv/tag_names.hpp"
 
 using namespace mpm;
 using namespace mpm::files;
@@ -31,6 +32,25 @@ TEST_CASE("Values and the words for none") {
   for (const char* word : {"1,5", "abc", "1.5x", "0x10", "--1", "1 000"})
     CHECK_FALSE(parse_value(word, false));
   CHECK_FALSE(parse_value("1,000,5", true));
+}
+
+TEST_CASE("Blanks at which no line may break are blanks, in names, times and values") {
+  LineReader lines(std::make_unique<std::istringstream>(
+                       "time,flow\u00A0rate,a\n"
+                       "3/28/2026, 2:00:00\u202FPM\u2009,\u00A01.5\u2007,\u00E2\n"),
+                   "a.csv");
+  std::vector<Cell> cells;
+  REQUIRE(lines.next());
+  lines.split(',', cells);
+  REQUIRE(cells.size() == 3);
+  CHECK(cells[1].text == "flow rate");
+  CHECK(folded("Flow\u00A0rate") == "flow rate");
+  REQUIRE(lines.next());
+  lines.split(',', cells);
+  REQUIRE(cells.size() == 4);
+  CHECK(cells[1].text == "2:00:00 PM");
+  CHECK(cells[2].text == "1.5");
+  CHECK(cells[3].text == "\u00E2");  // begins like one of them
 }
 
 TEST_CASE("A quoted cell goes on in the next lines, a quote that nothing closes does not") {

@@ -38,6 +38,10 @@ TEST_CASE("Lines tell times as data files do") {
   CHECK(first_time_ns("time,u1,y1\n14:00 01.05.24,1.5,2\n", odd) == noon_ns);
   CHECK_THROWS_WITH(first_time_ns("time,u1,y1\n01.05.2024 14:00:00,1.5,2\n", {}),
                     Catch::Contains("--time-zone"));
+  CHECK_THROWS_WITH(first_time_ns("{\"time\": 1, \"u1\": 2.5, \"u1\": 1.5}\n", {}),
+                    "stdin:1:19: error: 'u1' is given twice");
+  CHECK(first_time_ns("{\"time\": 1, \"u1\": 1.5, \"x\": {\"u1\": 3, \"time\": 4}}\n", {}) ==
+        1'000'000'000);
   CHECK_THROWS_WITH(first_time_ns("u1,y1\n1.5,2\n", {}),
                     Catch::Contains("the first column must be `time`, not 'u1'"));
 }

@@ -44,6 +44,28 @@ TEST_CASE("Seconds are exact to the nanosecond") {
     CHECK_FALSE(is_time(text));
 }
 
+TEST_CASE("Numbers that lie in our time in one unit are read in that unit, fractions too") {
+  struct Written {
+    const char* text;
+    std::int64_t time_ns;
+    const char* unit;
+  };
+  for (const Written& written :
+       {Written{"1714564800000", 1'714'564'800'000'000'000, "milliseconds"},
+        Written{"1714564800250.0", 1'714'564'800'250'000'000, "milliseconds"},  // a double's text
+        Written{"1714564800250.125", 1'714'564'800'250'125'000, "milliseconds"},
+        Written{"1714564800000250.5", 1'714'564'800'000'250'500, "microseconds"},
+        Written{"1714564800000000250", 1'714'564'800'000'000'250, "nanoseconds"}}) {
+    CAPTURE(written.text);
+    const auto epoch = parse_epoch(written.text);
+    REQUIRE(epoch);
+    CHECK(epoch->time_ns == written.time_ns);
+    CHECK(std::string(epoch->unit) == written.unit);
+  }
+  for (const char* text : {"1714564800", "1714564800.5", "1714564800000.5x", "1714564800000.5.5"})
+    CHECK_FALSE(parse_epoch(text));
+}
+
 TEST_CASE("ISO 8601 times with a zone are UTC") {
   CHECK(ns("1970-01-01T00:00:00Z") == 0);
   // date -u -d 2024-05-01T12:00:00Z +%s
