@@ -250,7 +250,10 @@ void Aligner::emit(Slot& slot) {
   const std::int64_t interval = slot.interval + offset_;
   if (counters_.frames > 0) counters_.missing += missing_before(interval, slot.frame);
   ++counters_.frames;
-  if ((slot.present & needed_) != needed_) ++counters_.incomplete;
+  const unsigned absent = needed_ & ~slot.present;
+  if (absent != 0) ++counters_.incomplete;
+  for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
+    if ((absent & 1u << kind) != 0) ++counters_.without[kind];
   last_emitted_ = interval;
   last_time_ns_ = slot.frame.source_time_ns;
   slot.frame.interval = interval;

@@ -49,11 +49,13 @@ struct AlignerCounters {
   std::uint64_t non_finite = 0;    ///< values; they become bad
   std::uint64_t infinite = 0;      ///< of these: not just without a value
   std::uint64_t restarts = 0;      ///< the interval number went back to a new beginning
+  /// Of the incomplete frames those without the block of a kind.
+  std::array<std::uint64_t, kSignalKindCount> without{};
 
   template <class Archive>
   void archive(Archive& a) {
     a(frames, incomplete, missing, late, repeated, out_of_order, wrong_length, beyond, non_finite,
-      infinite, restarts);
+      infinite, restarts, without);
   }
 };
 

@@ -142,11 +142,16 @@ bool McapFrames::next(Frame& frame) {
 }
 
 void McapFrames::tell_counters() {
-  const auto tell = [this](std::uint64_t count, const char* what, const char* rest) {
+  const auto tell = [this](std::uint64_t count, const char* what, const std::string& rest) {
     if (count > 0) notices_.push_back(counted(count, what) + rest);
   };
   const AlignerCounters& counters = aligner_.counters();
-  tell(counters.incomplete, "control interval", " of which a needed topic is missing");
+  std::string missed;  // topics
+  for (const SignalKind kind : idl::kTopicKinds)
+    if (const std::uint64_t count = counters.without[static_cast<std::size_t>(kind)]; count > 0)
+      missed += (missed.empty() ? ": " : ", ") + std::string(topic_of(kind)) + " of " +
+                std::to_string(count);
+  tell(counters.incomplete, "control interval", " of which a needed topic is missing" + missed);
   tell(counters.late, "sample", " left out that came too late for their control interval");
   tell(counters.repeated, "sample", " left out for repeating a control interval");
   tell(counters.wrong_length, "sample", " left out for a wrong number of values");

@@ -67,6 +67,7 @@ void UnitHealth::push(const idl::SampleView& sample, std::int64_t wall_ns) {
 
 void UnitHealth::recall(const AlignerCounters& aligner) {
   record_.incomplete = aligner.incomplete;
+  without_ = aligner.without;
   if (aligner.frames > 0) inputs_.recall();
 }
 
@@ -102,8 +103,7 @@ const HealthRecord& UnitHealth::judge(const Found& found, std::int64_t wall_s) {
   record_.frames = aligner.frames;
   record_.used = found.monitor.counters().used;
   record_.missing = aligner.missing;
-  if (record_.incomplete != aligner.incomplete) incomplete_at_ = now_;
-  record_.incomplete = aligner.incomplete;
+  if (record_.incomplete != aligner.incomplete) note_incomplete(aligner);
   record_.late = aligner.late;
   record_.repeated = aligner.repeated;
   record_.out_of_order = aligner.out_of_order;
@@ -125,6 +125,18 @@ const HealthRecord& UnitHealth::judge(const Found& found, std::int64_t wall_s) {
   return record_;
 }
 
+void UnitHealth::note_incomplete(const AlignerCounters& aligner) {
+  incomplete_at_ = now_;
+  record_.incomplete = aligner.incomplete;
+  incomplete_without_.clear();
+  for (const SignalKind kind : idl::kTopicKinds) {
+    const auto k = static_cast<std::size_t>(kind);
+    if (aligner.without[k] != without_[k])
+      incomplete_without_.emplace_back(idl::sample_topic(kind));
+  }
+  without_ = aligner.without;
+}
+
 std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
   using bus::Severity;
   std::vector<bus::Trouble> all = inputs_.troubles(found.around, now_);
@@ -132,7 +144,9 @@ std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
   if (incomplete_at_ &&
       now_ - *incomplete_at_ < samples_or(unit_.sample_time_s, kIncompleteShows, kLeastPause) &&
       (all.empty() || all.front().severity == Severity::kMaintenanceRequired))
-    all.push_back({"incomplete", Severity::kOutOfSpecification, "data incomplete"});
+    all.push_back(
+        {"incomplete", Severity::kOutOfSpecification,
+         "data incomplete: a control interval came without " + config::join(incomplete_without_)});
   std::vector<LostSignal> lost = found.monitor.monitor().lost();
   std::erase_if(lost, [this](const LostSignal& signal) {  // which will be told
     return signal.cause == LossCause::kNoValue && pauses(signal.kind);

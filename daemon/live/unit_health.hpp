@@ -71,6 +71,7 @@ class UnitHealth {
   [[nodiscard]] std::vector<bus::Trouble> find_troubles(const Found& found) const;
   void add_simulated(report::UnitMonitor& monitor, std::vector<bus::Trouble>& troubles) const;
   [[nodiscard]] bool pauses(SignalKind kind) const;
+  void note_incomplete(const AlignerCounters& aligner);
   void keep_while_paused();
   void decide();
 
@@ -85,7 +86,9 @@ class UnitHealth {
   bool goes_on_ = false;
   std::optional<Clock::time_point> stood_still_;  // when this process went on
   Clock::duration stood_still_for_{};
-  std::optional<Clock::time_point> incomplete_at_;  // the last time that a frame was
+  std::optional<Clock::time_point> incomplete_at_;         // the last time that a frame was
+  std::vector<std::string> incomplete_without_;            // topics, then
+  std::array<std::uint64_t, kSignalKindCount> without_{};  // frames, as last counted
   std::optional<Clock::time_point> missed_at_;
   std::string missed_;
 };

@@ -84,6 +84,12 @@ TEST_CASE("aligner: an interval that lacks a block comes out with bad values, af
   bench.push_all(29, 29);
   CHECK(bench.intervals() == range(0, 29));
   CHECK(bench.aligner.counters().incomplete == 1);
+  const auto without = [&](SignalKind kind) {
+    return bench.aligner.counters().without[static_cast<std::size_t>(kind)];
+  };
+  CHECK(without(SignalKind::kCv) == 1);
+  CHECK(without(SignalKind::kMv) + without(SignalKind::kPrediction) == 0);
+  CHECK(without(SignalKind::kSetpoint) == 0);                   // nobody needs it
   const std::vector<double>& values = bench.frames[20].values;  // mv mv cv prediction setpoint
   REQUIRE(values.size() == 5);
   CHECK(values[0] == 200.0);

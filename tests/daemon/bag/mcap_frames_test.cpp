@@ -10,11 +10,12 @@
 namespace mpm::test {
 namespace {
 
-/// Values of every signal that the row has, two of them not good.
+/// Values of every signal that the row has, two of them not good; no row `skipped`.
 void write_recording(const Bench& bench, const std::string& name,
-                     const std::vector<files::Column>& columns) {
+                     const std::vector<files::Column>& columns, int skipped = -1) {
   bag::McapFrameWriter writer(bench.folder.file(name), bench.unit, columns);
   for (int k = 0; k < 40; ++k) {
+    if (k == skipped) continue;
     Frame frame(bench.unit.counts());
     for (SignalBlock& block : frame.blocks) {
       block.values.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -59,6 +60,23 @@ TEST_CASE("A CSV without one signal of the unit becomes no recording") {
   CHECK(bench.error("a.csv", "a.mcap", bench.with_unit()) ==
         bench.folder.file("a.csv") +
             ":1:1: error: the file holds no signal of unit 'small'; it holds a, b");
+}
+
+TEST_CASE("What control intervals lack is told by its topic") {
+  Bench bench;
+  std::vector<files::Column> cvs, others;
+  for (const files::Column& column : all_columns())
+    (column.kind == SignalKind::kCv ? cvs : others).push_back(column);
+  write_recording(bench, "cvs.mcap", cvs, 20);
+  write_recording(bench, "others.mcap", others);
+  bag::McapFrames frames({bench.folder.file("cvs.mcap"), bench.folder.file("others.mcap")},
+                         bench.unit, files::Purpose::kJudge);
+  int rows = 0;
+  for (Frame frame; frames.next(frame);) ++rows;
+  CHECK(rows == 40);
+  CHECK_THAT(frames.notices(),
+             Catch::VectorContains(std::string(
+                 "1 control interval of which a needed topic is missing: mpm/cv of 1")));
 }
 
 // 2.7 and above: eight times 0.3 beyond 0.3.

@@ -146,8 +146,10 @@ TEST_CASE("a frame that was not complete is told for two samples") {
   for (int s = 1; s <= 5; s += 2) have_come(toy, s);
   CHECK(toy.judge(5).detail == bus::kNothingDetermined);
   toy.aligner.incomplete = 1;
-  CHECK(toy.judge(6).detail == "data incomplete");
-  CHECK(toy.judge(9).detail == "data incomplete");
+  toy.aligner.without[static_cast<std::size_t>(SignalKind::kCv)] = 1;
+  const std::string told = "data incomplete: a control interval came without mpm/cv";
+  CHECK(toy.judge(6).detail == told);
+  CHECK(toy.judge(9).detail == told);
   CHECK(toy.judge(10).detail == bus::kNothingDetermined);
 }
 
