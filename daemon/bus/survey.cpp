@@ -72,7 +72,6 @@ nlohmann::ordered_json to_json(const TopicRow& row) {
 }
 
 std::string to_text(const std::vector<TopicRow>& rows) {
-  if (rows.empty()) return "nobody else is on this domain\n";
   std::size_t name_width = 5, type_width = 4;
   for (const TopicRow& row : rows) {
     name_width = std::max(name_width, printable(row.name).size());

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "daemon/bus/unit_inputs.hpp"
 #include "tests/system/corner.hpp"
 
 namespace mpm::test {
@@ -27,7 +28,7 @@ TEST_CASE("mpm topics lists who is on the bus, with types and units") {
                                           {"units", {"toy"}}}));
   CHECK(rows["mpm/layout"]["type"] == "mpm::Layout");
   CHECK(corner.mpm({"topics", "--duration", "0.3"}) == 0);
-  CHECK(corner.out() == "nobody else is on this domain\n");
+  CHECK(corner.out() == "nobody else is on " + bus::place_text(corner.domain) + "\n");
 }
 
 TEST_CASE("mpm echo prints samples and ends when it has enough") {
@@ -41,7 +42,8 @@ TEST_CASE("mpm echo prints samples and ends when it has enough") {
   CHECK(first["sample"]["values"].size() == 2);
   CHECK(last["sample"]["interval"] == first["sample"]["interval"].get<int>() + 2);
   CHECK(corner.mpm({"echo", "mpm/mv", "--once", "--unit", "toy", "--duration", "0.2"}) == 2);
-  CHECK(corner.err() == "mpm echo: no sample of mpm/mv of unit toy came\n");
+  CHECK(corner.err() == "mpm echo: no sample of mpm/mv of unit toy came on " +
+                            bus::place_text(corner.domain) + "\n");
   CHECK(corner.mpm({"echo", "mpm/nothing"}) == 3);
   CHECK(lines_of(corner.err()).size() == 1);
 }

@@ -13,6 +13,7 @@
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/bus/sample_json.hpp"
+#include "daemon/bus/unit_inputs.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/standard_output.hpp"
@@ -103,14 +104,16 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic, JsonOf json_o
     if (wait_set.wait(kLongestWait)) reader.take_with_info(on_sample);
     std::cout.flush();
     if (printed == 0 && !told && Clock::now() >= silent) {
-      std::cerr << "mpm echo: nothing has come on " << options.topic << " yet\n";
+      std::cerr << "mpm echo: nothing has come on " << options.topic << " yet, on "
+                << bus::place_text(options.domain) << '\n';
       told = true;
     }
     if (options.duration_s > 0.0 && Clock::now() >= end) break;
   }
   if (printed == 0 && read())
     std::cerr << "mpm echo: no sample of " << options.topic
-              << (options.unit.empty() ? "" : " of unit " + options.unit) << " came\n";
+              << (options.unit.empty() ? "" : " of unit " + options.unit) << " came on "
+              << bus::place_text(options.domain) << '\n';
   const bool bounded = options.once || options.count > 0;
   return (bounded ? printed < wanted : options.duration_s > 0.0 && printed == 0) ? 2 : 0;
 }

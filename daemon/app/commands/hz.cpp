@@ -11,6 +11,7 @@
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
+#include "daemon/bus/unit_inputs.hpp"
 #include "daemon/bus/window_statistics.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
@@ -80,10 +81,12 @@ int measure_topic(const HzOptions& options, Measure measure) {
   const idl::Participant participant(options.domain);
   std::optional<idl::RawReader> reader = open(participant, options.topic, stop);
   if (!reader) {
-    std::cerr << "mpm: error: nobody writes '" << options.topic
-              << "', or not with a type that can be asked for; try mpm topics\n";
+    std::cerr << "mpm: error: nobody writes '" << options.topic << "' on "
+              << bus::place_text(options.domain)
+              << ", or not with a type that can be asked for; try mpm topics\n";
     return 3;
   }
+  const std::string place = bus::place_text(options.domain);
   idl::WaitSet wait_set;
   wait_set.attach(reader->readable());
   bus::WindowStatistics values(options.window);
@@ -114,12 +117,12 @@ int measure_topic(const HzOptions& options, Measure measure) {
     if (now < next_report) continue;
     next_report += kReportPeriod;
     if (fresh && values.count() > 0) print(options, measure, values);
-    if (!last) std::cerr << options.topic << ": nothing has come yet\n";
+    if (!last) std::cerr << options.topic << ": nothing has come yet on " << place << '\n';
     fresh = false;
   }
   if (host::reader_has_left()) return 0;
   if (values.count() == 0) {
-    std::cerr << "mpm: error: " << options.topic << ": too few samples came\n";
+    std::cerr << "mpm: error: " << options.topic << ": too few samples came on " << place << '\n';
     return 2;
   }
   if (std::cout.good()) print(options, measure, values);

@@ -18,6 +18,7 @@
 #include "daemon/app/commands/status_line.hpp"
 #include "daemon/app/commands/topic_choice_options.hpp"
 #include "daemon/bag/record/recorder.hpp"
+#include "daemon/bus/unit_inputs.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "idl/topic_catalog.hpp"
@@ -138,10 +139,10 @@ int record(const RecordOptions& options, host::StopSignal& stop, host::AwaitedSi
   tell_news(recorder, status);
   const bag::RecorderState state = recorder.state();
   status.say("mpm record: " + rates.summary(state) + "  " + state.path);
+  const std::string& unit = options.recorder.unit;
   if (state.totals.samples == 0 && state.dropped == 0)
-    status.say(options.recorder.unit.empty()
-                   ? "mpm record: no sample came"
-                   : "mpm record: no sample of unit " + options.recorder.unit + " came");
+    status.say("mpm record: no sample " + (unit.empty() ? "" : "of unit " + unit + " ") +
+               "came on " + bus::place_text(options.domain));
   for (const std::string& topic : recorder.not_found())
     status.say("mpm record: nobody wrote " + topic + ", or not with a type that can be asked for");
   if (state.problem.empty()) return 0;

@@ -19,15 +19,19 @@ std::string default_output(const std::string& input) {
   return (ends ? input.substr(0, input.size() - kEnding.size()) : input) + ".recovered.mcap";
 }
 
-// 0, or 3 on bad input.
+// 0, or 3 on bad input, such as one of which nothing can be kept.
 int run_recover(const std::string& input, const std::string& output) {
   try {
     config::refuse_to_replace({input}, output);
     config::ReplacementFile file(output);
     const mcap::RecoverReport report = mcap::recover(input, {file.temporary(), file.descriptor()});
-    file.commit();
     for (const std::string& problem : report.problems)
       std::cerr << input << ": " << problem << '\n';
+    if (!report.whole && report.messages == 0) {
+      std::cerr << input << ": error: no message of it can be kept; nothing was written\n";
+      return 3;
+    }
+    file.commit();
     if (report.whole) std::cout << input << ": was whole; its index is new\n";
     std::cout << output << ": " << counted(report.messages, "message") << " of "
               << counted(report.channels, "channel") << " in " << counted(report.chunks, "chunk");

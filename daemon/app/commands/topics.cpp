@@ -7,6 +7,7 @@
 #include "daemon/app/commands/domain_flags.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/bus/survey.hpp"
+#include "daemon/bus/unit_inputs.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/report/record_json.hpp"
@@ -37,6 +38,8 @@ int topics(const TopicsOptions& options) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const bus::TopicRow& row : rows) list.push_back(to_json(row));
     std::cout << report::json_text(list) << '\n';
+  } else if (rows.empty()) {
+    std::cout << "nobody else is on " << bus::place_text(options.domain) << '\n';
   } else {
     std::cout << to_text(rows);
   }

@@ -35,7 +35,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 19> kAdvice 
     {"clock offset", "Set the clock of the control system or of this machine."},
     {"clock", "See to the time synchronisation of the control system."},
     {"nobody", "Compare domain, partition, interface and peers with theirs."},
-    {"monitor says", "See the log of mpmd."},
+    {"monitor says",
+     "Its log says since when: journalctl --unit mpmd, or the terminal where mpmd was started."},
 }};
 
 struct Line {
