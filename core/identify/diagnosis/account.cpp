@@ -94,6 +94,20 @@ bool own_setpoint_is_simpler(const SearchResult& found, std::size_t accusation, 
   return says < Confirmation::kNothing || accusations > 1;
 }
 
+/// Whether what is said of a gain contradicts, beyond doubt, what the monitor's test measures of it
+/// while it sees nothing wrong: that test holds under feedback, which a free run does not.
+bool measured_otherwise(const Effect& effect, const Problem& problem, const Finding& finding,
+                        const ChannelTests& by_monitor) {
+  const Parameter* gain = finding.find(kGainRatio);
+  const auto channels = channels_of(effect, problem.model(), problem.surroundings().model_inputs);
+  if (gain == nullptr || effect.onset > 0 || by_monitor.reject(channels, kSeesNothing))
+    return false;
+  return std::any_of(channels.begin(), channels.end(), [&](const std::pair<int, int>& channel) {
+    const Estimate measured = by_monitor.gain_error(channel.first, channel.second);
+    return std::abs(gain->value - 1.0 - measured.value) > kBeyondDoubtSd * measured.deviation;
+  });
+}
+
 /// Whether nothing but its own valve moves a loop: no repair follows that swing for long.
 bool swings_by_itself(const Effect& effect, const Judges& judges) {
   const auto input = static_cast<std::size_t>(effect.place.input);
@@ -152,6 +166,9 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
     if (says == Confirmation::kNone && !(overwhelming && (outside || sticks)) &&
         !(sticks && swings_by_itself(effect, judges)))
       reasons[i] = "with it the test of the channels sees no less wrong";
+    else if (accuses(effect) &&
+             measured_otherwise(effect, problem, findings[i], witness.given_nonlinear))
+      reasons[i] = "the test of the channels measures another gain, and sees nothing wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
     else if (accuses(effect) && says < Confirmation::kNothing && selection.explains[i] < 0.0)

@@ -52,6 +52,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       p_values_(static_cast<std::size_t>(model.cv_count * model.input_count)),
       harmless_(p_values_.size(), 1.0),
       borne_(p_values_.size(), 1.0),
+      gain_errors_(p_values_.size()),
       wrong_(p_values_.size(), 0.0),
       masked_(p_values_.size(), 1.0),
       bends_(p_values_.size(), false),
@@ -74,6 +75,7 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       p_values_[channel] = evidence.p_value;
       harmless_[channel] = harmless_p_value_of(evidence, detector.memory(cv).freedom());
       borne_[channel] = evidence.p_value_material;
+      gain_errors_[channel] = evidence.gain_error;
       if (evidence.excitation_index_alone > 0.0 && std::isfinite(evidence.excitation_index))
         masked_[channel] = evidence.excitation_index / evidence.excitation_index_alone;
       wrong_[channel] = evidence.statistic * steps;

@@ -36,6 +36,12 @@ class ChannelTests {
     const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
     return channel < harmless_.size() ? harmless_[channel] : 1.0;
   }
+  /// Error of the channel's gain that it measures, relative to the model's, whatever else is wrong
+  /// of the channel; of infinite s.d. where there is no test.
+  [[nodiscard]] Estimate gain_error(int cv, int input) const {
+    const auto channel = static_cast<std::size_t>(input * cvs_ + cv);
+    return channel < gain_errors_.size() ? gain_errors_[channel] : Estimate{};
+  }
   /// How much wrong that test sees, CV units squared: its F, which is relative to the noise that
   /// the model leaves, times the mean square of the residual's steps from row to row; 0 where there
   /// is no test.
@@ -75,6 +81,7 @@ class ChannelTests {
   std::vector<std::optional<double>> p_values_;  // per channel, input-major
   std::vector<double> harmless_;                 // likewise
   std::vector<double> borne_;                    // likewise
+  std::vector<Estimate> gain_errors_;            // likewise
   std::vector<double> wrong_;                    // likewise
   std::vector<double> masked_;                   // likewise: s.d. of its gain to that of it alone
   std::vector<bool> bends_;                      // likewise

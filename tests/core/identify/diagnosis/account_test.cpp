@@ -48,8 +48,9 @@ struct Bench {
     return test::recording_of(u, y);
   }
 
-  Account take() {
-    const ChannelTests given(model, all, free_run_residuals(model, all));
+  Account take() { return take(ChannelTests(model, all, free_run_residuals(model, all))); }
+  /// With what the test is said to have made of the recording.
+  Account take(const ChannelTests& given) {
     return account_for(model, 1, first, {unseen, 0, {}, shares},
                        {given, given,
                         [this](const std::vector<Stage>& of, OwnPast past) {
@@ -74,6 +75,28 @@ TEST_CASE("what unseen data refuse goes, with the reason") {
     CHECK_FALSE(finding.refused.empty());
   }
   for (const Fate fate : account.selection.fates) CHECK(fate != Fate::kRefused);
+}
+
+// The test is that of a sound plant, under the same noise: of a gain of 1.5 times the model's it
+// has measured that it is 1.
+TEST_CASE("a gain that the test has measured otherwise goes, however well it carries over") {
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  const VectorXd u = test::telegraph(1, kRows, 12);
+  const Recording sound = test::recording_of(
+      u, test::first_order(u, 2.0, 10.0) + 0.1 * test::autoregressive(test::normal(4, kRows), 0.5));
+  const ChannelTests measured(model, sound, free_run_residuals(model, sound));
+  REQUIRE(measured.gain_error(0, 0).deviation < 0.1);
+  REQUIRE(measured.p_value(0, 0).value_or(0.0) > 0.05);
+  const Account account = Bench(1.5, 1.5, 1.0).take(measured);
+  CHECK_FALSE(names_gain(account));
+  REQUIRE_FALSE(account.refused.empty());
+  CHECK(account.refused.back().refused ==
+        "the test of the channels measures another gain, and sees nothing wrong");
+
+  const Bench still(1.0, 1.0, 1.0, 12);  // the input rests from the beginning
+  const ChannelTests nothing(still.model, still.all, free_run_residuals(still.model, still.all));
+  REQUIRE(std::isinf(nothing.gain_error(0, 0).deviation));
+  CHECK(names_gain(Bench(1.5, 1.5, 1.0).take(nothing)));
 }
 
 TEST_CASE("what carries over stays") {
