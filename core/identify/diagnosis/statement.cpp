@@ -25,7 +25,9 @@ Index first_coordinate(const Fit& fit, std::size_t effect) {
 }  // namespace
 
 Parameter stated(const Coordinate& c, double reach, double sample_time_s) {
-  const double low = c.value - reach, high = c.value + reach;
+  // No further than the model's form goes: no time constant is negative.
+  const double low = std::max(c.value - reach, std::min(c.low, c.value));
+  const double high = std::min(c.value + reach, std::max(c.high, c.value));
   switch (c.quantity->form) {
     case Form::kLog:
       return {c.quantity, std::exp(c.value), std::exp(low), std::exp(high), c.number};

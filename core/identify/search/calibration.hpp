@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 
 /// Numbers that decide what the search accepts and how sure it says it is. 2 ln of odds unless said
@@ -69,6 +70,13 @@ inline constexpr double kAgainstWalk = 4.0;
 inline constexpr double kRise = 3.84;
 /// Reaches at which it is looked for, in s.d. that the curvature gives.
 inline constexpr double kReachesOfRise[] = {1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 15.0, 20.0};
+
+/// Onsets that are looked at beside the one that was found: so many rows away, twice as many, and
+/// so on, until one explains the data worse by so much (2 ln odds, of which one in 400 is left);
+/// the steps of a fit from there.
+inline constexpr Eigen::Index kNearestOnset = 8;
+inline constexpr double kNoOnset = 12.0;
+inline constexpr int kStepsOfAnOnset = 3;
 
 /// A constant offset is one beyond so many s.d. of the noise, and of its own estimate.
 inline constexpr double kOffsetInNoise = 1.5;

@@ -17,11 +17,17 @@ using Eigen::Index;
 
 namespace {
 
-/// Cost of the CVs that an effect touches with one of its coordinates held `off` from its value.
-double cost_at(Problem& problem, const Fit& fit, std::size_t effect, Index coordinate, double off) {
+/// The effects of a fit, this one last.
+std::vector<Effect> with_last(const Fit& fit, std::size_t effect) {
   std::vector<Effect> effects = fit.effects;
   std::rotate(effects.begin() + static_cast<std::ptrdiff_t>(effect),
               effects.begin() + static_cast<std::ptrdiff_t>(effect) + 1, effects.end());
+  return effects;
+}
+
+/// Cost of the CVs that an effect touches with one of its coordinates held `off` from its value.
+double cost_at(Problem& problem, const Fit& fit, std::size_t effect, Index coordinate, double off) {
+  std::vector<Effect> effects = with_last(fit, effect);
   Coordinate& held = effects.back().coordinates[static_cast<std::size_t>(coordinate)];
   held.value = std::clamp(held.value + off, held.low, held.high);
   held.prior_mean = held.value;
@@ -62,6 +68,45 @@ void widen_kinked(Problem& problem, SearchResult& result, const std::function<vo
           if (cost_at(problem, result.fit, e, i, side * steps * sd) < least + kRise)
             reach = std::max(reach, steps * sd);
       variance = std::max(variance, reach * reach / kRise);
+    }
+    first += count;
+  }
+}
+
+void spread_onsets(Problem& problem, SearchResult& result, const std::function<void()>& tell) {
+  Index first = 0;
+  for (std::size_t e = 0; e < result.fit.effects.size(); ++e) {
+    const Effect& effect = result.fit.effects[e];
+    const auto count = static_cast<Index>(effect.coordinates.size());
+    if (effect.edit->knows_onset() && !effect.certain && !causes::is_constant_offset(effect)) {
+      tell();
+      std::vector<Effect> effects = with_last(result.fit, e);
+      const std::vector<int> cvs = touched(effect, problem);
+      const auto fit_from = [&](Index onset) {
+        effects.back() = effect;
+        effects.back().onset = onset;
+        return problem.fit(effects, effects.size() - 1, cvs, kStepsOfAnOnset);
+      };
+      const Fit here = fit_from(effect.onset);
+      Eigen::VectorXd squares = Eigen::VectorXd::Zero(count);
+      double weights = static_cast<double>(kNearestOnset);
+      for (const Index side : {Index{-1}, Index{1}})
+        for (Index rows = kNearestOnset;; rows *= 2) {
+          const Index onset = effect.onset + side * rows;
+          if (onset < 0 || onset + kNearestOnset >= problem.samples()) break;
+          const Fit there = fit_from(onset);
+          const double worse = there.cost - here.cost;
+          if (!(worse < kNoOnset)) break;
+          const double weight = static_cast<double>(rows) * std::exp(-0.5 * worse);
+          weights += weight;
+          for (Index i = 0; i < count; ++i) {
+            const auto c = static_cast<std::size_t>(i);
+            const double moved =
+                there.effects.back().coordinates[c].value - effect.coordinates[c].value;
+            squares(i) += weight * moved * moved;
+          }
+        }
+      result.fit.covariance.diagonal().segment(first, count) += squares / weights;
     }
     first += count;
   }

@@ -12,6 +12,11 @@ namespace mpm {
 /// fitted, really has risen by as much as a 95 % interval allows. `tell` may throw to end it.
 void widen_kinked(Problem& problem, SearchResult& result, const std::function<void()>& tell);
 
+/// A function of time was fitted from its onset on, which is not known: the later a drift begins
+/// the steeper it is. So the variances of its numbers are those that they have over all onsets that
+/// explain the data nearly as well, each by its odds. `tell` may throw to end it.
+void spread_onsets(Problem& problem, SearchResult& result, const std::function<void()>& tell);
+
 /// A level that is off from the first row on by far more than the noise moves it is no small error
 /// any more, but a sensor's offset or a disturbance as old as the data: adds those to `result`, but
 /// for the CVs in `except` and those that wander, of which no level can be told.

@@ -72,6 +72,15 @@ void check(const Parameter& parameter, const std::string& name, double value, do
   CHECK(parameter.high == Approx(high));
 }
 
+TEST_CASE("an interval goes no further than what its number may be") {
+  const Quantity& lag = test::quantity_of(causes::step_disturbance(), "time_constant");
+  const Coordinate coordinate{&lag, 5.0, 5.0, 10.0, 0.1, 0.01, 20.0};
+  CHECK(stated(coordinate, 3.0, 1.0).low == 2.0);
+  CHECK(stated(coordinate, 3.0, 1.0).high == 8.0);
+  CHECK(stated(coordinate, 40.0, 1.0).low == 0.01);
+  CHECK(stated(coordinate, 40.0, 1.0).high == 20.0);
+}
+
 TEST_CASE("a finding's numbers are in the reports' terms, with their intervals") {
   const Bench bench;
   const SearchResult found = found_with(
