@@ -3,6 +3,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/channel_error.hpp"
+#include "core/identify/causes/measured_force.hpp"
 #include "core/identify/causes/priors.hpp"
 #include "core/identify/causes/state_nonlinearity.hpp"
 #include "core/identify/fit/channel_edit.hpp"
@@ -35,7 +36,7 @@ class CubicStiffness : public StateNonlinearity {
     for (const StatePlace& at : state_places(outlook)) {
       const double origin = outlook.model().output_origin(at.channel->cv);
       const double reach = at.cv.reach_from(origin);
-      const double force = at.input.range();
+      const double range = at.input.range();
       const auto term = [](const Quantity& quantity, double sd) {
         return Coordinate{.quantity = &quantity,
                           .prior_sd = sd,
@@ -43,15 +44,24 @@ class CubicStiffness : public StateNonlinearity {
                           .low = -kUnboundedSize,
                           .high = kUnboundedSize};
       };
-      std::vector<Coordinate> spring = {
-          gain_ratio_coordinate(), time_constant_coordinate(0.0),
-          term(kQuadratic, kUsualForce * force / (reach * reach)),
-          term(kCubic, kUsualForce * force / (reach * reach * reach))};
+      std::vector<Coordinate> force = {term(kQuadratic, kUsualForce * range / (reach * reach)),
+                                       term(kCubic, kUsualForce * range / (reach * reach * reach))};
+      std::vector<Coordinate> spring = {gain_ratio_coordinate(), time_constant_coordinate(0.0)};
+      spring.insert(spring.end(), force.begin(), force.end());
       // A linear fit to a stiffening spring has got its damping wrong too.
       if (rings(*at.channel))
         spring.push_back(
             {.quantity = &kDampingRatio, .prior_sd = 0.35, .step = 0.01, .low = -2.0, .high = 2.0});
-      found.push_back(effect(place_of(*at.channel), std::move(spring), members_cost(outlook)));
+      const auto propose_both = [&] {
+        found.push_back(effect(place_of(*at.channel), spring, members_cost(outlook)));
+        found.push_back(effect(place_of(*at.channel), force, members_cost(outlook)));
+      };
+      propose_both();
+      // Near where the force leaves the CV no rest, steps from zero end in runs without end.
+      const Eigen::Vector2d start = measured_force(outlook, *at.channel);
+      for (std::size_t i = 0; i < force.size(); ++i)
+        spring[2 + i].value = force[i].value = start(static_cast<Eigen::Index>(i));
+      propose_both();
     }
   }
 
@@ -59,10 +69,11 @@ class CubicStiffness : public StateNonlinearity {
     return includes_nothing(*finding.find(kQuadratic)) && includes_nothing(*finding.find(kCubic));
   }
 
-  /// One number before four: a channel that is off without a bend.
+  /// One number or two before four: a channel that is off without a bend, or bends and is not off.
   [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
                                               const Problem&, const Tolerances&) const override {
     const Effect& spring = accepted[mine];
+    if (!settles_channel(spring)) return {};
     const auto with = [&](const Cause& cause, std::vector<Coordinate> coordinates) {
       Effect plain = spring;
       plain.edit = &cause;
@@ -70,7 +81,8 @@ class CubicStiffness : public StateNonlinearity {
       return Rewrite{{mine}, {plain}};
     };
     return {with(gain(), {*spring.find(kGainRatio)}),
-            with(dynamics(), {*spring.find(kGainRatio), *spring.find(kTimeConstantRatio)})};
+            with(dynamics(), {*spring.find(kGainRatio), *spring.find(kTimeConstantRatio)}),
+            with(*this, {*spring.find(kQuadratic), *spring.find(kCubic)})};
   }
 
   [[nodiscard]] std::string sentence(const Finding& finding,

@@ -260,6 +260,15 @@ Recording without_unanswered(const ModelSpec& model, const Recording& recording,
   return without(recording, none);
 }
 
+/// Whether the model, driven by these inputs alone, ends at no number: where a term of a CV's own
+/// pushes it away it may have no rest, and only its controller holds it.
+bool runs_away(const ModelSpec& model, const Recording& recording) {
+  Simulator simulator(recording);
+  for (int cv = 0; cv < model.cv_count; ++cv)
+    if (!simulator.cv(model, cv).allFinite()) return true;
+  return false;
+}
+
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
 Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
               const DiagnosisSettings& settings) {
@@ -280,7 +289,11 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   const Compressed compressed(measured);
   const ModelSpec model = with_aux_inputs(base, recording);
   const MatrixXd residuals = free_run_residuals(model, recording);
-  diagnosis.reason = why_not_judged(residuals);
+  diagnosis.reason =
+      runs_away(model, recording) ||
+              (validation && runs_away(with_aux_inputs(base, *validation), *validation))
+          ? "the model runs away: left alone with these inputs its simulation grows without bound"
+          : why_not_judged(residuals);
   if (!diagnosis.reason.empty()) return diagnosis;
   const ModelSpec tested = with_aux_inputs(base, measured);
   const ChannelTests tests(tested, measured, residuals);

@@ -97,6 +97,9 @@ class Problem {
   /// Makes the tolerances those of the model with `effects`, and the rows' weights those that
   /// `fit`'s innovations ask for: heavy tails and loud stretches count less.
   void settle(const std::vector<Effect>& effects, const Fit* fit);
+  /// As it is settled, to come back to: a fit can be read with the nuisances alone that it had.
+  [[nodiscard]] const std::vector<CvData>& settled() const { return data_; }
+  void settle(std::vector<CvData> settled) { data_ = std::move(settled); }
 
   /// Fits the coordinates of `effects` from `first_free` on; the ones before stay as they are.
   [[nodiscard]] Fit fit(std::vector<Effect> effects, std::size_t first_free,

@@ -64,7 +64,9 @@ class Search {
     }
     rewrite();
     SearchResult result = conclude();
+    std::vector<CvData> settled = problem_.settled();
     result.suspect = suspect();
+    problem_.settle(std::move(settled));
     result.doubted = doubted_;
     return result;
   }
@@ -95,6 +97,7 @@ class Search {
       result.named.push_back(named_[i]);
     }
     widen_kinked(problem_, result, [this] { report(); });
+    spread_onsets(problem_, result, [this] { report(); });
     std::vector<int> no_level = no_level_;
     for (const int cv : all_cvs())
       if (!may_name(causes::constant_offset(cv, 0.0, 1.0)) && !has_error(cv))

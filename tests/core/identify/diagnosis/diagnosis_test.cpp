@@ -288,6 +288,45 @@ Recording two_cvs(double fitted, double unseen) {
 double rms(const VectorXd& values) { return std::sqrt(values.cwiseAbs2().mean()); }
 
 // What the extended model leaves is the noise, whose rms over 300 rows is known to 2.6 %.
+// y(k+1) = p y(k) + K (1 - p) (u(k) - q y(k)^2): near where the force leaves the CV no rest.
+TEST_CASE("a CV that is pushed back out of proportion is said to be no more than that") {
+  constexpr Index kLong = 1800, kHold = 15;
+  constexpr double kForce = 0.1;
+  const double pole = std::exp(-1.0 / 10.0);
+  int covered = 0;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    CAPTURE(seed);
+    VectorXd u(kLong), y = VectorXd::Zero(kLong);
+    for (Index k = 0; k < kLong; ++k) u(k) = 0.2 + 0.8 * test::uniform(seed, k / kHold);
+    for (Index k = 0; k + 1 < kLong; ++k)
+      y(k + 1) = pole * y(k) + 2.0 * (1.0 - pole) * (u(k) - kForce * y(k) * y(k));
+    y += 0.02 * test::autoregressive(test::normal(100 + seed, kLong), 0.8);
+    const Diagnosis diagnosis = diagnosis_of(test::recording_of(u, y));
+    REQUIRE_FALSE(diagnosis.findings.empty());
+    const Finding& first = diagnosis.findings.front();
+    CHECK(first.subject.cause == &causes::cubic_stiffness());
+    REQUIRE(first.parameters.size() == 2);  // not what the channel has right as well
+    CHECK(first.parameters[0].value == Approx(kForce).epsilon(0.25));
+    covered += first.parameters[0].low <= kForce && kForce <= first.parameters[0].high ? 1 : 0;
+  }
+  CHECK(covered >= 2);  // of 95 % intervals: by chance fewer in 0.05 %
+}
+
+// y = 2 (u - 0.5 y^2) has no root for u = -1, and one for u = -0.01.
+TEST_CASE("a model that runs away is said to, on the recording or on the unseen one") {
+  ModelSpec running = model();
+  running.state_terms = {{0, 0, RestoringForce{0.5, 0.0}}};
+  Recording still = plant(1.0);
+  still.inputs *= 0.01;
+  const auto reason = [&](const Recording& of, const Recording* unseen) {
+    return diagnose(running, of, unseen, {}).reason;
+  };
+  const Recording loud = plant(1.0);
+  CHECK_THAT(reason(loud, nullptr), Catch::Contains("the model runs away"));
+  CHECK_THAT(reason(still, &loud), Catch::Contains("the model runs away"));
+  CHECK_THAT(reason(still, &still), !Catch::Contains("runs away"));
+}
+
 TEST_CASE("a repair that carries over is measured on rows that no fit has seen") {
   const Recording all = two_cvs(1.5, 1.5);
   const Diagnosis diagnosis = diagnose(model_of_two(), all, nullptr, {});

@@ -46,6 +46,31 @@ TEST_CASE("a search names one cause after the other and then ends") {
   CHECK(search(problem, one).named.size() == 1);
 }
 
+// The suspect is looked for with nuisances beside what was found; the fit had them without it. A
+// channel more has three more of them.
+TEST_CASE("what a search has fitted can be read with the problem that it leaves") {
+  const Eigen::VectorXd u = test::telegraph(1, kRows, 12), left_out = test::telegraph(2, kRows, 9);
+  const Eigen::VectorXd y = test::first_order(u, 2.0, 10.0) +
+                            test::first_order(left_out, 1.0, 5.0) + 0.1 * test::white(4, kRows);
+  Recording recording = test::recording_of(u, y);
+  recording.aux = left_out;
+  const ModelSpec model = with_aux_inputs(test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), recording);
+  Problem problem(model, 1, recording, Tolerances{}, NoiseModel{});
+  SearchSettings settings;
+  settings.max_findings = 1;
+  settings.may_name = [](const Effect&) { return true; };
+  const SearchResult found = search(problem, settings);
+  REQUIRE(found.named.size() == 1);
+  CHECK(found.named[0].effect.edit == &causes::unmodelled_input());
+  REQUIRE(found.fit.cvs.size() == 1);
+  CHECK(found.fit.cvs[0].beta.size() == problem.data(0).nuisances.cols());
+  const CvFit& fit = found.fit.cvs[0];
+  const CvData& data = problem.data(0);
+  const Eigen::VectorXd left =
+      data.measured - problem.simulate(found.fit.effects, 0) - data.nuisances * fit.beta;
+  CHECK((left.cwiseProduct(data.known) - fit.residual).norm() < 1e-9 * fit.residual.norm());
+}
+
 // A level of 2 beside a gain of 1.3 times the model's, which by itself would shift the CV too: with
 // no levels to be named it is told where the gain is, and not where that may not be either.
 TEST_CASE("a level is told beside what is wrong with a channel, else only where it may be") {
