@@ -25,8 +25,8 @@ Index first_coordinate(const Fit& fit, std::size_t effect) {
 }  // namespace
 
 Parameter stated(const Coordinate& c, double reach, double sample_time_s) {
-  // No further than the model's form goes: no time constant is negative.
-  const double low = std::max(c.value - reach, std::min(c.low, c.value));
+  // No further than the model's form goes, or to 0, for "nothing": no time constant is negative.
+  const double low = std::max(c.value - reach, std::min({c.low, c.value, 0.0})) + 0.0;  // never -0
   const double high = std::min(c.value + reach, std::max(c.high, c.value));
   switch (c.quantity->form) {
     case Form::kLog:

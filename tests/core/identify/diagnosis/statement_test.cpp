@@ -77,7 +77,7 @@ TEST_CASE("an interval goes no further than what its number may be") {
   const Coordinate coordinate{&lag, 5.0, 5.0, 10.0, 0.1, 0.01, 20.0};
   CHECK(stated(coordinate, 3.0, 1.0).low == 2.0);
   CHECK(stated(coordinate, 3.0, 1.0).high == 8.0);
-  CHECK(stated(coordinate, 40.0, 1.0).low == 0.01);
+  CHECK(stated(coordinate, 40.0, 1.0).low == 0.0);  // as if there were none
   CHECK(stated(coordinate, 40.0, 1.0).high == 20.0);
 }
 
