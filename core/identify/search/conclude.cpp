@@ -89,7 +89,7 @@ void spread_onsets(Problem& problem, SearchResult& result, const std::function<v
       };
       const Fit here = fit_from(effect.onset);
       Eigen::VectorXd squares = Eigen::VectorXd::Zero(count);
-      double weights = static_cast<double>(kNearestOnset);
+      auto weights = static_cast<double>(kNearestOnset);
       for (const Index side : {Index{-1}, Index{1}})
         for (Index rows = kNearestOnset;; rows *= 2) {
           const Index onset = effect.onset + side * rows;
