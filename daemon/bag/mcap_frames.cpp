@@ -10,6 +10,7 @@
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/files/aligning.hpp"
 #include "idl/layout_sample.hpp"
+#include "idl/topics.hpp"
 
 namespace mpm::bag {
 namespace {

@@ -44,7 +44,7 @@ class Survey {
 };
 
 [[nodiscard]] nlohmann::ordered_json to_json(const TopicRow& row);
-/// One line per topic below a heading; says so where there is none.
+/// One line per topic below a heading.
 [[nodiscard]] std::string to_text(const std::vector<TopicRow>& rows);
 
 }  // namespace mpm::bus

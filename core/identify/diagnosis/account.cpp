@@ -121,7 +121,8 @@ bool swings_by_itself(const Effect& effect, const Judges& judges) {
 /// alone prove too little. So does an accusation that makes predictions no better beyond doubt,
 /// unless the test was sure of a channel's error on all rows and sees all of it gone: the unseen
 /// ones may hold too little movement to tell. (Not where it began later: what may begin anywhere
-/// leaves the test less to see by itself.) Why, for a person; null where it stays. `findings`: of
+/// leaves the test less to see by itself.) And no gain stays that the monitor's test has measured
+/// otherwise. Why, for a person; null where it stays. `findings`: of
 /// what was found, in order.
 std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult& found,
                                      const std::vector<Finding>& findings,

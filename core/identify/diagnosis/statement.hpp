@@ -13,7 +13,8 @@ struct Unexplained {
   double share = 0.0;    ///< of the residual's variance that it makes up
 };
 
-/// A fitted number as reports give it, with an interval of `reach` to either side, in its form.
+/// A fitted number as reports give it, in its form, with an interval of `reach` to either side that
+/// ends where the number may go no further, or at 0.
 [[nodiscard]] Parameter stated(const Coordinate& coordinate, double reach, double sample_time_s);
 
 /// The cause named at `index`.

@@ -27,6 +27,13 @@ double spread(const VectorXd& values, const VectorXd& known) {
       std::max(kLeastVariance, ((values.array() - mean).square() * known.array()).sum() / count));
 }
 
+/// A small step away from a model that all but runs away may be one that does: of such a number the
+/// data can tell nothing.
+VectorXd or_nothing(VectorXd slope) {
+  if (!slope.allFinite()) slope.setZero();
+  return slope;
+}
+
 }  // namespace
 
 // Rows come in blocks that stay in the cache, each reflected into the triangle of those before
@@ -166,7 +173,7 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
     const auto difference = [&](const ChannelError& error, double step) -> VectorXd {
       ModelSpec changed = model;
       changed.channels[c] = edited(channel, error, model.sample_time_s);
-      return (simulator_.cv(changed, cv) - base) / step;
+      return or_nothing((simulator_.cv(changed, cv) - base) / step);
     };
     const auto small = [&](const Quantity& what, double sd, const VectorXd& derivative) {
       add({channel.input, &what, sd}, sd * derivative);
@@ -242,7 +249,7 @@ VectorXd Problem::sensitivity(const std::vector<Effect>& effects, std::size_t ef
   Coordinate& c = moved[effect].coordinates[coordinate];
   const double step = c.value + c.step > c.high ? -c.step : c.step;
   c.value += step;
-  return (simulate(moved, cv) - at) * (c.prior_sd / step);
+  return or_nothing((simulate(moved, cv) - at) * (c.prior_sd / step));
 }
 
 MatrixXd Problem::nuisances(const std::vector<Effect>& effects, int cv) const {

@@ -327,6 +327,21 @@ TEST_CASE("a model that runs away is said to, on the recording or on the unseen 
   CHECK_THAT(reason(still, &still), !Catch::Contains("runs away"));
 }
 
+// y = K (u - 0.1 y^2) has a root down to u = -0.625 for K = 2, and to -0.613 for one 1 % larger.
+TEST_CASE("a model that a small error makes run away is diagnosed as far as it goes") {
+  ModelSpec near = model();
+  near.state_terms = {{0, 0, RestoringForce{0.1, 0.0}}};
+  VectorXd u = 0.3 * test::telegraph(1, kRows, 12), y = VectorXd::Zero(kRows);
+  u.segment(100, 450).setConstant(-0.62);
+  const double pole = std::exp(-1.0 / 10.0);
+  for (Index k = 0; k + 1 < kRows; ++k)
+    y(k + 1) = pole * y(k) + 2.0 * (1.0 - pole) * (u(k) - 0.1 * y(k) * y(k));
+  const Diagnosis diagnosis = diagnose(near, test::recording_of(u, y + noise()), nullptr, {});
+  CHECK(diagnosis.verdict != DiagnosisVerdict::kMismatch);
+  REQUIRE(diagnosis.channels.size() == 1);
+  CHECK(diagnosis.channels[0].gain_ratio.low < diagnosis.channels[0].gain_ratio.high);
+}
+
 TEST_CASE("a repair that carries over is measured on rows that no fit has seen") {
   const Recording all = two_cvs(1.5, 1.5);
   const Diagnosis diagnosis = diagnose(model_of_two(), all, nullptr, {});

@@ -139,9 +139,8 @@ Bench drifting(const VectorXd& u, const VectorXd& y) {
   return {u, y, {*best}};
 }
 
-// A drift of 1e-3 a row from row 250 on, in white noise of s.d. 0.1: its onset is known to some 60
-// rows, and with it the rate. 95 of 100 intervals should hold the truth; with the onset taken for
-// known it were two of three.
+// A drift of 1e-3 a row from row 250 on, in white noise of s.d. 0.1. 95 of 100 intervals should
+// hold the truth; with the onset taken for known 15 of these 20 do.
 TEST_CASE("the interval of a drift's rate holds the truth, whose onset nobody knows") {
   constexpr Index kOnset = 250;
   constexpr double kTrue = 1e-3;
