@@ -47,7 +47,9 @@ std::vector<ChannelEstimate> estimate_channels(Problem& problem, const SearchRes
     const Fit fit = problem.fit(effects, effects.size() - 1, {channel.cv}, kEstimateSteps);
     const auto parameter = [&](Index i) {
       const Coordinate& c = fit.effects.back().coordinates[static_cast<std::size_t>(i)];
-      return stated(c, kNormalReach * std::sqrt(fit.covariance(i, i)), sample_time_s);
+      // None where a small step away the model runs away: no more is known than beforehand.
+      const double sd = fit.covariance.size() > 0 ? std::sqrt(fit.covariance(i, i)) : c.prior_sd;
+      return stated(c, kNormalReach * sd, sample_time_s);
     };
     estimates.push_back({channel.cv, channel.input, parameter(0), parameter(1), parameter(2)});
   }

@@ -249,7 +249,7 @@ VectorXd Problem::sensitivity(const std::vector<Effect>& effects, std::size_t ef
   Coordinate& c = moved[effect].coordinates[coordinate];
   const double step = c.value + c.step > c.high ? -c.step : c.step;
   c.value += step;
-  return or_nothing((simulate(moved, cv) - at) * (c.prior_sd / step));
+  return (simulate(moved, cv) - at) * (c.prior_sd / step);
 }
 
 MatrixXd Problem::nuisances(const std::vector<Effect>& effects, int cv) const {
