@@ -2,18 +2,17 @@
 
 #include <cstdlib>
 
+#include "config/characters.hpp"
+
 namespace mpm::config {
 namespace {
 
 constexpr int kDeepest = 20;       // parentheses in each other
 constexpr int kLargestPower = 99;  // of a word
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 /// Of a unit's word: letters of any script, %, degree signs.
 bool is_word(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || c == '_' || c == '\'' ||
-         static_cast<unsigned char>(c) >= 0x80;
+  return is_letter(c) || c == '%' || c == '_' || c == '\'' || static_cast<unsigned char>(c) >= 0x80;
 }
 
 constexpr std::string_view kMiddleDot = "\xc2\xb7";

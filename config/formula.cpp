@@ -7,21 +7,19 @@
 #include <string_view>
 #include <utility>
 
+#include "config/characters.hpp"
 #include "config/suggest.hpp"
 #include "core/text/printable.hpp"
 
 namespace mpm::config {
 namespace {
 
-constexpr std::size_t kDeepest = 100;  // parentheses in each other
-constexpr int kLargestPower = 9;       // of a unit
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+constexpr std::size_t kDeepestFormula = 100;  // parentheses in each other
+constexpr int kLargestUnitPower = 9;          // of a unit
 
 /// Also of a letter that is no ASCII.
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
-         static_cast<unsigned char>(c) >= 0x80;
+bool is_name_letter(char c) {
+  return is_letter(c) || c == '_' || static_cast<unsigned char>(c) >= 0x80;
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n'; }
@@ -69,7 +67,7 @@ class Scanner {
 
   void scan_one() {
     const char c = text_[at_];
-    if (is_letter(c))
+    if (is_name_letter(c))
       scan_word();
     else if (c == '{')
       scan_braces();
@@ -82,7 +80,7 @@ class Scanner {
   void scan_word() {
     std::size_t end = at_;
     while (end < text_.size() &&
-           (is_letter(text_[end]) || is_digit(text_[end]) || text_[end] == '.'))
+           (is_name_letter(text_[end]) || is_digit(text_[end]) || text_[end] == '.'))
       ++end;
     const std::string word = text_.substr(at_, end - at_);
     std::size_t next = end;
@@ -126,7 +124,7 @@ class Scanner {
       while (is_digit(ahead(length))) ++length;
     }
     copy(length);
-    if (is_letter(ahead(0)))
+    if (is_name_letter(ahead(0)))
       throw FormulaError(at_, "a sign is missing behind the number, or braces around a tag");
   }
 
@@ -145,9 +143,9 @@ class Scanner {
 
   void open(bool of_a_function) {
     calls_.push_back(of_a_function);
-    if (calls_.size() > kDeepest)
-      throw FormulaError(at_,
-                         "more than " + std::to_string(kDeepest) + " parentheses in each other");
+    if (calls_.size() > kDeepestFormula)
+      throw FormulaError(
+          at_, "more than " + std::to_string(kDeepestFormula) + " parentheses in each other");
     copy(1);
   }
 
@@ -277,7 +275,7 @@ std::optional<EngineeringUnit> Formula::unit(
         break;
       case mu::cmPOW: {
         const double power = right.number.value_or(0.5);
-        left.unit = left.unit && power == std::round(power) && std::abs(power) <= kLargestPower
+        left.unit = left.unit && power == std::round(power) && std::abs(power) <= kLargestUnitPower
                         ? std::optional(left.unit->to_the(static_cast<int>(power)))
                         : std::nullopt;
         break;

@@ -7,11 +7,10 @@
 #include <cstdio>
 #include <string_view>
 
+#include "config/characters.hpp"
+
 namespace mpm::config {
 namespace {
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 bool is_plain_word(const std::string& text) {
   static constexpr std::array<std::string_view, 9> kReserved = {

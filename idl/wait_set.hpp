@@ -9,6 +9,9 @@
 
 namespace mpm::idl {
 
+/// A loop that also looks for a signal to end sleeps no longer at once.
+inline constexpr std::chrono::milliseconds kLongestWait{50};
+
 /// Sleeps until one of several readers, of any participants of this process, has something.
 ///
 /// How long it sleeps is reckoned on the steady clock, to a second. Cyclone's wait sets (0.10) wait

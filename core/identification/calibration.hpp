@@ -11,7 +11,7 @@ namespace mpm {
 /// intervals are too narrow by far. Three unknowns per input, and so many besides.
 inline constexpr int kRowsPerUnknown = 5;
 inline constexpr int kUnknownsPerInput = 3, kOtherUnknowns = 12;
-inline constexpr double kStill = 1e-9;            ///< of its level: rounding, not movement
+inline constexpr double kStillShare = 1e-9;       ///< of its level: rounding, not movement
 inline constexpr double kNumbersOfChannel = 3.0;  ///< gain, time constant, dead time
 inline constexpr double kNotZero = 1e-300;        ///< to divide by
 
@@ -63,7 +63,7 @@ inline constexpr double kCut = 3.0;              ///< each by so much
 inline constexpr double kDamping = 1e-6;         ///< to the size of a column
 inline constexpr double kLeastVariance = 1e-24;  ///< of the CV's
 inline constexpr double kFreePrior = 1e-9;       ///< of a level or a drift: none
-inline constexpr double kNoLimit = 1e6;          ///< samples
+inline constexpr double kNoLagLimit = 1e6;       ///< samples
 inline constexpr double kFastest = 0.05;         ///< samples: of a time constant
 inline constexpr double kStartState = 3.0;       ///< s.d. of the CV: of a first state
 inline constexpr int kMostDecays = 3;            ///< time constants of a first state
@@ -79,9 +79,9 @@ inline constexpr double kReachesOfDeadTime[] = {2.0, 3.0, 4.0, 6.0, 8.0, 12.0}; 
 inline constexpr int kHeldSteps = 3;  ///< of Gauss-Newton
 
 // Which channels, of which form (structure.hpp).
-inline constexpr double kBeyondDoubt = 60.0;  ///< squared ratio of a gain to its s.d.
-inline constexpr int kTrialSteps = 6;         ///< of Gauss-Newton
-inline constexpr double kWorthRicher = 4.0;   ///< fall of BIC
+inline constexpr double kSureRatioSquare = 60.0;  ///< squared ratio of a gain to its s.d.
+inline constexpr int kTrialSteps = 6;             ///< of Gauss-Newton
+inline constexpr double kWorthRicher = 4.0;       ///< fall of BIC
 /// Where a channel with lead begins, times the time constant that it had: slow tail, overshoot,
 /// inverse response, a quick answer that mostly goes back, one that goes back further than it came,
 /// a quick answer that creeps on.
@@ -133,7 +133,7 @@ inline constexpr std::ptrdiff_t kFiner = 8;                ///< times, where the
 
 // What is said (identification.hpp).
 inline constexpr double kValidationShare = 0.25;  ///< of the rows, left out of the choice of forms
-inline constexpr double kOnlyFeedback = 0.3;      ///< share of an input's movement from outside
+inline constexpr double kFeedbackShare = 0.3;     ///< share of an input's movement from outside
 inline constexpr double kFamilyError = 0.01;      ///< of any invented relation in a unit
 inline constexpr double kSure = 2e-5;             ///< p-value of each relation in a model, besides
 inline constexpr double kLeastContribution = 0.02;      ///< s.d. of a channel to that of its CV

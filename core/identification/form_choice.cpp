@@ -31,7 +31,7 @@ Material material(const Recording& recording, bool open_loop) {
   result.input_spread.resize(all.inputs.cols());
   for (Index i = 0; i < all.inputs.cols(); ++i) {
     const double spread = spread_of(all.inputs.col(i), everywhere);
-    result.input_spread(i) = spread > kStill * std::abs(all.input_mean(i)) ? spread : 0.0;
+    result.input_spread(i) = spread > kStillShare * std::abs(all.input_mean(i)) ? spread : 0.0;
   }
   result.outside = outside_shares(recording, recording.cvs);
   result.test_signals = test_signals(all);
@@ -179,7 +179,7 @@ Chosen choose_form(const Material& material, const std::vector<ChannelHint>& hin
   const auto cost = [&](const Chosen& chosen) {
     return fit_prediction_error(material.all, cv, chosen.fit.channels, noise, 0).cost;
   };
-  return cost(other) + kBeyondDoubt < cost(given) ? std::move(other) : std::move(given);
+  return cost(other) + kSureRatioSquare < cost(given) ? std::move(other) : std::move(given);
 }
 
 }  // namespace mpm

@@ -221,11 +221,11 @@ class CvFitting {
     double step = number.which == ShapeNumber::kDeadTime ? kDeadTimeStep : kLogStep;
     if (number.which == ShapeNumber::kLead) step *= std::max(1.0, shape.time_constant);
     const double value = number_of(shape, number.which);
-    set_number(other, number.which, value + step, kNoLimit);
+    set_number(other, number.which, value + step, kNoLagLimit);
     if (number.which != ShapeNumber::kDeadTime)
       return (response(other, data_.inputs.col(shape.input), data_.runs) - now) / step;
     ChannelShape earlier = shape;  // the slope changes at whole samples: the mean of both sides
-    set_number(earlier, number.which, value - step, kNoLimit);
+    set_number(earlier, number.which, value - step, kNoLagLimit);
     return (response(other, data_.inputs.col(shape.input), data_.runs) -
             response(earlier, data_.inputs.col(shape.input), data_.runs)) /
            (other.dead_time - earlier.dead_time);

@@ -209,7 +209,7 @@ PredictionErrorFit pruned(const IdentificationData& data, int cv, PredictionErro
     // Of inputs that move alike, the one whose gain looks least sure need not be the one too many.
     std::optional<PredictionErrorFit> best;
     for (std::size_t c = 0; c < fit.channels.size(); ++c) {
-      if (squared_z(fit, c) > kBeyondDoubt) continue;
+      if (squared_z(fit, c) > kSureRatioSquare) continue;
       PredictionErrorFit rest = without(data, cv, fit, c, noise);
       if (!best || rest.cost < best->cost) best = std::move(rest);
     }
@@ -223,7 +223,7 @@ std::vector<double> worth_of_channels(const IdentificationData& data, int cv,
   std::vector<double> worth;
   for (std::size_t c = 0; c < fit.channels.size(); ++c) {
     const double z2 = squared_z(fit, c);
-    worth.push_back(z2 > kBeyondDoubt ? z2 : without(data, cv, fit, c, noise).cost - fit.cost);
+    worth.push_back(z2 > kSureRatioSquare ? z2 : without(data, cv, fit, c, noise).cost - fit.cost);
   }
   return worth;
 }

@@ -18,7 +18,7 @@
 namespace mpm {
 namespace {
 
-namespace limits = calibration::nonlinear_terms;
+namespace bent = calibration::nonlinear_terms;
 using Exponents = PolynomialMap::Exponents;
 
 // A square, and features of a kernel behind it.
@@ -40,10 +40,10 @@ class SquareAnd : public FeatureMap {
 std::unique_ptr<FeatureMap> kernel_map(NonlinearTest test, int dimension) {
   const bool pair = dimension > 1;
   if (test == NonlinearTest::kKernel)
-    return std::make_unique<NystromMap>(dimension, KernelKind::kGaussian, limits::kLandmarks,
-                                        pair ? limits::kPairComponents : limits::kComponents);
-  return std::make_unique<RandomMap>(
-      dimension, pair ? limits::kPairFrequencies : limits::kFrequencies, limits::kFrequencySeed);
+    return std::make_unique<NystromMap>(dimension, KernelKind::kGaussian, bent::kLandmarks,
+                                        pair ? bent::kPairComponents : bent::kComponents);
+  return std::make_unique<RandomMap>(dimension, pair ? bent::kPairFrequencies : bent::kFrequencies,
+                                     bent::kFrequencySeed);
 }
 
 // Of one value; its square comes first.
@@ -93,7 +93,7 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
                     {},
                     curve(test, {{2, 0}, {3, 0}}),
                     curve(test, {{2, 0}}),
-                    InputElement(InputBlock(Deadband{limits::kPlayWidth}), 0.0),
+                    InputElement(InputBlock(Deadband{bent::kPlayWidth}), 0.0),
                     gain(cv, i) != 0.0 && !integrating(cv, i)};
     channel.curved.assign(static_cast<std::size_t>(channel.input_map->outputs()) + 2, path);
     for (int f = 0; f < channel.input_map->outputs(); ++f)
@@ -103,7 +103,7 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
       terms_.push_back({i, i, NonlinearKind::kChannelCurve});
     channels_.push_back(std::move(channel));
   }
-  const int crossed = std::min(limits::kMostCrossed, inputs());
+  const int crossed = std::min(bent::kMostCrossed, inputs());
   for (int a = 0; a < crossed; ++a)
     for (int b = a + 1; b < crossed; ++b) {
       Pair pair{a, b, product(test)};
@@ -118,10 +118,10 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
     const Term& term = terms_[static_cast<std::size_t>(t)];
     const bool goes_on = t > 0 && term.goes_with(terms_[static_cast<std::size_t>(t) - 1]);
     if (!goes_on) groups_.emplace_back();
-    for (int lag = 0; lag < limits::kLags; ++lag) groups_.back().push_back(lag * terms() + t);
+    for (int lag = 0; lag < bent::kLags; ++lag) groups_.back().push_back(lag * terms() + t);
   }
   values_.resize(terms_.size());
-  windows_.assign(terms_.size(), LagWindow(remembered + limits::kLags));
+  windows_.assign(terms_.size(), LagWindow(remembered + bent::kLags));
   // NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks): the channels have what was made
 }
 
@@ -134,20 +134,19 @@ int NonlinearTerms::columns_of(NonlinearTest test, int inputs) {
       input = 2, channel = pair = sum = 1;
       break;
     case NonlinearTest::kKernel:
-      input = channel = 1 + limits::kComponents, pair = limits::kPairComponents;
-      sum = limits::kComponents;
+      input = channel = 1 + bent::kComponents, pair = bent::kPairComponents;
+      sum = bent::kComponents;
       break;
     case NonlinearTest::kRandomFeatures:
-      input = channel = 1 + 2 * limits::kFrequencies, pair = 2 * limits::kPairFrequencies;
-      sum = 2 * limits::kFrequencies;
+      input = channel = 1 + 2 * bent::kFrequencies, pair = 2 * bent::kPairFrequencies;
+      sum = 2 * bent::kFrequencies;
       break;
   }
-  const int crossed = std::min(limits::kMostCrossed, inputs);
-  return limits::kLags *
-         (inputs * (input + 2 + channel) + crossed * (crossed - 1) / 2 * pair + sum);
+  const int crossed = std::min(bent::kMostCrossed, inputs);
+  return bent::kLags * (inputs * (input + 2 + channel) + crossed * (crossed - 1) / 2 * pair + sum);
 }
 
-int NonlinearTerms::columns() const { return limits::kLags * terms(); }
+int NonlinearTerms::columns() const { return bent::kLags * terms(); }
 
 const NonlinearTerms::Term& NonlinearTerms::term_of(int group) const {
   return terms_[static_cast<std::size_t>(columns_of_group(group).front())];
@@ -177,11 +176,11 @@ void NonlinearTerms::input_functions(int input, double x, double* functions) con
   std::vector<double> values(static_cast<std::size_t>(map.outputs()));
   map.apply(&x, values.data());
   for (const double value : values)  // columns go lag by lag within each function
-    functions = std::fill_n(functions, limits::kLags, value);
+    functions = std::fill_n(functions, bent::kLags, value);
 }
 
 double NonlinearTerms::standardised(double value, double centre, double scale) {
-  return scale > 0.0 ? std::clamp((value - centre) / scale, -limits::kFarthest, limits::kFarthest)
+  return scale > 0.0 ? std::clamp((value - centre) / scale, -bent::kFarthest, bent::kFarthest)
                      : 0.0;
 }
 
@@ -251,7 +250,7 @@ void NonlinearTerms::measure_outputs(const RegressionHistory& history, int span)
   input_points_.clear();
   output_points_.clear();
   sum_points_.clear();
-  const int stride = std::max(1, span / limits::kLandmarks);
+  const int stride = std::max(1, span / bent::kLandmarks);
   for (int age = history.depth() - 1; age >= 0; --age) {
     if (age < span) {
       residual_ = residual_of(history, age);
@@ -297,7 +296,7 @@ void NonlinearTerms::choose_pairs() {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return movement(a) > movement(b); });
-  order.resize(static_cast<std::size_t>(std::min(limits::kMostCrossed, inputs())));
+  order.resize(static_cast<std::size_t>(std::min(bent::kMostCrossed, inputs())));
   std::sort(order.begin(), order.end());
   std::size_t at = 0;
   auto term = static_cast<std::size_t>(square_of(inputs()));
@@ -390,7 +389,7 @@ void NonlinearTerms::advance(const RegressionHistory& history, int age) {
 }
 
 void NonlinearTerms::fill(int age, double* row) const {
-  for (int lag = 0; lag < limits::kLags; ++lag)
+  for (int lag = 0; lag < bent::kLags; ++lag)
     for (const LagWindow& window : windows_) *row++ = window.window()[age + lag];
 }
 

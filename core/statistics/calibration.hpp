@@ -48,7 +48,7 @@ inline constexpr Eigen::Index kJitterFrom = 8;  ///< rows: the cycle need be no 
 }  // namespace readings
 
 inline constexpr std::size_t kFewestRows = 100;
-inline constexpr std::size_t kFewestMoves = 30;  ///< that a quantum can be told from
+inline constexpr std::size_t kFewestSteps = 30;  ///< that a quantum can be told from
 inline constexpr double kHeldShare = 0.3;        ///< of the rows
 inline constexpr std::size_t kFewestLevels = 5;  ///< of a converter; a test signal has fewer
 inline constexpr double kNeighbours = 0.8;       ///< share of the moves that are of one quantum

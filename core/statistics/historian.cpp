@@ -97,7 +97,7 @@ HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {
   }
   traits.held_share = held / rows;
   traits.straight_share = on_line / rows;
-  if (traits.compressed() || traits.held_share < kHeldShare || moves.size() < kFewestMoves)
+  if (traits.compressed() || traits.held_share < kHeldShare || moves.size() < kFewestSteps)
     return traits;
 
   const std::vector<double> levels = levels_of(known, tie);

@@ -8,8 +8,6 @@
 namespace mpm::bag {
 namespace {
 
-constexpr std::size_t kMostUnits = 10'000;
-
 SignalKind kind_by_name(std::string_view name, bool& known) {
   known = true;
   for (const SignalKind kind : idl::kTopicKinds)

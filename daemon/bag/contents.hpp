@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
@@ -17,6 +18,9 @@ struct RecordedKind {
   std::vector<std::string> tags;               ///< from the last layout; empty where there is none
   std::vector<std::string> engineering_units;  ///< as many, or fewer
 };
+
+/// Of one recording: more is no recording but something that fills memory.
+inline constexpr std::size_t kMostUnits = 10'000;
 
 struct RecordedUnit {
   std::array<RecordedKind, kSignalKindCount> kinds;

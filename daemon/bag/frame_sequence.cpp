@@ -4,15 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/bag/open_recording.hpp"
 
 namespace mpm::bag {
-namespace {
-
-constexpr double kNsPerSecond = 1e9;
-
-}  // namespace
+namespace {}  // namespace
 
 FrameSequence::FrameSequence(const std::vector<std::string>& paths, const config::UnitConfig& unit,
                              const files::TimeStyle& times)

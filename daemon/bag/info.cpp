@@ -7,7 +7,9 @@
 
 #include "config/finding.hpp"
 #include "core/signal/interval_gap.hpp"
+#include "core/signal/nanoseconds.hpp"
 #include "core/signal/saturated.hpp"
+#include "daemon/bag/contents.hpp"
 #include "daemon/bag/kind_name.hpp"
 #include "daemon/bag/sample_stream.hpp"
 #include "daemon/files/csv/csv_rows.hpp"
@@ -18,10 +20,8 @@
 namespace mpm::bag {
 namespace {
 
-constexpr double kNsPerSecond = 1e9;
 constexpr std::size_t kFirstSteps = 1000;  // enough for their median
 constexpr double kGap = 1.5;               // of the median step: at least one row is missing
-constexpr std::size_t kMostUnits = 10'000;
 
 std::string tag_or_place(const std::vector<std::string>& tags, SignalKind kind, std::size_t index) {
   if (index < tags.size()) return tags[index];

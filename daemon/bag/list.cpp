@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "config/finding.hpp"
+#include "daemon/bag/contents.hpp"
 #include "daemon/bag/split_name.hpp"
 #include "daemon/mcap/read/file_sequence.hpp"
 #include "daemon/mcap/read/reader.hpp"
@@ -17,8 +18,6 @@ namespace mpm::bag {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMostUnits = 10'000;
 
 void add_unit(const mcap::Message& message, ListedRecording& recording) {
   if (message.channel->message_encoding != "cdr" || recording.units.size() >= kMostUnits ||

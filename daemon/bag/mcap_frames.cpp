@@ -15,7 +15,7 @@
 namespace mpm::bag {
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& message) {
+[[noreturn]] void refuse_frames(const std::string& path, const std::string& message) {
   throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
 }
 
@@ -55,9 +55,9 @@ std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::
   const std::string path = mcap::name_of(paths);
   const auto found = contents.find(unit_.unit);
   if (found == contents.end())
-    refuse(path, "holds no samples of unit '" + unit_.unit + "'" +
-                     (contents.empty() ? "; it holds none of any unit"
-                                       : "; its units are " + names_of(contents)));
+    refuse_frames(path, "holds no samples of unit '" + unit_.unit + "'" +
+                            (contents.empty() ? "; it holds none of any unit"
+                                              : "; its units are " + names_of(contents)));
   if (purpose == files::Purpose::kJudge) check_needed(path, found->second);
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
     wanted[kind] = wanted[kind] && found->second.kinds[kind].seen;
@@ -72,11 +72,12 @@ void McapFrames::check_needed(const std::string& path, const RecordedUnit& recor
   for (const SignalKind kind :
        {SignalKind::kMv, SignalKind::kCv, SignalKind::kDv, SignalKind::kRaw})
     if (lacks(kind))
-      refuse(path, std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
+      refuse_frames(path,
+                    std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
   if (!recorded[SignalKind::kPrediction].seen && !predictions_calculated()) {
     if (!unit_.has_model())
-      refuse(path, "holds no mpm/prediction of unit '" + unit_.unit +
-                       "', and its unit file has no model to simulate them");
+      refuse_frames(path, "holds no mpm/prediction of unit '" + unit_.unit +
+                              "', and its unit file has no model to simulate them");
     if (lacks(SignalKind::kPrediction))
       notices_.emplace_back(
           "no predictions in the file, so the unit file's model simulates them instead");

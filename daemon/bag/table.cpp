@@ -15,7 +15,7 @@
 namespace mpm::bag {
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& message) {
+[[noreturn]] void refuse_table(const std::string& path, const std::string& message) {
   throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
 }
 
@@ -43,8 +43,9 @@ config::UnitConfig unit_of(const std::string& path, const std::string& name,
   const auto tags = [&](SignalKind kind) {
     const RecordedKind& known = recorded[kind];
     if (known.seen && known.tags.size() != static_cast<std::size_t>(known.width))
-      refuse(path, std::string("has no layout that names the ") + std::to_string(known.width) +
-                       " signals of " + topic_of(kind) + "; give the unit file with --config");
+      refuse_table(path, std::string("has no layout that names the ") +
+                             std::to_string(known.width) + " signals of " + topic_of(kind) +
+                             "; give the unit file with --config");
     return known.seen ? known.tags : std::vector<std::string>();
   };
   const auto inputs = [&](SignalKind kind, std::vector<config::InputSignal>& signals) {
@@ -69,12 +70,13 @@ config::UnitConfig unit_of(const std::string& path, const std::string& name,
 Table open_mcap(const std::string& path, const TableOptions& options) {
   const Contents contents = contents_of({path}, [](const Contents&) { return false; });
   const std::string wanted = options.unit != nullptr ? options.unit->unit : options.unit_name;
-  if (contents.empty()) refuse(path, "holds no samples of any unit");
+  if (contents.empty()) refuse_table(path, "holds no samples of any unit");
   if (wanted.empty() && contents.size() > 1)
-    refuse(path, "holds several units; pick one with --unit: " + names_of(contents));
+    refuse_table(path, "holds several units; pick one with --unit: " + names_of(contents));
   const auto found = wanted.empty() ? contents.begin() : contents.find(wanted);
   if (found == contents.end())
-    refuse(path, "holds no samples of unit '" + wanted + "'; its units are " + names_of(contents));
+    refuse_table(path,
+                 "holds no samples of unit '" + wanted + "'; its units are " + names_of(contents));
   const RecordedUnit& recorded = found->second;
   Table table;
   table.unit = options.unit != nullptr ? *options.unit : unit_of(path, found->first, recorded);
@@ -119,7 +121,7 @@ Table open_csv(const std::string& path, const TableOptions& options) {
                      [&](const files::Column& have) { return have.tag == column.tag; });
     if (found != table.columns.end()) named.push_back(*found);
   }
-  if (named.empty()) refuse(path, "holds no signal of unit '" + options.unit->unit + "'");
+  if (named.empty()) refuse_table(path, "holds no signal of unit '" + options.unit->unit + "'");
   for (const files::Column& column : table.columns)
     if (std::none_of(named.begin(), named.end(),
                      [&](const files::Column& taken) { return taken.tag == column.tag; }))

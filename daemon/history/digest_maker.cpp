@@ -8,13 +8,13 @@
 
 #include "core/model/linear_model.hpp"
 #include "core/monitor/derived_settings.hpp"
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/words.hpp"
 #include "daemon/report/channel_text.hpp"
 
 namespace mpm::history {
 namespace {
 
-constexpr double kNsPerSecond = 1e9;
 constexpr double kFewestSamples = 10.0;  // of a digest, where they fit
 constexpr std::int64_t kLongestHorizon = 3600;
 constexpr double kWidestInterval = 200.0;  // %, beyond which a gain is not resolved
@@ -27,10 +27,6 @@ double window_s(double sample_time_s) {
 
 DerivedSettings derived_of(const config::UnitConfig& unit) {
   return derive_settings(unit.model, LinearModel(unit.model), unit.monitor, unit.alarms);
-}
-
-std::int64_t floor_of(std::int64_t time_ns, std::int64_t step_ns) {
-  return time_ns / step_ns - (time_ns % step_ns < 0 ? 1 : 0);
 }
 
 // To six digits: what a journal keeps, and all that is meant.
@@ -89,7 +85,7 @@ UnitHead DigestMaker::head(std::int64_t time_ns) const {
 }
 
 std::optional<Digest> DigestMaker::push(const report::UnitMonitor& monitor) {
-  const std::int64_t window = floor_of(monitor.source_time_ns(), window_ns_);
+  const std::int64_t window = floor_division(monitor.source_time_ns(), window_ns_);
   std::optional<Digest> before;
   if (samples_ > 0 && window != window_) before = finish();
   if (samples_ == 0) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/http/command_json.hpp"
 #include "daemon/http/diagnosis_json.hpp"
@@ -19,7 +20,6 @@
 namespace mpm::http {
 namespace {
 
-constexpr double kSecond = 1e9;
 constexpr int kMostEvents = 5000;
 
 Reply json_reply(const Json& json, int status = 200) {
@@ -50,7 +50,7 @@ std::optional<std::int64_t> moment_of(const std::map<std::string, std::string>& 
   constexpr double kMost = 9e9;  // s: what whole ns can count
   const auto seconds = number_of<double>(query, key, bad);
   if (!seconds) return std::nullopt;
-  return std::llround(std::clamp(*seconds, -kMost, kMost) * kSecond);
+  return std::llround(std::clamp(*seconds, -kMost, kMost) * kNsPerSecond);
 }
 
 std::string header(const Request& request, const char* name) {

@@ -11,15 +11,13 @@
 namespace mpm::http {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr std::array<std::string_view, 8> kKeys = {"unit",       "mv",   "cv",   "command",
                                                    "duration_s", "once", "user", "comment"};
 
 /// Reads members of an object and remembers the first thing that is wrong.
 class Reader {
  public:
-  explicit Reader(const Json& json) : json_(json) {}
+  explicit Reader(const nlohmann::json& json) : json_(json) {}
 
   std::string text(const char* key, std::size_t longest) {
     const auto found = json_.find(key);
@@ -63,14 +61,14 @@ class Reader {
     return 0.0;
   }
 
-  const Json& json_;
+  const nlohmann::json& json_;
   std::string problem_;
 };
 
 }  // namespace
 
 std::variant<AlarmCommand, std::string> parse_command(const std::string& body) {
-  const Json json = Json::parse(body, nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(body, nullptr, false);
   if (!json.is_object()) return "the body is to be a JSON object";
   for (const auto& [key, value] : json.items())
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())

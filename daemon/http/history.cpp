@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/signal/nanoseconds.hpp"
+
 namespace mpm::http {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-constexpr double kSecond = 1e9;
 // Of what an entry stands for: after a longer silence a line is broken.
 constexpr double kGap = 3.0;
 constexpr std::size_t kParts = 3;  // of a Reach
@@ -48,8 +49,8 @@ class Bins {
   }
   void close(Drawing& drawing) {
     if (!open_) return;
-    const double time_s = time_ / weight_ / kSecond;
-    const double spacing = std::max(width_ns_, static_cast<double>(span_ns_)) / kSecond;
+    const double time_s = time_ / weight_ / kNsPerSecond;
+    const double spacing = std::max(width_ns_, static_cast<double>(span_ns_)) / kNsPerSecond;
     if (!drawing.times_s.empty() && time_s - drawing.times_s.back() > kGap * spacing) {
       drawing.times_s.push_back(0.5 * (time_s + drawing.times_s.back()));
       for (auto& column : drawing.reaches) column.emplace_back();
@@ -118,7 +119,8 @@ std::size_t RowRing::bytes() const {
 History::History(int columns, double step_s, std::size_t settling)
     : columns_(static_cast<std::size_t>(columns)),
       settling_(settling),
-      step_ns_(std::max<std::int64_t>(1, std::llround(std::min(step_s, kLongestStep) * kSecond))),
+      step_ns_(
+          std::max<std::int64_t>(1, std::llround(std::min(step_s, kLongestStep) * kNsPerSecond))),
       raw_(columns, kRawRows),
       scratch_(kParts * columns_) {
   std::int64_t span = step_ns_;
@@ -225,7 +227,7 @@ Drawing History::draw(std::int64_t from_ns, std::int64_t until_ns, int points,
   }
   drawing.step_s = static_cast<double>(
                        finest < 0 ? step_ns_ : levels_[static_cast<std::size_t>(finest)].span_ns) /
-                   kSecond;
+                   kNsPerSecond;
 
   // The end of a level is told by the one below it, down to the last sample.
   Bins bins(from_ns, until_ns, static_cast<std::size_t>(std::max(points, 1)), columns.size());
@@ -260,7 +262,7 @@ Drawing History::draw(std::int64_t from_ns, std::int64_t until_ns, int points,
       told_until = std::max(told_until, ring.time(ring.size() - 1) + span);
   }
   bins.close(drawing);
-  drawing.step_s = std::max(drawing.step_s, static_cast<double>(until_ns - from_ns) / kSecond /
+  drawing.step_s = std::max(drawing.step_s, static_cast<double>(until_ns - from_ns) / kNsPerSecond /
                                                 static_cast<double>(std::max(points, 1)));
   return drawing;
 }

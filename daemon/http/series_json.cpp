@@ -5,12 +5,12 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/statistics/normal.hpp"
 
 namespace mpm::http {
 namespace {
 
-constexpr double kSecond = 1e9;
 constexpr double kUsualSamples = 3600.0;  // shown where nobody says what
 constexpr double kLatest = 9e9;           // s since 1970: what whole ns can count
 
@@ -38,7 +38,7 @@ Json full_json(const std::vector<Reach>& reaches) {
 }
 
 std::int64_t nanoseconds(double seconds) {
-  return std::llround(std::clamp(seconds, 0.0, kLatest) * kSecond * 1e-3) * 1000;
+  return std::llround(std::clamp(seconds, 0.0, kLatest) * kNsPerSecond * 1e-3) * 1000;
 }
 
 }  // namespace
@@ -81,10 +81,10 @@ Json series_json(const UnitStore& store, int cv, const SeriesQuery& query) {
   return {{"unit", unit.unit},
           {"cv", unit.cv[j].tag},
           {"cv_unit", unit.cv[j].unit},
-          {"first", extent ? Json(static_cast<double>(extent->first) / kSecond) : Json()},
-          {"last", extent ? Json(static_cast<double>(extent->second) / kSecond) : Json()},
-          {"from", static_cast<double>(from) / kSecond},
-          {"until", static_cast<double>(until) / kSecond},
+          {"first", extent ? Json(static_cast<double>(extent->first) / kNsPerSecond) : Json()},
+          {"last", extent ? Json(static_cast<double>(extent->second) / kNsPerSecond) : Json()},
+          {"from", static_cast<double>(from) / kNsPerSecond},
+          {"until", static_cast<double>(until) / kNsPerSecond},
           {"step_s", drawing.step_s},
           {"times", drawing.times_s},
           {"measured", full_json(drawing.reaches[0])},

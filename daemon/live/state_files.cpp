@@ -26,12 +26,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "mpm state 1\n";
-constexpr std::string_view kPrefix = "state-";
+constexpr std::string_view kStateMagic = "mpm state 1\n";
+constexpr std::string_view kStatePrefix = "state-";
 constexpr std::size_t kKept = 2;
 
 std::string path_of(const std::string& folder, std::uint64_t number) {
-  return numbered_path(folder, kPrefix, number);
+  return numbered_path(folder, kStatePrefix, number);
 }
 
 void remove(const std::string& folder, std::uint64_t number) {
@@ -45,18 +45,18 @@ void remove_unfinished(const std::string& folder) {
   std::vector<fs::path> unfinished;
   for (auto entry = fs::directory_iterator(folder, failed);
        !failed && entry != fs::directory_iterator(); entry.increment(failed))
-    if (entry->path().filename().string().starts_with("." + std::string(kPrefix)))
+    if (entry->path().filename().string().starts_with("." + std::string(kStatePrefix)))
       unfinished.push_back(entry->path());
   for (const fs::path& path : unfinished) fs::remove(path, failed);
 }
 
 std::uint64_t oldest_in(const std::string& folder) {
-  const std::vector<std::uint64_t> numbers = numbers_in(folder, kPrefix);
+  const std::vector<std::uint64_t> numbers = numbers_in(folder, kStatePrefix);
   return numbers.empty() ? 0 : numbers.front();
 }
 
 // Of fixed width, before all that it is the sum of.
-std::string sum_of(std::string_view bytes) {
+std::string sum_text(std::string_view bytes) {
   const auto sum = ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   return fmt::format("{:08x}\n", sum);
 }
@@ -77,13 +77,13 @@ std::string write_state(const std::string& folder, const std::string& belongs, s
   body.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   try {
     config::ReplacementFile file(path_of(folder, number));
-    file.write(std::string(kMagic) + sum_of(body));
+    file.write(std::string(kStateMagic) + sum_text(body));
     file.write(body);
     file.commit();
   } catch (const std::exception& error) {
     return error.what();
   }
-  const std::vector<std::uint64_t> all = numbers_in(folder, kPrefix);
+  const std::vector<std::uint64_t> all = numbers_in(folder, kStatePrefix);
   for (std::size_t i = 0; i + kKept < all.size(); ++i) remove(folder, all[i]);
   return "";
 }
@@ -104,12 +104,12 @@ std::optional<std::vector<std::byte>> read_state(const std::string& folder,
     rest.remove_prefix(expected.size());
     return true;
   };
-  const std::size_t sum_size = sum_of("").size();
+  const std::size_t sum_size = sum_text("").size();
   why = "it is damaged";
-  if (!cut(kMagic) || rest.size() < sum_size) return std::nullopt;
+  if (!cut(kStateMagic) || rest.size() < sum_size) return std::nullopt;
   const std::string_view sum = rest.substr(0, sum_size);
   rest.remove_prefix(sum_size);
-  if (sum_of(rest) != sum) return std::nullopt;
+  if (sum_text(rest) != sum) return std::nullopt;
   why = StateFiles::kBelongsElsewhere;
   if (!cut(head_of(number, belongs))) return std::nullopt;
   const auto bytes = std::as_bytes(std::span(rest));
@@ -123,7 +123,7 @@ StateFiles::StateFiles(std::string folder, std::string belongs)
 
 std::vector<std::uint64_t> StateFiles::find(const std::vector<std::uint64_t>& files) {
   remove_unfinished(folder_);
-  std::vector<std::uint64_t> found = numbers_in(folder_, kPrefix);
+  std::vector<std::uint64_t> found = numbers_in(folder_, kStatePrefix);
   std::erase_if(found, [&](std::uint64_t number) {
     if (std::binary_search(files.begin(), files.end(), number)) return false;
     remove(folder_, number);

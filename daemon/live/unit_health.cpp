@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "config/suggest.hpp"
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/aligning.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -26,7 +27,6 @@ constexpr std::chrono::seconds kStandstill{5};
 constexpr std::chrono::seconds kTold{60};
 constexpr std::size_t kMostInDetail = 3;
 constexpr std::size_t kMostTags = 3;
-constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
 Clock::duration samples_or(double sample_time_s, int samples, std::chrono::seconds at_least) {
   return std::max<Clock::duration>(at_least,
@@ -73,7 +73,7 @@ void UnitHealth::recall(const AlignerCounters& aligner) {
 
 void UnitHealth::missed(std::uint64_t intervals, std::int64_t from_ns, std::int64_t until_ns) {
   const auto text = [](std::int64_t time_ns) {
-    return files::formatted_utc(time_ns / kSecond, "%Y-%m-%dT%H:%M:%SZ");
+    return files::formatted_utc(time_ns / kSecondNs, "%Y-%m-%dT%H:%M:%SZ");
   };
   missed_at_ = now_;
   missed_ = "this monitor was away from " + text(from_ns) + " to " + text(until_ns) + ": " +

@@ -9,6 +9,7 @@
 
 #include "core/archive/archive.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/files/aligning.hpp"
@@ -23,7 +24,6 @@ namespace mpm::live {
 namespace {
 
 constexpr std::chrono::seconds kHealthPeriod{1};
-constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 // Lines a minute of what health tells besides, and of what it does not.
 constexpr int kMostOfToldLines = 1;
 constexpr int kMostLines = 3;
@@ -435,7 +435,7 @@ void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroun
   for (bus::Trouble& trouble : keeping_troubles()) others.push_back(std::move(trouble));
   const HealthRecord& health = health_.judge(
       {aligner_.counters(), monitor_, unknown_unit, around, std::move(others), stands_by_text()},
-      wall_ns() / kSecond);
+      wall_ns() / kSecondNs);
   if (journal_) journal_->push(health);
   if (!outputs_.write(health) && output_limit_.admit(now_))
     spdlog::warn("{}: the health could not be published", config_.unit);
@@ -457,7 +457,7 @@ std::vector<bus::Trouble> UnitPipeline::keeping_troubles() const {
   const auto add_file = [&add](const std::string& which, const std::string& problem) {
     if (!problem.empty()) add(which, "the " + which + " cannot be written: " + problem);
   };
-  const std::int64_t now_s = wall_ns() / kSecond;
+  const std::int64_t now_s = wall_ns() / kSecondNs;
   if (keys_until_ && now_s > *keys_until_ - std::chrono::seconds(keys::kNotice).count())
     add("keys", std::string("the keys of this monitor ") +
                     (now_s > *keys_until_ ? "have expired " : "expire ") +

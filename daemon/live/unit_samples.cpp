@@ -26,14 +26,14 @@ constexpr double kMostSecondsBehindState = 0.5;
 // Of the log: the one before the last state is to be of use, too.
 constexpr std::uint64_t kMostFilesBetween = SampleLog::kFiles / 4;
 
-std::string sum_of(const std::string& text) {
+std::string identity_of(const std::string& text) {
   const auto sum = ::crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size());
   return std::to_string(text.size()) + ":" + std::to_string(sum);
 }
 
-std::string sum_of_program() {
+std::string identity_of_program() {
   std::ifstream program("/proc/self/exe", std::ios::binary);
-  return sum_of({std::istreambuf_iterator<char>(program), std::istreambuf_iterator<char>()});
+  return identity_of({std::istreambuf_iterator<char>(program), std::istreambuf_iterator<char>()});
 }
 
 }  // namespace
@@ -54,14 +54,14 @@ std::string meaning_of(const config::UnitConfig& unit) {
   if (!predicted) return text;
   std::ostringstream model;
   config::print_model_section(unit, model);
-  return text + sum_of(model.str());  // which may be megabytes, and each file has a copy
+  return text + identity_of(model.str());  // which may be megabytes, and each file has a copy
 }
 
 std::string owner_of_state(const config::UnitConfig& unit) {
-  static const std::string program = sum_of_program();
+  static const std::string program = identity_of_program();
   std::ostringstream text;
   config::print_unit(unit, text);
-  return program + ";" + sum_of(text.str());
+  return program + ";" + identity_of(text.str());
 }
 
 UnitSamples samples_of(const config::UnitConfig& unit, std::size_t units,

@@ -16,12 +16,12 @@ using Eigen::MatrixXd;
 using Eigen::Ref;
 using Eigen::VectorXd;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 /// Share of the linear slack weight that goes with the square, to keep the Hessian regular.
 constexpr double kSlackCurvature = 1e-3;
 
-double low_of(const std::optional<double>& limit) { return limit.value_or(-kInfinity); }
-double high_of(const std::optional<double>& limit) { return limit.value_or(kInfinity); }
+double low_of(const std::optional<double>& limit) { return limit.value_or(-kUnlimited); }
+double high_of(const std::optional<double>& limit) { return limit.value_or(kUnlimited); }
 
 std::vector<int> starts_of(const std::vector<int>& blocks, int horizon) {
   std::vector<int> starts;
@@ -130,8 +130,8 @@ void Mpc::build_program() {
   }
   program_ = std::make_unique<DenseQp>(hessian, rows);
   gradient_ = VectorXd::Zero(moves + slacks);
-  lower_ = VectorXd::Constant(rows.rows(), -kInfinity);
-  upper_ = VectorXd::Constant(rows.rows(), kInfinity);
+  lower_ = VectorXd::Constant(rows.rows(), -kUnlimited);
+  upper_ = VectorXd::Constant(rows.rows(), kUnlimited);
   gradient_.tail(slacks).setConstant(settings_.soft_limit_weight);
   lower_.tail(slacks).setZero();
   for (Index i = 0; i < moves; ++i) {

@@ -11,7 +11,7 @@ namespace {
 using config::BadDataKind;
 using Eigen::Index;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kTrialSamples = 3000;
 
 std::uint64_t stream_index(BadDataKind kind, std::size_t entry_of_kind, std::size_t signal) {
@@ -101,8 +101,8 @@ void BadDataFilter::add_entry(const LoopSetup& setup, const config::BadData& bad
         (static_cast<std::size_t>(kind) << 16U) + static_cast<std::size_t>(index);
     entry.targets.push_back({{kind, index},
                              Occasions(bad.share, bad.run_samples, stream(signal)),
-                             bad.low.value_or(-kInfinity),
-                             bad.high.value_or(kInfinity),
+                             bad.low.value_or(-kNoBound),
+                             bad.high.value_or(kNoBound),
                              i < bad.sizes.size() ? bad.sizes[i] : 0.0});
   }
   if (spoils_rows(bad.kind)) entry.row.emplace_back(bad.share, bad.run_samples, stream(0));

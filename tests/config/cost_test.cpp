@@ -7,7 +7,7 @@
 #include "core/monitor/cost.hpp"
 #include "core/monitor/monitor.hpp"
 
-namespace mpm::config {
+namespace mpm::config::cost_test {
 namespace {
 
 std::string unit(int inputs, int cvs, const std::string& channel, const std::string& rest = "") {
@@ -135,4 +135,4 @@ TEST_CASE("a channel however slow can be monitored") {
 }
 
 }  // namespace
-}  // namespace mpm::config
+}  // namespace mpm::config::cost_test

@@ -12,6 +12,8 @@
 #include "core/model/linear_model.hpp"
 #include "tests/config/extended_unit.hpp"
 
+namespace extended_model_test {
+
 using namespace mpm;
 using namespace mpm::config;
 using mpm::test::kExtendedUnit;
@@ -317,3 +319,5 @@ TEST_CASE("every mistake in an extended model is told at its place") {
                        ": error: " + each.finding + "\n");
   }
 }
+
+}  // namespace extended_model_test

@@ -9,7 +9,7 @@
 
 #include "config/load_unit.hpp"
 
-namespace mpm::config {
+namespace mpm::config::import_state_space_test {
 namespace {
 
 UnitConfig unit() {
@@ -45,4 +45,4 @@ TEST_CASE("a state space of another tool becomes the unit's, if it is made for i
 }
 
 }  // namespace
-}  // namespace mpm::config
+}  // namespace mpm::config::import_state_space_test

@@ -8,6 +8,8 @@
 
 #include "config/load_unit.hpp"
 
+namespace load_unit_test {
+
 using namespace mpm;
 using namespace mpm::config;
 
@@ -376,3 +378,5 @@ TEST_CASE("Two files of the same unit and a folder without units are errors") {
   REQUIRE(twice.findings.size() == 1);
   CHECK(format(twice.findings[0]) == b + ":1:1: error: unit: 't' is already the unit of " + a);
 }
+
+}  // namespace load_unit_test

@@ -10,6 +10,8 @@
 #include "core/model/linear_model.hpp"
 #include "tests/config/extended_unit.hpp"
 
+namespace mutation_test {
+
 using namespace mpm::config;
 
 namespace {
@@ -114,3 +116,5 @@ TEST_CASE("Deep nesting and cycles are findings, not a crash") {
   CHECK_FALSE(load_unit_text("a: [1\nb: 2\n, c\n", "m.yaml").ok());
   CHECK_FALSE(load_unit_text("unit: &a [*a]\nsignals: &b {mv: *b, cv: *b}\n", "m.yaml").ok());
 }
+
+}  // namespace mutation_test

@@ -8,6 +8,8 @@
 #include "config/finding.hpp"
 #include "tests/system/process.hpp"
 
+namespace replacement_file_test {
+
 using mpm::config::ReplacementFile;
 using mpm::test::read_file;
 using mpm::test::TemporaryFolder;
@@ -104,3 +106,5 @@ TEST_CASE("a pipe, a device or a link is not replaced by a file") {
   }
   CHECK(entries_of(folder.file(".")) == 5);
 }
+
+}  // namespace replacement_file_test

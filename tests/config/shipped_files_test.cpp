@@ -6,6 +6,8 @@
 #include "config/load_unit.hpp"
 #include "config/scenario_config.hpp"
 
+namespace shipped_files_test {
+
 using namespace mpm;
 using namespace mpm::config;
 
@@ -188,3 +190,5 @@ TEST_CASE("No shipped scenario turns the sign of the Shell gains") {
     CHECK(gains.determinant() > 3.0);  // 20.85 without a change
   }
 }
+
+}  // namespace shipped_files_test

@@ -9,7 +9,7 @@
 
 #include "tests/fuzz/targets.hpp"
 
-namespace mpm::fuzz {
+namespace mpm::fuzz::round_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ TEST_CASE("files of states, of any bytes, are taken or refused") { round("state_
 TEST_CASE("states of any bytes are taken or refused") { round("state", 200); }
 
 }  // namespace
-}  // namespace mpm::fuzz
+}  // namespace mpm::fuzz::round_test

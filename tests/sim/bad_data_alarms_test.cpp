@@ -5,6 +5,8 @@
 #include "sim/scenario/prepare.hpp"
 #include "tests/sim/units.hpp"
 
+namespace bad_data_alarms_test {
+
 namespace {
 
 using mpm::AlarmState;
@@ -81,3 +83,5 @@ TEST_CASE("a wrong gain is found behind a twentieth of bad data") {
     }
   }
 }
+
+}  // namespace bad_data_alarms_test

@@ -5,6 +5,8 @@
 #include "sim/scenario/prepare.hpp"
 #include "tests/sim/units.hpp"
 
+namespace corrected_predictions_test {
+
 namespace {
 
 using mpm::AlarmState;
@@ -62,3 +64,5 @@ TEST_CASE("a wrong gain is found though predictions are corrected by the measure
       CHECK(sound.alarms == 0);
     }
 }
+
+}  // namespace corrected_predictions_test

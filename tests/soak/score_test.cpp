@@ -7,7 +7,7 @@
 #include "daemon/history/alarm_store.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::soak {
+namespace mpm::soak::score_test {
 namespace {
 
 history::AlarmEntry entry(std::int64_t time_s, const std::string& mv, const std::string& what) {
@@ -88,4 +88,4 @@ TEST_CASE("the plant is the model, but for one channel in its wrong times") {
 }
 
 }  // namespace
-}  // namespace mpm::soak
+}  // namespace mpm::soak::score_test

@@ -28,7 +28,7 @@ Experiment usual(const std::string& scenario, int runs = 100) {
   return experiment;
 }
 
-std::string number(double value) {
+std::string number_name(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%g", value);
   return text.data();
@@ -54,13 +54,14 @@ void add_grid(std::vector<Experiment>& experiments) {
     }
   };
   for (const double percent : {3.0, 5.0, 8.0, 10.0, 15.0, 20.0})
-    add("gain" + number(percent), "gain +" + number(percent) + " %", 1.0 + percent / 100.0, 1.0,
-        0.0);
+    add("gain" + number_name(percent), "gain +" + number_name(percent) + " %",
+        1.0 + percent / 100.0, 1.0, 0.0);
   for (const double percent : {5.0, 10.0, 15.0, 20.0, 30.0})
-    add("lag" + number(percent), "time constant +" + number(percent) + " %", 1.0,
+    add("lag" + number_name(percent), "time constant +" + number_name(percent) + " %", 1.0,
         1.0 + percent / 100.0, 0.0);
   for (const double samples : {0.25, 0.5, 1.0})
-    add("delay" + number(samples), "dead time +" + number(samples) + " samples", 1.0, 1.0, samples);
+    add("delay" + number_name(samples), "dead time +" + number_name(samples) + " samples", 1.0, 1.0,
+        samples);
 }
 
 /// Errors that begin, or come and go, inside a run.

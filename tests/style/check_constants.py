@@ -31,6 +31,7 @@ ALLOWED = {  # file: numbers, why
     "regression/rotation.cpp": ({1e-280, 1e280}, "squares that can neither overflow nor underflow"),
     "regression/rotation.hpp": ({64}, "bytes"),
     "regression/rotation_kernel.cpp": ({16, 32, 64}, "bytes and rows of the machine's registers"),
+    "signal/nanoseconds.hpp": ({1e9, 1000000000}, "nanoseconds of a second"),
     "statistics/cross_correlation.cpp": (None, "of a report's plot: nothing is decided by it"),
     "statistics/normal.hpp": ({1.96, 1.645, 2.326}, "quantiles, compared with Boost.Math by a test"),
     "statistics/spectrum.cpp": (None, "of a report's plot: nothing is decided by it"),

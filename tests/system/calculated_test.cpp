@@ -9,7 +9,7 @@
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::calculated_test {
 namespace {
 
 constexpr int kSamples = 1500;
@@ -147,4 +147,4 @@ TEST_CASE("a model of a calculated CV is identified from its measurements and th
         std::string::npos);
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::calculated_test

@@ -5,7 +5,7 @@
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::clock_step_test {
 namespace {
 
 const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
@@ -119,4 +119,4 @@ TEST_CASE("a monitor goes on while the clock is set back by an hour") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::clock_step_test

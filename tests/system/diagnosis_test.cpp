@@ -13,7 +13,7 @@
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::diagnosis_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -193,4 +193,4 @@ TEST_CASE("SIGTERM ends the daemon within a second, also in the middle of a diag
   CHECK(plant.log().find("diagnosed up to") == std::string::npos);  // it was running
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::diagnosis_test

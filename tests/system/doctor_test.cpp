@@ -6,7 +6,7 @@
 #include "idl/sample_view.hpp"
 #include "tests/system/bench.hpp"
 
-namespace mpm::test {
+namespace mpm::test::doctor_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -311,4 +311,4 @@ TEST_CASE("two monitors of one unit, and what the disk does not take, are in hea
   CHECK(run(mpm("status", bench.options, {"--no-such-option"}), out, err) == 3);
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::doctor_test

@@ -6,7 +6,7 @@
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::journal_test {
 namespace {
 
 const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
@@ -74,4 +74,4 @@ TEST_CASE("a journal where none can be is told at the start, and the monitor wat
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::journal_test

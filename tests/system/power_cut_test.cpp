@@ -11,7 +11,7 @@
 #include "tests/system/bench.hpp"
 #include "tests/system/disk_image.hpp"
 
-namespace mpm::test {
+namespace mpm::test::power_cut_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -314,4 +314,4 @@ TEST_CASE("a hundred power cuts take no alarm", "[.long]") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::power_cut_test

@@ -13,7 +13,7 @@
 #include "idl/raw_sample.hpp"
 #include "tests/system/bench.hpp"
 
-namespace mpm::test {
+namespace mpm::test::record_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -253,4 +253,4 @@ TEST_CASE("a recorder that is killed loses no more than its open chunk", "[rehea
   for (int i = 0; i < runs(2); ++i) check_killed_recorder(random, i % 2 == 0);
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::record_test

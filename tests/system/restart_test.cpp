@@ -12,7 +12,7 @@
 #include "tests/daemon/http/connection.hpp"
 #include "tests/system/bench.hpp"
 
-namespace mpm::test {
+namespace mpm::test::restart_test {
 namespace {
 
 constexpr int kFrames = 4000;
@@ -400,4 +400,4 @@ TEST_CASE("unit files are read anew on SIGHUP, and nothing is forgotten") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::restart_test

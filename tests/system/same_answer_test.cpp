@@ -9,7 +9,7 @@
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::same_answer_test {
 namespace {
 
 const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
@@ -187,4 +187,4 @@ TEST_CASE("of control performance the daemon says what mpm detect says of the sa
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::same_answer_test

@@ -10,7 +10,7 @@
 #include "tests/idl/bound_addresses.hpp"
 #include "tests/system/bench.hpp"
 
-namespace mpm::test {
+namespace mpm::test::security_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -364,4 +364,4 @@ TEST_CASE("a monitor has sockets on its interface only, and no secret of its key
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::security_test

@@ -10,7 +10,7 @@
 #include "daemon/report/unit_monitor.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::shift_test {
 namespace {
 
 using Name = std::pair<std::string, std::string>;  // mv, cv
@@ -145,4 +145,4 @@ TEST_CASE("a quiet shift calls nobody, whatever is lost of the data") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::shift_test

@@ -5,7 +5,7 @@
 #include "daemon/mcap/read/file_sequence.hpp"
 #include "tests/system/bench.hpp"
 
-namespace mpm::test {
+namespace mpm::test::snapshot_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -69,4 +69,4 @@ TEST_CASE("an alarm and a signal save what the recorder has of the time around t
   CHECK(samples_of("mpm/mv", ring) == kFrames);
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::snapshot_test

@@ -8,7 +8,7 @@
 
 #include "tests/system/bench.hpp"
 
-namespace mpm::test {
+namespace mpm::test::standby_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -274,4 +274,4 @@ TEST_CASE("of two that start together the one of greater rank speaks, and says w
       40s));
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::standby_test

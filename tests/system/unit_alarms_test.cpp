@@ -5,7 +5,7 @@
 
 #include "tests/system/bench.hpp"
 
-namespace mpm::test {
+namespace mpm::test::unit_alarms_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -162,4 +162,4 @@ TEST_CASE("what people did outlives the monitor, and what nobody saw is not lost
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::unit_alarms_test

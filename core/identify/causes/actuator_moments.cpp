@@ -14,8 +14,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kMargin = 10;  ///< rows at either end
-constexpr Index kApart = 10;   ///< rows
+constexpr Index kActuatorMomentsMargin = 10;  ///< rows at either end
+constexpr Index kActuatorMomentsApart = 10;   ///< rows
 /// Of a channel's impulse response, samples: enough to find a moment by.
 constexpr int kLongestResponse = 1000;
 
@@ -101,9 +101,10 @@ std::vector<ActuatorMoment> best_of(const VectorXd& gain, const VectorXd& value,
   for (const Index k : order) {
     if (best.size() == most || !(gain(k) > 0.0)) break;
     const bool near = std::any_of(best.begin(), best.end(), [&](const ActuatorMoment& other) {
-      return std::abs(other.onset - k) < kApart;
+      return std::abs(other.onset - k) < kActuatorMomentsApart;
     });
-    if (!near && k >= kMargin && k + kMargin < gain.size()) best.push_back({k, value(k)});
+    if (!near && k >= kActuatorMomentsMargin && k + kActuatorMomentsMargin < gain.size())
+      best.push_back({k, value(k)});
   }
   return best;
 }

@@ -17,7 +17,7 @@ using Eigen::Index;
 namespace {
 
 /// Moments looked at for an error that began inside the data.
-constexpr int kOnsets = 15;
+constexpr int kChannelErrorOnsets = 15;
 /// A change can be told only if so much of the data lies on either side.
 constexpr double kOnsetMargin = 0.1;
 /// Moments are so much finer than those looked at: they are moved about later.
@@ -108,11 +108,11 @@ bool has_own_gain(const ChannelSpec& channel) {
 Place place_of(const ChannelSpec& channel) { return {channel.cv, channel.input}; }
 
 std::vector<ErrorOnset> error_onsets(const Recording& recording, bool elsewhere) {
-  const double cost = cost_of(kMomentsPerOnset * kOnsets);
+  const double cost = cost_of(kMomentsPerOnset * kChannelErrorOnsets);
   std::vector<ErrorOnset> onsets = {{}};
-  for (int i = 0; elsewhere && i < kOnsets; ++i) {
-    const double share =
-        kOnsetMargin + (1.0 - 2.0 * kOnsetMargin) * (i + 0.5) / static_cast<double>(kOnsets);
+  for (int i = 0; elsewhere && i < kChannelErrorOnsets; ++i) {
+    const double share = kOnsetMargin + (1.0 - 2.0 * kOnsetMargin) * (i + 0.5) /
+                                            static_cast<double>(kChannelErrorOnsets);
     onsets.push_back({static_cast<Index>(share * static_cast<double>(recording.samples())), cost});
   }
   if (recording.changed) onsets.push_back({*recording.changed, cost});

@@ -14,8 +14,8 @@ constexpr Quantity kForce{"force", Form::kPlain, Unit::kInput};
 constexpr Quantity kSpeed{"speed", Form::kLog, Unit::kCvPerSecond};
 
 /// Forces to begin a fit from, as shares of the input's range, and the prior's s.d.
-constexpr double kStarts[] = {0.05, 0.15};
-constexpr double kUsualForce = 0.15;
+constexpr double kCoulombFrictionStarts[] = {0.05, 0.15};
+constexpr double kCoulombFrictionUsualForce = 0.15;
 constexpr double kForceStep = 0.005;
 /// Speeds to begin a fit from, in the CV's usual one by the model: friction is full long before it
 /// moves so fast, but not so soon that the simulation chatters. s.d. of the log.
@@ -57,13 +57,13 @@ class DryFriction : public StateNonlinearity {
       const double range = at.input.range();
       const double usual = usual_speed(outlook, at.channel->cv);
       if (!(usual > 0.0)) continue;
-      for (const double share : kStarts)
+      for (const double share : kCoulombFrictionStarts)
         for (const double of_usual : kSpeeds) {
           const double speed = std::log(of_usual * usual);
           const Coordinate force{.quantity = &kForce,
                                  .value = share * range,
                                  .prior_mean = 0.0,
-                                 .prior_sd = kUsualForce * range,
+                                 .prior_sd = kCoulombFrictionUsualForce * range,
                                  .step = kForceStep * range,
                                  .low = 0.0,
                                  .high = range};

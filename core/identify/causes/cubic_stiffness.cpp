@@ -12,12 +12,12 @@ namespace mpm::causes {
 namespace {
 
 /// phi = quadratic y^2 + cubic y^3, y the channel's deviation (RestoringForce).
-constexpr Quantity kQuadratic{"quadratic", Form::kPlain, Unit::kNone};
-constexpr Quantity kCubic{"cubic", Form::kPlain, Unit::kNone};
+constexpr Quantity kCubicStiffnessQuadratic{"quadratic", Form::kPlain, Unit::kNone};
+constexpr Quantity kCubicStiffnessCubic{"cubic", Form::kPlain, Unit::kNone};
 
 /// s.d. of each term where the CV is farthest out, as a share of the input's range.
-constexpr double kUsualForce = 0.2;
-constexpr double kStep = 0.02;  ///< of that s.d.
+constexpr double kCubicStiffnessUsualForce = 0.2;
+constexpr double kCubicStiffnessStep = 0.02;  ///< of that s.d.
 
 /// A CV is pushed back by a force that does not grow in proportion to it.
 class CubicStiffness : public StateNonlinearity {
@@ -27,9 +27,9 @@ class CubicStiffness : public StateNonlinearity {
   void apply(const Effect& effect, const Surroundings& surroundings,
              ModelSpec& model) const override {
     edit_channels(effect, surroundings, model);
-    model.state_terms.push_back(
-        {effect.place.cv, effect.place.input,
-         RestoringForce{effect.value(kQuadratic, 0.0), effect.value(kCubic, 0.0)}});
+    model.state_terms.push_back({effect.place.cv, effect.place.input,
+                                 RestoringForce{effect.value(kCubicStiffnessQuadratic, 0.0),
+                                                effect.value(kCubicStiffnessCubic, 0.0)}});
   }
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
@@ -40,12 +40,13 @@ class CubicStiffness : public StateNonlinearity {
       const auto term = [](const Quantity& quantity, double sd) {
         return Coordinate{.quantity = &quantity,
                           .prior_sd = sd,
-                          .step = kStep * sd,
+                          .step = kCubicStiffnessStep * sd,
                           .low = -kUnboundedSize,
                           .high = kUnboundedSize};
       };
-      std::vector<Coordinate> force = {term(kQuadratic, kUsualForce * range / (reach * reach)),
-                                       term(kCubic, kUsualForce * range / (reach * reach * reach))};
+      std::vector<Coordinate> force = {
+          term(kCubicStiffnessQuadratic, kCubicStiffnessUsualForce * range / (reach * reach)),
+          term(kCubicStiffnessCubic, kCubicStiffnessUsualForce * range / (reach * reach * reach))};
       std::vector<Coordinate> spring = {gain_ratio_coordinate(), time_constant_coordinate(0.0)};
       spring.insert(spring.end(), force.begin(), force.end());
       // A linear fit to a stiffening spring has got its damping wrong too.
@@ -66,7 +67,8 @@ class CubicStiffness : public StateNonlinearity {
   }
 
   [[nodiscard]] bool may_be_nothing(const Finding& finding) const override {
-    return includes_nothing(*finding.find(kQuadratic)) && includes_nothing(*finding.find(kCubic));
+    return includes_nothing(*finding.find(kCubicStiffnessQuadratic)) &&
+           includes_nothing(*finding.find(kCubicStiffnessCubic));
   }
 
   /// One number or two before four: a channel that is off without a bend, or bends and is not off.
@@ -80,9 +82,10 @@ class CubicStiffness : public StateNonlinearity {
       plain.coordinates = std::move(coordinates);
       return Rewrite{{mine}, {plain}};
     };
-    return {with(gain(), {*spring.find(kGainRatio)}),
-            with(dynamics(), {*spring.find(kGainRatio), *spring.find(kTimeConstantRatio)}),
-            with(*this, {*spring.find(kQuadratic), *spring.find(kCubic)})};
+    return {
+        with(gain(), {*spring.find(kGainRatio)}),
+        with(dynamics(), {*spring.find(kGainRatio), *spring.find(kTimeConstantRatio)}),
+        with(*this, {*spring.find(kCubicStiffnessQuadratic), *spring.find(kCubicStiffnessCubic)})};
   }
 
   [[nodiscard]] std::string sentence(const Finding& finding,

@@ -6,7 +6,7 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"dead_time", "Dead time"};
+constexpr CauseName kDeadTimeName{"dead_time", "Dead time"};
 
 constexpr double kLater[] = {0.3, 2.0, 5.0, 10.0};
 constexpr double kSooner[] = {-2.0, -5.0};
@@ -18,7 +18,7 @@ constexpr double kSoonerShare = 0.5;
 /// A channel answers later or sooner than the model.
 class DeadTime : public SingleChannelError {
  public:
-  DeadTime() : SingleChannelError(kName) {}
+  DeadTime() : SingleChannelError(kDeadTimeName) {}
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const double members = cost_of(outlook.model().channels.size());

@@ -8,11 +8,11 @@ namespace {
 constexpr Quantity kWidth{"width", Form::kPlain, Unit::kInput};
 
 /// Shares of the input's range to begin a fit from, and the prior's s.d.
-constexpr double kStarts[] = {0.02, 0.05, 0.1, 0.2};
-constexpr double kUsualWidth = 0.15;
+constexpr double kDeadbandStarts[] = {0.02, 0.05, 0.1, 0.2};
+constexpr double kDeadbandUsualWidth = 0.15;
 constexpr double kLeastWidth = 1e-4;
 /// Of the width, a step of the finite difference.
-constexpr double kStep = 0.03;
+constexpr double kDeadbandStep = 0.03;
 
 /// Play: after it turns, an input must move some way before the plant follows.
 class PlayOfInput : public InputBlockCause {
@@ -23,13 +23,13 @@ class PlayOfInput : public InputBlockCause {
     for (const BlockPlace& at : curve_places(outlook)) {
       const double range = at.input.range();
       for (const ErrorOnset& begins : block_onsets(outlook))
-        for (const double share : kStarts)
+        for (const double share : kDeadbandStarts)
           found.push_back(effect(at.place,
                                  {{.quantity = &kWidth,
                                    .value = share * range,
                                    .prior_mean = 0.0,
-                                   .prior_sd = kUsualWidth * range,
-                                   .step = kStep * share * range,
+                                   .prior_sd = kDeadbandUsualWidth * range,
+                                   .step = kDeadbandStep * share * range,
                                    .low = kLeastWidth * range,
                                    .high = range}},
                                  cost_of(at.members) + begins.cost, begins.row));

@@ -9,11 +9,11 @@ constexpr Quantity kRate{"rate", Form::kPlain, Unit::kCvPerSecond};
 
 /// Onsets looked at: the beginning, and every twentieth of the data up to where what is left is too
 /// short to show a drift.
-constexpr int kOnsets = 18;
+constexpr int kDriftDisturbanceOnsets = 18;
 constexpr double kOnsetStep = 0.05;
 /// s.d. of what it comes to by the end, and a step of its finite difference, in s.d. of what is
 /// left of the CV.
-constexpr double kUsualSize = 3.0, kSizeStep = 0.05;
+constexpr double kDriftDisturbanceUsualSize = 3.0, kDriftDisturbanceSizeStep = 0.05;
 
 /// A CV wanders off at a constant rate.
 class DriftDisturbance : public OutputDisturbance {
@@ -37,16 +37,16 @@ class DriftDisturbance : public OutputDisturbance {
     const double members = cost_of(static_cast<std::size_t>(outlook.model().cv_count));
     for (const CvFit& without : outlook.without) {
       const double sd = left_sd(without);
-      for (int i = 0; i < kOnsets; ++i) {
+      for (int i = 0; i < kDriftDisturbanceOnsets; ++i) {
         const auto onset = static_cast<Eigen::Index>(static_cast<double>(samples) * kOnsetStep * i);
         const double length = static_cast<double>(samples - onset) * outlook.sample_time_s();
         found.push_back(effect({without.cv},
                                {{.quantity = &kRate,
-                                 .prior_sd = kUsualSize * sd / length,
-                                 .step = kSizeStep * sd / length,
+                                 .prior_sd = kDriftDisturbanceUsualSize * sd / length,
+                                 .step = kDriftDisturbanceSizeStep * sd / length,
                                  .low = -kUnboundedSize,
                                  .high = kUnboundedSize}},
-                               members + cost_of(i == 0 ? 1 : kOnsets), onset));
+                               members + cost_of(i == 0 ? 1 : kDriftDisturbanceOnsets), onset));
       }
     }
   }

@@ -8,15 +8,15 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"dynamics", "Dynamics"};
+constexpr CauseName kDynamicsName{"dynamics", "Dynamics"};
 
 /// Logs of time constant ratios to begin a fit from.
-constexpr double kStarts[] = {-0.3, 0.0, 0.4};
+constexpr double kDynamicsStarts[] = {-0.3, 0.0, 0.4};
 
 /// Two or more errors of one channel: gain, time constant, dead time.
 class Dynamics : public Cause {
  public:
-  Dynamics() : Cause(kName) {}
+  Dynamics() : Cause(kDynamicsName) {}
 
   void apply(const Effect& effect, const Surroundings& surroundings,
              ModelSpec& model) const override {
@@ -30,7 +30,7 @@ class Dynamics : public Cause {
         found.push_back(effect(place_of(channel), std::move(coordinates), members));
       };
       const bool gain = has_own_gain(channel);
-      for (const double start : kStarts)
+      for (const double start : kDynamicsStarts)
         if (gain) add({gain_ratio_coordinate(), time_constant_coordinate(start)});
       const double removable = removable_samples(channel, outlook.sample_time_s());
       for (const double start : dead_time_starts(removable)) {

@@ -4,12 +4,12 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"gain", "Gain"};
+constexpr CauseName kGainName{"gain", "Gain"};
 
 /// A channel's gain is another one than the model's.
 class Gain : public SingleChannelError {
  public:
-  Gain() : SingleChannelError(kName) {}
+  Gain() : SingleChannelError(kGainName) {}
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const double members = cost_of(outlook.model().channels.size());

@@ -11,15 +11,15 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"input_offset", "Offset of an actuator"};
+constexpr CauseName kInputOffsetName{"input_offset", "Offset of an actuator"};
 
 constexpr Quantity kSize{"size", Form::kPlain, Unit::kInput};
 
 /// Moments that are looked at more closely; one is told from others some rows away.
-constexpr std::size_t kMoments = 8;
-constexpr std::size_t kRowsPerMoment = 4;
+constexpr std::size_t kInputOffsetMoments = 8;
+constexpr std::size_t kInputOffsetRowsPerMoment = 4;
 /// s.d. of the size, and a step of its finite difference, as shares of the input's range.
-constexpr double kUsualSize = 0.3, kSizeStep = 0.01;
+constexpr double kInputOffsetUsualSize = 0.3, kInputOffsetSizeStep = 0.01;
 /// Load disturbances come in through like dynamics as often as actuators shift: where only one CV
 /// answers, the shape of the onset must speak for the actuator by itself, 2 ln of odds. And what
 /// wanders looks like steps of this and that.
@@ -64,26 +64,26 @@ int moves_along(const Eigen::MatrixXd& signals, Eigen::Index columns, Eigen::Ind
 /// is never taken for one.
 class InputOffsetCause : public InputBlockCause {
  public:
-  InputOffsetCause() : InputBlockCause(kName) {}
+  InputOffsetCause() : InputBlockCause(kInputOffsetName) {}
 
   [[nodiscard]] bool knows_onset() const override { return true; }
   [[nodiscard]] bool has_onset_parameter() const override { return true; }
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const auto samples = static_cast<std::size_t>(outlook.problem.samples());
-    const double cost =
-        cost_of(static_cast<std::size_t>(outlook.inputs())) + cost_of(samples / kRowsPerMoment);
+    const double cost = cost_of(static_cast<std::size_t>(outlook.inputs())) +
+                        cost_of(samples / kInputOffsetRowsPerMoment);
     for (const BlockPlace& at : block_places(outlook)) {
       if (!at.whole_input) continue;
       const int input = at.place.input;
       const double range = at.input.range();
       const double shared = outlook.cvs_of(input).size() > 1 ? 0.0 : kOneCvOnly;
-      for (const ActuatorMoment& moment : offset_moments(outlook, input, kMoments))
+      for (const ActuatorMoment& moment : offset_moments(outlook, input, kInputOffsetMoments))
         found.push_back(effect({-1, input},
                                {{.quantity = &kSize,
                                  .value = moment.value,
-                                 .prior_sd = kUsualSize * range,
-                                 .step = kSizeStep * range}},
+                                 .prior_sd = kInputOffsetUsualSize * range,
+                                 .step = kInputOffsetSizeStep * range}},
                                cost + shared + kWandering, moment.onset));
     }
   }

@@ -6,7 +6,7 @@ namespace mpm::causes {
 namespace {
 
 /// u acts like (linear + per_unit dv) du, du and dv from the operating point, v the other input.
-constexpr Quantity kLinear{"linear", Form::kPlain, Unit::kNone};
+constexpr Quantity kInputProductLinear{"linear", Form::kPlain, Unit::kNone};
 constexpr Quantity kPerUnit{"per_unit", Form::kPlain, Unit::kNone};
 
 /// What an input does goes with where another one stands.
@@ -25,7 +25,7 @@ class InputProduct : public InputBlockCause {
         const double reach = spread->reach_from(outlook.model().input_origin(other));
         const Coordinate per_unit = bending(kPerUnit, kBend / reach);
         found.push_back(
-            effect(at.place, {plain_ratio(kLinear), per_unit},
+            effect(at.place, {plain_ratio(kInputProductLinear), per_unit},
                    cost_of(at.members) + cost_of(static_cast<std::size_t>(outlook.inputs() - 1))));
         found.back().other_input = other;
       }
@@ -38,7 +38,7 @@ class InputProduct : public InputBlockCause {
   [[nodiscard]] std::vector<Rewrite> rewrites(std::size_t mine, const std::vector<Effect>& accepted,
                                               const Problem& problem,
                                               const Tolerances&) const override {
-    return as_gain(mine, accepted, accepted[mine].value(kLinear, 1.0), problem);
+    return as_gain(mine, accepted, accepted[mine].value(kInputProductLinear, 1.0), problem);
   }
 
   [[nodiscard]] std::string sentence(const Finding& finding,
@@ -61,7 +61,8 @@ class InputProduct : public InputBlockCause {
 
  protected:
   [[nodiscard]] InputBlock block(const Effect& effect, const Surroundings&) const override {
-    return Product{effect.other_input, effect.value(kPerUnit, 0.0), effect.value(kLinear, 1.0)};
+    return Product{effect.other_input, effect.value(kPerUnit, 0.0),
+                   effect.value(kInputProductLinear, 1.0)};
   }
 };
 

@@ -5,11 +5,11 @@
 namespace mpm::causes {
 namespace {
 
-constexpr Quantity kLow{"low", Form::kPlain, Unit::kInput};
-constexpr Quantity kHigh{"high", Form::kPlain, Unit::kInput};
+constexpr Quantity kInputSaturationLow{"low", Form::kPlain, Unit::kInput};
+constexpr Quantity kInputSaturationHigh{"high", Form::kPlain, Unit::kInput};
 
 /// Shares of the data beyond a level to begin a fit from.
-constexpr double kBeyond[] = {0.03, 0.08, 0.15, 0.25};
+constexpr double kInputSaturationBeyond[] = {0.03, 0.08, 0.15, 0.25};
 /// A level that leaves less than this share of the data on either side is none any more.
 constexpr double kLeastWithin = 0.3, kMostWithin = 0.7;
 
@@ -32,9 +32,9 @@ class InputSaturation : public InputBlockCause {
                           .low = -kUnbounded,
                           .high = kUnbounded};
       };
-      for (const double p : kBeyond) {
-        Coordinate high = level(kHigh, at.input.quantile(1.0 - p));
-        Coordinate low = level(kLow, at.input.quantile(p));
+      for (const double p : kInputSaturationBeyond) {
+        Coordinate high = level(kInputSaturationHigh, at.input.quantile(1.0 - p));
+        Coordinate low = level(kInputSaturationLow, at.input.quantile(p));
         high.low = at.input.quantile(kLeastWithin);
         low.high = at.input.quantile(kMostWithin);
         found.push_back(effect(at.place, {high}, cost_of(at.members)));
@@ -52,8 +52,8 @@ class InputSaturation : public InputBlockCause {
   [[nodiscard]] std::string sentence(const Finding& finding,
                                      const SignalNames& names) const override {
     const Place& place = finding.subject.place;
-    const Parameter* low = finding.find(kLow);
-    const Parameter* high = finding.find(kHigh);
+    const Parameter* low = finding.find(kInputSaturationLow);
+    const Parameter* high = finding.find(kInputSaturationHigh);
     const auto limit = [&](const Parameter& at) {
       return names.in_source(at.value, place) + " (" + interval_of(at) + ")";
     };
@@ -66,7 +66,8 @@ class InputSaturation : public InputBlockCause {
 
  protected:
   [[nodiscard]] InputBlock block(const Effect& effect, const Surroundings&) const override {
-    return Saturation{effect.value(kLow, -kNoLimit), effect.value(kHigh, kNoLimit)};
+    return Saturation{effect.value(kInputSaturationLow, -kNoLimit),
+                      effect.value(kInputSaturationHigh, kNoLimit)};
   }
 };
 

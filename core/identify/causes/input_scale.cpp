@@ -8,7 +8,7 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"input_scale", "Scale of an input"};
+constexpr CauseName kInputScaleName{"input_scale", "Scale of an input"};
 
 /// Gains of so many CVs at most are meant where a scale and a gain cancel in another.
 constexpr std::size_t kMostGainsInstead = 2;
@@ -16,7 +16,7 @@ constexpr std::size_t kMostGainsInstead = 2;
 /// All gains of one input are off by the same ratio: its actuator, or its flow meter.
 class InputScale : public Cause {
  public:
-  InputScale() : Cause(kName) {}
+  InputScale() : Cause(kInputScaleName) {}
 
   void apply(const Effect& effect, const Surroundings& surroundings,
              ModelSpec& model) const override {

@@ -5,13 +5,13 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"input_stuck", "Stuck actuator"};
+constexpr CauseName kInputStuckName{"input_stuck", "Stuck actuator"};
 
 constexpr Quantity kValue{"value", Form::kPlain, Unit::kInput};
 
 /// Moments that are looked at more closely; one is told from others some rows away.
-constexpr std::size_t kMoments = 8;
-constexpr std::size_t kRowsPerMoment = 4;
+constexpr std::size_t kInputStuckMoments = 8;
+constexpr std::size_t kInputStuckRowsPerMoment = 4;
 /// s.d. of where it sticks about the input's median, and a step of its finite difference, as shares
 /// of the input's range.
 constexpr double kUsualDistance = 1.0, kValueStep = 0.01;
@@ -19,7 +19,7 @@ constexpr double kUsualDistance = 1.0, kValueStep = 0.01;
 /// An actuator stays where it is, whatever is commanded: from a moment on, or throughout.
 class StuckActuator : public InputBlockCause {
  public:
-  StuckActuator() : InputBlockCause(kName) {}
+  StuckActuator() : InputBlockCause(kInputStuckName) {}
 
   [[nodiscard]] bool knows_onset() const override { return true; }
   /// A command that runs away from a stuck actuator drives the simulation off, slowly.
@@ -40,9 +40,10 @@ class StuckActuator : public InputBlockCause {
                           .step = kValueStep * at.input.range()};
       };
       found.push_back(effect(place, {value(at.input.median)}, members));
-      for (const ActuatorMoment& moment : stuck_moments(outlook, place.input, kMoments))
+      for (const ActuatorMoment& moment : stuck_moments(outlook, place.input, kInputStuckMoments))
         found.push_back(effect(place, {value(moment.value)},
-                               members + cost_of(samples / kRowsPerMoment), moment.onset));
+                               members + cost_of(samples / kInputStuckRowsPerMoment),
+                               moment.onset));
     }
   }
 

@@ -11,7 +11,7 @@ constexpr Quantity kAbove{"above", Form::kPlain, Unit::kNone};
 constexpr Quantity kBelow{"below", Form::kPlain, Unit::kNone};
 
 /// Shares of the data below the point to begin a fit from; it stays within the first and last.
-constexpr double kStarts[] = {0.3, 0.5, 0.7};
+constexpr double kInputTwoSidedStarts[] = {0.3, 0.5, 0.7};
 constexpr double kLeastBelow = 0.1, kMostBelow = 0.9;
 /// Levels of the input: three lie on two lines whatever the plant does, and so do five, where the
 /// point may lie anywhere between.
@@ -27,7 +27,7 @@ class InputTwoSided : public InputBlockCause {
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     for (const BlockPlace& at : curve_places(outlook, kLevels)) {
       const double range = at.input.range();
-      for (const double share : kStarts) {
+      for (const double share : kInputTwoSidedStarts) {
         const Coordinate point{.quantity = &kAt,
                                .value = at.input.quantile(share),
                                .prior_mean = at.input.median,

@@ -7,7 +7,7 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"noise", "Noise"};
+constexpr CauseName kNoiseName{"noise", "Noise"};
 
 constexpr Quantity kVarianceRatio{"variance_ratio", Form::kPlain, Unit::kOfModel};
 
@@ -32,7 +32,7 @@ bool is_coarse(const Eigen::Ref<const Eigen::VectorXd>& cv) {
 /// last fit leaves.
 class Noise : public Cause {
  public:
-  Noise() : Cause(kName) {}
+  Noise() : Cause(kNoiseName) {}
 
   void apply(const Effect&, const Surroundings&, ModelSpec&) const override {}
 

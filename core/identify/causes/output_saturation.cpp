@@ -7,13 +7,13 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"output_nonlinearity", "Nonlinear output"};
+constexpr CauseName kOutputSaturationName{"output_nonlinearity", "Nonlinear output"};
 
-constexpr Quantity kLow{"low", Form::kPlain, Unit::kCv};
-constexpr Quantity kHigh{"high", Form::kPlain, Unit::kCv};
+constexpr Quantity kOutputSaturationLow{"low", Form::kPlain, Unit::kCv};
+constexpr Quantity kOutputSaturationHigh{"high", Form::kPlain, Unit::kCv};
 
 /// Shares of the data beyond a level to begin a fit from.
-constexpr double kBeyond[] = {0.002, 0.05, 0.12};
+constexpr double kOutputSaturationBeyond[] = {0.002, 0.05, 0.12};
 /// Successive values beyond a level that say how the CV moves there, and ratio of von Neumann below
 /// which it moves slowly.
 constexpr double kFewestBeyond = 20.0, kSlow = 0.5;
@@ -23,11 +23,12 @@ constexpr int kLikes = 40;
 /// A CV does not read, or does not go, beyond a level.
 class OutputSaturation : public Cause {
  public:
-  OutputSaturation() : Cause(kName, "saturation") {}
+  OutputSaturation() : Cause(kOutputSaturationName, "saturation") {}
 
   void apply(const Effect& effect, const Surroundings&, ModelSpec& model) const override {
     model.output_blocks[static_cast<std::size_t>(effect.place.cv)] =
-        Saturation{effect.value(kLow, -kNoLimit), effect.value(kHigh, kNoLimit)};
+        Saturation{effect.value(kOutputSaturationLow, -kNoLimit),
+                   effect.value(kOutputSaturationHigh, kNoLimit)};
   }
 
   /// A clipped sensor would have shown its plateau: what is left is an overflow upstream of it.
@@ -48,9 +49,10 @@ class OutputSaturation : public Cause {
                           .low = -kUnbounded,
                           .high = kUnbounded};
       };
-      for (const double p : kBeyond) {
-        found.push_back(effect({cv}, {level(kHigh, spread->quantile(1.0 - p))}, members));
-        found.push_back(effect({cv}, {level(kLow, spread->quantile(p))}, members));
+      for (const double p : kOutputSaturationBeyond) {
+        found.push_back(
+            effect({cv}, {level(kOutputSaturationHigh, spread->quantile(1.0 - p))}, members));
+        found.push_back(effect({cv}, {level(kOutputSaturationLow, spread->quantile(p))}, members));
       }
     }
   }
@@ -73,8 +75,8 @@ class OutputSaturation : public Cause {
                                         .low = -kNoLimit,
                                         .high = kNoLimit});
       };
-      if (plateaus.low) level(kLow, *plateaus.low);
-      if (plateaus.high) level(kHigh, *plateaus.high);
+      if (plateaus.low) level(kOutputSaturationLow, *plateaus.low);
+      if (plateaus.high) level(kOutputSaturationHigh, *plateaus.high);
       found.push_back(std::move(clipping));
     }
     return found;
@@ -85,7 +87,8 @@ class OutputSaturation : public Cause {
   /// variance, is 2 for white noise and near 0 for what moves slowly.
   [[nodiscard]] bool contradicted(const Effect& mine, const Problem& problem) const override {
     const auto values = problem.recording().cvs.col(mine.place.cv);
-    const double low = mine.value(kLow, -kNoLimit), high = mine.value(kHigh, kNoLimit);
+    const double low = mine.value(kOutputSaturationLow, -kNoLimit),
+                 high = mine.value(kOutputSaturationHigh, kNoLimit);
     const auto beyond = [&](double value) { return value < low || value > high; };
     double count = 0.0, sum = 0.0, squares = 0.0, steps = 0.0, differences = 0.0;
     for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -112,8 +115,8 @@ class OutputSaturation : public Cause {
     const auto known = [](const Parameter* level) {
       return level != nullptr && std::isfinite(level->value);
     };
-    const Parameter* low = finding.find(kLow);
-    const Parameter* high = finding.find(kHigh);
+    const Parameter* low = finding.find(kOutputSaturationLow);
+    const Parameter* high = finding.find(kOutputSaturationHigh);
     if (known(low)) text += " below " + names.in_cv(low->value, cv);
     if (known(low) && known(high)) text += " nor";
     if (known(high)) text += " above " + names.in_cv(high->value, cv);

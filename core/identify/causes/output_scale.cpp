@@ -7,12 +7,12 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"output_scale", "Scale of an output"};
+constexpr CauseName kOutputScaleName{"output_scale", "Scale of an output"};
 
 /// All gains of one CV are off by the same ratio: the span of its sensor.
 class OutputScale : public Cause {
  public:
-  OutputScale() : Cause(kName) {}
+  OutputScale() : Cause(kOutputScaleName) {}
 
   void apply(const Effect& effect, const Surroundings& surroundings,
              ModelSpec& model) const override {

@@ -23,16 +23,16 @@ constexpr Quantity kFrequency{"frequency", Form::kPlain, Unit::kNone};  ///< Hz
 constexpr Quantity kBegin{"begin", Form::kPlain, Unit::kSeconds};
 
 /// s.d. of the size, and a step of its finite difference, in s.d. of what is left of the CV.
-constexpr double kUsualSize = 2.0, kSizeStep = 0.05;
+constexpr double kPeriodicDisturbanceUsualSize = 2.0, kPeriodicDisturbanceSizeStep = 0.05;
 
 /// Peaks of the periodogram that are looked at more closely, from every one of these onsets on
 /// (shares of the data); what the onsets cost.
 constexpr std::size_t kPeaks = 3;
-constexpr double kOnsets[] = {0.0, 0.15, 0.3, 0.45, 0.6};
+constexpr double kPeriodicDisturbanceOnsets[] = {0.0, 0.15, 0.3, 0.45, 0.6};
 constexpr std::size_t kOnsetChoices = 20;
 /// Lowest and highest frequency looked at: cycles in the data, samples per cycle, and how many at
 /// most.
-constexpr int kFewestCycles = 3;
+constexpr int kPeriodicDisturbanceFewestCycles = 3;
 constexpr Index kFewestSamples = 5;
 constexpr Index kMostFrequencies = 2000;
 constexpr double kFrequencyStep = 0.02, kLeastCycles = 0.3;  ///< in 1 / length of the data
@@ -134,8 +134,8 @@ class PeriodicDisturbance : public OutputDisturbance {
 
   static Coordinate sized(const Quantity& quantity, double sd) {
     return {.quantity = &quantity,
-            .prior_sd = kUsualSize * sd,
-            .step = kSizeStep * sd,
+            .prior_sd = kPeriodicDisturbanceUsualSize * sd,
+            .step = kPeriodicDisturbanceSizeStep * sd,
             .low = -kUnboundedSize,
             .high = kUnboundedSize};
   }
@@ -150,9 +150,10 @@ class PeriodicDisturbance : public OutputDisturbance {
     const double cost = cost_of(static_cast<std::size_t>(outlook.model().cv_count)) +
                         cost_of(static_cast<std::size_t>(most));
     // Of the innovations: peaks stand out of white noise.
-    for (const int cycles : loudest_cycles(without.innovations, kFewestCycles, most, kPeaks)) {
+    for (const int cycles :
+         loudest_cycles(without.innovations, kPeriodicDisturbanceFewestCycles, most, kPeaks)) {
       const double frequency = cycles / length_s;
-      for (const double share : kOnsets) {
+      for (const double share : kPeriodicDisturbanceOnsets) {
         const auto onset = static_cast<Index>(share * static_cast<double>(samples));
         found.push_back(effect({without.cv},
                                {sized(kSine, sd),

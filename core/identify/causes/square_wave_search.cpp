@@ -12,12 +12,12 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kFewestCycles = 3.0;
+constexpr double kSquareWaveSearchFewestCycles = 3.0;
 constexpr double kShortestPeriod = 16.0;  ///< rows
 /// More rows than these are looked at in longer strides: at so many a search takes some 0.15 s.
 constexpr double kFineRows = 6000.0;
 constexpr std::size_t kWaves = 4;  ///< of each onset
-constexpr std::array<double, 3> kOnsets = {0.0, 0.25, 0.5};
+constexpr std::array<double, 3> kSquareWaveSearchOnsets = {0.0, 0.25, 0.5};
 
 /// How much of the innovations +1, -1, +1, ... explains, for any period and phase. What whitening
 /// makes of such a wave is a short pulse at each edge, so no edge may be missed by a row: all are
@@ -96,7 +96,7 @@ SquareWaves best_waves(const MatchedFilter& filter, double stride, Index onset) 
   std::vector<SquareWave>& best = found.waves;
   MatchedFilter::Gains gains;
   double period = kShortestPeriod;
-  while (period <= length / kFewestCycles) {
+  while (period <= length / kSquareWaveSearchFewestCycles) {
     filter.gains(period, onset, gains);
     Index phase = 0;
     SquareWave wave;
@@ -127,9 +127,9 @@ SquareWaves find_square_waves(const CvData& data, const CvFit& without, const Pa
   const auto samples = static_cast<double>(without.innovations.size());
   const double stride = std::max(1.0, samples / kFineRows);
   const MatchedFilter filter(data, without, stride);
-  std::array<SquareWaves, kOnsets.size()> of_each;
-  parallel.for_each(kOnsets.size(), [&](std::size_t i) {
-    const auto onset = static_cast<Index>(kOnsets[i] * samples / stride);
+  std::array<SquareWaves, kSquareWaveSearchOnsets.size()> of_each;
+  parallel.for_each(kSquareWaveSearchOnsets.size(), [&](std::size_t i) {
+    const auto onset = static_cast<Index>(kSquareWaveSearchOnsets[i] * samples / stride);
     of_each[i] = best_waves(filter, stride, onset);
   });
   SquareWaves found;

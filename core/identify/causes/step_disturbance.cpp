@@ -10,16 +10,16 @@ namespace {
 constexpr Quantity kLag{"time_constant", Form::kPlain, Unit::kSeconds};
 
 /// Moments of a step that are looked at more closely.
-constexpr std::size_t kMoments = 8;
+constexpr std::size_t kStepDisturbanceMoments = 8;
 /// A moment is told from others some rows away.
-constexpr std::size_t kRowsPerMoment = 4;
+constexpr std::size_t kStepDisturbanceRowsPerMoment = 4;
 /// s.d. of the size, and a step of its finite difference, in s.d. of what is left of the CV.
-constexpr double kUsualSize = 3.0, kSizeStep = 0.05;
+constexpr double kStepDisturbanceUsualSize = 3.0, kStepDisturbanceSizeStep = 0.05;
 /// Lags that it may come through, in slowest time constants of the CV, and what they never pass.
 constexpr double kLags[] = {0.2, 0.7};
 constexpr double kLagSd = 0.5, kLagStep = 0.01, kSlowestLag = 20.0;
-constexpr double kFastestLag = 0.01;    ///< samples
-constexpr double kUsualSamples = 10.0;  ///< of a CV without a time constant
+constexpr double kFastestLag = 0.01;                   ///< samples
+constexpr double kStepDisturbanceUsualSamples = 10.0;  ///< of a CV without a time constant
 
 /// A CV jumps to another level, at once or through a lag, and stays there.
 class StepDisturbance : public OutputDisturbance {
@@ -43,18 +43,19 @@ class StepDisturbance : public OutputDisturbance {
     const double sample_time_s = outlook.sample_time_s();
     const auto samples = static_cast<std::size_t>(outlook.problem.samples());
     const double cost = cost_of(static_cast<std::size_t>(outlook.model().cv_count)) +
-                        cost_of(samples / kRowsPerMoment);
+                        cost_of(samples / kStepDisturbanceRowsPerMoment);
     for (const CvFit& without : outlook.without) {
       const CvData& data = outlook.problem.data(without.cv);
       const double sd = left_sd(without);
       const Coordinate size{.quantity = &kSize,
-                            .prior_sd = kUsualSize * sd,
-                            .step = kSizeStep * sd,
+                            .prior_sd = kStepDisturbanceUsualSize * sd,
+                            .step = kStepDisturbanceSizeStep * sd,
                             .low = -kUnboundedSize,
                             .high = kUnboundedSize};
-      for (const Eigen::Index onset : step_moments(data, without, 0.0, kMoments))
+      for (const Eigen::Index onset : step_moments(data, without, 0.0, kStepDisturbanceMoments))
         found.push_back(effect({without.cv}, {size}, cost, onset));
-      const double slowest = slowest_of_cv_s(outlook.model(), without.cv, kUsualSamples);
+      const double slowest =
+          slowest_of_cv_s(outlook.model(), without.cv, kStepDisturbanceUsualSamples);
       for (const double share : kLags) {
         const Coordinate lag{.quantity = &kLag,
                              .value = share * slowest,
@@ -64,7 +65,7 @@ class StepDisturbance : public OutputDisturbance {
                              .low = kFastestLag * sample_time_s,
                              .high = kSlowestLag * slowest};
         for (const Eigen::Index onset :
-             step_moments(data, without, share * slowest / sample_time_s, kMoments))
+             step_moments(data, without, share * slowest / sample_time_s, kStepDisturbanceMoments))
           found.push_back(effect({without.cv}, {size, lag}, cost, onset));
       }
     }

@@ -13,8 +13,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kMargin = 5;  ///< rows at either end
-constexpr Index kApart = 4;   ///< rows
+constexpr Index kStepMomentsMargin = 5;  ///< rows at either end
+constexpr Index kStepMomentsApart = 4;   ///< rows
 
 }  // namespace
 
@@ -42,7 +42,7 @@ std::vector<Index> step_moments(const CvData& data, const CvFit& fit, double tim
     plain += slope(k);
     lagged = time_constant > 0.0 ? slope(k) + pole * lagged : 0.0;
     const double norm = squares(rows - k);
-    if (k >= kMargin && k + kMargin < rows && norm > 0.0)
+    if (k >= kStepMomentsMargin && k + kStepMomentsMargin < rows && norm > 0.0)
       gain(k) = (plain - lagged) * (plain - lagged) / norm;
   }
   std::vector<Index> order(static_cast<std::size_t>(rows));
@@ -51,8 +51,9 @@ std::vector<Index> step_moments(const CvData& data, const CvFit& fit, double tim
   std::vector<Index> best;
   for (const Index k : order) {
     if (best.size() == most || !(gain(k) > 0.0)) break;
-    const bool near = std::any_of(best.begin(), best.end(),
-                                  [&](Index other) { return std::abs(other - k) < kApart; });
+    const bool near = std::any_of(best.begin(), best.end(), [&](Index other) {
+      return std::abs(other - k) < kStepMomentsApart;
+    });
     if (!near) best.push_back(k);
   }
   return best;

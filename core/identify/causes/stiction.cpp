@@ -8,7 +8,7 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"stiction", "Sticking valve"};
+constexpr CauseName kStictionName{"stiction", "Sticking valve"};
 
 constexpr Quantity kBand{"band", Form::kPlain, Unit::kInput};
 constexpr Quantity kJump{"jump", Form::kPlain, Unit::kInput};
@@ -24,12 +24,12 @@ constexpr double kWideBands[] = {0.1, 0.2, 0.35, 0.5, 0.7};
 constexpr double kWideJumps[] = {0.1, 0.4, 0.8};
 constexpr double kDelayTakenForSticking = 0.6;  ///< of the removable dead time
 /// s.d. of band and jump, as shares of the range, and what they never pass.
-constexpr double kUsualWidth = 0.15, kWideWidth = 0.5;
+constexpr double kStictionUsualWidth = 0.15, kWideWidth = 0.5;
 constexpr double kLeastBand = 1e-4, kMostWidth = 1.5;
 /// s.d. of the gain ratio where nothing is known of it.
 constexpr double kOpenGain = 1.0;
 /// Of the band, steps of the finite differences: the jump stays within the band.
-constexpr double kStep = 0.05;
+constexpr double kStictionStep = 0.05;
 
 /// The closer look: widths in percent of the one given, and jumps as shares of them.
 constexpr int kNarrowest = 80, kWidest = 165, kPercentStep = 5;
@@ -39,7 +39,7 @@ constexpr double kAllJumps[] = {0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0};
 /// sticks for all CVs alike.
 class StickingValve : public InputBlockCause {
  public:
-  StickingValve() : InputBlockCause(kName) {}
+  StickingValve() : InputBlockCause(kStictionName) {}
 
   void apply(const Effect& effect, const Surroundings& surroundings,
              ModelSpec& model) const override {
@@ -56,8 +56,9 @@ class StickingValve : public InputBlockCause {
         for (const double share : kBands)
           for (const double jump : kJumps)
             for (const int variant : {0, kSlipsOnce}) {
-              Effect valve = effect(at.place, widths(share * range, jump, kUsualWidth, range),
-                                    cost + begins.cost, begins.row);
+              Effect valve =
+                  effect(at.place, widths(share * range, jump, kStictionUsualWidth, range),
+                         cost + begins.cost, begins.row);
               valve.variant = variant;
               found.push_back(std::move(valve));
             }
@@ -110,14 +111,14 @@ class StickingValve : public InputBlockCause {
              .value = band,
              .prior_mean = 0.0,
              .prior_sd = usual * range,
-             .step = kStep * band,
+             .step = kStictionStep * band,
              .low = kLeastBand * range,
              .high = kMostWidth * range},
             {.quantity = &kJump,
              .value = jump * band,
              .prior_mean = 0.0,
              .prior_sd = usual * range,
-             .step = -kStep * band,
+             .step = -kStictionStep * band,
              .low = 0.0,
              .high = kMostWidth * range}};
   }
@@ -173,8 +174,8 @@ std::vector<Effect> sticking_near(const Effect& mine, double width,
         effect.onset = mine.onset;
         effect.coordinates[0].value = factor * width;
         effect.coordinates[1].value = jump * factor * width;
-        effect.coordinates[0].step = kStep * factor * width;
-        effect.coordinates[1].step = -kStep * factor * width;
+        effect.coordinates[0].step = kStictionStep * factor * width;
+        effect.coordinates[1].step = -kStictionStep * factor * width;
         found.push_back(std::move(effect));
       }
   }

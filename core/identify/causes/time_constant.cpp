@@ -4,16 +4,16 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"time_constant", "Time constant"};
+constexpr CauseName kTimeConstantName{"time_constant", "Time constant"};
 
 /// Logs of ratios to begin a fit from: throughout, and from a moment on.
-constexpr double kStarts[] = {-0.3, 0.0, 0.4};
+constexpr double kTimeConstantStarts[] = {-0.3, 0.0, 0.4};
 constexpr double kStartFromOnset = 0.2;
 
 /// A channel is slower or faster than the model.
 class TimeConstant : public SingleChannelError {
  public:
-  TimeConstant() : SingleChannelError(kName) {}
+  TimeConstant() : SingleChannelError(kTimeConstantName) {}
 
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const double members = cost_of(outlook.model().channels.size());
@@ -26,7 +26,7 @@ class TimeConstant : public SingleChannelError {
         if (begins.row > 0) {
           add(kStartFromOnset);
         } else {
-          for (const double start : kStarts) add(start);
+          for (const double start : kTimeConstantStarts) add(start);
         }
       }
     }

@@ -11,7 +11,7 @@
 namespace mpm::causes {
 namespace {
 
-constexpr CauseName kName{"unmodelled_input", "Input that the model leaves out"};
+constexpr CauseName kUnmodelledInputName{"unmodelled_input", "Input that the model leaves out"};
 
 constexpr Quantity kGain{"gain", Form::kPlain, Unit::kCvPerInput};
 constexpr Quantity kTimeConstant{"time_constant", Form::kLog, Unit::kSeconds};
@@ -29,7 +29,7 @@ constexpr double kDeadTimeSd = 0.3, kDeadTimeSamplesSd = 3.0;
 /// What they never pass: samples, slowest time constants.
 constexpr double kFastest = 0.2, kSlowest = 30.0, kLatest = 5.0;
 /// A CV of which the model knows no time constant settles within so many samples.
-constexpr double kUsualSamples = 10.0;
+constexpr double kUnmodelledInputUsualSamples = 10.0;
 
 bool is_setpoint(const Recording& recording, const Place& place) {
   return place.aux >= 0 && place.aux >= first_setpoint(recording);
@@ -38,7 +38,7 @@ bool is_setpoint(const Recording& recording, const Place& place) {
 /// A measured signal acts on a CV that the model does not connect it to.
 class UnmodelledInput : public Cause {
  public:
-  UnmodelledInput() : Cause(kName) {}
+  UnmodelledInput() : Cause(kUnmodelledInputName) {}
 
   void apply(const Effect& effect, const Surroundings& surroundings,
              ModelSpec& model) const override {
@@ -55,7 +55,8 @@ class UnmodelledInput : public Cause {
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const std::vector<Place> places = unconnected(outlook);
     for (const Place& place : places) {
-      const double slowest = slowest_of_cv_s(outlook.model(), place.cv, kUsualSamples);
+      const double slowest =
+          slowest_of_cv_s(outlook.model(), place.cv, kUnmodelledInputUsualSamples);
       for (const double share : kTimeConstants)
         for (const double delay : kDeadTimes) {
           const double time_constant_s = std::max(0.5 * outlook.sample_time_s(), share * slowest);
@@ -75,7 +76,7 @@ class UnmodelledInput : public Cause {
     const std::optional<Spread> to = spread_of(recording.cvs.col(place.cv));
     if (!from || !to) return std::nullopt;
     const double sample_time_s = problem.surroundings().sample_time_s;
-    const double slowest = slowest_of_cv_s(problem.model(), place.cv, kUsualSamples);
+    const double slowest = slowest_of_cv_s(problem.model(), place.cv, kUnmodelledInputUsualSamples);
     const double gain = kUsualGain * to->sd / std::max(1e-12, from->sd);
     return effect(place,
                   {{.quantity = &kGain,

@@ -15,8 +15,8 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr Quantity kPart{"part", Form::kPlain, Unit::kNone};
-constexpr double kStep = 0.1;       ///< s.d.
-constexpr double kMostParts = 1e3;  ///< of the channel's own response
+constexpr double kUnnamedChannelStep = 0.1;  ///< s.d.
+constexpr double kMostParts = 1e3;           ///< of the channel's own response
 
 }  // namespace
 
@@ -68,7 +68,7 @@ Effect UnnamedBehaviour::shaped(const ActiveChannel& channel, const std::vector<
     shape->col(static_cast<Index>(i)) = columns[i];
     coordinates.push_back({.quantity = &kPart,
                            .prior_sd = sd,
-                           .step = kStep * sd,
+                           .step = kUnnamedChannelStep * sd,
                            .low = -kMostParts,
                            .high = kMostParts,
                            .number = static_cast<int>(i) + 1});

@@ -29,7 +29,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kDone = 0, kRefused = 1, kFailed = 2;
+constexpr int kRefused = 1;
 constexpr int kIdBytes = 16;
 constexpr const char* kUsualToken = "/etc/mpm/token";
 

@@ -25,7 +25,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kDone = 0, kStanding = 1, kFailed = 2;
+constexpr int kStanding = 1;
 
 struct AlarmsOptions {
   idl::DomainOptions domain;

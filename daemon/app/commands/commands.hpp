@@ -6,6 +6,9 @@
 /// run.
 namespace mpm::app {
 
+/// Exit codes: what was asked for is done; it could not be done.
+inline constexpr int kDone = 0, kFailed = 2;
+
 /// `mpm detect`: the daemon's own pipeline on a file.
 void add_detect(CLI::App& app, int& exit_code);
 /// `mpm trend`: how a model fared over months, from data or from a journal.

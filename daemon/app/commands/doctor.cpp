@@ -16,13 +16,13 @@
 #include "daemon/files/aligning.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
+#include "idl/wait_set.hpp"
 
 namespace mpm::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kLongestWait{50};
 // How long to look where nobody says it: a slow unit must have had its turn.
 constexpr double kShortestS = 5.0, kLongestS = 180.0, kSampleTimes = 3.0;
 
@@ -58,8 +58,8 @@ bus::Findings examine(const Place& place, double seconds, host::StopSignal& stop
   bus::Examination examination(participant, bus::place_text(place.domain), place.units,
                                duration_of(seconds));
   const Clock::time_point end = Clock::now() + duration_of(seconds);
-  while (!stop.received() && Clock::now() < end) examination.listen(kLongestWait);
-  examination.listen(kLongestWait);
+  while (!stop.received() && Clock::now() < end) examination.listen(idl::kLongestWait);
+  examination.listen(idl::kLongestWait);
   bus::Findings findings = examination.findings();
   if (idl::ignores_environment(place.domain))
     findings.notes.emplace_back(

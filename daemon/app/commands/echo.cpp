@@ -28,7 +28,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kLongestWait{50};
 // After which it says that nothing has come.
 constexpr std::chrono::seconds kSilence{5};
 
@@ -101,7 +100,7 @@ int echo(const EchoOptions& options, const idl::KnownTopic& topic, JsonOf json_o
   // A silent topic writes nothing that would show that the pipe's reader has left.
   const auto read = [] { return std::cout.good() && !host::reader_has_left(); };
   while (printed < wanted && read() && !stop.received()) {
-    if (wait_set.wait(kLongestWait)) reader.take_with_info(on_sample);
+    if (wait_set.wait(idl::kLongestWait)) reader.take_with_info(on_sample);
     std::cout.flush();
     if (printed == 0 && !told && Clock::now() >= silent) {
       std::cerr << "mpm echo: nothing has come on " << options.topic << " yet, on "

@@ -26,7 +26,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kLongestWait{50};
 constexpr std::chrono::seconds kReportPeriod{1};
 constexpr std::chrono::seconds kFindTime{3};  // for a topic of a type that we do not know
 
@@ -52,7 +51,7 @@ std::optional<idl::RawReader> open(const idl::Participant& participant, const st
   while (Clock::now() < end && !stop.received()) {
     if (const idl::DiscoveredType type = discovery.type_of(name))
       return idl::RawReader(participant, name, type);
-    (void)nothing.wait(kLongestWait);
+    (void)nothing.wait(idl::kLongestWait);
   }
   return std::nullopt;
 }
@@ -111,7 +110,7 @@ int measure_topic(const HzOptions& options, Measure measure) {
                                             std::chrono::duration<double>(options.duration_s));
   Clock::time_point next_report = start + kReportPeriod;
   while (std::cout.good() && !host::reader_has_left() && !stop.received()) {
-    if (wait_set.wait(kLongestWait)) reader->take(on_sample);
+    if (wait_set.wait(idl::kLongestWait)) reader->take(on_sample);
     const Clock::time_point now = Clock::now();
     if (options.duration_s > 0.0 && now >= end) break;
     if (now < next_report) continue;

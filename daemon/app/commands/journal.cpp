@@ -11,7 +11,7 @@
 namespace mpm::app {
 namespace {
 
-constexpr int kDone = 0, kFound = 1, kFailed = 2;
+constexpr int kFound = 1;
 
 struct JournalOptions {
   JournalPlace place;

@@ -13,7 +13,7 @@
 namespace mpm::app {
 namespace {
 
-constexpr int kDone = 0, kFailed = 2, kBadInput = 3;
+constexpr int kBadInput = 3;
 constexpr int kMostDays = 3650;
 
 struct KeysOptions {

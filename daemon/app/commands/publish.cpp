@@ -25,7 +25,7 @@
 namespace mpm::app {
 namespace {
 
-constexpr std::chrono::milliseconds kLongestWait{200};
+constexpr std::chrono::milliseconds kLongestSleep{200};
 constexpr std::chrono::seconds kFlushTime{10};
 
 struct PublishOptions {
@@ -65,7 +65,7 @@ void wait_for_readers(const idl::UnitPublisher& publisher, const PublishOptions&
   const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                       std::chrono::duration<double>(options.wait_readers_s));
   while (Clock::now() < end && !stop.received())
-    if (publisher.wait_for_readers(kLongestWait, options.readers)) return;
+    if (publisher.wait_for_readers(kLongestSleep, options.readers)) return;
   if (options.wait_readers_s > 0.0 && !stop.received())
     std::cerr << "mpm publish: not every topic has a reader after " << options.wait_readers_s
               << " s; publishing all the same\n";

@@ -1,3 +1,4 @@
+#include "core/signal/nanoseconds.hpp"
 #include "daemon/app/commands/commands.hpp"
 
 #include <algorithm>
@@ -23,15 +24,14 @@
 #include "daemon/host/signals.hpp"
 #include "idl/topic_catalog.hpp"
 #include "idl/topics.hpp"
+#include "idl/wait_set.hpp"
 
 namespace mpm::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kLongestWait{50};
 constexpr std::chrono::seconds kSearchPeriod{1};
-constexpr double kNsPerSecond = 1e9;
 
 // The schemas of all topics take 16 kB of every file, twice.
 constexpr std::uint64_t kSmallestFile = 100'000;
@@ -120,7 +120,7 @@ int record(const RecordOptions& options, host::StopSignal& stop, host::AwaitedSi
   Clock::time_point next_search{};
   std::string problem, path = recorder.state().path;
   while (!stop.received() && problem.empty()) {
-    recorder.poll(kLongestWait);
+    recorder.poll(idl::kLongestWait);
     if (save != nullptr && save->take()) recorder.save();
     tell_news(recorder, status);
     const Clock::time_point now = Clock::now();

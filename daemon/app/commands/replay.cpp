@@ -1,3 +1,4 @@
+#include "core/signal/nanoseconds.hpp"
 #include "daemon/app/commands/commands.hpp"
 
 #include <algorithm>
@@ -35,10 +36,9 @@ namespace {
 using Steady = std::chrono::steady_clock;
 using Writers = std::map<std::string, idl::RawWriter>;
 
-constexpr double kNsPerSecond = 1e9;
 constexpr std::chrono::milliseconds kMatchPoll{5};
 constexpr std::chrono::milliseconds kGreetTime{200};
-constexpr std::chrono::seconds kFlushTime{10};
+constexpr std::chrono::seconds kFlushPatience{10};
 
 struct ReplayOptions {
   std::vector<std::string> files;
@@ -202,7 +202,7 @@ int replay(const ReplayOptions& options, host::StopSignal& stop) {
       });
   const bool sent = player.play();
   bool taken = sent;
-  for (const auto& [topic, writer] : writers) taken = taken && writer.flush(kFlushTime);
+  for (const auto& [topic, writer] : writers) taken = taken && writer.flush(kFlushPatience);
   status.say("mpm replay: " + counted(player.state().samples, "sample") + " published");
   if (!sent) throw std::runtime_error("a reader does not take samples");
   if (!taken) status.say("mpm replay: some readers do not have all samples");

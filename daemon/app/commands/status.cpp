@@ -25,7 +25,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kLongestWait{50};
 constexpr int kUnknown = 3;  // of a monitoring plug-in
 
 struct StatusOptions {
@@ -103,7 +102,7 @@ std::vector<bus::MonitorWord> ask(const Place& place, double wait_s, host::StopS
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(wait_s));
   while (Clock::now() < end && !stop.received() && !words.all_here(place.units))
-    if (wait_set.wait(kLongestWait))
+    if (wait_set.wait(idl::kLongestWait))
       reader.take_with_info(
           [&](const mpm_Health& health, const idl::SampleInfo& info) { words.hear(health, info); });
   return words.of(place.units);

@@ -11,11 +11,10 @@
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/report/record_json.hpp"
+#include "idl/wait_set.hpp"
 
 namespace mpm::app {
 namespace {
-
-constexpr std::chrono::milliseconds kLongestWait{50};
 
 struct TopicsOptions {
   idl::DomainOptions domain;
@@ -32,7 +31,7 @@ int topics(const TopicsOptions& options) {
   const Clock::time_point end =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options.duration_s));
-  while (Clock::now() < end && !stop.received()) survey.listen(kLongestWait);
+  while (Clock::now() < end && !stop.received()) survey.listen(idl::kLongestWait);
   const std::vector<bus::TopicRow> rows = survey.rows();
   if (options.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();

@@ -25,7 +25,7 @@
 namespace mpm::app {
 namespace {
 
-constexpr std::chrono::milliseconds kLongestWait{100};
+constexpr std::chrono::milliseconds kFrameTime{100};
 constexpr std::chrono::seconds kBeforeNote{3};  // a monitor speaks each second
 
 struct WatchOptions {
@@ -94,7 +94,7 @@ int watch(const WatchOptions& options) {
   bool heard = mode == bus::ViewMode::kTable, noted = false;
   bool last_look = false;
   while (viewer.has_reader() && !host::reader_has_left() && !stop.received()) {
-    const bool any = wait_set.wait(kLongestWait);
+    const bool any = wait_set.wait(kFrameTime);
     const Clock::time_point now = Clock::now();
     if (any) {
       const std::vector<idl::Output>& outputs = readers.take();

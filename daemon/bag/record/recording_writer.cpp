@@ -29,7 +29,7 @@ constexpr std::int64_t kFilesPerSnapshot = 8;
 constexpr std::size_t kMostRepeatedBytes = 16'000'000, kBytesPerRepeated = 500;
 
 // Whose gaps are counted: more than a plant has, so that names made up fill no memory.
-constexpr std::size_t kMostUnits = 16'384;
+constexpr std::size_t kMostUnitNames = 16'384;
 
 RecordingOptions with_limits(RecordingOptions options) {
   options.file.must_be_new = true;
@@ -169,7 +169,7 @@ void RecordingWriter::look_for_gap(const RecordedSample& sample) {
   const std::optional<idl::SampleStamp> stamp = idl::stamp_of(sample.sample.cdr);
   if (!stamp) return;
   const std::string name = idl::unit_of(sample.sample.cdr);
-  if (units_.size() >= kMostUnits && units_.count(name) == 0) return;
+  if (units_.size() >= kMostUnitNames && units_.count(name) == 0) return;
   UnitIntervals& unit = units_[name];
   const auto [entry, is_new] = unit.topics.try_emplace(sample.topic);
   TopicIntervals& topic = entry->second;

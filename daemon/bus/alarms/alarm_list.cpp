@@ -8,7 +8,6 @@ namespace mpm::bus {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kLongestWait{50};
 // What a late joiner is told comes at once.
 constexpr std::chrono::milliseconds kQuiet{500};
 constexpr int kBatch = 256;
@@ -33,7 +32,7 @@ AlarmList listen_to_alarms(const idl::Participant& participant, Clock::time_poin
   AlarmList list;
   Clock::time_point last_word = Clock::now();
   while (!stop() && Clock::now() < deadline) {
-    if (wait_set.wait(kLongestWait)) {
+    if (wait_set.wait(idl::kLongestWait)) {
       last_word = Clock::now();
       controllers.take([&](const mpm_ControllerAlarm& sample) {
         auto record = idl::record_of<ControllerAlarmRecord>(sample);

@@ -2,12 +2,10 @@
 
 #include <thread>
 
+#include "idl/wait_set.hpp"
+
 namespace mpm::bus {
-namespace {
-
-constexpr std::chrono::milliseconds kLongestWait{50};
-
-}  // namespace
+namespace {}  // namespace
 
 CommandClient::CommandClient(const idl::Participant& participant)
     : writer_(participant), replies_(participant, idl::kCommandReplyTopic, idl::command_qos()) {
@@ -19,7 +17,7 @@ bool CommandClient::wait_for_monitor(Clock::time_point deadline,
                                      const std::function<bool()>& stop) {
   while (writer_.matched_readers() == 0 || replies_.matched_writers() == 0) {
     if (stop() || Clock::now() >= deadline) return false;
-    std::this_thread::sleep_for(kLongestWait);
+    std::this_thread::sleep_for(idl::kLongestWait);
   }
   return true;
 }
@@ -30,7 +28,7 @@ std::optional<CommandReplyRecord> CommandClient::give(const CommandRecord& comma
   if (!writer_.write(command)) return std::nullopt;
   std::optional<CommandReplyRecord> reply;
   while (!reply && !stop() && Clock::now() < deadline)
-    if (wait_set_.wait(kLongestWait))
+    if (wait_set_.wait(idl::kLongestWait))
       replies_.take([&](const mpm_CommandReply& sample) {
         auto heard = idl::record_of<CommandReplyRecord>(sample);
         if (heard.id == command.id) reply = std::move(heard);

@@ -5,12 +5,12 @@
 #include <limits>
 #include <utility>
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/number_text.hpp"
 
 namespace mpm::files {
 namespace {
 
-constexpr double kNsPerSecond = 1e9;
 constexpr double kJitter = 0.1;      // of the time between two rows, that a row may come too early
 constexpr double kOldest = 0.5;      // intervals, of what was measured
 constexpr double kSameMoment = 0.5;  // of the time between two rows

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "config/finding.hpp"
+#include "core/signal/nanoseconds.hpp"
 #include "daemon/files/csv/averaged_rows.hpp"
 #include "daemon/files/csv/held_rows.hpp"
 #include "daemon/files/csv/prepared_rows.hpp"
@@ -20,7 +21,6 @@ constexpr double kSampleTimeTolerance = 0.1;
 constexpr double kIntervalsAhead = 100.0, kMostRowsAhead = 20'000.0;  // to see MVs move
 constexpr double kSparsest = 0.5;          // of the sample time: two rows make a mean
 constexpr double kHeldPerInterval = 10.0;  // rows
-constexpr double kNsPerSecond = 1e9;
 constexpr std::int64_t kNsPerMinute = 60'000'000'000;
 constexpr double kLargestInterval = 9e15;  // exact in a double
 

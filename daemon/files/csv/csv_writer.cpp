@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "config/finding.hpp"
+#include "core/signal/nanoseconds.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::files {
 namespace {
 
 constexpr std::size_t kBufferBytes = 1U << 20U;
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 
 std::string cell_of(const std::string& tag) {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; };
@@ -78,7 +78,7 @@ CsvWriter::CsvWriter(std::ostream& out, std::string name, std::vector<Column> co
 }
 
 void CsvWriter::set_time(std::int64_t time_ns) {
-  if (!moment_ns(time_ns / kNsPerSecond, 0))
+  if (!moment_ns(time_ns / kSecondNs, 0))
     throw config::InputError(
         {"", 0, 0, config::Severity::kError, "",
          "a row has the time " + utc_text(time_ns) +
@@ -88,7 +88,7 @@ void CsvWriter::set_time(std::int64_t time_ns) {
     time_ = seconds_text(time_ns);
     return;
   }
-  const std::int64_t second = time_ns / kNsPerSecond - (time_ns % kNsPerSecond < 0 ? 1 : 0);
+  const std::int64_t second = time_ns / kSecondNs - (time_ns % kSecondNs < 0 ? 1 : 0);
   time_ = utc_text(time_ns, options_.zone ? options_.zone->offset_s(second) : 0);
 }
 

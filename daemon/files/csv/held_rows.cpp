@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/signal/nanoseconds.hpp"
+
 namespace mpm::files {
 namespace {
 
-constexpr double kNsPerSecond = 1e9;
 constexpr double kJitter = 0.1;  // of a step, that a row may come too late
 constexpr double kLongestSilenceSeconds =
     3600.0;  // historians write more often even if nothing changes

@@ -10,8 +10,6 @@
 namespace mpm::files {
 namespace {
 
-constexpr std::string_view kQualitySuffix = ".quality";
-
 using Names = std::vector<Cell>;
 
 bool names_signal(const TagTable* tags, std::string_view name) {

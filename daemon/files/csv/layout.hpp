@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/files/csv/csv_line.hpp"
@@ -16,6 +17,8 @@ struct TimeColumns {
   std::size_t time = 0;
   std::optional<std::size_t> clock;
 };
+
+inline constexpr std::string_view kQualitySuffix = ".quality";
 
 /// A column that says what the values of another one are worth.
 struct QualityColumn {

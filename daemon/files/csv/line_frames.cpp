@@ -7,19 +7,19 @@
 #include <set>
 
 #include "config/finding.hpp"
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/files/csv/cell.hpp"
+#include "daemon/files/csv/layout.hpp"
 #include "daemon/files/csv/row_source.hpp"
 #include "daemon/files/times/local_times.hpp"
 
 namespace mpm::files {
 namespace {
 
-constexpr double kNsPerSecond = 1e9;
 constexpr double kLargestInterval = 9e15;  // exact in a double
-constexpr std::string_view kQualitySuffix = ".quality";
-constexpr int kDeepest = 16;            // lists and objects in each other
-constexpr std::size_t kMostTold = 100;  // names that are ignored
+constexpr int kDeepest = 16;               // lists and objects in each other
+constexpr std::size_t kMostTold = 100;     // names that are ignored
 
 std::string in_quotes(const std::string& text) { return "'" + printable(text) + "'"; }
 

@@ -9,7 +9,7 @@
 namespace mpm::files {
 namespace {
 
-constexpr std::size_t kLongest = 512;  // of names that are looked into
+constexpr std::size_t kLongestName = 512;  // of names that are looked into
 constexpr std::size_t kMostForms = 64;
 
 constexpr std::array<std::string_view, 6> kValueWords = {"pv", "value",        "val",
@@ -69,7 +69,7 @@ std::string_view without_value_word(std::string_view name) {
 
 std::vector<std::string> plain_tags(std::string_view name) {
   std::vector<std::string> forms{std::string(name)};
-  if (name.size() > kLongest) return forms;
+  if (name.size() > kLongestName) return forms;
   const auto add = [&forms](std::string_view form) {
     if (form.empty() || forms.size() == kMostForms) return;
     if (std::find(forms.begin(), forms.end(), form) == forms.end()) forms.emplace_back(form);

@@ -1,5 +1,6 @@
 #include "daemon/files/times/local_times.hpp"
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/times/serial_dates.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -7,8 +8,7 @@
 namespace mpm::files {
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::int64_t kHalfHourNs = 1800 * kNsPerSecond;
+constexpr std::int64_t kHalfHourNs = 1800 * kSecondNs;
 
 /// 20260328140500
 bool looks_compact(std::string_view text) {
@@ -94,12 +94,12 @@ std::optional<std::int64_t> LocalTimes::read_local(const LocalTime& local, std::
   auto found = series_.find(series);
   if (found == series_.end()) found = series_.emplace(series, Series{}).first;
   Series& rows = found->second;
-  std::int64_t time_ns = moments.utc_s[0] * kNsPerSecond + local.fraction_ns;
+  std::int64_t time_ns = moments.utc_s[0] * kSecondNs + local.fraction_ns;
   if (moments.count == 2) {
     ++twice_;
     const bool past = rows.begun && (time_ns < rows.last_ns ||
                                      (time_ns == rows.last_ns && rows.step_ns > kHalfHourNs));
-    if (past) time_ns = moments.utc_s[1] * kNsPerSecond + local.fraction_ns;
+    if (past) time_ns = moments.utc_s[1] * kSecondNs + local.fraction_ns;
   }
   if (rows.begun && time_ns > rows.last_ns) rows.step_ns = time_ns - rows.last_ns;
   rows.last_ns = time_ns;

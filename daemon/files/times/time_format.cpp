@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "config/finding.hpp"
+#include "core/signal/nanoseconds.hpp"
 #include "daemon/files/times/cursor.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::files {
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kDay = 86400;
 constexpr std::string_view kLetters = "YymbBdeHIMSpzZaAjs%";
 
@@ -61,8 +61,8 @@ bool take_seconds_since_1970(Cursor& cursor, Parts& parts) {
   const auto day = std::chrono::floor<std::chrono::days>(moment);
   set_date(parts.time, day);
   const std::int64_t rest_ns = (moment - day).count();
-  parts.time.second_of_day = static_cast<int>(rest_ns / kNsPerSecond);
-  parts.time.fraction_ns = rest_ns % kNsPerSecond;
+  parts.time.second_of_day = static_cast<int>(rest_ns / kSecondNs);
+  parts.time.fraction_ns = rest_ns % kSecondNs;
   parts.time.zone_s = 0;
   parts.whole = true;
   return cursor.take_word(number);

@@ -8,6 +8,7 @@
 #include <ctime>
 #include <limits>
 
+#include "core/signal/nanoseconds.hpp"
 #include "daemon/files/times/calendar_time.hpp"
 #include "daemon/files/times/cursor.hpp"
 
@@ -15,7 +16,6 @@ namespace mpm::files {
 namespace {
 
 constexpr std::int64_t kLatestNs = std::numeric_limits<std::int64_t>::max() / 2;
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::uint64_t kEarliestEpochS = 900'000'000;  // 1998
 constexpr int kMostDigits = 18;                         // always fits an int64
 
@@ -40,7 +40,7 @@ std::optional<std::int64_t> scaled(std::string_view digits, int exponent) {
 /// Three, six or nine digits with their point; empty for none.
 std::string fraction_text(std::int64_t fraction_ns) {
   if (fraction_ns == 0) return {};
-  std::string digits = std::to_string(kNsPerSecond + fraction_ns);
+  std::string digits = std::to_string(kSecondNs + fraction_ns);
   digits[0] = '.';
   while (digits.size() > 4 && digits.ends_with("000")) digits.resize(digits.size() - 3);
   return digits;
@@ -98,19 +98,19 @@ std::optional<EpochTime> parse_epoch(std::string_view text) {
   for (const char c : digits) number = 10 * number + static_cast<std::uint64_t>(c - '0');
   for (const Unit& unit : kUnits) {
     if (number / unit.per_second < kEarliestEpochS ||
-        number / unit.per_second >= static_cast<std::uint64_t>(kLatestNs / kNsPerSecond))
+        number / unit.per_second >= static_cast<std::uint64_t>(kLatestNs / kSecondNs))
       continue;
-    const std::int64_t unit_ns = kNsPerSecond / static_cast<std::int64_t>(unit.per_second);
+    const std::int64_t unit_ns = kSecondNs / static_cast<std::int64_t>(unit.per_second);
     return EpochTime{static_cast<std::int64_t>(number) * unit_ns +
-                         fraction_ns_of(fraction) * unit_ns / kNsPerSecond,
+                         fraction_ns_of(fraction) * unit_ns / kSecondNs,
                      unit.name};
   }
   return std::nullopt;
 }
 
 std::optional<std::int64_t> moment_ns(std::int64_t utc_s, std::int64_t fraction_ns) {
-  if (std::abs(utc_s) >= kLatestNs / kNsPerSecond) return std::nullopt;
-  return utc_s * kNsPerSecond + fraction_ns;
+  if (std::abs(utc_s) >= kLatestNs / kSecondNs) return std::nullopt;
+  return utc_s * kSecondNs + fraction_ns;
 }
 
 std::optional<std::int64_t> parse_time(std::string_view text, std::string& problem) {
@@ -128,8 +128,8 @@ std::optional<std::int64_t> parse_time(std::string_view text, std::string& probl
 }
 
 std::string utc_text(std::int64_t time_ns, int offset_s) {
-  const std::int64_t second = time_ns / kNsPerSecond - (time_ns % kNsPerSecond < 0 ? 1 : 0);
-  const std::int64_t fraction_ns = (time_ns % kNsPerSecond + kNsPerSecond) % kNsPerSecond;
+  const std::int64_t second = time_ns / kSecondNs - (time_ns % kSecondNs < 0 ? 1 : 0);
+  const std::int64_t fraction_ns = (time_ns % kSecondNs + kSecondNs) % kSecondNs;
   const std::chrono::sys_seconds local{std::chrono::seconds(second + offset_s)};
   const auto day = std::chrono::floor<std::chrono::days>(local);
   const std::chrono::year_month_day date(day);
@@ -158,8 +158,8 @@ std::string formatted_utc(std::int64_t utc_s, const char* format) {
 }
 
 std::string seconds_text(std::int64_t time_ns) {
-  const std::int64_t whole = time_ns / kNsPerSecond;
-  const std::int64_t fraction = std::abs(time_ns % kNsPerSecond);
+  const std::int64_t whole = time_ns / kSecondNs;
+  const std::int64_t fraction = std::abs(time_ns % kSecondNs);
   const char* sign = time_ns < 0 && whole == 0 ? "-" : "";
   return sign + std::to_string(whole) + fraction_text(fraction);
 }

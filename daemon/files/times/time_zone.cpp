@@ -9,7 +9,7 @@
 namespace mpm::files {
 namespace {
 
-constexpr std::int64_t kDay = 86400;
+constexpr std::int64_t kOneDay = 86400;
 
 // The C library knows one zone at a time; most programs have no more.
 void activate(const std::string& name) {
@@ -46,7 +46,7 @@ int TimeZone::offset_s(std::int64_t utc_s) const {
 TimeZone::Moments TimeZone::moments(std::int64_t local_s) const {
   Moments moments;
   // No zone changes twice within two days, so one of the offsets on either side applies.
-  for (const std::int64_t around : {local_s - kDay, local_s + kDay}) {
+  for (const std::int64_t around : {local_s - kOneDay, local_s + kOneDay}) {
     const int offset = offset_s(around);
     const std::int64_t utc_s = local_s - offset;
     if (offset_s(utc_s) != offset) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/statistics/normal.hpp"
 #include "daemon/files/times/time_text.hpp"
 #include "daemon/history/trend/calibration.hpp"
@@ -11,20 +12,15 @@
 namespace mpm::history {
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kHour = 3600, kHoursPerDay = 24, kDaysPerWeek = 7;  // s, ...
 constexpr std::int64_t kMondays = 3;  // 1 January 1970 was a Thursday
 constexpr double kSecondsPerDay = 86400.0;
 
-std::int64_t floor_of(std::int64_t value, std::int64_t step) {
-  return value / step - (value % step < 0 ? 1 : 0);
-}
-
 // Of an hour of the clock.
 std::int64_t index_of(std::int64_t hour, Step step, bool dated) {
   if (step == Step::kHour) return hour;
-  const std::int64_t day = floor_of(hour, kHoursPerDay);
-  return step == Step::kDay ? day : floor_of(day + (dated ? kMondays : 0), kDaysPerWeek);
+  const std::int64_t day = floor_division(hour, kHoursPerDay);
+  return step == Step::kDay ? day : floor_division(day + (dated ? kMondays : 0), kDaysPerWeek);
 }
 
 // Where a period begins, by the clock.
@@ -40,12 +36,12 @@ double seconds_of(Step step) {
   return step == Step::kDay ? kSecondsPerDay : kDaysPerWeek * kSecondsPerDay;
 }
 
-double share(std::int64_t part, std::int64_t whole) {
-  return static_cast<double>(part) / static_cast<double>(whole);
+double root_mean(double square, std::int64_t count) {
+  return std::sqrt(square / static_cast<double>(count));
 }
 
-double rms(double square, std::int64_t count) {
-  return std::sqrt(square / static_cast<double>(count));
+double share(std::int64_t part, std::int64_t whole) {
+  return static_cast<double>(part) / static_cast<double>(whole);
 }
 
 }  // namespace
@@ -119,10 +115,10 @@ void TrendMaker::add(const Digest& digest) {
     of.high = of.weight * channel.high;
     of.effective = of.weight * channel.effective_samples;
   }
-  const std::int64_t utc_s = floor_of(digest.from_ns, kNsPerSecond);
+  const std::int64_t utc_s = floor_division(digest.from_ns, kSecondNs);
   const std::int64_t east =
       zone_ != nullptr && report::is_date(digest.from_ns) ? zone_->offset_s(utc_s) : 0;
-  hours_[floor_of(utc_s + east, kHour)].add(sums);
+  hours_[floor_division(utc_s + east, kHour)].add(sums);
   last_ns_ = std::max(last_ns_, digest.until_ns);
   last_ = digest.channels;
 }
@@ -137,9 +133,9 @@ Period TrendMaker::period_of(std::int64_t index, const Sums& sums, Step step) co
     const CvSums& sum = found->second;
     of.known = share(sum.samples, sums.samples);
     if (static_cast<double>(sum.pairs) < least || sum.pairs == 0) continue;
-    of.residual_rms = rms(sum.residual, sum.samples);
-    of.prediction_rms = rms(sum.prediction, sum.pairs);
-    of.movement_rms = rms(sum.movement, sum.pairs);
+    of.residual_rms = root_mean(sum.residual, sum.samples);
+    of.prediction_rms = root_mean(sum.prediction, sum.pairs);
+    of.movement_rms = root_mean(sum.movement, sum.pairs);
     // Errors that overlap in time are one.
     const auto pairs = static_cast<double>(sum.pairs);
     const double apart =
@@ -181,7 +177,7 @@ Trend TrendMaker::finish() const {
   }
   if (hours_.empty()) return trend;
   const double days = static_cast<double>(last_ns_ - hours_.begin()->second.from_ns) /
-                      static_cast<double>(kNsPerSecond) / kSecondsPerDay;
+                      static_cast<double>(kSecondNs) / kSecondsPerDay;
   const Step usual = days <= kHoursUpToDays  ? Step::kHour
                      : days <= kDaysUpToDays ? Step::kDay
                                              : Step::kWeek;

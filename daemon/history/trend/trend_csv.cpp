@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kDigits = 6;
 
-std::string number(double value) { return known(value) ? number_text(value, kDigits) : ""; }
+std::string cell(double value) { return known(value) ? number_text(value, kDigits) : ""; }
 
 // In quotes where a comma, a quote or the end of a line would part it.
 std::string text(const std::string& of) {
@@ -33,19 +33,18 @@ std::string to_csv(const Trend& trend) {
     const std::string samples = "," + std::to_string(period.samples) + ",";
     for (std::size_t j = 0; j < period.cvs.size(); ++j) {
       const CvPeriod& cv = period.cvs[j];
-      rows += times + "," + text(trend.head.cvs[j].cv) + samples + number(cv.residual_rms) + "," +
-              number(cv.prediction_rms) + "," + number(cv.movement_rms) + "," + number(cv.fit()) +
+      rows += times + "," + text(trend.head.cvs[j].cv) + samples + cell(cv.residual_rms) + "," +
+              cell(cv.prediction_rms) + "," + cell(cv.movement_rms) + "," + cell(cv.fit()) +
               ",,,,,,,,\n";
     }
     for (std::size_t c = 0; c < period.channels.size(); ++c) {
       const ChannelPeriod& channel = period.channels[c];
       const ChannelHead& head = trend.head.channels[c];
-      const std::string error = number(channel.gain_error);
-      rows += times + text(head.mv) + "," + text(head.cv) + samples + ",,,," +
-              number(channel.match) + "," + number(channel.mismatch) + "," +
-              number(channel.undetermined) + "," + number(channel.excited) + "," +
-              (head.modelled ? error + "," : "," + error) + "," + number(channel.low) + "," +
-              number(channel.high) + "\n";
+      const std::string error = cell(channel.gain_error);
+      rows += times + text(head.mv) + "," + text(head.cv) + samples + ",,,," + cell(channel.match) +
+              "," + cell(channel.mismatch) + "," + cell(channel.undetermined) + "," +
+              cell(channel.excited) + "," + (head.modelled ? error + "," : "," + error) + "," +
+              cell(channel.low) + "," + cell(channel.high) + "\n";
     }
   }
   return rows;

@@ -27,7 +27,7 @@ struct Numbers {
 };
 
 template <class Block>
-const Block* block_of(const std::vector<std::optional<Block>>& blocks, int index) {
+const Block* find_block(const std::vector<std::optional<Block>>& blocks, int index) {
   const auto i = static_cast<std::size_t>(index);
   return i < blocks.size() && blocks[i] ? &*blocks[i] : nullptr;
 }
@@ -87,10 +87,10 @@ class Source {
     const auto at = static_cast<std::size_t>(input);
     const double operated = at < operated_.size() ? operated_[at] : 0.0;
     const double origin = spec_.input_origin.size() != 0 ? spec_.input_origin(input) : 0.0;
-    numbers.curve = slope(block_of(spec_.input_blocks, input), operated, origin);
+    numbers.curve = slope(find_block(spec_.input_blocks, input), operated, origin);
     if (channel != spec_.channels.end() && channel->input_block)
       numbers.curve *= slope(&*channel->input_block, operated, origin);
-    numbers.gain = gain_(cv, input) * numbers.curve * slope(block_of(spec_.output_blocks, cv));
+    numbers.gain = gain_(cv, input) * numbers.curve * slope(find_block(spec_.output_blocks, cv));
     if (numbers.integrating) numbers.gain /= spec_.sample_time_s;
     if (channel != spec_.channels.end()) {
       std::visit([&](const auto& each) { add_times(each, spec_.sample_time_s, numbers); },

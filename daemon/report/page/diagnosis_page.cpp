@@ -27,9 +27,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::size_t kNamed = 2;           ///< findings in the headline
-constexpr std::size_t kAllValues = 60'000;  ///< of the whole record's plots, some 7 bytes each
-constexpr std::size_t kMostPoints = 1'200;  ///< of one line
+constexpr std::size_t kNamed = 2;  ///< findings in the headline
 constexpr std::size_t kLevels = 12;
 constexpr double kOwnFeedback = 0.2;  ///< less of an input's movement from outside is a warning
 constexpr double kWorthALine = 0.1;   ///< probability of a rival against the finding

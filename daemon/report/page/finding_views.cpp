@@ -21,9 +21,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kSettled = 0.02;      ///< of a step response is still to come
-constexpr Index kShortestWindow = 60;  ///< rows
-constexpr std::size_t kWindowPoints = 500;
+constexpr double kSettled = 0.02;  ///< of a step response is still to come
 constexpr std::size_t kRecordPoints = 600;
 constexpr std::size_t kMostUnnamed = 3;  ///< views where there is no finding
 constexpr std::size_t kMostResponses = 4;

@@ -24,10 +24,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::size_t kWindowPoints = 500;
-constexpr std::size_t kAllValues = 60'000;  ///< of the whole record's plots
-constexpr std::size_t kMostPoints = 1'200;
-constexpr Index kShortestWindow = 60;
 constexpr std::size_t kMostViews = 4;
 constexpr double kTwoSided95 = 1.96;
 

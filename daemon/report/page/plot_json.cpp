@@ -33,12 +33,12 @@ Json as_written(const char* format, int digits, double value) {
   return written == 0.0 ? 0.0 : written;
 }
 
-struct Range {
+struct ValueRange {
   double low = kInfinity, high = -kInfinity;
 };
 
-Range range_of(const Series& values) {
-  Range range;
+ValueRange range_of(const Series& values) {
+  ValueRange range;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
     range.low = std::min(range.low, value);
@@ -91,7 +91,7 @@ Envelope envelope_of(const Series& values, std::size_t every) {
     const auto first = values.begin() + static_cast<std::ptrdiff_t>(start);
     const auto last =
         values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), start + every));
-    const Range range = range_of(Series(first, last));
+    const ValueRange range = range_of(Series(first, last));
     envelope.low.push_back(range.low <= range.high ? range.low : kNone);
     envelope.high.push_back(range.low <= range.high ? range.high : kNone);
   }

@@ -4,7 +4,7 @@
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::completion_scripts_test {
 namespace {
 
 int in(const Bench& bench, const std::vector<std::string>& arguments) {
@@ -55,4 +55,4 @@ TEST_CASE("the other shells' scripts tell every command") {
   }
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::completion_scripts_test

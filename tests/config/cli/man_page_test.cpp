@@ -5,7 +5,7 @@
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::man_page_test {
 namespace {
 
 int in(const Bench& bench, const std::vector<std::string>& arguments) {
@@ -31,4 +31,4 @@ TEST_CASE("the manual page has every command, and nothing in it is taken for a r
   }
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::man_page_test

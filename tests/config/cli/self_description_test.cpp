@@ -4,7 +4,7 @@
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::self_description_test {
 namespace {
 
 int in(const Bench& bench, const std::vector<std::string>& arguments) {
@@ -46,4 +46,4 @@ TEST_CASE("bash completes the options and values of a program without commands")
   CHECK(completed("mpmd --config a.yaml --log-level w") == "warning\n");
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::self_description_test

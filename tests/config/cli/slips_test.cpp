@@ -4,7 +4,7 @@
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::slips_test {
 namespace {
 
 int in(const Bench& bench, const std::vector<std::string>& arguments) {
@@ -44,4 +44,4 @@ TEST_CASE("every program tells its version") {
   }
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::slips_test

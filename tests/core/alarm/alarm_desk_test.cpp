@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-namespace mpm {
+namespace mpm::alarm_desk_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -139,4 +139,4 @@ TEST_CASE("what a restart restores is told by the names of the channel") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::alarm_desk_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm {
+namespace mpm::alarm_load_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000, kMinute = 60 * kSecond, kHour = 60 * kMinute;
@@ -73,4 +73,4 @@ TEST_CASE("an alarm that stands for more than a day is stale, whether it has end
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::alarm_load_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm {
+namespace mpm::managed_alarm_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -239,4 +239,4 @@ TEST_CASE("where its cause is known over a restart an alarm goes on as it was") 
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::managed_alarm_test

@@ -12,7 +12,7 @@
 #include "tests/sim/units.hpp"
 
 // Expected numbers: tests/oracles/boiler_identification.py, scipy's least squares of the same rows.
-namespace mpm::test {
+namespace mpm::test::boiler_test {
 namespace {
 
 using Eigen::Index;
@@ -153,4 +153,4 @@ TEST_CASE("the plant's own steps of steam flow and O2 are those of the oracle") 
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::boiler_test

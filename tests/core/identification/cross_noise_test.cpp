@@ -7,7 +7,7 @@
 #include "core/identification/identification.hpp"
 #include "tests/core/identification/loop.hpp"
 
-namespace mpm::test {
+namespace mpm::test::cross_noise_test {
 namespace {
 
 using Eigen::Index;
@@ -87,4 +87,4 @@ TEST_CASE("a gain under feedback holds where one load moves all CVs", "[trials]"
   CHECK(missed <= 3);  // of 12 at 95 %: more in 1 of 400 tries
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::cross_noise_test

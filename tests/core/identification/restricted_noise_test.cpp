@@ -5,7 +5,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm::test {
+namespace mpm::test::restricted_noise_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -84,4 +84,4 @@ TEST_CASE("restricted likelihood takes back what fitted columns took from slow n
   CHECK(restricted == Approx(pole - 0.013).margin(0.015));
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::restricted_noise_test

@@ -6,7 +6,7 @@
 
 #include "tests/core/identification/loop.hpp"
 
-namespace mpm::test {
+namespace mpm::test::rival_fits_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -86,4 +86,4 @@ TEST_CASE("what one of two inputs that move alike does is not laid to the other"
   }
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::rival_fits_test

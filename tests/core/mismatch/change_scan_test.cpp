@@ -6,7 +6,7 @@
 #include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::change_scan_test {
 namespace {
 
 // Two inputs in open loop, one CV with coloured noise; the residual depends on input 1 between two
@@ -83,4 +83,4 @@ TEST_CASE("a mismatch that was there all along, no mismatch, and louder noise ar
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::change_scan_test

@@ -8,7 +8,7 @@
 #include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::curvature_test {
 namespace {
 
 constexpr int kSamples = 2000;
@@ -138,4 +138,4 @@ TEST_CASE("curvature has to explain more than what else was found") {
   CHECK_FALSE(detector.take_in_curvature(0, 0.0));  // it has it already
 }
 
-}  // namespace mpm
+}  // namespace mpm::curvature_test

@@ -8,7 +8,7 @@
 #include "core/monitor/monitor.hpp"
 #include "tests/core/open_loop_unit.hpp"
 
-namespace mpm {
+namespace mpm::error_sizes_test {
 namespace {
 
 /// What is wrong with the channel.
@@ -91,4 +91,4 @@ TEST_CASE("the gain of an integrating channel is told from its lag and its dead 
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::error_sizes_test

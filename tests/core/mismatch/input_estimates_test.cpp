@@ -10,7 +10,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::input_estimates_test {
 namespace {
 
 constexpr int kRows = 400;
@@ -123,4 +123,4 @@ TEST_CASE("an input that stands still has no estimate") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::input_estimates_test

@@ -11,7 +11,7 @@
 #include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::joint_errors_test {
 namespace {
 
 // Two inputs that mostly move as one to one CV; `error`: plant minus model, per input.
@@ -176,4 +176,4 @@ TEST_CASE("errors that are none of the usual ones are not taken for them") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::joint_errors_test

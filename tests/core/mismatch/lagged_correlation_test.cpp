@@ -7,7 +7,7 @@
 #include "tests/core/counter_noise.hpp"
 #include "tests/core/oracle.hpp"
 
-namespace mpm {
+namespace mpm::lagged_correlation_test {
 namespace {
 
 struct Signals {
@@ -162,4 +162,4 @@ TEST_CASE("a correlation of any kind allocates nothing per sample") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::lagged_correlation_test

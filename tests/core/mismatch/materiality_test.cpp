@@ -10,7 +10,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::materiality_test {
 namespace {
 
 constexpr int kBlock = 12;
@@ -163,4 +163,4 @@ TEST_CASE("few rows and forgetting make the estimates noisier") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::materiality_test

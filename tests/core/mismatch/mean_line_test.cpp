@@ -6,7 +6,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::mean_line_test {
 namespace {
 
 void run(LaggedCorrelation& correlation, int samples, bool silent) {
@@ -58,4 +58,4 @@ TEST_CASE("the mean line is 0 before anything is defined, and allocates nothing"
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::mean_line_test

@@ -11,7 +11,7 @@
 #include "tests/core/counter_noise.hpp"
 #include "tests/core/oracle.hpp"
 
-namespace mpm {
+namespace mpm::mismatch_detector_test {
 namespace {
 
 ModelSpec first_order(int inputs, int cvs, double time_constant_s) {
@@ -311,4 +311,4 @@ TEST_CASE("the mismatch detector allocates nothing per sample") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::mismatch_detector_test

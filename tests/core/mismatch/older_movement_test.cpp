@@ -5,7 +5,7 @@
 
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::older_movement_test {
 namespace {
 
 const RegressionShape kShape{2, 1, 2, 1, {0.5}};
@@ -46,4 +46,4 @@ TEST_CASE("an input that moves as ever, more than before or comes to rest outwei
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::older_movement_test

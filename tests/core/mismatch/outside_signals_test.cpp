@@ -9,7 +9,7 @@
 #include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::outside_signals_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -81,4 +81,4 @@ TEST_CASE("a signal that never moves explains nothing") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::outside_signals_test

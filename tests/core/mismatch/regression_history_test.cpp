@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace mpm {
+namespace mpm::regression_history_test {
 namespace {
 
 const double kNan = std::nan("");
@@ -129,4 +129,4 @@ TEST_CASE("after a gap the rows start anew") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::regression_history_test

@@ -6,7 +6,7 @@
 
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::residual_regression_test {
 namespace {
 
 const RegressionShape kShape{1, 1, 2, 1, {0.5}};  // 5 columns
@@ -131,4 +131,4 @@ TEST_CASE("impossible memories are refused") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::residual_regression_test

@@ -6,7 +6,7 @@
 #include "core/monitor/monitor.hpp"
 #include "tests/core/open_loop_unit.hpp"
 
-namespace mpm {
+namespace mpm::step_errors_test {
 namespace {
 
 /// 1 - exp(-(t - dead) / lag)
@@ -135,4 +135,4 @@ TEST_CASE("a model that was reduced by the half rule does not matter, a later an
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::step_errors_test

@@ -8,7 +8,7 @@
 #include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::volterra_terms_test {
 namespace {
 
 constexpr int kDepth = 300;
@@ -105,4 +105,4 @@ TEST_CASE("where the operating point was never passed the middle of what was sta
   for (int age = 0; age < 100; ++age) CHECK(std::abs(terms.contribution(0, age)) < 10.0 + 1e-9);
 }
 
-}  // namespace mpm
+}  // namespace mpm::volterra_terms_test

@@ -5,7 +5,7 @@
 
 #include "core/statistics/f_distribution.hpp"
 
-namespace mpm {
+namespace mpm::channel_judge_test {
 namespace {
 
 // One MV and one DV to one CV: each channel has half of the unit's false-alarm rate of 0.01.
@@ -169,4 +169,4 @@ TEST_CASE("the mean line takes the place of F where the settings say so") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::channel_judge_test

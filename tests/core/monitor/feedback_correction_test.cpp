@@ -7,7 +7,7 @@
 #include "core/model/linear_model.hpp"
 #include "tests/core/channel_model.hpp"
 
-namespace mpm {
+namespace mpm::feedback_correction_test {
 namespace {
 
 /// What a run looks like: how noise compares to the measurement's range, how far the three models
@@ -135,4 +135,4 @@ TEST_CASE("an output-bias update is seen within three blocks") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::feedback_correction_test

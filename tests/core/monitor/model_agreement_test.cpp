@@ -5,7 +5,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::model_agreement_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -72,4 +72,4 @@ TEST_CASE(
   CHECK_FALSE(agreement.differs());
 }
 
-}  // namespace mpm
+}  // namespace mpm::model_agreement_test

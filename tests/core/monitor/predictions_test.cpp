@@ -8,7 +8,7 @@
 #include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::predictions_test {
 namespace {
 
 constexpr int kSettling = 20, kTurning = 30, kLost = 10;
@@ -184,4 +184,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::predictions_test

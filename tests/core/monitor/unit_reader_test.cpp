@@ -7,7 +7,7 @@
 
 #include "tests/core/channel_model.hpp"
 
-namespace mpm {
+namespace mpm::unit_reader_test {
 namespace {
 
 double moves(std::int64_t interval) {
@@ -78,4 +78,4 @@ TEST_CASE("a reader that takes over a screen goes on with its frames, and has re
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::unit_reader_test

@@ -7,7 +7,7 @@
 #include "core/monitor/monitor.hpp"
 #include "tests/core/open_loop_unit.hpp"
 
-namespace mpm {
+namespace mpm::unseen_inputs_test {
 namespace {
 
 struct Outcome {
@@ -68,4 +68,4 @@ TEST_CASE(
   CHECK(lost < 300 + 10 * 15);
 }
 
-}  // namespace mpm
+}  // namespace mpm::unseen_inputs_test

@@ -12,7 +12,7 @@
 #include "tests/core/counter_noise.hpp"
 #include "tests/core/open_loop_unit.hpp"
 
-namespace mpm {
+namespace mpm::wild_values_test {
 namespace {
 
 constexpr int kMemory = 2000;  // samples: the default
@@ -267,4 +267,4 @@ TEST_CASE("an input that swings as it never does is forgotten within two memorie
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::wild_values_test

@@ -5,7 +5,7 @@
 
 #include "tests/core/channel_model.hpp"
 
-namespace mpm {
+namespace mpm::channel_path_test {
 namespace {
 
 LinearModel model() {
@@ -40,4 +40,4 @@ TEST_CASE("a mean stands for a channel that integrates or is none") {
   }
 }
 
-}  // namespace mpm
+}  // namespace mpm::channel_path_test

@@ -8,7 +8,7 @@
 #include "core/nonlinear/kernel.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::kernel_ridge_test {
 namespace {
 
 struct Data {
@@ -97,4 +97,4 @@ TEST_CASE("shapes that do not fit are refused") {
                   std::invalid_argument);
 }
 
-}  // namespace mpm
+}  // namespace mpm::kernel_ridge_test

@@ -10,7 +10,7 @@
 #include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::nonlinear_terms_test {
 namespace {
 
 constexpr int kDepth = 400;
@@ -175,4 +175,4 @@ TEST_CASE("an input that stands still gives no columns") {
   CHECK_THROWS_AS(NonlinearTerms(model(), 0, 0.9, NonlinearTest::kOff, 10), std::invalid_argument);
 }
 
-}  // namespace mpm
+}  // namespace mpm::nonlinear_terms_test

@@ -9,7 +9,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::rank_correlation_test {
 namespace {
 
 constexpr int kFirstLag = -2, kLastLag = 5, kLength = 400;
@@ -110,4 +110,4 @@ TEST_CASE("impossible shapes of rank correlations are refused") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::rank_correlation_test

@@ -9,7 +9,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::term_selection_test {
 namespace {
 
 constexpr int kRows = 200, kFirst = 3, kCount = 5;
@@ -93,4 +93,4 @@ TEST_CASE("a column that others explain takes no part") {
   CHECK_THROWS_AS(TermSelection(0, 3), std::invalid_argument);
 }
 
-}  // namespace mpm
+}  // namespace mpm::term_selection_test

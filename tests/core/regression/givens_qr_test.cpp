@@ -7,7 +7,7 @@
 #include "core/regression/rotation_kernel.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::givens_qr_test {
 namespace {
 
 // Rows [1, coloured ..., responses] and their factor.
@@ -246,4 +246,4 @@ TEST_CASE("a rotation has no range of numbers where it fails") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::givens_qr_test

@@ -7,7 +7,7 @@
 
 #include "tests/core/signal/aligner_bench.hpp"
 
-namespace mpm {
+namespace mpm::aligner_restart_test {
 namespace {
 
 using Bench = test::AlignerBench;
@@ -247,4 +247,4 @@ TEST_CASE("aligner: of two counters in turn the first one is followed") {
   }
 }
 
-}  // namespace mpm
+}  // namespace mpm::aligner_restart_test

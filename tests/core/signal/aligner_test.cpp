@@ -11,7 +11,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/core/signal/aligner_bench.hpp"
 
-namespace mpm {
+namespace mpm::aligner_test {
 namespace {
 
 using Bench = test::AlignerBench;
@@ -323,4 +323,4 @@ TEST_CASE("intervals that leap to and fro never run away") {
   CHECK(intervals.back() <= kEnd + std::int64_t{kLeaps} * 2 * kLength);
 }
 
-}  // namespace mpm
+}  // namespace mpm::aligner_test

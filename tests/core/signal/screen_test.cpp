@@ -8,7 +8,7 @@
 #include "tests/allocation_counter.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::screen_test {
 namespace {
 
 const SignalCounts kCounts{1, 0, 1, 0};
@@ -241,4 +241,4 @@ TEST_CASE("a step of a sensor that mostly repeats is no spike") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::screen_test

@@ -7,7 +7,7 @@
 
 #include "tests/core/white_noise.hpp"
 
-namespace mpm {
+namespace mpm::compression_test {
 namespace {
 
 constexpr int kSamples = 6000;
@@ -149,4 +149,4 @@ TEST_CASE("a test signal is not compressed, though it rests and never moves by l
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::compression_test

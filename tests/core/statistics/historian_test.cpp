@@ -5,7 +5,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::historian_test {
 namespace {
 
 using Eigen::Index;
@@ -127,4 +127,4 @@ TEST_CASE("what rests or bends by nature is not accused") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::historian_test

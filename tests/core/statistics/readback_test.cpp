@@ -6,7 +6,7 @@
 
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::readback_test {
 namespace {
 
 constexpr int kRows = 600;
@@ -65,4 +65,4 @@ TEST_CASE("few rows, and what stands still, tell of no readback") {
   CHECK_FALSE(reads_back(inputs, Eigen::VectorXd::Constant(kRows, 7.0)));
 }
 
-}  // namespace mpm
+}  // namespace mpm::readback_test

@@ -8,7 +8,7 @@
 #include "idl/cdr.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::bag {
+namespace mpm::bag::list_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -89,4 +89,4 @@ TEST_CASE("what is cut off or no recording at all is listed with the reason") {
   CHECK_THROWS_AS(list_recordings(folder.file("nowhere")), config::InputError);
 }
 
-}  // namespace mpm::bag
+}  // namespace mpm::bag::list_test

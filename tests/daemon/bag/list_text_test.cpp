@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm::bag {
+namespace mpm::bag::list_text_test {
 namespace {
 
 constexpr std::int64_t kMinute = 60'000'000'000;
@@ -23,7 +23,7 @@ TEST_CASE("a list is one line for each recording, in columns and fit for a termi
         "whole\n"
         "x\\x1b.mcap   -                     -         12 bytes  1 message       -             "
         "NOT WHOLE: byte 7: cut off\n");
-  CHECK(to_text({}).empty());
+  CHECK(to_text(std::vector<ListedRecording>{}).empty());
 }
 
 TEST_CASE("a list for programs has what is known") {
@@ -38,4 +38,4 @@ TEST_CASE("a list for programs has what is known") {
   CHECK(json[1]["problem"] == "byte 7: cut off");
 }
 
-}  // namespace mpm::bag
+}  // namespace mpm::bag::list_text_test

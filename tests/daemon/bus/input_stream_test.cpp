@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm::bus {
+namespace mpm::bus::input_stream_test {
 namespace {
 
 using std::chrono::seconds;
@@ -80,4 +80,4 @@ TEST_CASE("a source that gives no time has no clock that could step") {
   CHECK(stream.jump()->to == 400);
 }
 
-}  // namespace mpm::bus
+}  // namespace mpm::bus::input_stream_test

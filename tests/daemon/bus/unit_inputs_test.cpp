@@ -7,7 +7,7 @@
 #include "config/load_unit.hpp"
 #include "idl/layout_sample.hpp"
 
-namespace mpm::bus {
+namespace mpm::bus::unit_inputs_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -483,4 +483,4 @@ TEST_CASE("any numbers from any number of writers are borne") {
   CHECK(scene.troubles().size() < 10);
 }
 
-}  // namespace mpm::bus
+}  // namespace mpm::bus::unit_inputs_test

@@ -7,7 +7,7 @@
 #include "config/load_unit.hpp"
 #include "tests/allocation_counter.hpp"
 
-namespace mpm::files {
+namespace mpm::files::calculator_test {
 namespace {
 
 config::UnitConfig unit() {
@@ -99,4 +99,4 @@ TEST_CASE("filling a frame allocates nothing") {
 }
 
 }  // namespace
-}  // namespace mpm::files
+}  // namespace mpm::files::calculator_test

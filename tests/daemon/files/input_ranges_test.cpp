@@ -6,7 +6,7 @@
 
 #include "config/load_unit.hpp"
 
-namespace mpm::files {
+namespace mpm::files::input_ranges_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -60,4 +60,4 @@ TEST_CASE("who keeps the values keeps all of them") {
 }
 
 }  // namespace
-}  // namespace mpm::files
+}  // namespace mpm::files::input_ranges_test

@@ -6,7 +6,7 @@
 
 #include "config/load_unit.hpp"
 
-namespace mpm::files {
+namespace mpm::files::read_recording_test {
 namespace {
 
 constexpr std::int64_t kRows = 200;
@@ -80,4 +80,4 @@ TEST_CASE("a model is not diagnosed without the values of one of its inputs") {
   CHECK(recording_problem(read(kRows).recording, unit, 201).find("too short") == 0);
 }
 
-}  // namespace mpm::files
+}  // namespace mpm::files::read_recording_test

@@ -11,7 +11,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::history {
+namespace mpm::history::alarm_store_test {
 namespace {
 
 AlarmEntry entry(std::int64_t second, const std::string& what, const std::string& cv = "y1") {
@@ -203,4 +203,4 @@ TEST_CASE("others may not read the journal, and what is none is refused") {
 }
 
 }  // namespace
-}  // namespace mpm::history
+}  // namespace mpm::history::alarm_store_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm::history {
+namespace mpm::history::entry_text_test {
 namespace {
 
 AlarmEntry entry() {
@@ -65,4 +65,4 @@ TEST_CASE("an entry is an object") {
 }
 
 }  // namespace
-}  // namespace mpm::history
+}  // namespace mpm::history::entry_text_test

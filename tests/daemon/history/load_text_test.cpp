@@ -4,7 +4,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::history {
+namespace mpm::history::load_text_test {
 namespace {
 
 constexpr std::int64_t kHour = 3'600'000'000'000;
@@ -62,4 +62,4 @@ TEST_CASE("an empty journal is said to hold too little") {
 }
 
 }  // namespace
-}  // namespace mpm::history
+}  // namespace mpm::history::load_text_test

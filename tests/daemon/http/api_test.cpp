@@ -4,7 +4,7 @@
 
 #include "tests/daemon/http/sample_board.hpp"
 
-namespace mpm::http {
+namespace mpm::http::api_test {
 namespace {
 
 const std::string kToken = "0123456789abcdef";
@@ -207,4 +207,4 @@ TEST_CASE("the journal is chosen from") {
 }
 
 }  // namespace
-}  // namespace mpm::http
+}  // namespace mpm::http::api_test

@@ -14,7 +14,7 @@
 
 #include "idl/condition_variable.hpp"
 
-namespace mpm::http {
+namespace mpm::http::intake_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -169,4 +169,4 @@ TEST_CASE("an intake ends with lines open") {
 }
 
 }  // namespace
-}  // namespace mpm::http
+}  // namespace mpm::http::intake_test

@@ -9,7 +9,7 @@
 #include "daemon/http/assets.hpp"
 #include "tests/daemon/http/sample_board.hpp"
 
-namespace mpm::http {
+namespace mpm::http::openapi_test {
 namespace {
 
 const Json& openapi() {
@@ -171,4 +171,4 @@ TEST_CASE("a schema refuses what does not fit") {
 }
 
 }  // namespace
-}  // namespace mpm::http
+}  // namespace mpm::http::openapi_test

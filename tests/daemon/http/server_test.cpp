@@ -10,7 +10,7 @@
 #include "tests/daemon/http/connection.hpp"
 #include "tests/daemon/http/sample_board.hpp"
 
-namespace mpm::http {
+namespace mpm::http::server_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -199,4 +199,4 @@ TEST_CASE("a port that is taken is not shared") {
 }
 
 }  // namespace
-}  // namespace mpm::http
+}  // namespace mpm::http::server_test

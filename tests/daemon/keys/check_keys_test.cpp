@@ -6,7 +6,7 @@
 #include "daemon/keys/key_folder.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::keys {
+namespace mpm::keys::check_keys_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace mpm::keys
+}  // namespace mpm::keys::check_keys_test

@@ -8,7 +8,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::keys {
+namespace mpm::keys::key_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_CASE("keys are never overwritten, and new ones come from the authority that
 }
 
 }  // namespace
-}  // namespace mpm::keys
+}  // namespace mpm::keys::key_folder_test

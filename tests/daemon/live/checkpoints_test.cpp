@@ -9,7 +9,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::live {
+namespace mpm::live::checkpoints_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,4 +172,4 @@ TEST_CASE("what was judged again at the start is not judged once more") {
   CHECK(last.sums.count == 1);
 }
 
-}  // namespace mpm::live
+}  // namespace mpm::live::checkpoints_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm::live {
+namespace mpm::live::command_gate_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000, kNow = 1'800'000'000 * kSecond;
@@ -100,4 +100,4 @@ TEST_CASE("an action that there is not is refused in words") {
 }
 
 }  // namespace
-}  // namespace mpm::live
+}  // namespace mpm::live::command_gate_test

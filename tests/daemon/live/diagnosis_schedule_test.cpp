@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-namespace mpm::live {
+namespace mpm::live::diagnosis_schedule_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -82,4 +82,4 @@ TEST_CASE("the fit sees half of what came after the alarm, and no less than usua
   CHECK(unseen_rows(90, 50) == 30);
 }
 
-}  // namespace mpm::live
+}  // namespace mpm::live::diagnosis_schedule_test

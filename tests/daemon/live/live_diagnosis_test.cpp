@@ -11,7 +11,7 @@
 #include "tests/daemon/live/live_frames.hpp"
 #include "tests/idl/test_domain.hpp"
 
-namespace mpm::live {
+namespace mpm::live::live_diagnosis_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -303,4 +303,4 @@ TEST_CASE("a worker stops at once, in the middle of a diagnosis or idle, or is l
   }
 }
 
-}  // namespace mpm::live
+}  // namespace mpm::live::live_diagnosis_test

@@ -5,7 +5,7 @@
 #include "config/load_unit.hpp"
 #include "daemon/bus/doctor/findings.hpp"
 
-namespace mpm::live {
+namespace mpm::live::lost_troubles_test {
 namespace {
 
 using bus::Severity;
@@ -77,4 +77,4 @@ TEST_CASE("a gap explains what it left out, and no value that is missing behind 
         "d1 is bad since 2023-11-14T22:15:00Z: no value");
 }
 
-}  // namespace mpm::live
+}  // namespace mpm::live::lost_troubles_test

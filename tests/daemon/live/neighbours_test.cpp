@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm::live {
+namespace mpm::live::neighbours_test {
 namespace {
 
 using Clock = Neighbours::Clock;
@@ -53,4 +53,4 @@ TEST_CASE("what stands is said again while another speaks, and all once it has l
   CHECK_FALSE(neighbours.to_say_again(kStart + seconds(12)));
 }
 
-}  // namespace mpm::live
+}  // namespace mpm::live::neighbours_test

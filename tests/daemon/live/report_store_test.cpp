@@ -8,7 +8,7 @@
 #include "tests/daemon/report/sample_run.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::live {
+namespace mpm::live::report_store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +68,4 @@ TEST_CASE("an alarm gets the finding that touches its channel") {
   }
 }
 
-}  // namespace mpm::live
+}  // namespace mpm::live::report_store_test

@@ -10,7 +10,7 @@
 #include "idl/reader.hpp"
 #include "tests/idl/test_domain.hpp"
 
-namespace mpm::live {
+namespace mpm::live::role_test {
 namespace {
 
 using Clock = Role::Clock;
@@ -77,4 +77,4 @@ TEST_CASE("of several that share a unit one speaks, and another goes on when it 
 }
 
 }  // namespace
-}  // namespace mpm::live
+}  // namespace mpm::live::role_test

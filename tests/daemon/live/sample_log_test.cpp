@@ -11,7 +11,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::live {
+namespace mpm::live::sample_log_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -300,4 +300,4 @@ TEST_CASE("a file is never written to through a link") {
 }
 
 }  // namespace
-}  // namespace mpm::live
+}  // namespace mpm::live::sample_log_test

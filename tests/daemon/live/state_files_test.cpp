@@ -14,7 +14,7 @@
 #include "daemon/live/numbered_files.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::live {
+namespace mpm::live::state_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,4 +190,4 @@ TEST_CASE("what cannot be written is told, and the state before stays") {
 }
 
 }  // namespace
-}  // namespace mpm::live
+}  // namespace mpm::live::state_files_test

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm::live {
+namespace mpm::live::told_alarms_test {
 namespace {
 
 AlarmRecord change(AlarmChange to, std::int64_t interval) {
@@ -58,4 +58,4 @@ TEST_CASE("a standing is as its view tells, whatever silences it") {
 }
 
 }  // namespace
-}  // namespace mpm::live
+}  // namespace mpm::live::told_alarms_test

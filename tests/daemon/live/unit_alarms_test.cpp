@@ -12,7 +12,7 @@
 #include "tests/idl/test_domain.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::live {
+namespace mpm::live::unit_alarms_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -170,4 +170,4 @@ TEST_CASE("the text of an alarm that has cleared says so") {
   CHECK(desk.state().view.message == "gain not known");
 }
 
-}  // namespace mpm::live
+}  // namespace mpm::live::unit_alarms_test

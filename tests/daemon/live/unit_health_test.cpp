@@ -7,7 +7,7 @@
 #include "config/load_unit.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm::live {
+namespace mpm::live::unit_health_test {
 namespace {
 
 using bus::Severity;
@@ -218,4 +218,4 @@ TEST_CASE("a standstill of the monitor itself is told for a minute, and blames n
   CHECK(toy.health.troubles().size() == 1);
 }
 
-}  // namespace mpm::live
+}  // namespace mpm::live::unit_health_test

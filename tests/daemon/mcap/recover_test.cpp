@@ -10,7 +10,7 @@
 #include "tests/fuzz/exercise_mcap.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::recover_test {
 namespace {
 
 constexpr int kMessages = 40;
@@ -161,4 +161,4 @@ TEST_CASE("Mending a whole file changes none of its messages") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::recover_test

@@ -4,7 +4,7 @@
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "tests/core/identify/causes/servo.hpp"
 
-namespace mpm::test {
+namespace mpm::test::coulomb_friction_test {
 namespace {
 
 constexpr Eigen::Index kRows = 2500;
@@ -88,4 +88,4 @@ TEST_CASE("On a channel without inertia it goes by the name of play") {
   CHECK(first.parameters.front().value == Approx(2.0 * kFriction).epsilon(0.1));
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::coulomb_friction_test

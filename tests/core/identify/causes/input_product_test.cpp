@@ -7,7 +7,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::input_product_test {
 namespace {
 
 using Eigen::Index;
@@ -114,4 +114,4 @@ TEST_CASE("a product is looked for with each other input that moves, and not in 
   CHECK(products({}).empty());
 }
 
-}  // namespace mpm
+}  // namespace mpm::input_product_test

@@ -6,7 +6,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::input_two_sided_test {
 namespace {
 
 using Eigen::Index;
@@ -70,4 +70,4 @@ TEST_CASE("a gain alike on both sides, a parabola and a stop are called what the
   CHECK(diagnosed(u, u).findings.empty());
 }
 
-}  // namespace mpm
+}  // namespace mpm::input_two_sided_test

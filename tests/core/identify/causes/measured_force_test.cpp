@@ -4,7 +4,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::measured_force_test {
 namespace {
 
 using Eigen::Index;
@@ -51,4 +51,4 @@ TEST_CASE("the force on a measured CV is near the true one, and none where there
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::measured_force_test

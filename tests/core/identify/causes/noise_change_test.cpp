@@ -5,7 +5,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::noise_change_test {
 namespace {
 
 using Eigen::Index;
@@ -113,4 +113,4 @@ TEST_CASE("rows without a weight are not asked, and too few rows say nothing") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::noise_change_test

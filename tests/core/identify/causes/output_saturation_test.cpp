@@ -4,7 +4,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::output_saturation_test {
 namespace {
 
 using Eigen::Index;
@@ -61,4 +61,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::output_saturation_test

@@ -7,7 +7,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::periodic_disturbance_test {
 namespace {
 
 using Eigen::Index;
@@ -100,4 +100,4 @@ TEST_CASE("the edges of a wave are moved by its phase or by its period") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::periodic_disturbance_test

@@ -6,7 +6,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::periodogram_test {
 namespace {
 
 using Eigen::Index;
@@ -50,4 +50,4 @@ TEST_CASE("the loudest cycles come first, within what is asked for") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::periodogram_test

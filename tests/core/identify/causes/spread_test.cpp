@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mpm {
+namespace mpm::spread_test {
 namespace {
 
 using Eigen::Index;
@@ -67,4 +67,4 @@ TEST_CASE("a binary signal has two levels, however it began, and one of an MPC h
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::spread_test

@@ -6,7 +6,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::square_wave_search_test {
 namespace {
 
 using Eigen::Index;
@@ -56,4 +56,4 @@ TEST_CASE("the period and the phase of a square wave are found") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::square_wave_search_test

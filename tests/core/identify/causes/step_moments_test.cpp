@@ -8,7 +8,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::step_moments_test {
 namespace {
 
 using Eigen::Index;
@@ -104,4 +104,4 @@ TEST_CASE("moments are as many as asked for, apart, and not at the ends") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::step_moments_test

@@ -7,7 +7,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::unnamed_channel_test {
 namespace {
 
 using Eigen::Index;
@@ -104,4 +104,4 @@ TEST_CASE("what was accepted is not looked for again") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::unnamed_channel_test

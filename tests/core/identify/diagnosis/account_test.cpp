@@ -8,7 +8,7 @@
 #include "core/identify/evidence/free_run_residuals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::account_test {
 namespace {
 
 using Eigen::Index;
@@ -217,4 +217,4 @@ TEST_CASE("a signal that wanders beside a CV that does acts on it only where its
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::account_test

@@ -7,7 +7,7 @@
 #include "core/identify/causes/output_disturbance.hpp"
 #include "tests/core/counter_noise.hpp"
 
-namespace mpm {
+namespace mpm::compressed_test {
 namespace {
 
 constexpr Eigen::Index kRows = 3000;
@@ -61,4 +61,4 @@ TEST_CASE("what is as it was measured is not laid to compression") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::compressed_test

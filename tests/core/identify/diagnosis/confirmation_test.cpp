@@ -6,7 +6,7 @@
 #include "core/identify/fit/quantity.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::confirmation_test {
 namespace {
 
 using Eigen::Index;
@@ -98,4 +98,4 @@ TEST_CASE(
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::confirmation_test

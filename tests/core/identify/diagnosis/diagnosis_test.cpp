@@ -8,7 +8,7 @@
 #include "core/parallel/parallel.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::diagnosis_test {
 namespace {
 
 using Eigen::Index;
@@ -505,4 +505,4 @@ TEST_CASE("a model with more channels needs more rows") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::diagnosis_test

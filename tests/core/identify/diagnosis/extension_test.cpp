@@ -7,7 +7,7 @@
 #include "core/identify/causes/output_disturbance.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::extension_test {
 namespace {
 
 using Eigen::Index;
@@ -145,4 +145,4 @@ TEST_CASE("aux signals that no channel uses are no inputs of the finished model"
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::extension_test

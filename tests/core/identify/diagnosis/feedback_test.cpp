@@ -8,7 +8,7 @@
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::feedback_test {
 namespace {
 
 using Eigen::Index;
@@ -247,4 +247,4 @@ TEST_CASE("what follows a set-point beside a stuck actuator is laid to no channe
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::feedback_test

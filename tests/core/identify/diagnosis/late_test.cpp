@@ -6,7 +6,7 @@
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::late_test {
 namespace {
 
 using Eigen::Index;
@@ -117,4 +117,4 @@ TEST_CASE("a channel that was wrong before has nothing late of its own") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::late_test

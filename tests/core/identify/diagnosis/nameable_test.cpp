@@ -7,7 +7,7 @@
 #include "core/identify/fit/quantity.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::nameable_test {
 namespace {
 
 using Eigen::Index;
@@ -171,4 +171,4 @@ TEST_CASE("an error of a channel is taken in however small it is") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::nameable_test

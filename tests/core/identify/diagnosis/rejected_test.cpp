@@ -6,7 +6,7 @@
 #include "core/identify/evidence/free_run_residuals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::rejected_test {
 namespace {
 
 constexpr Eigen::Index kRows = 900;
@@ -67,4 +67,4 @@ TEST_CASE("no channel that is right or nearly so is rejected, and none that a re
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::rejected_test

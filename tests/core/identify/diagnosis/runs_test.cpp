@@ -7,7 +7,7 @@
 #include "tests/core/identify/small_plant.hpp"
 
 /// Diagnoses of several runs, whose levels and first states are their own.
-namespace mpm {
+namespace mpm::runs_test {
 namespace {
 
 using Eigen::Index;
@@ -105,4 +105,4 @@ TEST_CASE("what begins in a later run is told on its own clock") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::runs_test

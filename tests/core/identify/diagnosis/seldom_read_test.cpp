@@ -5,7 +5,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::seldom_read_test {
 namespace {
 
 using Eigen::Index;
@@ -94,4 +94,4 @@ TEST_CASE("a part of a model stands in the whole where it was") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::seldom_read_test

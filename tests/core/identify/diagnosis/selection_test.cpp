@@ -8,7 +8,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::selection_test {
 namespace {
 
 using Eigen::Index;
@@ -252,4 +252,4 @@ TEST_CASE("the weakest evidence is judged first") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::selection_test

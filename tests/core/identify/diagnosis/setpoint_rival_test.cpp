@@ -7,7 +7,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::setpoint_rival_test {
 namespace {
 
 using Eigen::Index;
@@ -139,4 +139,4 @@ TEST_CASE("undecided, a CV's own set-point takes its share of the confidence in 
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::setpoint_rival_test

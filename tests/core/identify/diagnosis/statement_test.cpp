@@ -8,7 +8,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::statement_test {
 namespace {
 
 using Eigen::Index;
@@ -187,4 +187,4 @@ TEST_CASE("a drift is said by its rate and by what it comes to") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::statement_test

@@ -6,7 +6,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::validation_test {
 namespace {
 
 using Eigen::Index;
@@ -111,4 +111,4 @@ TEST_CASE("without errors there is nothing to gain") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::validation_test

@@ -4,7 +4,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::channel_tests_test {
 namespace {
 
 using Eigen::Index;
@@ -110,4 +110,4 @@ TEST_CASE("a set-point wins where it moves the CV itself, and not against a wron
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::channel_tests_test

@@ -5,7 +5,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::free_run_residuals_test {
 namespace {
 
 using Eigen::Index;
@@ -49,4 +49,4 @@ TEST_CASE("what a plant that changed leaves is the noise before and behind it") 
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::free_run_residuals_test

@@ -5,7 +5,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::jumps_test {
 namespace {
 
 using Eigen::Index;
@@ -98,4 +98,4 @@ TEST_CASE("pulses of a test stay, whatever the input did before; a wild stretch 
   CHECK(leave_out_jumps(wild).cvs == std::vector<Index>{6});
 }
 
-}  // namespace mpm
+}  // namespace mpm::jumps_test

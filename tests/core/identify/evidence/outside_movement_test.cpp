@@ -4,7 +4,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::outside_movement_test {
 namespace {
 
 using Eigen::Index;
@@ -63,4 +63,4 @@ TEST_CASE("an input that stands still has no share") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::outside_movement_test

@@ -8,7 +8,7 @@
 #include "core/identify/evidence/calibration.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::unanswered_pulses_test {
 namespace {
 
 using Eigen::Index;
@@ -117,4 +117,4 @@ TEST_CASE("what no CV would show is no pulse that the plant did not see") {
   CHECK(unanswered(model(), without(unknown, pulses), pulses).empty());
 }
 
-}  // namespace mpm
+}  // namespace mpm::unanswered_pulses_test

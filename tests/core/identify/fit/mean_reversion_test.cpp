@@ -1,11 +1,12 @@
 #include "core/identify/fit/mean_reversion.hpp"
 
+#include <Eigen/QR>
 #include <catch2/catch.hpp>
 #include <limits>
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::mean_reversion_test {
 namespace {
 
 using Eigen::Index;
@@ -109,4 +110,4 @@ TEST_CASE("what is too short to tell wandering from settling does not wander") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::mean_reversion_test

@@ -10,7 +10,7 @@
 #include "tests/core/identify/small_plant.hpp"
 #include "tests/core/oracle.hpp"
 
-namespace mpm {
+namespace mpm::problem_test {
 namespace {
 
 using Eigen::Index;
@@ -357,4 +357,4 @@ TEST_CASE("a triangle is that of its rows, zeros or not") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::problem_test

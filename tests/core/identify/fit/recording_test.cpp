@@ -5,7 +5,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::recording_test {
 namespace {
 
 using Eigen::Index;
@@ -76,4 +76,4 @@ TEST_CASE("recordings that have runs keep them when they are joined") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::recording_test

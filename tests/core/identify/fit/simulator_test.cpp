@@ -6,7 +6,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::simulator_test {
 namespace {
 
 using Eigen::Index;
@@ -203,4 +203,4 @@ TEST_CASE("each run is simulated as if there were no other") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::simulator_test

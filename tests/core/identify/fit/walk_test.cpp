@@ -6,7 +6,7 @@
 #include "core/identify/fit/mean_reversion.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::walk_test {
 namespace {
 
 using Eigen::Index;
@@ -80,4 +80,4 @@ TEST_CASE("what is not known is not known to be left") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::walk_test

@@ -11,7 +11,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::conclude_test {
 namespace {
 
 using Eigen::Index;
@@ -224,4 +224,4 @@ TEST_CASE("a level that is far off is told of slow noise too") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::conclude_test

@@ -7,7 +7,7 @@
 #include "core/identify/causes/catalog.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::odds_test {
 namespace {
 
 using Eigen::Index;
@@ -62,4 +62,4 @@ TEST_CASE("the odds for an effect are what it saves less what it costs") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::odds_test

@@ -9,7 +9,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::refine_test {
 namespace {
 
 using Eigen::Index;
@@ -199,4 +199,4 @@ TEST_CASE("without a play or a valve ahead no valves are tried") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::refine_test

@@ -9,7 +9,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::screening_test {
 namespace {
 
 using Eigen::Index;
@@ -110,4 +110,4 @@ TEST_CASE("the search is paid for, and what touches nothing or is no model is to
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::screening_test

@@ -10,7 +10,7 @@
 #include "core/identify/causes/output_disturbance.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::search_test {
 namespace {
 
 using Eigen::Index;
@@ -181,4 +181,4 @@ TEST_CASE("a shock of a walk is told as a step, or as one that is doubted; a wal
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::search_test

@@ -7,7 +7,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::trial_test {
 namespace {
 
 using Eigen::Index;
@@ -136,4 +136,4 @@ TEST_CASE("telling may end it all") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::trial_test

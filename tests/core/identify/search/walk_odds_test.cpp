@@ -7,7 +7,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::walk_odds_test {
 namespace {
 
 using Eigen::Index;
@@ -130,4 +130,4 @@ TEST_CASE("what adds nothing to a CV has no evidence there") {
 }
 
 }  // namespace
-}  // namespace mpm
+}  // namespace mpm::walk_odds_test

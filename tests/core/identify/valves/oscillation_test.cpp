@@ -5,7 +5,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::oscillation_test {
 namespace {
 
 using Eigen::Index;
@@ -93,4 +93,4 @@ TEST_CASE("noise around zero makes no half cycles") {
   for (const HalfCycle& half : halves) CHECK(half.end - half.begin == Approx(20.0).margin(3.0));
 }
 
-}  // namespace mpm
+}  // namespace mpm::oscillation_test

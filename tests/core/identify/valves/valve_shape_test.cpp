@@ -6,7 +6,7 @@
 
 #include "tests/core/identify/small_plant.hpp"
 
-namespace mpm {
+namespace mpm::valve_shape_test {
 namespace {
 
 using Eigen::Index;
@@ -184,4 +184,4 @@ TEST_CASE("what is too short, constant or unknown is no swing") {
   CHECK(judge_valve(VectorXd(0), VectorXd(0), VectorXd(0), 1.0).verdict == Verdict::kNoSwing);
 }
 
-}  // namespace mpm
+}  // namespace mpm::valve_shape_test

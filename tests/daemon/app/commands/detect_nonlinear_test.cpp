@@ -3,7 +3,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::detect_nonlinear_test {
 namespace {
 
 const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
@@ -78,4 +78,4 @@ TEST_CASE("a nonlinear test that there is not is refused with those that there a
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::detect_nonlinear_test

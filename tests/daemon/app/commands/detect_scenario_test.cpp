@@ -3,7 +3,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::detect_scenario_test {
 namespace {
 
 const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
@@ -51,4 +51,4 @@ TEST_CASE("mpm detect takes the monitor settings of a scenario, and nothing else
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::detect_scenario_test

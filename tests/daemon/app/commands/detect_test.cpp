@@ -10,7 +10,7 @@
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::detect_test {
 namespace {
 
 /// Rows of the small unit, a minute apart.
@@ -314,4 +314,4 @@ TEST_CASE("of one row nothing is told of control that one row cannot tell") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::detect_test

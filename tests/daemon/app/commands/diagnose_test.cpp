@@ -6,7 +6,7 @@
 #include "config/load_unit.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::diagnose_test {
 namespace {
 
 const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
@@ -307,4 +307,4 @@ TEST_CASE("without mpmsim beside it, --scenario says so before it begins") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::diagnose_test

@@ -4,7 +4,7 @@
 #include "tests/daemon/bag/bench.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::domain_flags_test {
 namespace {
 
 int in(const Bench& bench, const std::vector<std::string>& arguments) {
@@ -38,4 +38,4 @@ TEST_CASE("a unit file tells where its bus is, and options overrule it") {
   CHECK(with({"--interface", "lo", "--config", file}) == 0);
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::domain_flags_test

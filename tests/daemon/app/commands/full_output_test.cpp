@@ -2,7 +2,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::full_output_test {
 namespace {
 
 const std::string kUnit = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
@@ -35,4 +35,4 @@ TEST_CASE("every program says in one line that its output could not be written")
   }
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::full_output_test

@@ -5,7 +5,7 @@
 #include "config/load_unit.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::identify_test {
 namespace {
 
 /// Signals alone, with a comment that is to stay.
@@ -116,4 +116,4 @@ TEST_CASE("mpm identify refuses bad usage and bad input") {
   CHECK(bench.text("err").find("unit.yaml:8:") != std::string::npos);
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::identify_test

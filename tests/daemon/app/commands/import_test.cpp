@@ -5,7 +5,7 @@
 #include "config/load_unit.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::import_test {
 namespace {
 
 struct Bench {
@@ -185,4 +185,4 @@ TEST_CASE("a state space becomes the model, checked against the unit") {
             .rfind("1:", 0) == 0);
 }
 
-}  // namespace mpm::test
+}  // namespace mpm::test::import_test

@@ -7,7 +7,7 @@
 #include "daemon/mcap/write/writer.hpp"
 #include "tests/daemon/bag/bench.hpp"
 
-namespace mpm::test {
+namespace mpm::test::split_recording_test {
 namespace {
 
 const std::string kShell = MPM_SOURCE_DIR "/config/plants/shell3x3.yaml";
@@ -108,4 +108,4 @@ TEST_CASE("Info names the torn one of several files") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::split_recording_test

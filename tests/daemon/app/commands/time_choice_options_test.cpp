@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm::test {
+namespace mpm::test::time_choice_options_test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -37,4 +37,4 @@ TEST_CASE("an option without its time is refused") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::time_choice_options_test

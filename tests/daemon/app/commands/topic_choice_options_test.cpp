@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-namespace mpm::test {
+namespace mpm::test::topic_choice_options_test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -33,4 +33,4 @@ TEST_CASE("without options there is no choice") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::topic_choice_options_test

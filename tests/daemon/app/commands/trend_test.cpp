@@ -5,7 +5,7 @@
 
 #include "tests/system/process.hpp"
 
-namespace mpm::test {
+namespace mpm::test::trend_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -204,4 +204,4 @@ TEST_CASE("mpm trend refuses what makes no trend") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::trend_test

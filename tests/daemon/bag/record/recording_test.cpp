@@ -14,7 +14,7 @@
 #include "idl/cdr.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::bag {
+namespace mpm::bag::recording_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -281,4 +281,4 @@ TEST_CASE("the end of an instance survives as JSON") {
     CHECK_FALSE(parse_lifecycle(text));
 }
 
-}  // namespace mpm::bag
+}  // namespace mpm::bag::recording_test

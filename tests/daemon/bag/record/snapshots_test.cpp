@@ -11,7 +11,7 @@
 #include "idl/cdr.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::bag {
+namespace mpm::bag::snapshots_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -289,4 +289,4 @@ TEST_CASE("a place where files have no second names is refused at once") {
   CHECK_THROWS_AS(Run(folder, kHour), std::invalid_argument);
 }
 
-}  // namespace mpm::bag
+}  // namespace mpm::bag::snapshots_test

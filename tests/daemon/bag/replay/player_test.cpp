@@ -12,7 +12,7 @@
 #include "daemon/mcap/format/encode.hpp"
 #include "tests/system/process.hpp"
 
-namespace mpm::bag {
+namespace mpm::bag::player_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -342,4 +342,4 @@ TEST_CASE("the pacer stays exact over years and at odd rates") {
   CHECK(pacer.due(140) == 5015);
 }
 
-}  // namespace mpm::bag
+}  // namespace mpm::bag::player_test

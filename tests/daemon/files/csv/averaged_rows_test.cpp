@@ -7,7 +7,7 @@
 #include "config/load_unit.hpp"
 #include "daemon/files/csv/csv_reader.hpp"
 
-namespace mpm::files {
+namespace mpm::files::averaged_rows_test {
 namespace {
 
 config::UnitConfig unit_of(const char* sample_time) {
@@ -45,7 +45,7 @@ TEST_CASE("inputs are means over the interval in which they act, CVs what was me
     const std::string now = std::to_string(t);
     text += now + ',' + now + ',' + now + ',' + now + ',' + now + '\n';
   }
-  const Read read = files::read(text);
+  const Read read = averaged_rows_test::read(text);
   REQUIRE(read.frames.size() == 300);
   for (int k = 0; k < 300; ++k) {
     CAPTURE(k);
@@ -69,7 +69,7 @@ TEST_CASE("time stamps that jitter, or that no interval is a multiple of, lose n
   CHECK(read(text).frames.size() == 60);
   text = "time,u,y,sp,a\n";
   for (int t = 0; t < 600; t += 3) text += std::to_string(t) + ',' + std::to_string(t) + ",3,4,5\n";
-  const Read read = files::read(text);
+  const Read read = averaged_rows_test::read(text);
   REQUIRE(read.frames.size() == 60);
   // 0 3 6 9, 12 15 18, 21 24 27, and so on again from 30; 29 and 28.5 are none of their rows.
   CHECK(value(read.frames[0], SignalKind::kMv) == Approx(4.5));
@@ -129,7 +129,7 @@ TEST_CASE("intervals begin where the MVs move, and else with the first row") {
     text += std::to_string(t) + ',' + std::to_string((t + 3) / 10) + rest;
     restless += std::to_string(t) + ',' + std::to_string(t % 7) + rest;
   }
-  const Read read = files::read(text);
+  const Read read = averaged_rows_test::read(text);
   CHECK(read.notices[0].find("begin where the MVs move") != std::string::npos);
   REQUIRE(read.frames.size() == 51);
   for (int k = 1; k < 51; ++k) {
@@ -139,7 +139,7 @@ TEST_CASE("intervals begin where the MVs move, and else with the first row") {
     CHECK(value(frame, SignalKind::kMv) == k);  // none is mixed with the next
     CHECK(value(frame, SignalKind::kCv) == 10 * k - 3);
   }
-  CHECK(files::read(restless).notices[0].find("MVs move") == std::string::npos);
+  CHECK(averaged_rows_test::read(restless).notices[0].find("MVs move") == std::string::npos);
 }
 
 TEST_CASE("gaps stay gaps, and rows that go back a little are left out") {
@@ -149,7 +149,7 @@ TEST_CASE("gaps stay gaps, and rows that go back a little are left out") {
     text += std::to_string(t) + ",1," + std::to_string(t) + ",1,1\n";
     if (t == 80) text += "79,100,100,100,100\n";
   }
-  const Read read = files::read(text);
+  const Read read = averaged_rows_test::read(text);
   REQUIRE(read.frames.size() == 7);
   CHECK(read.frames[2].interval == 2);
   CHECK(read.frames[3].interval == 6);
@@ -180,4 +180,4 @@ TEST_CASE("rows that are neither a sample time apart nor two to one are refused"
   CHECK(refusal("1", Purpose::kKeep).find("the rows are 1 s apart") != std::string::npos);
 }
 
-}  // namespace mpm::files
+}  // namespace mpm::files::averaged_rows_test

@@ -5,7 +5,7 @@
 
 #include "config/load_unit.hpp"
 
-namespace mpm::test {
+namespace mpm::test::loop_tally_test {
 namespace {
 
 config::UnitConfig unit() {
@@ -55,4 +55,4 @@ TEST_CASE("a scenario's limits replace the unit file's") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::loop_tally_test

@@ -11,7 +11,7 @@
 #include "tests/core/identify/proposals.hpp"
 #include "tests/daemon/report/sample_run.hpp"
 
-namespace mpm::test {
+namespace mpm::test::diagnosis_report_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -252,4 +252,4 @@ TEST_CASE("the terminal summary names verdict, findings and gains") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::diagnosis_report_test

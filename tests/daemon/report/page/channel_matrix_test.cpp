@@ -6,7 +6,7 @@
 
 #include "tests/daemon/report/sample_run.hpp"
 
-namespace mpm::test {
+namespace mpm::test::channel_matrix_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -20,4 +20,4 @@ TEST_CASE("an undetermined diagnosis shows nothing as good") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::channel_matrix_test

@@ -4,7 +4,7 @@
 
 #include "tests/idl/fixed_records.hpp"
 
-namespace mpm::test {
+namespace mpm::test::control_section_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -23,4 +23,4 @@ TEST_CASE("how well a unit is controlled has units, times and, where it is not k
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::control_section_test

@@ -7,7 +7,7 @@
 #include "config/load_unit.hpp"
 #include "tests/daemon/report/sample_run.hpp"
 
-namespace mpm::test {
+namespace mpm::test::diagnosis_page_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -135,4 +135,4 @@ TEST_CASE("a second recording has its own plots") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::diagnosis_page_test

@@ -6,7 +6,7 @@
 
 #include "tests/daemon/report/identification/identified_run.hpp"
 
-namespace mpm::test {
+namespace mpm::test::identification_page_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -26,4 +26,4 @@ TEST_CASE("an identification has the same page") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::identification_page_test

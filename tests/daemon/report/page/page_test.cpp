@@ -16,7 +16,7 @@
 #include "tests/daemon/report/identification/identified_run.hpp"
 #include "tests/daemon/report/sample_run.hpp"
 
-namespace mpm::test {
+namespace mpm::test::page_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -154,4 +154,4 @@ TEST_CASE("write pages to look at", "[.page]") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::page_test

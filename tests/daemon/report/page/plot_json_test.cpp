@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-namespace mpm::test {
+namespace mpm::test::plot_json_test {
 namespace {
 
 using namespace mpm::report;
@@ -32,4 +32,4 @@ TEST_CASE("digits that cannot be seen are not written") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::plot_json_test

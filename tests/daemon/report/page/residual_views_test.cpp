@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-namespace mpm::test {
+namespace mpm::test::residual_views_test {
 namespace {
 
 using namespace mpm::report;
@@ -25,4 +25,4 @@ TEST_CASE("blocks and levels know what is unknown") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::residual_views_test

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-namespace mpm::test {
+namespace mpm::test::telling_window_test {
 namespace {
 
 using namespace mpm::report;
@@ -30,4 +30,4 @@ TEST_CASE("the telling window lies inside a run, beside those that were shown") 
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::telling_window_test

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-namespace mpm::test {
+namespace mpm::test::wording_test {
 namespace {
 
 using namespace mpm::report;
@@ -68,4 +68,4 @@ TEST_CASE("moments are dates in the zone of the data, or time on its own clock")
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::test::wording_test
