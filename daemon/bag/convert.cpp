@@ -9,14 +9,11 @@
 #include "config/finding.hpp"
 #include "config/replacement_file.hpp"
 #include "daemon/bag/mcap_frame_writer.hpp"
+#include "daemon/bag/refuse.hpp"
 #include "daemon/mcap/read/file_sequence.hpp"
 
 namespace mpm::bag {
 namespace {
-
-[[noreturn]] void refuse(const std::string& path, const std::string& message) {
-  throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
-}
 
 void count(const Frame& frame, const std::vector<files::Column>& columns, ConvertReport& report) {
   if (report.rows++ == 0) report.first_ns = report.last_ns = frame.source_time_ns;

@@ -8,18 +8,12 @@
 #include "core/text/printable.hpp"
 #include "daemon/bag/contents.hpp"
 #include "daemon/bag/kind_name.hpp"
+#include "daemon/bag/refuse.hpp"
 #include "daemon/files/aligning.hpp"
 #include "idl/layout_sample.hpp"
 #include "idl/topics.hpp"
 
 namespace mpm::bag {
-namespace {
-
-[[noreturn]] void refuse_frames(const std::string& path, const std::string& message) {
-  throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
-}
-
-}  // namespace
 
 McapFrames::McapFrames(const std::vector<std::string>& paths, const config::UnitConfig& unit,
                        files::Purpose purpose)
@@ -55,9 +49,9 @@ std::array<bool, kSignalKindCount> McapFrames::look_into(const std::vector<std::
   const std::string path = mcap::name_of(paths);
   const auto found = contents.find(unit_.unit);
   if (found == contents.end())
-    refuse_frames(path, "holds no samples of unit '" + unit_.unit + "'" +
-                            (contents.empty() ? "; it holds none of any unit"
-                                              : "; its units are " + names_of(contents)));
+    refuse(path, "holds no samples of unit '" + unit_.unit + "'" +
+                     (contents.empty() ? "; it holds none of any unit"
+                                       : "; its units are " + names_of(contents)));
   if (purpose == files::Purpose::kJudge) check_needed(path, found->second);
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
     wanted[kind] = wanted[kind] && found->second.kinds[kind].seen;
@@ -72,12 +66,11 @@ void McapFrames::check_needed(const std::string& path, const RecordedUnit& recor
   for (const SignalKind kind :
        {SignalKind::kMv, SignalKind::kCv, SignalKind::kDv, SignalKind::kRaw})
     if (lacks(kind))
-      refuse_frames(path,
-                    std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
+      refuse(path, std::string("holds no ") + topic_of(kind) + " of unit '" + unit_.unit + "'");
   if (!recorded[SignalKind::kPrediction].seen && !predictions_calculated()) {
     if (!unit_.has_model())
-      refuse_frames(path, "holds no mpm/prediction of unit '" + unit_.unit +
-                              "', and its unit file has no model to simulate them");
+      refuse(path, "holds no mpm/prediction of unit '" + unit_.unit +
+                       "', and its unit file has no model to simulate them");
     if (lacks(SignalKind::kPrediction))
       notices_.emplace_back(
           "no predictions in the file, so the unit file's model simulates them instead");

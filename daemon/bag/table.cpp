@@ -8,16 +8,13 @@
 #include "config/unit_layout.hpp"
 #include "daemon/bag/contents.hpp"
 #include "daemon/bag/mcap_frames.hpp"
+#include "daemon/bag/refuse.hpp"
 #include "daemon/files/csv/csv_reader.hpp"
 #include "daemon/files/csv/csv_rows.hpp"
 #include "daemon/mcap/read/file_sequence.hpp"
 
 namespace mpm::bag {
 namespace {
-
-[[noreturn]] void refuse_table(const std::string& path, const std::string& message) {
-  throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
-}
 
 /// The signals of the unit for which `holds(kind, index, tag)`.
 template <class Holds>
@@ -43,9 +40,8 @@ config::UnitConfig unit_of(const std::string& path, const std::string& name,
   const auto tags = [&](SignalKind kind) {
     const RecordedKind& known = recorded[kind];
     if (known.seen && known.tags.size() != static_cast<std::size_t>(known.width))
-      refuse_table(path, std::string("has no layout that names the ") +
-                             std::to_string(known.width) + " signals of " + topic_of(kind) +
-                             "; give the unit file with --config");
+      refuse(path, std::string("has no layout that names the ") + std::to_string(known.width) +
+                       " signals of " + topic_of(kind) + "; give the unit file with --config");
     return known.seen ? known.tags : std::vector<std::string>();
   };
   const auto inputs = [&](SignalKind kind, std::vector<config::InputSignal>& signals) {
@@ -70,13 +66,12 @@ config::UnitConfig unit_of(const std::string& path, const std::string& name,
 Table open_mcap(const std::string& path, const TableOptions& options) {
   const Contents contents = contents_of({path}, [](const Contents&) { return false; });
   const std::string wanted = options.unit != nullptr ? options.unit->unit : options.unit_name;
-  if (contents.empty()) refuse_table(path, "holds no samples of any unit");
+  if (contents.empty()) refuse(path, "holds no samples of any unit");
   if (wanted.empty() && contents.size() > 1)
-    refuse_table(path, "holds several units; pick one with --unit: " + names_of(contents));
+    refuse(path, "holds several units; pick one with --unit: " + names_of(contents));
   const auto found = wanted.empty() ? contents.begin() : contents.find(wanted);
   if (found == contents.end())
-    refuse_table(path,
-                 "holds no samples of unit '" + wanted + "'; its units are " + names_of(contents));
+    refuse(path, "holds no samples of unit '" + wanted + "'; its units are " + names_of(contents));
   const RecordedUnit& recorded = found->second;
   Table table;
   table.unit = options.unit != nullptr ? *options.unit : unit_of(path, found->first, recorded);
@@ -121,7 +116,7 @@ Table open_csv(const std::string& path, const TableOptions& options) {
                      [&](const files::Column& have) { return have.tag == column.tag; });
     if (found != table.columns.end()) named.push_back(*found);
   }
-  if (named.empty()) refuse_table(path, "holds no signal of unit '" + options.unit->unit + "'");
+  if (named.empty()) refuse(path, "holds no signal of unit '" + options.unit->unit + "'");
   for (const files::Column& column : table.columns)
     if (std::none_of(named.begin(), named.end(),
                      [&](const files::Column& taken) { return taken.tag == column.tag; }))

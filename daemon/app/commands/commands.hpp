@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 
 /// The commands of `mpm`. Each goes into `app` and leaves its exit code in `exit_code` once it has
 /// run.
@@ -8,6 +9,9 @@ namespace mpm::app {
 
 /// Exit codes: what was asked for is done; it could not be done.
 inline constexpr int kDone = 0, kFailed = 2;
+
+/// So long who publishes waits at the end for readers to have it all.
+inline constexpr std::chrono::seconds kFlushTime{10};
 
 /// `mpm detect`: the daemon's own pipeline on a file.
 void add_detect(CLI::App& app, int& exit_code);

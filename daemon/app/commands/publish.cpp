@@ -26,7 +26,6 @@ namespace mpm::app {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestSleep{200};
-constexpr std::chrono::seconds kFlushTime{10};
 
 struct PublishOptions {
   std::string config;

@@ -38,7 +38,6 @@ using Writers = std::map<std::string, idl::RawWriter>;
 
 constexpr std::chrono::milliseconds kMatchPoll{5};
 constexpr std::chrono::milliseconds kGreetTime{200};
-constexpr std::chrono::seconds kFlushPatience{10};
 
 struct ReplayOptions {
   std::vector<std::string> files;
@@ -202,7 +201,7 @@ int replay(const ReplayOptions& options, host::StopSignal& stop) {
       });
   const bool sent = player.play();
   bool taken = sent;
-  for (const auto& [topic, writer] : writers) taken = taken && writer.flush(kFlushPatience);
+  for (const auto& [topic, writer] : writers) taken = taken && writer.flush(kFlushTime);
   status.say("mpm replay: " + counted(player.state().samples, "sample") + " published");
   if (!sent) throw std::runtime_error("a reader does not take samples");
   if (!taken) status.say("mpm replay: some readers do not have all samples");

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "config/finding.hpp"
+#include "daemon/bag/refuse.hpp"
 
 namespace mpm::bag {
 namespace {
@@ -17,10 +18,6 @@ bool is_lifecycle(const std::string& topic) {
 
 std::string base_topic(const std::string& topic) {
   return is_lifecycle(topic) ? topic.substr(0, topic.size() - kSuffix.size()) : topic;
-}
-
-[[noreturn]] void refuse_replay(const std::string& path, const std::string& message) {
-  throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
 }
 
 }  // namespace
@@ -39,7 +36,7 @@ McapSource::McapSource(const std::vector<std::string>& files, const std::set<std
   if (!found_.empty()) return;
   std::string wanted;
   for (const std::string& topic : topics) wanted += (wanted.empty() ? "" : ", ") + topic;
-  refuse_replay(files.empty() ? "" : files.front(), "holds no sample of " + wanted);
+  refuse(files.empty() ? "" : files.front(), "holds no sample of " + wanted);
 }
 
 bool McapSource::wanted(const mcap::Message& message) const {
@@ -68,8 +65,7 @@ void McapSource::fill(const mcap::Message& message, ReplaySample& sample) {
   }
   std::optional<Lifecycle> end =
       parse_lifecycle({reinterpret_cast<const char*>(message.data.data()), message.data.size()});
-  if (!end)
-    refuse_replay(file(), "a message of " + message.channel->topic + " is not as it should be");
+  if (!end) refuse(file(), "a message of " + message.channel->topic + " is not as it should be");
   lifecycle_ = std::move(*end);
   sample.state = lifecycle_.state;
   sample.cdr = lifecycle_.key;
