@@ -132,10 +132,10 @@ inline constexpr std::ptrdiff_t kScoutRows = 5'000;        ///< that tell how fa
 inline constexpr std::ptrdiff_t kFiner = 8;                ///< times, where these show nothing
 
 // What is said (identification.hpp).
-inline constexpr double kValidationShare = 0.25;  ///< of the rows, left out of the choice of forms
-inline constexpr double kFeedbackShare = 0.3;     ///< share of an input's movement from outside
-inline constexpr double kFamilyError = 0.01;      ///< of any invented relation in a unit
-inline constexpr double kSure = 2e-5;             ///< p-value of each relation in a model, besides
+inline constexpr double kValidationShare = 0.25;   ///< of the rows, left out of the choice of forms
+inline constexpr double kOnlyFeedbackShare = 0.3;  ///< share of an input's movement from outside
+inline constexpr double kFamilyError = 0.01;       ///< of any invented relation in a unit
+inline constexpr double kSure = 2e-5;              ///< p-value of each relation in a model, besides
 inline constexpr double kLeastContribution = 0.02;      ///< s.d. of a channel to that of its CV
 inline constexpr double kVagueGain = 0.25;              ///< s.d. of a gain to the gain
 inline constexpr double kEntangled = 0.8;               ///< correlation of two gains' estimates

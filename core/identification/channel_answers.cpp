@@ -181,7 +181,7 @@ LeftOut reason_of_unfitted(const Material& material, const HighOrderModel& model
   if (hint.no_relation) return LeftOut::kGivenNone;
   if (!(spread > 0.0)) return LeftOut::kUnknownCv;
   if (!model.sound) return LeftOut::kTooFewRows;
-  if (outside && *outside < kFeedbackShare && material.feedback_p_value < kFeedback &&
+  if (outside && *outside < kOnlyFeedbackShare && material.feedback_p_value < kFeedback &&
       !material.test_signals[input])
     return LeftOut::kOnlyFeedback;
   return answer.visible_gain * moves > kMatters * spread ? LeftOut::kHidden : LeftOut::kNoRelation;

@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-namespace curved = calibration::curvature;
+namespace curvature = calibration::curvature;
 
 // What the terms still say where those with channel `a` in them are left out; and how many go.
 double explained_by(const VolterraTerms& terms, int a, const Eigen::MatrixXd& triangle,
@@ -51,7 +51,7 @@ Eigen::MatrixXd gain_moments(const VolterraTerms& terms, int a, int span) {
 }
 
 double bounded_variation(double square) {
-  return square > 0.0 ? std::min(2.0 * std::sqrt(square), curved::kMostVariation) : 0.0;
+  return square > 0.0 ? std::min(2.0 * std::sqrt(square), curvature::kMostVariation) : 0.0;
 }
 
 // For terms of which the coefficients are R^-1 `rotated`, with the covariance `variance`
@@ -99,7 +99,7 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
   }
   feed.flush(factor);
   const double freedom = rows - first - count;
-  if (freedom < curved::kFreedomPerColumn * count) return std::nullopt;
+  if (freedom < curvature::kFreedomPerColumn * count) return std::nullopt;
   const double variance = factor.residual_square(0) / freedom;
   if (!(variance > 0.0)) return std::nullopt;
 
@@ -113,7 +113,7 @@ std::optional<Curvature> find_curvature(const RegressionShape& shape, int cv,
   factor.solve(0, first + count, coefficients);
   Eigen::VectorXd past(shape.past());
   shape.own_past(cv, coefficients, past);
-  const double own = std::max(1.0 - past.sum(), curved::kLeastOwnGain);
+  const double own = std::max(1.0 - past.sum(), curvature::kLeastOwnGain);
 
   Curvature found;
   found.channels.resize(static_cast<std::size_t>(shape.inputs));

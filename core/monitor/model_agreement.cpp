@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-namespace agreement = calibration::model_agreement;
+namespace model_agreement = calibration::model_agreement;
 
 void ModelAgreement::take(double predicted, double simulated) {
   const double difference = predicted - simulated;
@@ -20,23 +20,23 @@ void ModelAgreement::take(double predicted, double simulated) {
   block_.sum_simulated += s;
   block_.square_difference += d * d;
   block_.square_simulated += s * s;
-  if (++block_.samples == agreement::kBlock) end_block();
+  if (++block_.samples == model_agreement::kBlock) end_block();
 }
 
 // A quiet block is held to what the simulation usually moves by.
 void ModelAgreement::end_block() {
   const auto variance = [](double sum, double square) {
-    const double mean = sum / agreement::kBlock;
-    return std::max(0.0, square / agreement::kBlock - mean * mean);
+    const double mean = sum / model_agreement::kBlock;
+    return std::max(0.0, square / model_agreement::kBlock - mean * mean);
   };
   const double moved = variance(block_.sum_simulated, block_.square_simulated);
   const double differed = variance(block_.sum_difference, block_.square_difference);
   blocks_ += 1.0;
   moves_ += (moved - moves_) / blocks_;
-  const double limit = differs_ ? agreement::kSame : agreement::kOther;
+  const double limit = differs_ ? model_agreement::kSame : model_agreement::kOther;
   const bool other = differed > limit * limit * std::max(moved, moves_);
   against_ = other == differs_ ? 0 : against_ + 1;
-  if (against_ == agreement::kBlocks) {
+  if (against_ == model_agreement::kBlocks) {
     differs_ = !differs_;
     against_ = 0;
   }
@@ -44,13 +44,13 @@ void ModelAgreement::end_block() {
 }
 
 void ModelAgreement::Block::archive(Archive& a) {
-  a.within(samples, 0, agreement::kBlock - 1);
+  a.within(samples, 0, model_agreement::kBlock - 1);
   a(difference, simulated, sum_difference, sum_simulated, square_difference, square_simulated);
 }
 
 void ModelAgreement::archive(Archive& a) {
   a(block_, blocks_, moves_, differs_);
-  a.within(against_, 0, agreement::kBlocks - 1);
+  a.within(against_, 0, model_agreement::kBlocks - 1);
 }
 
 }  // namespace mpm

@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-namespace tested = calibration::nonlinear_test;
+namespace nonlinear_test = calibration::nonlinear_test;
 
 constexpr int kTogether = 32;
 
@@ -74,7 +74,7 @@ void NonlinearRegression::take(const RegressionHistory& history,
 
 bool NonlinearRegression::ready() const {
   return begun_ && memory_.ready() &&
-         memory_.rows >= tested::kRowsPerColumn * memory_.factor.columns();
+         memory_.rows >= nonlinear_test::kRowsPerColumn * memory_.factor.columns();
 }
 
 void NonlinearRegression::begin(const RegressionHistory& history,
@@ -164,7 +164,7 @@ void NonlinearRegression::read(Past which) {
   own_gain_ = std::max(1.0 - own_past_.sum(), calibration::curvature::kLeastOwnGain);
   freedom_ = memory_.freedom();
   error_variance_ = left / memory_.weight_sum * memory_.effective_rows() / freedom_ *
-                    memory_.weight_square / memory_.weight_sum * tested::kInflation;
+                    memory_.weight_square / memory_.weight_sum * nonlinear_test::kInflation;
 }
 
 // Beside what the past is now taken to say, and beside what it was found to say without terms.
@@ -200,7 +200,7 @@ void NonlinearRegression::evaluate(double rate, double variation, ChannelNonline
   read(Past::kWithoutTerms);
   for (int g = 0; g < terms_.groups(); ++g)
     chances_[static_cast<std::size_t>(g)] = chance(selection_.gain(terms_.columns_of_group(g)));
-  if (chance(selection_.all()) < tested::kSurelySomething) read(Past::kBesideTerms);
+  if (chance(selection_.all()) < nonlinear_test::kSurelySomething) read(Past::kBesideTerms);
   for (int i = 0; i < shape_.inputs; ++i) results[i] = {.tested = true};
   std::fill(taken_.begin(), taken_.end(), false);
   std::fill(blamed_.begin(), blamed_.end(), false);
@@ -222,8 +222,8 @@ void NonlinearRegression::see(double variation, ChannelNonlinearity* results) co
                         selection_.norm_left(terms_.square_of(i)) / std::sqrt(error_variance_);
     results[i].smallest_variation = ChannelNonlinearity::kMostVariation;
     if (seen > 0.0)
-      results[i].smallest_variation =
-          std::min(variation * tested::kSeenDeviations / seen, ChannelNonlinearity::kMostVariation);
+      results[i].smallest_variation = std::min(variation * nonlinear_test::kSeenDeviations / seen,
+                                               ChannelNonlinearity::kMostVariation);
   }
 }
 
@@ -277,8 +277,9 @@ int NonlinearRegression::groups_with(int input) const {
 
 bool NonlinearRegression::matters(const TermSelection::Gain& gain) const {
   const double share = (gain.square / error_variance_ - gain.columns) / memory_.effective_rows();
-  return share > tested::kMaterialShare && gain.square > tested::kLeak * linear_square_ &&
-         gain.square > tested::kShareOfBend * bend_square_;
+  return share > nonlinear_test::kMaterialShare &&
+         gain.square > nonlinear_test::kLeak * linear_square_ &&
+         gain.square > nonlinear_test::kShareOfBend * bend_square_;
 }
 
 bool NonlinearRegression::all_blamed(int group) const {

@@ -18,7 +18,7 @@
 namespace mpm {
 namespace {
 
-namespace bent = calibration::nonlinear_terms;
+namespace nonlinear_terms = calibration::nonlinear_terms;
 using Exponents = PolynomialMap::Exponents;
 
 // A square, and features of a kernel behind it.
@@ -40,10 +40,12 @@ class SquareAnd : public FeatureMap {
 std::unique_ptr<FeatureMap> kernel_map(NonlinearTest test, int dimension) {
   const bool pair = dimension > 1;
   if (test == NonlinearTest::kKernel)
-    return std::make_unique<NystromMap>(dimension, KernelKind::kGaussian, bent::kLandmarks,
-                                        pair ? bent::kPairComponents : bent::kComponents);
-  return std::make_unique<RandomMap>(dimension, pair ? bent::kPairFrequencies : bent::kFrequencies,
-                                     bent::kFrequencySeed);
+    return std::make_unique<NystromMap>(
+        dimension, KernelKind::kGaussian, nonlinear_terms::kLandmarks,
+        pair ? nonlinear_terms::kPairComponents : nonlinear_terms::kComponents);
+  return std::make_unique<RandomMap>(
+      dimension, pair ? nonlinear_terms::kPairFrequencies : nonlinear_terms::kFrequencies,
+      nonlinear_terms::kFrequencySeed);
 }
 
 // Of one value; its square comes first.
@@ -93,7 +95,7 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
                     {},
                     curve(test, {{2, 0}, {3, 0}}),
                     curve(test, {{2, 0}}),
-                    InputElement(InputBlock(Deadband{bent::kPlayWidth}), 0.0),
+                    InputElement(InputBlock(Deadband{nonlinear_terms::kPlayWidth}), 0.0),
                     gain(cv, i) != 0.0 && !integrating(cv, i)};
     channel.curved.assign(static_cast<std::size_t>(channel.input_map->outputs()) + 2, path);
     for (int f = 0; f < channel.input_map->outputs(); ++f)
@@ -103,7 +105,7 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
       terms_.push_back({i, i, NonlinearKind::kChannelCurve});
     channels_.push_back(std::move(channel));
   }
-  const int crossed = std::min(bent::kMostCrossed, inputs());
+  const int crossed = std::min(nonlinear_terms::kMostCrossed, inputs());
   for (int a = 0; a < crossed; ++a)
     for (int b = a + 1; b < crossed; ++b) {
       Pair pair{a, b, product(test)};
@@ -118,10 +120,11 @@ NonlinearTerms::NonlinearTerms(const LinearModel& model, int cv, double pole, No
     const Term& term = terms_[static_cast<std::size_t>(t)];
     const bool goes_on = t > 0 && term.goes_with(terms_[static_cast<std::size_t>(t) - 1]);
     if (!goes_on) groups_.emplace_back();
-    for (int lag = 0; lag < bent::kLags; ++lag) groups_.back().push_back(lag * terms() + t);
+    for (int lag = 0; lag < nonlinear_terms::kLags; ++lag)
+      groups_.back().push_back(lag * terms() + t);
   }
   values_.resize(terms_.size());
-  windows_.assign(terms_.size(), LagWindow(remembered + bent::kLags));
+  windows_.assign(terms_.size(), LagWindow(remembered + nonlinear_terms::kLags));
   // NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks): the channels have what was made
 }
 
@@ -134,19 +137,21 @@ int NonlinearTerms::columns_of(NonlinearTest test, int inputs) {
       input = 2, channel = pair = sum = 1;
       break;
     case NonlinearTest::kKernel:
-      input = channel = 1 + bent::kComponents, pair = bent::kPairComponents;
-      sum = bent::kComponents;
+      input = channel = 1 + nonlinear_terms::kComponents, pair = nonlinear_terms::kPairComponents;
+      sum = nonlinear_terms::kComponents;
       break;
     case NonlinearTest::kRandomFeatures:
-      input = channel = 1 + 2 * bent::kFrequencies, pair = 2 * bent::kPairFrequencies;
-      sum = 2 * bent::kFrequencies;
+      input = channel = 1 + 2 * nonlinear_terms::kFrequencies,
+      pair = 2 * nonlinear_terms::kPairFrequencies;
+      sum = 2 * nonlinear_terms::kFrequencies;
       break;
   }
-  const int crossed = std::min(bent::kMostCrossed, inputs);
-  return bent::kLags * (inputs * (input + 2 + channel) + crossed * (crossed - 1) / 2 * pair + sum);
+  const int crossed = std::min(nonlinear_terms::kMostCrossed, inputs);
+  return nonlinear_terms::kLags *
+         (inputs * (input + 2 + channel) + crossed * (crossed - 1) / 2 * pair + sum);
 }
 
-int NonlinearTerms::columns() const { return bent::kLags * terms(); }
+int NonlinearTerms::columns() const { return nonlinear_terms::kLags * terms(); }
 
 const NonlinearTerms::Term& NonlinearTerms::term_of(int group) const {
   return terms_[static_cast<std::size_t>(columns_of_group(group).front())];
@@ -176,11 +181,12 @@ void NonlinearTerms::input_functions(int input, double x, double* functions) con
   std::vector<double> values(static_cast<std::size_t>(map.outputs()));
   map.apply(&x, values.data());
   for (const double value : values)  // columns go lag by lag within each function
-    functions = std::fill_n(functions, bent::kLags, value);
+    functions = std::fill_n(functions, nonlinear_terms::kLags, value);
 }
 
 double NonlinearTerms::standardised(double value, double centre, double scale) {
-  return scale > 0.0 ? std::clamp((value - centre) / scale, -bent::kFarthest, bent::kFarthest)
+  return scale > 0.0 ? std::clamp((value - centre) / scale, -nonlinear_terms::kFarthest,
+                                  nonlinear_terms::kFarthest)
                      : 0.0;
 }
 
@@ -250,7 +256,7 @@ void NonlinearTerms::measure_outputs(const RegressionHistory& history, int span)
   input_points_.clear();
   output_points_.clear();
   sum_points_.clear();
-  const int stride = std::max(1, span / bent::kLandmarks);
+  const int stride = std::max(1, span / nonlinear_terms::kLandmarks);
   for (int age = history.depth() - 1; age >= 0; --age) {
     if (age < span) {
       residual_ = residual_of(history, age);
@@ -296,7 +302,7 @@ void NonlinearTerms::choose_pairs() {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return movement(a) > movement(b); });
-  order.resize(static_cast<std::size_t>(std::min(bent::kMostCrossed, inputs())));
+  order.resize(static_cast<std::size_t>(std::min(nonlinear_terms::kMostCrossed, inputs())));
   std::sort(order.begin(), order.end());
   std::size_t at = 0;
   auto term = static_cast<std::size_t>(square_of(inputs()));
@@ -389,7 +395,7 @@ void NonlinearTerms::advance(const RegressionHistory& history, int age) {
 }
 
 void NonlinearTerms::fill(int age, double* row) const {
-  for (int lag = 0; lag < bent::kLags; ++lag)
+  for (int lag = 0; lag < nonlinear_terms::kLags; ++lag)
     for (const LagWindow& window : windows_) *row++ = window.window()[age + lag];
 }
 

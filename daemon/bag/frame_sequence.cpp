@@ -9,7 +9,6 @@
 #include "daemon/bag/open_recording.hpp"
 
 namespace mpm::bag {
-namespace {}  // namespace
 
 FrameSequence::FrameSequence(const std::vector<std::string>& paths, const config::UnitConfig& unit,
                              const files::TimeStyle& times)

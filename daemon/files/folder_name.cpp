@@ -5,6 +5,7 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "core/signal/nanoseconds.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::files {
@@ -17,9 +18,8 @@ constexpr std::uint64_t kHashStart = 0xcbf29ce484222325, kHashFactor = 0x1000000
 }  // namespace
 
 std::string time_folder(std::int64_t time_ns) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  const std::int64_t part = ((time_ns % kSecond) + kSecond) % kSecond;
-  const std::int64_t second = time_ns / kSecond - (time_ns % kSecond < 0 ? 1 : 0);
+  const std::int64_t second = floor_division(time_ns, kSecondNs);
+  const std::int64_t part = (time_ns % kSecondNs + kSecondNs) % kSecondNs;
   std::string name = formatted_utc(second, "%Y%m%dT%H%M%S");
   const auto milliseconds = static_cast<int>(part / 1'000'000);
   if (milliseconds > 0) {

@@ -3,13 +3,13 @@
 #include <array>
 #include <string_view>
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::history {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::size_t kLongestText = 1000;
 constexpr std::string_view kSuppressed = "suppressed";
 
@@ -25,7 +25,7 @@ std::string quoted(std::string text) {
 }  // namespace
 
 std::string entry_text(const AlarmEntry& entry) {
-  std::string text = files::formatted_utc(entry.written_ns / kSecond, "%Y-%m-%d %H:%M:%S UTC  ") +
+  std::string text = files::formatted_utc(entry.written_ns / kSecondNs, "%Y-%m-%d %H:%M:%S UTC  ") +
                      printable(entry.unit) + "  ";
   text += entry.cv.empty() ? "controller" : printable(entry.mv) + " -> " + printable(entry.cv);
   text += "  " + printable(entry.what);

@@ -15,10 +15,6 @@ constexpr std::size_t kParts = 3;  // of a Reach
 // The coarsest buckets of longer steps would be too long for whole ns.
 constexpr double kLongestStep = 1e6;  // s
 
-std::int64_t floor_div(std::int64_t value, std::int64_t by) {
-  return value / by - (value % by < 0 ? 1 : 0);
-}
-
 /// Entries put together to those that are drawn.
 class Bins {
  public:
@@ -159,7 +155,7 @@ void History::close(Level& level, std::vector<float>& scratch) {
 
 void History::settle(std::int64_t time_ns, std::span<const float> row) {
   for (Level& level : levels_) {
-    const std::int64_t index = floor_div(time_ns, level.span_ns);
+    const std::int64_t index = floor_division(time_ns, level.span_ns);
     // What time went back to has its buckets already, of before that.
     if (level.buckets.size() > 0 &&
         index * level.span_ns <= level.buckets.time(level.buckets.size() - 1))

@@ -1,14 +1,14 @@
 #include "daemon/report/moment_text.hpp"
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/files/times/time_text.hpp"
 
 namespace mpm::report {
 namespace {
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 // 1980: no plant has digital records from before it, and no run is 10 years long.
-constexpr std::int64_t kFirstDateNs = 315'532'800 * kNsPerSecond;
+constexpr std::int64_t kFirstDateNs = 315'532'800 * kSecondNs;
 constexpr double kMinute = 60.0;
 
 }  // namespace
@@ -22,7 +22,7 @@ MomentText::MomentText(std::int64_t last_ns, double sample_time_s, const files::
       last_year_(files::formatted_utc(local_s(last_ns), "%Y")) {}
 
 std::int64_t MomentText::local_s(std::int64_t time_ns) const {
-  const std::int64_t utc_s = time_ns / kNsPerSecond;
+  const std::int64_t utc_s = time_ns / kSecondNs;
   return zone_ == nullptr ? utc_s : utc_s + zone_->offset_s(utc_s);
 }
 

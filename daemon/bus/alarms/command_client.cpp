@@ -5,7 +5,6 @@
 #include "idl/wait_set.hpp"
 
 namespace mpm::bus {
-namespace {}  // namespace
 
 CommandClient::CommandClient(const idl::Participant& participant)
     : writer_(participant), replies_(participant, idl::kCommandReplyTopic, idl::command_qos()) {

@@ -1,5 +1,6 @@
 #include "daemon/bus/alarms/list_text.hpp"
 
+#include "core/signal/nanoseconds.hpp"
 #include "core/text/number_text.hpp"
 #include "core/text/printable.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -8,11 +9,10 @@
 namespace mpm::bus {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-
 std::string moment(std::int64_t time_ns) {
-  return report::is_date(time_ns) ? files::formatted_utc(time_ns / kSecond, "%Y-%m-%d %H:%M:%S UTC")
-                                  : number_text(static_cast<double>(time_ns) / 1e9, 7) + " s";
+  return report::is_date(time_ns)
+             ? files::formatted_utc(time_ns / kSecondNs, "%Y-%m-%d %H:%M:%S UTC")
+             : number_text(static_cast<double>(time_ns) / 1e9, 7) + " s";
 }
 
 report::Tint tint(AlarmWord word) {

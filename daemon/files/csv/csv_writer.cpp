@@ -88,7 +88,7 @@ void CsvWriter::set_time(std::int64_t time_ns) {
     time_ = seconds_text(time_ns);
     return;
   }
-  const std::int64_t second = time_ns / kSecondNs - (time_ns % kSecondNs < 0 ? 1 : 0);
+  const std::int64_t second = floor_division(time_ns, kSecondNs);
   time_ = utc_text(time_ns, options_.zone ? options_.zone->offset_s(second) : 0);
 }
 

@@ -128,7 +128,7 @@ std::optional<std::int64_t> parse_time(std::string_view text, std::string& probl
 }
 
 std::string utc_text(std::int64_t time_ns, int offset_s) {
-  const std::int64_t second = time_ns / kSecondNs - (time_ns % kSecondNs < 0 ? 1 : 0);
+  const std::int64_t second = floor_division(time_ns, kSecondNs);
   const std::int64_t fraction_ns = (time_ns % kSecondNs + kSecondNs) % kSecondNs;
   const std::chrono::sys_seconds local{std::chrono::seconds(second + offset_s)};
   const auto day = std::chrono::floor<std::chrono::days>(local);

@@ -36,7 +36,7 @@ double seconds_of(Step step) {
   return step == Step::kDay ? kSecondsPerDay : kDaysPerWeek * kSecondsPerDay;
 }
 
-double root_mean(double square, std::int64_t count) {
+double rms_of(double square, std::int64_t count) {
   return std::sqrt(square / static_cast<double>(count));
 }
 
@@ -133,9 +133,9 @@ Period TrendMaker::period_of(std::int64_t index, const Sums& sums, Step step) co
     const CvSums& sum = found->second;
     of.known = share(sum.samples, sums.samples);
     if (static_cast<double>(sum.pairs) < least || sum.pairs == 0) continue;
-    of.residual_rms = root_mean(sum.residual, sum.samples);
-    of.prediction_rms = root_mean(sum.prediction, sum.pairs);
-    of.movement_rms = root_mean(sum.movement, sum.pairs);
+    of.residual_rms = rms_of(sum.residual, sum.samples);
+    of.prediction_rms = rms_of(sum.prediction, sum.pairs);
+    of.movement_rms = rms_of(sum.movement, sum.pairs);
     // Errors that overlap in time are one.
     const auto pairs = static_cast<double>(sum.pairs);
     const double apart =

@@ -6,9 +6,8 @@
 /// The signals of a diagnosis as series: of one stretch of the recording, or of all of it.
 namespace mpm::report {
 
-/// How much is drawn.
-inline constexpr std::size_t kAllValues =
-    60'000;  ///< of the whole record's plots, some 7 bytes each
+/// Of the whole record's plots, some 7 bytes each.
+inline constexpr std::size_t kAllValues = 60'000;
 inline constexpr std::size_t kMostPoints = 1'200;    ///< of one line there
 inline constexpr std::size_t kWindowPoints = 500;    ///< of one line in a window
 inline constexpr Eigen::Index kShortestWindow = 60;  ///< rows
