@@ -114,7 +114,8 @@ VectorXd Simulator::simulate(const ModelSpec& model, const ChannelSpec& spec,
   const auto other_deviations = [&](const InputElement& element, const Run& run) {
     VectorXd deviations = VectorXd::Zero(run.count);
     if (element.other() < 0) return deviations;
-    const auto moves = given_input(element.other()).segment(run.first, run.count);
+    const Eigen::Ref<const VectorXd> moves_of_all = given_input(element.other());
+    const Eigen::Ref<const VectorXd> moves = moves_of_all.segment(run.first, run.count);
     const double rest = model.input_origin(element.other());
     double last = first_finite(moves, rest);
     for (Index k = 0; k < run.count; ++k) {
