@@ -173,6 +173,21 @@ inline constexpr int kTurns = 4;
 inline constexpr double kWorthAnotherTurn = 1e-3;
 }  // namespace joint_errors
 
+/// When the channels of several CVs are judged at once (`CoupledErrors`). Chosen.
+namespace coupled_errors {
+inline constexpr int kMostCvs = 3;
+/// Of a channel by its CV's own regression, below which those of CVs that rest on this one's
+/// residual are judged beside it: a right one does that in one of a thousand times.
+inline constexpr double kDoubtedPValue = 1e-3;
+/// Together with others, above which what a CV's own regression rejects is no error of its own.
+inline constexpr double kElsewherePValue = 1e-2;
+/// Of "a CV's residual says nothing of another's next one".
+inline constexpr double kUncoupledPValue = 1e-3;
+/// Turns of Gauss-Newton at most, and the variances that one may still move where it has settled.
+inline constexpr int kTurns = 8;
+inline constexpr double kSettled = 0.05;
+}  // namespace coupled_errors
+
 /// The sizes of errors that are not small (`ErrorSizes`). Chosen: from these starts a gain, a time
 /// constant or a dead time that is off by up to a factor of 3 or 10 samples is found
 /// (tests/core/mismatch/error_sizes_test.cpp).

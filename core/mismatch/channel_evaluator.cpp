@@ -45,6 +45,9 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
       excitation_(estimates_),
       usual_(shape.block()),
       joint_(shape),
+      coupled_(shape),
+      held_(shape),
+      coupled_past_(Eigen::VectorXd::Zero(shape.past())),
       joint_usual_(kUsualErrors),
       materiality_(shape.block()),
       steps_(shape, model),
@@ -57,6 +60,7 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
   if (limits_.size() != signatures_.size())
     throw std::invalid_argument("materiality limits: one per channel, or one for all");
   given_limits_ = limits_;
+  coupled_cvs_.reserve(calibration::coupled_errors::kMostCvs);
 }
 
 void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
@@ -72,9 +76,9 @@ void ChannelEvaluator::give_back_limits(int cv) {
 
 void ChannelEvaluator::archive(Archive& a) {
   // not archived: shape_, signatures_, given_limits_ (construction)
-  // not archived: explained_, estimates_, covariance_, excitation_, usual_, joint_, joint_usual_,
-  // materiality_, steps_, sizes_, estimate_, directions_, error_, joint_error_, slow_noise_ (each
-  // evaluation begins anew)
+  // not archived: explained_, estimates_, covariance_, excitation_, usual_, joint_, coupled_,
+  // held_, coupled_cvs_, coupled_past_, joint_usual_, materiality_, steps_, sizes_, estimate_,
+  // directions_, error_, joint_error_, slow_noise_ (each evaluation begins anew)
   a(limits_);
 }
 
@@ -151,6 +155,11 @@ void ChannelEvaluator::judge(int cv, int input, const EstimateNoise& noise,
     judge_jointly(cv, input, noise, evidence);
   else if (channel.gain != 0.0)  // of a channel that the model lacks no error is usual
     judge_alone(cv, input, noise, evidence);
+  finish(cv, input, noise, evidence);
+}
+
+void ChannelEvaluator::finish(int cv, int input, const EstimateNoise& noise,
+                              ChannelEvidence& evidence) const {
   const MaterialityLimits& limits = limits_[index(cv, input)];
   if (limits.gain_alone && !evidence.usual)
     evidence.p_value_material =
@@ -196,15 +205,26 @@ void ChannelEvaluator::judge_alone(int cv, int input, const EstimateNoise& noise
 
 void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noise,
                                      ChannelEvidence& evidence) {
-  const ChannelSignatures& signatures = signatures_[index(cv, input)];
-  const JointErrors::Channel& channel = joint_.channel(input);
+  const InputErrors::Channel& channel = joint_.channel(input);
+  read_usual(channel);
+  test_usual_errors(joint_usual_, channel.estimate, noise, evidence);
+  if (signatures_[index(cv, input)].gain == 0.0) return;
+  size_among(
+      cv, input, channel, [&] { return joint_.freed(input, estimates_); }, noise, evidence);
+}
+
+void ChannelEvaluator::read_usual(const InputErrors::Channel& channel) {
   joint_usual_.clear();
   for (int e = 0; e < kUsualErrors; ++e) {
     joint_error_ = channel.usual.col(e);
     joint_usual_.add(joint_error_);
   }
-  test_usual_errors(joint_usual_, channel.estimate, noise, evidence);
-  if (signatures.gain == 0.0) return;
+}
+
+template <class FreeBlock>
+void ChannelEvaluator::size_among(int cv, int input, const InputErrors::Channel& channel,
+                                  const FreeBlock& free_block, const EstimateNoise& noise,
+                                  ChannelEvidence& evidence) {
   const MaterialityLimits& limits = limits_[index(cv, input)];
   const double left = materiality_.fit(channel.estimate, channel.directions, noise, evidence);
   materiality_.judge(left, channel.estimate, channel.directions, joint_usual_, limits, noise,
@@ -212,7 +232,7 @@ void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noi
   size_step(cv, input, noise, evidence);
   std::optional<double> dead_time_alone = evidence.step_error.value;
   if (evidence.p_value < calibration::error_sizes::kRefinedBelow) {
-    const JointErrors::Freed freed = joint_.freed(input, estimates_);
+    const auto freed = free_block();
     covariance_.read(freed.factor, freed.first);
     for (int r = 0; r < shape_.block(); ++r) estimate_(r) = freed.factor.z(freed.first + r, 0);
     dead_time_alone = size_error(cv, input, estimate_.squaredNorm(), noise, evidence);
@@ -222,6 +242,88 @@ void ChannelEvaluator::judge_jointly(int cv, int input, const EstimateNoise& noi
                           joint_usual_, noise},
                          channel.usual, evidence.step_limit);
   });
+}
+
+void ChannelEvaluator::evaluate_coupled(int cv, std::span<const RegressionMemory* const> memories,
+                                        std::span<const int> doubted, ChannelEvidence* evidence) {
+  const RegressionMemory& own = *memories[static_cast<std::size_t>(cv)];
+  const EstimateNoise noise = estimate_noise(own);
+  if (!(noise.variance > 0.0)) return;
+  find_coupled(cv, memories, noise);
+  const auto doubt = [&](const Coupled& other) {
+    return doubted[static_cast<std::size_t>(other.cv)] != 0;
+  };
+  if (std::ranges::none_of(coupled_cvs_, doubt)) return;
+  coupled_.clear();
+  coupled_.add(cv, own.factor, noise);
+  for (const Coupled& other : coupled_cvs_) {
+    const RegressionMemory& memory = *memories[static_cast<std::size_t>(other.cv)];
+    coupled_.add(other.cv, memory.factor, estimate_noise(memory));
+  }
+  if (!coupled_.fit(signatures_, estimates_)) return;
+  coupled_.own_past(coupled_past_);
+  estimates_.set_own_past(coupled_past_);
+  for (int i = 0; i < shape_.inputs; ++i)
+    if (estimates_.moved(i)) judge_coupled(cv, i, noise, evidence[i]);
+}
+
+// Those on whose residuals the CV's own rests most surely.
+void ChannelEvaluator::find_coupled(int cv, std::span<const RegressionMemory* const> memories,
+                                    const EstimateNoise& noise) {
+  coupled_cvs_.clear();
+  const GivensQr& factor = memories[static_cast<std::size_t>(cv)]->factor;
+  for (int other = 0; other < shape_.cvs; ++other) {
+    if (other == cv || memories[static_cast<std::size_t>(other)] == nullptr) continue;
+    const double p_value = coupled_.uncoupled_p_value(factor, noise, other);
+    if (!(p_value < calibration::coupled_errors::kUncoupledPValue)) continue;
+    const auto at = std::ranges::upper_bound(coupled_cvs_, p_value, {}, &Coupled::p_value);
+    coupled_cvs_.insert(at, {other, p_value});
+    if (coupled_cvs_.size() == calibration::coupled_errors::kMostCvs) coupled_cvs_.pop_back();
+  }
+}
+
+// What a channel's error explains by the curvature at the best fit may be explained nearly as well
+// by other errors and other dynamics of the noise, far from there: by so much less is known.
+double ChannelEvaluator::explained_otherwise(int input, const InputErrors::Channel& channel) {
+  held_.fit_without(input, coupled_, estimates_);
+  const double lost = held_.left_square() - coupled_.left_square();
+  const double claimed = joint_usual_.explained(channel.estimate);
+  const double least = calibration::rounding::kIndependentShare * claimed;
+  return std::max(1.0, claimed / std::max(lost, least));
+}
+
+void ChannelEvaluator::judge_coupled(int cv, int input, const EstimateNoise& noise,
+                                     ChannelEvidence& evidence) {
+  const InputErrors::Channel& channel = coupled_.channel(input);
+  const ChannelSignatures& signatures = signatures_[index(cv, input)];
+  const double alone = evidence.p_value;
+  const auto test = [&](const EstimateNoise& with) {
+    evidence.p_value = evidence.p_value_material = 1.0;
+    evidence.statistic = evidence.numerator_freedom = 0.0;
+    evidence.tests = 0;
+    test_usual_errors(joint_usual_, channel.estimate, with, evidence);
+  };
+  read_usual(channel);
+  test(noise);
+  EstimateNoise known = noise;
+  if (evidence.p_value < calibration::coupled_errors::kDoubtedPValue) {
+    const double times = explained_otherwise(input, channel);
+    known.variance *= times;
+    known.block_variance *= times;
+    test(known);
+  }
+  evidence.elsewhere = alone < calibration::coupled_errors::kDoubtedPValue &&
+                       evidence.p_value > calibration::coupled_errors::kElsewherePValue;
+  evidence.usual = evidence.harmless = false;
+  joint_error_ = channel.usual.col(0);
+  if (signatures.gain == 0.0) joint_error_ *= evidence.reference_gain;
+  excitation_.measure_coupled(joint_error_, channel.estimate, known, evidence);
+  if (signatures.gain == 0.0)
+    evidence.p_value_material = evidence.p_value;
+  else
+    size_among(
+        cv, input, channel, [&] { return coupled_.freed(input, estimates_); }, known, evidence);
+  finish(cv, input, known, evidence);
 }
 
 void ChannelEvaluator::size_step(int cv, int input, const EstimateNoise& noise,

@@ -3,11 +3,13 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/mismatch/block_covariance.hpp"
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/channel_signatures.hpp"
+#include "core/mismatch/coupled_errors.hpp"
 #include "core/mismatch/error_reduction.hpp"
 #include "core/mismatch/error_sizes.hpp"
 #include "core/mismatch/estimate_noise.hpp"
@@ -49,6 +51,13 @@ class ChannelEvaluator {
   void give_back_limits(int cv);
   /// Evidence of all inputs to one CV into `evidence` (as many as inputs); the memory is ready.
   void evaluate(int cv, const RegressionMemory& memory, ChannelEvidence* evidence);
+  /// The same of the CV that was evaluated last, together with those whose residuals its own rests
+  /// on, where a channel of one of these may be wrong: what that does to the others' noise is no
+  /// error of the CV's own channels (`CoupledErrors`). `memories`: of all CVs, null of those that
+  /// are not ready; `doubted`: whether a CV by itself has a channel that may be wrong.
+  /// While no other has, what is seen is the CV's own.
+  void evaluate_coupled(int cv, std::span<const RegressionMemory* const> memories,
+                        std::span<const int> doubted, ChannelEvidence* evidence);
   /// What is explained of a CV's residual beyond its own past, in squares.
   struct Explained {
     double inputs = 0.0;        ///< by all inputs' blocks
@@ -73,6 +82,19 @@ class ChannelEvaluator {
   /// The usual errors with the other inputs' blocks free, and with their usual errors free.
   void judge_alone(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
   void judge_jointly(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
+  void find_coupled(int cv, std::span<const RegressionMemory* const> memories,
+                    const EstimateNoise& noise);
+  void judge_coupled(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
+  /// So many times the noise is what a channel's error explains that the fit without it does as
+  /// well: 1 or more.
+  [[nodiscard]] double explained_otherwise(int input, const InputErrors::Channel& channel);
+  void read_usual(const InputErrors::Channel& channel);
+  /// Of a channel whose usual errors have been tested; `free_block()` frees the input's own block.
+  template <class FreeBlock>
+  void size_among(int cv, int input, const InputErrors::Channel& channel,
+                  const FreeBlock& free_block, const EstimateNoise& noise,
+                  ChannelEvidence& evidence);
+  void finish(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence) const;
   void test_usual_errors(const UsualErrorSpace& usual, const Eigen::VectorXd& estimate,
                          const EstimateNoise& noise, ChannelEvidence& evidence) const;
   /// How much of the step response the error is, by its linear sizes, and how much is borne.
@@ -101,6 +123,13 @@ class ChannelEvaluator {
   GainExcitation excitation_;
   UsualErrorSpace usual_;
   JointErrors joint_;
+  struct Coupled {
+    int cv = 0;
+    double p_value = 1.0;  // of its saying nothing
+  };
+  CoupledErrors coupled_, held_;
+  std::vector<Coupled> coupled_cvs_;
+  Eigen::VectorXd coupled_past_;
   UsualErrorSpace joint_usual_;
   Materiality materiality_;
   StepErrors steps_;

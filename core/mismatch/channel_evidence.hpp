@@ -50,6 +50,9 @@ struct ChannelEvidence {
   double excitation_index_alone = 0;  ///< the same, were the other inputs known not to matter
   int confounder = -1;                ///< input whose estimate is most correlated with this one's
 
+  /// What the CV's regression by itself rejects, wrong channels of other CVs explain
+  /// (`CoupledErrors`).
+  bool elsewhere = false;
   bool usual = false;  ///< errors of gain, time constant and dead time explain all that is seen
   /// And all three are within the limits, or the step response is, with 95 % confidence.
   bool harmless = false;
@@ -66,7 +69,7 @@ struct ChannelEvidence {
   void archive(Archive& a) {
     a(statistic, p_value, numerator_freedom, tests, block_statistic, directed_statistic,
       directed_freedom, p_value_material, reference_gain, gain_error_ratio, excitation_index,
-      excitation_index_alone, confounder, usual, harmless, gain_error, log_time_error,
+      excitation_index_alone, confounder, elsewhere, usual, harmless, gain_error, log_time_error,
       dead_time_error, step_error, step_limit, dead_time);
   }
 };

@@ -1,5 +1,6 @@
 #include "core/mismatch/gain_excitation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -32,6 +33,17 @@ void GainExcitation::measure(int input, const Eigen::VectorXd& error,
   evidence.gain_error = {evidence.gain_error_ratio, evidence.excitation_index};
   direction_.col(input) = whitened_;
   covariance.whiten_transposed(direction_.col(input));
+}
+
+void GainExcitation::measure_coupled(const Eigen::VectorXd& error, const Eigen::VectorXd& estimate,
+                                     const EstimateNoise& noise, ChannelEvidence& evidence) {
+  const double information = error.squaredNorm();
+  const double index = std::sqrt(noise.variance / information);
+  const double wider = std::max(1.0, index / evidence.excitation_index);
+  evidence.excitation_index *= wider;
+  evidence.excitation_index_alone *= wider;  // it is no other input that hides this one
+  evidence.gain_error_ratio = information > 0.0 ? error.dot(estimate) / information : 0.0;
+  evidence.gain_error = {evidence.gain_error_ratio, evidence.excitation_index};
 }
 
 void GainExcitation::functional_of(int input, const InputEstimates& estimates,

@@ -21,6 +21,10 @@ class GainExcitation {
   void measure(int input, const Eigen::VectorXd& error, const Eigen::VectorXd& estimate,
                const InputEstimates& estimates, const BlockCovariance& covariance,
                const EstimateNoise& noise, ChannelEvidence& evidence);
+  /// What is left of that where channels of other CVs are free as well: `error` and `estimate` are
+  /// whitened by all of these.
+  static void measure_coupled(const Eigen::VectorXd& error, const Eigen::VectorXd& estimate,
+                              const EstimateNoise& noise, ChannelEvidence& evidence);
   /// The input whose estimate is most correlated with this one's, -1 if none. After each input was
   /// measured or cleared.
   [[nodiscard]] int confounder(int input, const InputEstimates& estimates);

@@ -9,8 +9,7 @@
 namespace mpm {
 namespace {
 
-// By one sample: later, earlier.
-constexpr int kShifts = 2;
+constexpr int kShifts = InputErrors::kShifts;
 
 }  // namespace
 
@@ -26,11 +25,8 @@ JointErrors::JointErrors(const RegressionShape& shape)
       learnt_(own_past_),
       feed_(shape.inputs * (kUsualErrors + kShifts) + shape.block() + 1),
       all_(shape.inputs * kUsualErrors, 1 + shape.inputs * kShifts),
-      last_(shape.inputs * kUsualErrors, 1 + kShifts),
       freed_((shape.inputs - 1) * kUsualErrors + shape.block(), 1),
-      channel_{Eigen::VectorXd::Zero(kUsualErrors),
-               Eigen::MatrixXd::Zero(kUsualErrors, kUsualErrors),
-               Eigen::MatrixXd::Zero(kUsualErrors, error_column::kCount)} {}
+      single_(shape.inputs * kUsualErrors) {}
 
 void JointErrors::read(int cv, const GivensQr& factor,
                        const std::vector<ChannelSignatures>& signatures, const EstimateNoise& noise,
@@ -112,35 +108,6 @@ void JointErrors::move(int cv, const InputEstimates& estimates,
     move_all(channel.errors, moved_, i * kUsualErrors);
     move_all(channel.shifts, shifts_, i * kShifts);
   }
-}
-
-const JointErrors::Channel& JointErrors::channel(int input) {
-  last_.clear();
-  const int columns = all_.columns();
-  const int own = input * kUsualErrors;
-  for (int r = 0; r < columns; ++r) {
-    double* row = feed_.next_row(last_);
-    std::fill(row, row + columns, 0.0);
-    for (int c = r; c < columns; ++c) {
-      const bool mine = c >= own && c < own + kUsualErrors;
-      const int to = mine ? columns - kUsualErrors + c - own : c < own ? c : c - kUsualErrors;
-      row[to] = all_.r(r, c);
-    }
-    row[columns] = all_.z(r, 0);
-    for (int s = 0; s < kShifts; ++s) row[columns + 1 + s] = all_.z(r, 1 + input * kShifts + s);
-  }
-  feed_.flush(last_);
-  const int first = columns - kUsualErrors;
-  for (int r = 0; r < kUsualErrors; ++r) {
-    channel_.estimate(r) = last_.z(first + r, 0);
-    for (int c = 0; c < kUsualErrors; ++c)
-      channel_.usual(r, c) = c < r ? 0.0 : last_.r(first + r, first + c);
-    channel_.directions(r, error_column::kLater) = last_.z(first + r, 1);
-    channel_.directions(r, error_column::kEarlier) = last_.z(first + r, 2);
-  }
-  channel_.directions.col(error_column::kGain) = channel_.usual.col(0);
-  channel_.directions.col(error_column::kTime) = channel_.usual.col(1);
-  return channel_;
 }
 
 JointErrors::Freed JointErrors::freed(int input, const InputEstimates& estimates) {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/mismatch/channel_signatures.hpp"
-#include "core/mismatch/error_reduction.hpp"
 #include "core/mismatch/estimate_noise.hpp"
+#include "core/mismatch/input_errors.hpp"
 #include "core/mismatch/input_estimates.hpp"
 #include "core/mismatch/signature.hpp"
 #include "core/regression/row_feed.hpp"
@@ -36,14 +36,11 @@ class JointErrors {
   /// What they leave of all that the inputs explain, in squares.
   [[nodiscard]] double left_square() const { return all_.residual_square(0); }
 
-  /// One input's errors, whitened, once those of the other inputs are taken out.
-  struct Channel {
-    Eigen::VectorXd estimate;    ///< kUsualErrors
-    Eigen::MatrixXd usual;       ///< kUsualErrors x kUsualErrors: each usual error
-    Eigen::MatrixXd directions;  ///< kUsualErrors x error_column::kCount
-  };
+  using Channel = InputErrors::Channel;
   /// Valid until the next call.
-  [[nodiscard]] const Channel& channel(int input);
+  [[nodiscard]] const Channel& channel(int input) {
+    return single_.read(all_, input * kUsualErrors, 1 + input * InputErrors::kShifts);
+  }
 
   /// The factor of [R_t X of the other inputs | R_t of this one's block | z]: `first` is the column
   /// where the block begins. Valid until the next call.
@@ -71,9 +68,8 @@ class JointErrors {
   Eigen::VectorXd own_past_, learnt_;
   RowFeed feed_;
   GivensQr all_;    // [R_t X | z, R_t s]
-  GivensQr last_;   // [R_t X, one input's last | z, R_t s of that input]
   GivensQr freed_;  // [R_t X of all but one | R_t of its block | z]
-  Channel channel_;
+  InputErrors single_;
 };
 
 }  // namespace mpm

@@ -1,6 +1,8 @@
 #include "core/mismatch/mismatch_detector.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <span>
 #include <utility>
 
 #include "core/archive/archive.hpp"
@@ -22,7 +24,9 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
       work_(shape.columns() + VolterraTerms::most_columns(), patience),
       evaluator_(shape, model, std::move(limits)),
       evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs) * memories.size()),
-      explained_(static_cast<std::size_t>(shape.cvs)) {
+      explained_(static_cast<std::size_t>(shape.cvs)),
+      doubted_(static_cast<std::size_t>(shape.cvs) * memories.size()),
+      beside_(static_cast<std::size_t>(shape.cvs)) {
   for (int j = 0; j < shape.cvs; ++j) regressions_.emplace_back(shape, j, memories, remembered);
 }
 
@@ -65,8 +69,22 @@ void MismatchDetector::fold(int cv) {
 
 void MismatchDetector::evaluate(int cv, int memory) {
   fold(cv);
-  evaluator_.evaluate(cv, regression(cv).memory(memory), &evidence_[first_evidence(cv, memory)]);
+  const std::span evidence(&evidence_[first_evidence(cv, memory)],
+                           static_cast<std::size_t>(shape_.inputs));
+  evaluator_.evaluate(cv, regression(cv).memory(memory), evidence.data());
   if (memory == 0) explained_[static_cast<std::size_t>(cv)] = evaluator_.explained();
+  const auto doubted = std::span(doubted_).subspan(static_cast<std::size_t>(memory * shape_.cvs),
+                                                   static_cast<std::size_t>(shape_.cvs));
+  doubted[static_cast<std::size_t>(cv)] =
+      std::ranges::any_of(evidence, [](const ChannelEvidence& channel) {
+        return channel.p_value < calibration::coupled_errors::kDoubtedPValue;
+      });
+  if (std::ranges::none_of(doubted, std::identity())) return;
+  for (int j = 0; j < shape_.cvs; ++j) {
+    const RegressionMemory& other = regression(j).memory(memory);
+    beside_[static_cast<std::size_t>(j)] = j == cv || other.ready() ? &other : nullptr;
+  }
+  evaluator_.evaluate_coupled(cv, beside_, doubted, evidence.data());
 }
 
 RivalSignal MismatchDetector::rival(int cv, const FollowedSignal& followed) const {
@@ -102,9 +120,9 @@ bool MismatchDetector::take_in_curvature(int cv, double least) {
 
 void MismatchDetector::archive(Archive& a) {
   // not archived: shape_, memory_count_, model_ (construction)
-  // not archived: work_ (empty between calls)
+  // not archived: work_, beside_ (empty between calls)
   a.within(forgetful_, 0, shape_.cvs);
-  a(history_, older_, curvatures_, evaluator_, evidence_, explained_);
+  a(history_, older_, curvatures_, evaluator_, evidence_, explained_, doubted_);
   for (ResidualRegression& regression : regressions_)
     regression.archive(a, model_, history_, work_);
   for (const std::optional<Curvature>& found : curvatures_)

@@ -36,7 +36,9 @@ struct RivalSignal {
 /// of the past), on the rows of `RegressionHistory`, and F tests that input i's block of
 /// coefficients is zero given all the others, which is so exactly where channel (j, i) matches
 /// (Ljung 1999, section 13.4, for the regression; Seber and Lee 2003, section 4.3, for F;
-/// `ChannelEvaluator` for what is read off). Rows are weighted
+/// `ChannelEvaluator` for what is read off), and so do those of other CVs on whose residuals e_j
+/// rests: where one of these may be wrong they are judged together (`CoupledErrors`). Rows are
+/// weighted
 ///
 ///     lambda^age * min(1, 3 s / |r|)^2 / s^2,
 ///
@@ -118,6 +120,8 @@ class MismatchDetector {
   ChannelEvaluator evaluator_;
   std::vector<ChannelEvidence> evidence_;
   std::vector<ChannelEvaluator::Explained> explained_;  // per CV, of the first memory
+  std::vector<int> doubted_;  // per memory and CV: by itself it has a channel that may be wrong
+  std::vector<const RegressionMemory*> beside_;  // per CV, those that are ready
 };
 
 }  // namespace mpm

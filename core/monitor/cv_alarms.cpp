@@ -11,10 +11,11 @@ namespace change_search = calibration::change_search;
 
 // Of all memories that say something.
 struct Evidence {
-  double material = 1.0;  // p-value of "within the limits", times the memories asked
-  double any = 1.0;       // p-value of "no error", likewise
-  bool harmless = true;   // the long memory is sure that the error is within the limits
-  bool shown = true;      // or would show one of interest
+  double material = 1.0;   // p-value of "within the limits", times the memories asked
+  double any = 1.0;        // p-value of "no error", likewise
+  bool harmless = true;    // the long memory is sure that the error is within the limits
+  bool shown = true;       // or would show one of interest
+  bool elsewhere = false;  // it says that the error is another CV's
 };
 
 Evidence combined(int cv, int input, const MismatchDetector& detector, const Belief& belief,
@@ -31,20 +32,21 @@ Evidence combined(int cv, int input, const MismatchDetector& detector, const Bel
   }
   evidence.harmless = detector.evidence(cv, input).harmless;
   evidence.shown = detector.evidence(cv, input).excitation_index <= shown_index;
+  evidence.elsewhere = detector.evidence(cv, input).elsewhere;
   evidence.material = std::min(1.0, ready * evidence.material);
   evidence.any = std::min(1.0, ready * evidence.any);
   return evidence;
 }
 
 // What the condition looks at: to raise, that there is an error, and that it matters; to clear,
-// that it does not matter, or is not there and would have shown.
+// that it does not matter, is another CV's, or is not there and would have shown.
 double condition_p(const Evidence& evidence, AlarmState state) {
   if (state == AlarmState::kCleared)
     return evidence.material < calibration::alarms::kMattersPValue
                ? evidence.any
                : std::max(evidence.any, evidence.material);
   const bool there = evidence.any < calibration::alarms::kStaysPValue || !evidence.shown;
-  return there && !evidence.harmless ? 0.0 : evidence.material;
+  return there && !evidence.harmless && !evidence.elsewhere ? 0.0 : evidence.material;
 }
 
 }  // namespace

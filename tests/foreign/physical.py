@@ -3,6 +3,7 @@
 
 Usage: physical.py --mpm build/release/bin/mpm --seeds 100001-100003 [--plant P ...] [--case C ...]
                 [--model exact reduced] [--jobs 1] [--keep DIR] [--markdown FILE] [--bounds]
+                [--detect-only]
 
 physical_plants.py has the plants, controller.py the controller (Dmc). Its model, and that of the
 unit file, are the plant's step responses at its operating point, `exact` or `reduced` to a lag or
@@ -12,7 +13,9 @@ with set-points that move twice as far, with a sensor's span of 0.7, a sensor's 
 valve that sticks, and each of its own changes, from the start or half-way. 3000 samples; a load and
 coloured noise disturb all of it. Seeds below 1000 are for scores, from 100001 on for tuning.
 
-`detect` reads the same: alarms on the sound plants are counted.
+`detect` reads the same: alarms on the sound plants are counted, and what it says of each channel in
+the end, but where a valve sticks: of sound ones (by SOUND), that they are a mismatch; of wrong ones
+(by WRONG), that they are one or match. --detect-only: nothing else.
 
 The truth is the changed plant's step responses at the mean inputs of the recording: a channel is
 wrong by the norm of its error over the norm of what the model has, until half as long again as that
@@ -208,13 +211,17 @@ class Run:
         error = np.max(self.errors[j, i])
         return "right" if error > WRONG else "slight" if error > SOUND else "wrong"
 
+    def error_of(self, cv, mv):
+        names = self.plant.mvs + self.plant.dvs
+        return float(self.errors[self.plant.cvs.index(cv), names.index(mv)])
+
     def is_strong(self):
         return self.case in ("bias", "stiction") or (self.case not in ("healthy", "far")
                                                      and self.errors.max() > STRONG)
 
 
 def score_case(arguments):
-    name, case, seed, model, mpm, keep, limit = arguments
+    name, case, seed, model, mpm, keep, limit, detect_only = arguments
     plant = next(make() for make in PHYSICAL if make.__name__ == name)
     this = Run(plant, case, seed, model)
     with tempfile.TemporaryDirectory() as scratch:
@@ -227,8 +234,15 @@ def score_case(arguments):
         code, output, _ = run(mpm, ["detect", *given, "--json"])
         if code > 1:
             raise RuntimeError(f"{folder.name}: {output[-400:]}")
-        alarms = sorted({f"{a['cv']}/{a['mv']}" for a in json.loads(output)["alarms"]
+        detected = json.loads(output)
+        alarms = sorted({f"{a['cv']}/{a['mv']}" for a in detected["alarms"]
                          if a["to"] == "active"})
+        verdicts = [(this.error_of(c["cv"], c["mv"]), c["verdict"]) for c in detected["channels"]]
+        result = {"plant": name, "model": model, "case": case, "seed": seed, "alarms": alarms,
+                  "strong": this.is_strong(), "error": float(this.errors.max()),
+                  "verdicts": verdicts}
+        if detect_only:
+            return result | {"verdict": "-", "reason": "", "findings": []}
         code, output, seconds = run(mpm, [
             "diagnose", *given, "--out", str(folder / "out"), "--threads", "1"])
         if code != 0:
@@ -236,10 +250,8 @@ def score_case(arguments):
         report = json.loads((folder / "out" / "report.json").read_text())
     findings = [(f["cause"], f["cv"], f["mv"], f["confidence"], this.judge(f))
                 for f in report["findings"]]
-    return {"plant": name, "model": model, "case": case, "seed": seed, "alarms": alarms,
-            "strong": this.is_strong(), "error": float(this.errors.max()),
-            "verdict": report["verdict"], "reason": report.get("reason", ""),
-            "findings": findings, "seconds": seconds}
+    return result | {"verdict": report["verdict"], "reason": report.get("reason", ""),
+                     "findings": findings, "seconds": seconds}
 
 
 def describe(result):
@@ -264,6 +276,15 @@ def row(name, results):
             f"{share(count(results, 'wrong'), len(results))} |")
 
 
+def channels_row(name, results):
+    verdicts = [v for r in results if r["case"] != "stiction" for v in r["verdicts"]]
+    sound = [said for error, said in verdicts if error < SOUND]
+    wrong = [said for error, said in verdicts if error > WRONG]
+    return (f"| {name} | {share(sound.count('mismatch'), len(sound))} | "
+            f"{share(wrong.count('mismatch'), len(wrong))} | "
+            f"{share(wrong.count('match'), len(wrong))} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -276,12 +297,14 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--step-response", type=float,
                         help="monitor.materiality.step_response of the unit files")
+    parser.add_argument("--detect-only", action="store_true")
     parser.add_argument("--keep")
     parser.add_argument("--markdown")
     parser.add_argument("--bounds", action="store_true")
     options = parser.parse_args()
     plants = [make() for make in PHYSICAL if make.__name__ in options.plant]
-    wanted = [(plant.name, case, seed, model, options.mpm, options.keep, options.step_response)
+    wanted = [(plant.name, case, seed, model, options.mpm, options.keep, options.step_response,
+               options.detect_only)
               for plant in plants
               for model in options.model for seed in seed_list(options.seeds)
               for case in cases_of(plant)
@@ -291,16 +314,23 @@ def main():
         for result in pool.imap(score_case, wanted):
             print(describe(result), flush=True)
             results.append(result)
+    parts = [(f"{plant.name}, {model}", [r for r in results if r["plant"] == plant.name
+                                         and r["model"] == model])
+             for plant in plants for model in options.model] + [("all", results)]
     rows = ["| plant, its model | sound: alarm | sound: accused wrongly | strong: right | "
             "strong: match | all: wrong |", "|---|---|---|---|---|---|"]
-    rows += [row(f"{plant.name}, {model}", [r for r in results if r["plant"] == plant.name
-                                            and r["model"] == model])
-             for plant in plants for model in options.model]
-    rows.append(row("all", results))
-    print("\n".join(rows))
+    rows += [row(*part) for part in parts]
+    channels = ["| plant, its model | sound channels: mismatch | wrong ones: mismatch | "
+                "wrong ones: match |", "|---|---|---|---|"]
+    channels += [channels_row(*part) for part in parts]
+    tables = {"physical_channels": channels}
+    if not options.detect_only:
+        tables["physical"] = rows
+    print("\n".join(line for table in tables.values() for line in table))
     if options.markdown:
         file = pathlib.Path(options.markdown)
-        file.write_text(replace_part(file.read_text(), "physical", rows))
+        for table, lines in tables.items():
+            file.write_text(replace_part(file.read_text(), table, lines))
     wrong = sum(any(f[4] == "wrong" for f in r["findings"]) for r in results)
     if options.bounds and wrong > most(len(results), MOST_WRONG):
         raise SystemExit(f"{wrong} of {len(results)} runs have a wrong finding")

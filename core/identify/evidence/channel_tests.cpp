@@ -62,9 +62,15 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       regress_recording(model, recording, residuals, to_follow, past);
   if (!regressed.detector) return;
   MismatchDetector& detector = *regressed.detector;
-  for (int cv = 0; cv < model.cv_count; ++cv) {
+  const auto ready = [&](int cv) {
+    return detector.memory(cv).freedom() >= detector.shape().columns();
+  };
+  for (int cv = 0; cv < model.cv_count; ++cv) {  // what may be wrong of one counts for others
     detector.fold(cv);
-    if (!(detector.memory(cv).freedom() >= detector.shape().columns())) continue;
+    if (ready(cv)) detector.evaluate(cv);
+  }
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    if (!ready(cv)) continue;
     detector.evaluate(cv);
     if (regressed.nonlinear) regressed.nonlinear->evaluate(cv, detector);
     const double steps = mean_square_step(residuals.col(cv));

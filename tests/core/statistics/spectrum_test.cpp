@@ -7,14 +7,14 @@
 
 #include "tests/core/white_noise.hpp"
 
-namespace mpm::test {
+namespace mpm::spectrum_test {
 namespace {
 
 const double kNaN = std::nan("");
 
 TEST_CASE("the spectrum of white noise is flat at twice variance times sample time") {
   const double sample_time = 5.0;
-  const Spectrum spectrum = welch(white(20'000, 3), sample_time);
+  const Spectrum spectrum = welch(test::white(std::size_t{20'000}, 3U), sample_time);
   REQUIRE(spectrum.frequency.size() > 10);
   CHECK(spectrum.frequency.back() < 0.5 / sample_time + 1e-12);
   for (std::size_t i = 4; i < spectrum.density.size(); ++i)
@@ -39,4 +39,4 @@ TEST_CASE("no spectrum comes of too few or unknown values") {
 }
 
 }  // namespace
-}  // namespace mpm::test
+}  // namespace mpm::spectrum_test
