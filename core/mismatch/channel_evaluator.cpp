@@ -296,7 +296,7 @@ void ChannelEvaluator::judge_coupled(int cv, int input, const EstimateNoise& noi
                                      ChannelEvidence& evidence) {
   const InputErrors::Channel& channel = coupled_.channel(input);
   const ChannelSignatures& signatures = signatures_[index(cv, input)];
-  const double alone = evidence.p_value;
+  const double alone = evidence.p_value, material_alone = evidence.p_value_material;
   const auto test = [&](const EstimateNoise& with) {
     evidence.p_value = evidence.p_value_material = 1.0;
     evidence.statistic = evidence.numerator_freedom = 0.0;
@@ -324,6 +324,8 @@ void ChannelEvaluator::judge_coupled(int cv, int input, const EstimateNoise& noi
     size_among(
         cv, input, channel, [&] { return coupled_.freed(input, estimates_); }, known, evidence);
   finish(cv, input, known, evidence);
+  // What only other CVs' errors bring to light is no reason for an alarm beside theirs.
+  evidence.p_value_material = std::max(evidence.p_value_material, material_alone);
 }
 
 void ChannelEvaluator::size_step(int cv, int input, const EstimateNoise& noise,

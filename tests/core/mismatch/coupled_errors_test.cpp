@@ -93,6 +93,9 @@ TEST_CASE("a wrong channel is found behind another one that is wrong alike") {
       CHECK(wrong.gain_error.deviation < 0.3);  // less than there is to be found
       CHECK(detector.evidence(cv, 1).p_value > 1e-4);
     }
+    // An alarm is raised where it was seen first.
+    CHECK(detector.evidence(0, 0).p_value_material < 1e-4);
+    CHECK(detector.evidence(1, 0).p_value_material > 1e-2);
   }
 }
 
