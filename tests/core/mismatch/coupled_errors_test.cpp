@@ -55,20 +55,26 @@ MismatchDetector watched(const Series& plant, const std::vector<double>& gain_er
     wrong.advance(u);
     noise.advance(seed, k);
   }
+  return detector;
+}
+
+void evaluate_all(MismatchDetector& detector) {
   for (int turn = 0; turn < 2; ++turn)
     for (int cv = 0; cv < 2; ++cv) detector.evaluate(cv);
-  return detector;
 }
 
 }  // namespace
 
 TEST_CASE("a wrong channel is not laid to the CV that its own CV disturbs") {
-  // Expected: what was put in. By the second CV's regression alone p is 1e-20: 0.3 of a residual
-  // that the inputs move is taken for noise.
+  // Expected: what was put in. By the second CV's regression alone, which takes 0.3 of a residual
+  // that the inputs move for noise, its channel is wrong.
   const Series plant;
   for (std::uint64_t seed = 100; seed < 1100; seed += 100) {
     CAPTURE(seed);
-    const MismatchDetector detector = watched(plant, {0.3, 0.0, 0.0, 0.0}, seed);
+    MismatchDetector detector = watched(plant, {0.3, 0.0, 0.0, 0.0}, seed);
+    detector.evaluate(1);  // before anything is known of the first
+    CHECK(detector.evidence(1, 0).p_value < 1e-6);
+    evaluate_all(detector);
     const ChannelEvidence& wrong = detector.evidence(0, 0);
     CHECK(wrong.p_value < 1e-6);
     CHECK(std::abs(wrong.gain_error.value - 0.3) < 4.0 * wrong.gain_error.deviation);
@@ -79,12 +85,16 @@ TEST_CASE("a wrong channel is not laid to the CV that its own CV disturbs") {
 }
 
 TEST_CASE("a wrong channel is found behind another one that is wrong alike") {
-  // Expected: what was put in. By the second CV's regression alone nothing is off: its residual
-  // follows that of the first as it does in noise.
+  // Expected: what was put in. By the second CV's regression alone it is another error by far: its
+  // residual follows that of the first as it does in noise.
   const Series plant;
   for (std::uint64_t seed = 100; seed < 1100; seed += 100) {
     CAPTURE(seed);
-    const MismatchDetector detector = watched(plant, {0.3, 0.0, 0.3, 0.0}, seed);
+    MismatchDetector detector = watched(plant, {0.3, 0.0, 0.3, 0.0}, seed);
+    detector.evaluate(1);
+    const Estimate alone = detector.evidence(1, 0).gain_error;
+    CHECK(std::abs(alone.value - 0.3) > 10.0 * alone.deviation);
+    evaluate_all(detector);
     for (int cv = 0; cv < 2; ++cv) {
       CAPTURE(cv);
       const ChannelEvidence& wrong = detector.evidence(cv, 0);
@@ -102,6 +112,7 @@ TEST_CASE("a wrong channel is found behind another one that is wrong alike") {
 TEST_CASE("judging CVs together allocates nothing") {
   const Series plant;
   MismatchDetector detector = watched(plant, {0.3, 0.0, 0.0, 0.0}, 100);
+  evaluate_all(detector);
   const std::uint64_t before = test::allocation_count();
   for (int cv = 0; cv < 2; ++cv) detector.evaluate(cv);
   CHECK(test::allocation_count() == before);
