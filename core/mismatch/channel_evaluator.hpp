@@ -85,8 +85,8 @@ class ChannelEvaluator {
   void find_coupled(int cv, std::span<const RegressionMemory* const> memories,
                     const EstimateNoise& noise);
   void judge_coupled(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
-  /// So many times the noise is what a channel's error explains that the fit without it does as
-  /// well: 1 or more.
+  /// What a channel's error is said to explain over what the best fit without it loses, >= 1: so
+  /// many times larger is the variance of what is known of it.
   [[nodiscard]] double explained_otherwise(int input, const InputErrors::Channel& channel);
   void read_usual(const InputErrors::Channel& channel);
   /// Of a channel whose usual errors have been tested; `free_block()` frees the input's own block.

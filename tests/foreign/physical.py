@@ -15,7 +15,8 @@ coloured noise disturb all of it. Seeds below 1000 are for scores, from 100001 o
 
 `detect` reads the same: alarms on the sound plants are counted, and what it says of each channel in
 the end, but where a valve sticks: of sound ones (by SOUND), that they are a mismatch; of wrong ones
-(by WRONG), that they are one or match. --detect-only: nothing else.
+(by WRONG), that they are one or match. --detect-only: nothing else; --markdown writes that table
+then, and what is diagnosed otherwise.
 
 The truth is the changed plant's step responses at the mean inputs of the recording: a channel is
 wrong by the norm of its error over the norm of what the model has, until half as long again as that
@@ -323,14 +324,11 @@ def main():
     channels = ["| plant, its model | sound channels: mismatch | wrong ones: mismatch | "
                 "wrong ones: match |", "|---|---|---|---|"]
     channels += [channels_row(*part) for part in parts]
-    tables = {"physical_channels": channels}
-    if not options.detect_only:
-        tables["physical"] = rows
-    print("\n".join(line for table in tables.values() for line in table))
+    table, lines = ("physical_channels", channels) if options.detect_only else ("physical", rows)
+    print("\n".join(channels if options.detect_only else channels + rows))
     if options.markdown:
         file = pathlib.Path(options.markdown)
-        for table, lines in tables.items():
-            file.write_text(replace_part(file.read_text(), table, lines))
+        file.write_text(replace_part(file.read_text(), table, lines))
     wrong = sum(any(f[4] == "wrong" for f in r["findings"]) for r in results)
     if options.bounds and wrong > most(len(results), MOST_WRONG):
         raise SystemExit(f"{wrong} of {len(results)} runs have a wrong finding")
