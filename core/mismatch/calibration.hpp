@@ -186,6 +186,9 @@ inline constexpr double kUncoupledPValue = 1e-3;
 /// Turns of Gauss-Newton at most, and the variances that one may still move where it has settled.
 inline constexpr int kTurns = 8;
 inline constexpr double kSettled = 0.05;
+/// Multiplications of a turn at most: of a large unit fewer CVs are judged together, or none.
+/// Ten inputs and twenty CVs take half of it with three.
+inline constexpr double kMostWork = 2e8;
 }  // namespace coupled_errors
 
 /// The sizes of errors that are not small (`ErrorSizes`). Chosen: from these starts a gain, a time

@@ -45,6 +45,7 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
       excitation_(estimates_),
       usual_(shape.block()),
       joint_(shape),
+      coupled_cvs_(shape),
       coupled_(shape),
       held_(shape),
       coupled_past_(Eigen::VectorXd::Zero(shape.past())),
@@ -60,7 +61,6 @@ ChannelEvaluator::ChannelEvaluator(const RegressionShape& shape, const LinearMod
   if (limits_.size() != signatures_.size())
     throw std::invalid_argument("materiality limits: one per channel, or one for all");
   given_limits_ = limits_;
-  coupled_cvs_.reserve(calibration::coupled_errors::kMostCvs);
 }
 
 void ChannelEvaluator::widen_limits(int cv, int input, double limit) {
@@ -76,8 +76,8 @@ void ChannelEvaluator::give_back_limits(int cv) {
 
 void ChannelEvaluator::archive(Archive& a) {
   // not archived: shape_, signatures_, given_limits_ (construction)
-  // not archived: explained_, estimates_, covariance_, excitation_, usual_, joint_, coupled_,
-  // held_, coupled_cvs_, coupled_past_, joint_usual_, materiality_, steps_, sizes_, estimate_,
+  // not archived: explained_, estimates_, covariance_, excitation_, usual_, joint_, coupled_cvs_,
+  // coupled_, held_, coupled_past_, joint_usual_, materiality_, steps_, sizes_, estimate_,
   // directions_, error_, joint_error_, slow_noise_ (each evaluation begins anew)
   a(limits_);
 }
@@ -248,15 +248,17 @@ void ChannelEvaluator::evaluate_coupled(int cv, std::span<const RegressionMemory
                                         std::span<const int> doubted, ChannelEvidence* evidence) {
   const RegressionMemory& own = *memories[static_cast<std::size_t>(cv)];
   const EstimateNoise noise = estimate_noise(own);
-  if (!(noise.variance > 0.0)) return;
-  find_coupled(cv, memories, noise);
-  const auto doubt = [&](const Coupled& other) {
+  const auto most = static_cast<std::size_t>(CoupledErrors::most_cvs(shape_));
+  if (!(noise.variance > 0.0) || most < 2) return;
+  std::span<const CoupledCvs::Other> others = coupled_cvs_.of(cv, memories);
+  others = others.first(std::min(others.size(), most - 1));
+  const auto doubt = [&](const CoupledCvs::Other& other) {
     return doubted[static_cast<std::size_t>(other.cv)] != 0;
   };
-  if (std::ranges::none_of(coupled_cvs_, doubt)) return;
+  if (std::ranges::none_of(others, doubt)) return;
   coupled_.clear();
   coupled_.add(cv, own.factor, noise);
-  for (const Coupled& other : coupled_cvs_) {
+  for (const CoupledCvs::Other& other : others) {
     const RegressionMemory& memory = *memories[static_cast<std::size_t>(other.cv)];
     coupled_.add(other.cv, memory.factor, estimate_noise(memory));
   }
@@ -265,21 +267,6 @@ void ChannelEvaluator::evaluate_coupled(int cv, std::span<const RegressionMemory
   estimates_.set_own_past(coupled_past_);
   for (int i = 0; i < shape_.inputs; ++i)
     if (estimates_.moved(i)) judge_coupled(cv, i, noise, evidence[i]);
-}
-
-// Those on whose residuals the CV's own rests most surely.
-void ChannelEvaluator::find_coupled(int cv, std::span<const RegressionMemory* const> memories,
-                                    const EstimateNoise& noise) {
-  coupled_cvs_.clear();
-  const GivensQr& factor = memories[static_cast<std::size_t>(cv)]->factor;
-  for (int other = 0; other < shape_.cvs; ++other) {
-    if (other == cv || memories[static_cast<std::size_t>(other)] == nullptr) continue;
-    const double p_value = coupled_.uncoupled_p_value(factor, noise, other);
-    if (!(p_value < calibration::coupled_errors::kUncoupledPValue)) continue;
-    const auto at = std::ranges::upper_bound(coupled_cvs_, p_value, {}, &Coupled::p_value);
-    coupled_cvs_.insert(at, {other, p_value});
-    if (coupled_cvs_.size() == calibration::coupled_errors::kMostCvs) coupled_cvs_.pop_back();
-  }
 }
 
 // What a channel's error explains by the curvature at the best fit may be explained nearly as well

@@ -9,6 +9,7 @@
 #include "core/mismatch/block_covariance.hpp"
 #include "core/mismatch/channel_evidence.hpp"
 #include "core/mismatch/channel_signatures.hpp"
+#include "core/mismatch/coupled_cvs.hpp"
 #include "core/mismatch/coupled_errors.hpp"
 #include "core/mismatch/error_reduction.hpp"
 #include "core/mismatch/error_sizes.hpp"
@@ -82,8 +83,6 @@ class ChannelEvaluator {
   /// The usual errors with the other inputs' blocks free, and with their usual errors free.
   void judge_alone(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
   void judge_jointly(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
-  void find_coupled(int cv, std::span<const RegressionMemory* const> memories,
-                    const EstimateNoise& noise);
   void judge_coupled(int cv, int input, const EstimateNoise& noise, ChannelEvidence& evidence);
   /// What a channel's error is said to explain over what the best fit without it loses, >= 1: so
   /// many times larger is the variance of what is known of it.
@@ -123,12 +122,8 @@ class ChannelEvaluator {
   GainExcitation excitation_;
   UsualErrorSpace usual_;
   JointErrors joint_;
-  struct Coupled {
-    int cv = 0;
-    double p_value = 1.0;  // of its saying nothing
-  };
+  CoupledCvs coupled_cvs_;
   CoupledErrors coupled_, held_;
-  std::vector<Coupled> coupled_cvs_;
   Eigen::VectorXd coupled_past_;
   UsualErrorSpace joint_usual_;
   Materiality materiality_;

@@ -13,14 +13,49 @@ namespace {
 
 namespace coupled = calibration::coupled_errors;
 
-int members_of(const RegressionShape& shape) { return std::min(shape.cvs, coupled::kMostCvs); }
+constexpr double kHalf = 0.5;  // of a square, a triangle
+
+// Columns before the inputs' blocks, at most.
+int most_lead_in(const RegressionShape& shape) {
+  return shape.lead_in() + VolterraTerms::most_columns();
+}
+
+// Of the response and the shifts of the first CV's channels, all but the errors.
+int responses_of(const RegressionShape& shape) { return 1 + shape.inputs * InputErrors::kShifts; }
 
 }  // namespace
 
+// Each row of a member's factor is mixed, of which the errors of a channel are in one block alone,
+// and rotated into that of [lead-in | errors], which is then rotated into the one of all.
+double CoupledErrors::work_of(const RegressionShape& shape, int cvs) {
+  const double block = shape.block(), inputs = shape.inputs, errors = cvs * inputs * kUsualErrors;
+  const double rows = most_lead_in(shape) + inputs * block;
+  const double dense = 1.0 + cvs * shape.residual_order + shape.means();
+  const double mixed = block * (errors + responses_of(shape) - 1.0) + inputs * block * dense;
+  const double columns = most_lead_in(shape) + errors;
+  return cvs * (rows * (mixed + kHalf * columns * columns) + kHalf * errors * errors * errors);
+}
+
+double CoupledErrors::numbers_of(const RegressionShape& shape) {
+  const double cvs = most_cvs(shape), block = shape.block(), inputs = shape.inputs;
+  const double errors = cvs * inputs * kUsualErrors, responses = responses_of(shape);
+  const double columns = most_lead_in(shape) + errors;
+  const double mixed = errors + responses + cvs * shape.residual_order + shape.means();
+  return cvs * columns * (columns + responses) + errors * (errors + responses) +
+         std::pow(columns + block, 2) + std::pow(errors + block, 2) +
+         inputs * block * (mixed + cvs * (1.0 + shape.past()));
+}
+
+int CoupledErrors::most_cvs(const RegressionShape& shape) {
+  int most = std::min(shape.cvs, coupled::kMostCvs);
+  while (most > 1 && work_of(shape, most) > coupled::kMostWork) --most;
+  return most;
+}
+
 CoupledErrors::CoupledErrors(const RegressionShape& shape)
     : shape_(shape),
-      lead_in_(shape.lead_in() + VolterraTerms::most_columns()),
-      errors_(members_of(shape) * own_columns()),
+      lead_in_(most_lead_in(shape)),
+      errors_(most_cvs(shape) * own_columns()),
       sizes_(Eigen::VectorXd::Zero(errors_)),
       next_(sizes_),
       past_(Eigen::VectorXd::Zero(shape.past())),
@@ -28,45 +63,24 @@ CoupledErrors::CoupledErrors(const RegressionShape& shape)
       none_(past_),
       error_(Eigen::VectorXd::Zero(shape.block())),
       not_delayed_(error_),
-      delayed_(static_cast<std::size_t>(members_of(shape)),
+      delayed_(static_cast<std::size_t>(most_cvs(shape)),
                Eigen::MatrixXd::Zero(shape.inputs * shape.block(), 1 + shape.past())),
-      columns_(Eigen::MatrixXd::Zero(shape.inputs * shape.block(),
-                                     errors_ + 1 + shape.inputs * InputErrors::kShifts +
-                                         members_of(shape) * shape.residual_order + shape.means())),
+      columns_(Eigen::MatrixXd::Zero(
+          shape.inputs * shape.block(),
+          errors_ + responses_of(shape) + most_cvs(shape) * shape.residual_order + shape.means())),
       factor_row_(Eigen::VectorXd::Zero(lead_in_ + shape.inputs * shape.block())),
       mixed_(Eigen::VectorXd::Zero(columns_.cols())),
       coefficients_(factor_row_),
       norms_(Eigen::VectorXd::Zero(shape.inputs * shape.block())),
-      feed_(lead_in_ + errors_ + shape.block() + 1 + shape.inputs * InputErrors::kShifts),
-      all_(errors_, 1 + shape.inputs * InputErrors::kShifts),
-      lags_(lead_in_, 1),
+      feed_(lead_in_ + errors_ + shape.block() + responses_of(shape)),
+      all_(errors_, responses_of(shape)),
       open_(lead_in_ + errors_ - kUsualErrors + shape.block(), 1),
       freed_(errors_ + shape.block(), 1),
       single_(errors_) {
-  for (int m = 0; m < members_of(shape); ++m) {
-    member_.emplace_back(lead_in_ + errors_, 1 + shape.inputs * InputErrors::kShifts);
+  for (int m = 0; m < most_cvs(shape); ++m) {
+    member_.emplace_back(lead_in_ + errors_, responses_of(shape));
     member_.back().lead_in.setZero(lead_in_);
   }
-}
-
-double CoupledErrors::uncoupled_p_value(const GivensQr& factor, const EstimateNoise& noise,
-                                        int other) {
-  const int lead_in = factor.columns() - shape_.inputs * shape_.block();
-  const int begin = shape_.lags_of(other), lags = shape_.residual_order;
-  lags_.clear();
-  for (int r = 0; r < lead_in; ++r) {
-    double* row = feed_.next_row(lags_);
-    std::fill(row, row + lead_in_, 0.0);
-    for (int c = r; c < lead_in; ++c) {
-      const bool theirs = c >= begin && c < begin + lags;
-      row[theirs ? lead_in_ - lags + c - begin : c < begin ? c : c - lags] = factor.r(r, c);
-    }
-    row[lead_in_] = factor.z(r, 0);
-  }
-  feed_.flush(lags_);
-  double explained = 0.0;
-  for (int r = lead_in_ - lags; r < lead_in_; ++r) explained += std::pow(lags_.z(r, 0), 2);
-  return f_upper_tail(explained / (lags * noise.block_variance), lags, noise.freedom);
 }
 
 void CoupledErrors::add(int cv, const GivensQr& factor, const EstimateNoise& noise) {
@@ -184,7 +198,7 @@ void CoupledErrors::act(const Signature& error, bool own, Eigen::Ref<Eigen::Vect
 void CoupledErrors::linearise(const Member& member, const InputEstimates& estimates) {
   columns_.setZero();
   const int block = shape_.block(), order = shape_.residual_order;
-  const int response = errors_, lags = errors_ + 1 + shape_.inputs * InputErrors::kShifts;
+  const int response = errors_, lags = errors_ + responses_of(shape_);
   for (int m = 0; m < members_; ++m) {
     const auto at = static_cast<std::size_t>(m);
     const Member& other = member_[at];
@@ -211,21 +225,34 @@ void CoupledErrors::linearise(const Member& member, const InputEstimates& estima
       columns_.leftCols(members_ * own_columns()) * sizes_.head(members_ * own_columns());
 }
 
+// The errors and shifts of a channel are in its input's block alone.
 void CoupledErrors::mix_row(const Member& member, int r) {
   const GivensQr& factor = *member.factor;
-  const int all = factor.columns();
+  const int all = factor.columns(), lead_in = lead_in_of(member), block = shape_.block();
   factor_row_.head(r).setZero();
   factor_row_.segment(r, all - r) =
       factor.root(r) * Eigen::Map<const Eigen::VectorXd>(factor.unit_row(r), all - r);
-  mixed_.noalias() = columns_.transpose() *
-                     factor_row_.segment(lead_in_of(member), shape_.inputs * shape_.block());
+  mixed_.head(errors_ + responses_of(shape_)).setZero();
+  for (int i = std::max(0, r - lead_in) / block; i < shape_.inputs; ++i) {
+    const auto own = factor_row_.segment(lead_in + i * block, block);
+    const auto mix = [&](int column, int count) {
+      mixed_.segment(column, count).noalias() =
+          columns_.block(i * block, column, block, count).transpose() * own;
+    };
+    for (int m = 0; m < members_; ++m) mix(m * own_columns() + i * kUsualErrors, kUsualErrors);
+    mix(errors_ + 1 + i * InputErrors::kShifts, InputErrors::kShifts);
+  }
+  const auto row = factor_row_.segment(lead_in, shape_.inputs * block);
+  const int lags = static_cast<int>(mixed_.size()) - errors_ - responses_of(shape_);
+  mixed_(errors_) = columns_.col(errors_).dot(row);
+  mixed_.tail(lags).noalias() = columns_.rightCols(lags).transpose() * row;
 }
 
 void CoupledErrors::write_lead_in(const Member& member, double* out) const {
   const int lead_in = lead_in_of(member), order = shape_.residual_order;
   std::copy_n(factor_row_.data(), lead_in, out);
   std::fill(out + lead_in, out + lead_in_, 0.0);
-  const double* delayed = mixed_.data() + errors_ + 1 + shape_.inputs * InputErrors::kShifts;
+  const double* delayed = mixed_.data() + errors_ + responses_of(shape_);
   for (int m = 0; m < members_; ++m) {
     double* lags = out + shape_.lags_of(member_[static_cast<std::size_t>(m)].cv);
     for (int l = 0; l < order; ++l) lags[l] -= *delayed++;

@@ -33,12 +33,15 @@ class CoupledErrors {
  public:
   explicit CoupledErrors(const RegressionShape& shape);
 
-  /// p-value of "the residual of `other` says nothing of this CV's next one".
-  [[nodiscard]] double uncoupled_p_value(const GivensQr& factor, const EstimateNoise& noise,
-                                         int other);
+  /// CVs that are judged together at most; 1 where a turn of even two takes too long
+  /// (`calibration::coupled_errors::kMostWork`).
+  [[nodiscard]] static int most_cvs(const RegressionShape& shape);
+  /// Multiplications of a turn of Gauss-Newton for so many CVs; and numbers that one of these keeps
+  /// for a unit.
+  [[nodiscard]] static double work_of(const RegressionShape& shape, int cvs);
+  [[nodiscard]] static double numbers_of(const RegressionShape& shape);
 
-  /// The CVs, the one that is asked for first; no more than
-  /// `calibration::coupled_errors::kMostCvs`.
+  /// The CVs, the one that is asked for first; no more than `most_cvs`.
   void clear() { members_ = 0; }
   void add(int cv, const GivensQr& factor, const EstimateNoise& noise);
 
@@ -79,6 +82,7 @@ class CoupledErrors {
     Member(int columns, int responses) : row(columns, responses) {}
   };
 
+  /// Of the errors of one CV's channels.
   [[nodiscard]] int own_columns() const { return shape_.inputs * kUsualErrors; }
   [[nodiscard]] int lead_in_of(const Member& member) const {
     return member.factor->columns() - shape_.inputs * shape_.block();
@@ -96,6 +100,7 @@ class CoupledErrors {
   void delay_errors(std::size_t at, const InputEstimates& estimates);
   void linearise(const Member& member, const InputEstimates& estimates);
   void act(const Signature& error, bool own, Eigen::Ref<Eigen::VectorXd> out);
+  /// `mixed_`: what row r of a member's factor becomes.
   void mix_row(const Member& member, int r);
   void write_lead_in(const Member& member, double* out) const;
   void take_rows(Member& member);
@@ -120,7 +125,6 @@ class CoupledErrors {
   Eigen::VectorXd coefficients_, norms_;
   RowFeed feed_;
   GivensQr all_;    // [errors of all | response, shifts]
-  GivensQr lags_;   // [lead-in, the lags of one CV last | response]
   GivensQr open_;   // [lead-in | errors but of one channel | its block | response]
   GivensQr freed_;  // [errors but of one channel | this in other CVs | its block | response]
   InputErrors single_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/mismatch/calibration.hpp"
+#include "core/mismatch/coupled_errors.hpp"
 #include "core/mismatch/signature.hpp"
 #include "core/model/linear_model.hpp"
 #include "core/monitor/calibration.hpp"
@@ -67,16 +68,24 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   const bool ranked = of_ranks(derived.correlation);
   const double ranks = (inputs + responses) * derived.ranked;
   const double correlated = ranked ? (1.0 + kRank / kNumber) * ranks : tree;
-  cost.bytes = kNumber * (history + factors + nonlinear + 2.0 * cvs * terms * terms +
-                          2.0 * evaluation + correlated + shapes + scan);
+  cost.bytes =
+      kNumber * (history + factors + nonlinear + 2.0 * cvs * terms * terms + 2.0 * evaluation +
+                 correlated + shapes + scan + kTwice * CoupledErrors::numbers_of(shape));
   cost.seconds =
       kPerRotated * (factors + nonlinear) + (ranked ? kPerRanked * ranks : kPerRotated * tree) +
       kPerInverted * cvs * (memories * std::pow(inputs * block, 3) + std::pow(terms, 3)) /
           derived.evaluation_stride;
   const double past =
       2.0 + derived.residual_order + static_cast<double>(derived.residual_poles.size());
-  cost.seconds_alarmed = cost.seconds + kPerFitted * cvs * memories * (derived.fir_lags + lags) *
-                                            past * (2.0 + tails) / derived.evaluation_stride;
+  const int together = CoupledErrors::most_cvs(shape);
+  const double coupled =
+      together > 1 ? calibration::cost::kCoupledTurns * CoupledErrors::work_of(shape, together)
+                   : 0.0;
+  cost.seconds_alarmed =
+      cost.seconds +
+      cvs * memories *
+          (kPerFitted * (derived.fir_lags + lags) * past * (2.0 + tails) + kPerRotated * coupled) /
+          derived.evaluation_stride;
   return cost;
 }
 

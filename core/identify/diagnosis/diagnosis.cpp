@@ -299,6 +299,8 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   const ChannelTests tests(tested, measured, residuals);
   const ChannelTests by_monitor(tested, measured, residuals, OwnPast::kAsMonitor);
   recording.changed = change_row(tested, measured, residuals, tests);
+  for (int cv = 0; cv < model.cv_count; ++cv)
+    recording.noise_before.push_back(tests.noise_before(cv));
   diagnosis.fit_samples = validation ? samples : fitted_rows(recording, settings.fit_share);
   diagnosis.validation_samples =
       validation ? validation->samples() : samples - diagnosis.fit_samples;

@@ -6,6 +6,7 @@
 
 #include "core/identify/evidence/regress_recording.hpp"
 #include "core/mismatch/calibration.hpp"
+#include "core/mismatch/coupled_cvs.hpp"
 #include "core/mismatch/materiality.hpp"
 
 namespace mpm {
@@ -56,7 +57,8 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
       wrong_(p_values_.size(), 0.0),
       masked_(p_values_.size(), 1.0),
       bends_(p_values_.size(), false),
-      setpoints_(static_cast<std::size_t>(model.cv_count), RivalSignal{.loses = false}) {
+      setpoints_(static_cast<std::size_t>(model.cv_count), RivalSignal{.loses = false}),
+      noise_before_(setpoints_.size()) {
   const Index to_follow = rows_to_follow(recording, past);
   const RegressedRecording regressed =
       regress_recording(model, recording, residuals, to_follow, past);
@@ -65,12 +67,18 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
   const auto ready = [&](int cv) {
     return detector.memory(cv).freedom() >= detector.shape().columns();
   };
+  std::vector<const RegressionMemory*> memories(noise_before_.size(), nullptr);
   for (int cv = 0; cv < model.cv_count; ++cv) {  // what may be wrong of one counts for others
     detector.fold(cv);
-    if (ready(cv)) detector.evaluate(cv);
+    if (!ready(cv)) continue;
+    detector.evaluate(cv);
+    memories[static_cast<std::size_t>(cv)] = &detector.memory(cv);
   }
+  CoupledCvs coupled(detector.shape());
   for (int cv = 0; cv < model.cv_count; ++cv) {
     if (!ready(cv)) continue;
+    for (const CoupledCvs::Other& other : coupled.of(cv, memories))
+      noise_before_[static_cast<std::size_t>(cv)].push_back(other.cv);
     detector.evaluate(cv);
     if (regressed.nonlinear) regressed.nonlinear->evaluate(cv, detector);
     const double steps = mean_square_step(residuals.col(cv));

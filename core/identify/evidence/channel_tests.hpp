@@ -73,6 +73,11 @@ class ChannelTests {
   /// Whether the nonlinear test of the monitor, where it was asked (`OwnPast::kAsMonitor`), says of
   /// some of these channels that no linear error explains what they do.
   [[nodiscard]] bool bends(const std::vector<std::pair<int, int>>& channels) const;
+  /// Those whose noise goes before that of a CV, the surest first: its regression rests on their
+  /// residuals (`CoupledCvs`).
+  [[nodiscard]] const std::vector<int>& noise_before(int cv) const {
+    return noise_before_[static_cast<std::size_t>(cv)];
+  }
   /// All channels to a CV, as (CV, input).
   [[nodiscard]] std::vector<std::pair<int, int>> channels_to(int cv) const;
 
@@ -86,6 +91,7 @@ class ChannelTests {
   std::vector<double> masked_;                   // likewise: s.d. of its gain to that of it alone
   std::vector<bool> bends_;                      // likewise
   std::vector<RivalSignal> setpoints_;           // per CV
+  std::vector<std::vector<int>> noise_before_;   // likewise
 };
 
 }  // namespace mpm

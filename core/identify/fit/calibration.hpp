@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 /// Numbers that decide how a fit goes, none of which a user sets. Chosen by hand from what they
 /// mean; no command fits them. The priors are with the causes. What they give together is scored by
@@ -24,6 +25,9 @@ inline constexpr double kLevelFarOff = 0.5;
 /// row: noise alone is off by a few.
 inline constexpr double kLeastFirstState = 1e-3;
 inline constexpr double kMovesOfNoise = 5.0;
+/// Poles of the means over another CV's noise that may go before a CV's own (`noise_before`): its
+/// last value, and means of some three, ten and thirty rows.
+inline constexpr std::array kNoiseBeforePoles = {0.0, 0.6, 0.9, 0.97};
 /// Rows in which a jump looks like a shock of the noise.
 inline constexpr Eigen::Index kShockRows = 3;
 

@@ -7,6 +7,7 @@
 #include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/channel_edit.hpp"
 #include "core/identify/fit/initial_state.hpp"
+#include "core/identify/fit/noise_before.hpp"
 #include "core/identify/fit/plateau.hpp"
 #include "core/identify/fit/row_weights.hpp"
 
@@ -123,7 +124,7 @@ ModelSpec Problem::with(const std::vector<Effect>& effects) const {
   return model;
 }
 
-void Problem::make_nuisances(const ModelSpec& model, int cv) {
+void Problem::make_nuisances(const ModelSpec& model, const std::vector<Effect>& effects, int cv) {
   CvData& data = data_[static_cast<std::size_t>(cv)];
   const Index samples = data.measured.size();
   const double scale = spread(data.measured, data.known);
@@ -167,6 +168,16 @@ void Problem::make_nuisances(const ModelSpec& model, int cv) {
       add({}, column);
     }
   }
+  // What a bounded noise is there to show, others' noise would swallow as well.
+  if (noise_.bound == 0.0 && !recording().noise_before.empty())
+    for (const int other : recording().noise_before[static_cast<std::size_t>(cv)]) {
+      const CvData& theirs = this->data(other);
+      const MatrixXd before =
+          noise_before((theirs.measured - simulate(effects, other)).cwiseProduct(theirs.known),
+                       theirs.known, data.runs, noise_);
+      for (const auto& column : before.colwise())
+        if (column.squaredNorm() > 0.0) add({}, misfit.norm() / column.norm() * column);
+    }
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
     const ChannelSpec& channel = model.channels[c];
     if (channel.cv != cv) continue;
@@ -209,7 +220,7 @@ VectorXd Problem::with_shocks(const CvFit& state, const std::vector<Effect>& eff
 void Problem::settle(const std::vector<Effect>& effects, const Fit* fit) {
   const ModelSpec model = with(effects);
   for (int cv = 0; cv < model.cv_count; ++cv) {
-    make_nuisances(model, cv);
+    make_nuisances(model, effects, cv);
     CvData& data = data_[static_cast<std::size_t>(cv)];
     data.weights = rows_with_past(data.known, data.runs, noise_.order);
     if (fit)

@@ -21,7 +21,7 @@ struct Tolerances {
 
 /// A small error of one channel that is fitted beside any effect.
 struct SmallError {
-  int input = -1;                      ///< -1: level or initial state of a run
+  int input = -1;  ///< -1: level or initial state of a run, or what goes before in others' noise
   const Quantity* quantity = nullptr;  ///< of the effect that would make it a large one
   double sd = 0.0;                     ///< of the tolerance, in the form of that quantity
 };
@@ -138,7 +138,8 @@ class Problem {
   /// Innovations as they would be without the jumps in `effects`, at their onsets: a shock in the
   /// noise looks like a jump there, and must not lose what makes it one by being fitted.
   [[nodiscard]] Eigen::VectorXd with_shocks(const CvFit& state, const std::vector<Effect>& effects);
-  void make_nuisances(const ModelSpec& model, int cv);
+  /// Small errors about `model`, the one with `effects`.
+  void make_nuisances(const ModelSpec& model, const std::vector<Effect>& effects, int cv);
   /// The nuisances that no effect makes superfluous; the others are zero.
   [[nodiscard]] Eigen::MatrixXd nuisances(const std::vector<Effect>& effects, int cv) const;
   void update(CvFit& state, const Eigen::VectorXd& simulated,

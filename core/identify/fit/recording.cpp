@@ -51,6 +51,7 @@ Recording part(const Recording& recording, Index first, Index count) {
   result.start_s += ahead_s;
   if (recording.changed && *recording.changed > first && *recording.changed < first + count)
     result.changed = *recording.changed - first;
+  result.noise_before = recording.noise_before;
   return result;
 }
 

@@ -32,6 +32,8 @@ struct Recording {
   Eigen::MatrixXd setpoints = {};
   /// Row from which on some channel was seen to do something else (`change_row`).
   std::optional<Eigen::Index> changed = std::nullopt;
+  /// Per CV those whose noise goes before its own (`ChannelTests`); nothing where nobody has asked.
+  std::vector<std::vector<int>> noise_before = {};
 
   [[nodiscard]] Eigen::Index samples() const { return cvs.rows(); }
 };

@@ -33,6 +33,14 @@ VectorXd rows_with_past(const Eigen::Ref<const VectorXd>& known, const std::vect
   return rows;
 }
 
+double usual_sd(const Eigen::Ref<const VectorXd>& innovations,
+                const Eigen::Ref<const VectorXd>& weights) {
+  std::vector<double> sizes;
+  for (Index k = 0; k < innovations.size(); ++k)
+    if (weights(k) > 0.0) sizes.push_back(std::abs(innovations(k)));
+  return sizes.empty() ? 0.0 : median(sizes) / kMedian;
+}
+
 void reweigh(const Eigen::Ref<const VectorXd>& innovations, VectorXd& weights) {
   const Index rows = innovations.size();
   // The local s.d. at every kHalfWindow / 2 rows, between them linear.
@@ -48,14 +56,7 @@ void reweigh(const Eigen::Ref<const VectorXd>& innovations, VectorXd& weights) {
     scales.push_back(
         static_cast<Index>(window.size()) < kFewestInWindow ? 0.0 : median(window) / kMedian);
   }
-  double usual = 0.0;
-  {
-    window.clear();
-    for (Index k = 0; k < rows; ++k)
-      if (weights(k) > 0.0) window.push_back(std::abs(innovations(k)));
-    if (window.empty()) return;
-    usual = median(window) / kMedian;
-  }
+  const double usual = usual_sd(innovations, weights);
   if (!(usual > 0.0)) return;
   for (double& scale : scales)
     if (!(scale > kQuietest * usual)) scale = scale > 0.0 ? kQuietest * usual : usual;

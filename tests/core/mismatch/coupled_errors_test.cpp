@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/mismatch/calibration.hpp"
 #include "core/mismatch/mismatch_detector.hpp"
-#include "core/statistics/f_distribution.hpp"
 #include "tests/allocation_counter.hpp"
 #include "tests/core/channel_model.hpp"
 #include "tests/core/counter_noise.hpp"
@@ -223,32 +223,20 @@ TEST_CASE("what the errors of two CVs leave is what batch fits beside the noise'
   CHECK(said == Approx(expected).epsilon(0.02));
 }
 
-TEST_CASE("whether a CV's residual says something of another one is asked by F") {
-  // Expected: least squares by Eigen on all columns but the inputs', with and without the lags.
-  const Series plant;
-  ModelSpec none = plant.spec;
-  none.channels.clear();
-  const Rows rows(plant, none, 77);
-  CoupledErrors coupled(rows.shape);
-  for (int cv = 0; cv < 2; ++cv) {
-    const GivensQr& factor = rows.factors[static_cast<std::size_t>(cv)];
-    Eigen::MatrixXd all(Rows::kSamples - Rows::kFirst, 1 + 1 + 2 * 3);
-    for (Eigen::Index k = Rows::kFirst; k < Rows::kSamples; ++k) {
-      auto row = all.row(k - Rows::kFirst);
-      row(0) = rows.residuals(k, cv);
-      row(1) = 1.0;
-      for (int l = 1; l <= 3; ++l) {
-        row(1 + l) = rows.residuals(k - l, cv);
-        row(4 + l) = rows.residuals(k - l, 1 - cv);
-      }
-    }
-    const EstimateNoise noise = rows.noise(cv);
-    const double f = (left(all.leftCols(5)) - left(all)) / (3.0 * noise.block_variance);
-    CHECK(coupled.uncoupled_p_value(factor, noise, 1 - cv) ==
-          Approx(f_upper_tail(f, 3.0, noise.freedom)).epsilon(1e-6));
-  }
-  CHECK(coupled.uncoupled_p_value(rows.factors[0], rows.noise(0), 1) > 1e-3);
-  CHECK(coupled.uncoupled_p_value(rows.factors[1], rows.noise(1), 0) < 1e-12);
+// By hand, of a unit that three CVs of fit and two of another: rows, columns and blocks multiplied
+// out as the class says it goes to work.
+TEST_CASE("of a large unit fewer CVs are judged together, of a larger one none") {
+  const auto most = [](int inputs, int cvs) {
+    return CoupledErrors::most_cvs({inputs, cvs, 20, 8, {0.9}});
+  };
+  CHECK(most(3, 3) == 3);
+  CHECK(most(2, 1) == 1);
+  CHECK(most(10, 20) == 3);
+  CHECK(most(20, 20) == 2);
+  CHECK(most(40, 40) == 1);
+  const RegressionShape large{40, 40, 20, 8, {0.9}};
+  CHECK(CoupledErrors::work_of(large, 2) > 10.0 * CoupledErrors::work_of(large, 1) / 4.0);
+  CHECK(CoupledErrors::work_of(large, 2) > calibration::coupled_errors::kMostWork);
 }
 
 }  // namespace mpm::coupled_errors_test
