@@ -203,8 +203,6 @@ inline constexpr double kPerRotated = 2e-10;
 inline constexpr double kPerInverted = 1e-10;
 inline constexpr double kPerFitted = 4e-8;
 inline constexpr double kPerRanked = 1.3e-9;
-/// Turns that the fits of one evaluation take together where CVs are judged together. Chosen.
-inline constexpr double kCoupledTurns = 10.0;
 }  // namespace cost
 
 /// Samples that rank correlations are over, at most: sums of their squares stay whole numbers.

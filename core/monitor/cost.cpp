@@ -78,9 +78,11 @@ MonitorCost monitor_cost(const ModelSpec& spec, const MonitorSettings& settings)
   const double past =
       2.0 + derived.residual_order + static_cast<double>(derived.residual_poles.size());
   const int together = CoupledErrors::most_cvs(shape);
-  const double coupled =
-      together > 1 ? calibration::cost::kCoupledTurns * CoupledErrors::work_of(shape, together)
-                   : 0.0;
+  // Of all turns that may be taken half are, if all CVs are judged together; measured on units of
+  // three by three to ten by twenty (docs/validation.md, speed).
+  const double coupled = together > 1 ? 0.5 * calibration::coupled_errors::kTurns *
+                                            CoupledErrors::work_of(shape, together)
+                                      : 0.0;
   cost.seconds_alarmed =
       cost.seconds +
       cvs * memories *

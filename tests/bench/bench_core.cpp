@@ -29,6 +29,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double kLambda = 0.999;
 constexpr int kPool = 1024;  // different samples, then again from the first
 constexpr int kFrames = 4000;
+constexpr int kRemembered =
+    8000;  // samples: of fewer rows than it takes nothing older is forgotten
 
 double elapsed_s(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -68,10 +70,11 @@ class Signals {
       values_.col(k) = state;
     }
   }
-  [[nodiscard]] auto next() {
+  [[nodiscard]] Eigen::MatrixXd::ConstColXpr next() {
     at_ = at_ + 1 == kPool ? 0 : at_ + 1;
-    return values_.col(at_);
+    return now();
   }
+  [[nodiscard]] Eigen::MatrixXd::ConstColXpr now() const { return values_.col(at_); }
 
  private:
   Eigen::MatrixXd values_;
@@ -114,8 +117,8 @@ struct Channels {
   explicit Channels(const Size& size)
       : inputs(size.mvs, 1),
         residuals(size.cvs, 2),
-        test({size.mvs, size.cvs, 20, 8, {std::exp(-1.0 / 40.0)}}, {{0.9995, 0}, {0.998, 0}}, 100,
-             8, LinearModel(first_order_model(size))) {
+        test({size.mvs, size.cvs, 20, 8, {std::exp(-1.0 / 40.0)}}, {{0.9995, 0}, {0.998, 0}},
+             kRemembered, 8, LinearModel(first_order_model(size))) {
     while (test.memory(0).rows < 11 * test.shape().columns()) update();  // rows wait by now
     evaluate();
   }
@@ -126,6 +129,41 @@ struct Channels {
   void update() { test.update(inputs.next(), residuals.next()); }
 
   Signals inputs, residuals;
+  MismatchDetector test;
+};
+
+/// Noise that goes from each CV to the next one, of each of which one channel is wrong: all are
+/// judged together with others.
+struct Coupled {
+  explicit Coupled(const Size& size)
+      : inputs(size.mvs, 1),
+        noise(size.cvs, 2),
+        wrong(errors_of(first_order_model(size))),
+        test({size.mvs, size.cvs, 20, 8, {std::exp(-1.0 / 40.0)}}, {{1.0, 0}}, kRemembered, 8,
+             LinearModel(first_order_model(size))) {
+    constexpr int kRowsPerColumn = 16;
+    Eigen::VectorXd residuals = Eigen::VectorXd::Zero(size.cvs);
+    for (int k = 0; k < kRowsPerColumn * test.shape().columns(); ++k) {
+      for (int j = size.cvs - 1; j >= 0; --j)
+        residuals(j) = 0.7 * residuals(j) + 0.25 * residuals(j > 0 ? j - 1 : size.cvs - 1);
+      residuals += noise.next();
+      test.update(inputs.next(), residuals + wrong.output());
+      wrong.advance(inputs.now());
+    }
+    evaluate();
+  }
+  void evaluate() {
+    for (int j = 0; j < test.shape().cvs; ++j) test.evaluate(j);
+  }
+  static ModelSpec errors_of(ModelSpec spec) {
+    for (ChannelSpec& channel : spec.channels)
+      std::get<TransferFunction>(channel.dynamics).gain *=
+          channel.cv % spec.input_count == channel.input ? 1.0 : 0.0;
+    return spec;
+  }
+
+  Signals inputs, noise;
+  LinearModel wrong;
   MismatchDetector test;
 };
 
@@ -218,6 +256,9 @@ Step channel_update(const Size& size) {
 Step channel_evaluate(const Size& size) {
   return [channels = make<Channels>(size)] { channels->evaluate(); };
 }
+Step coupled_evaluate(const Size& size) {
+  return [coupled = make<Coupled>(size)] { coupled->evaluate(); };
+}
 Step givens_update(const Size& size) {
   return [factor = make<Factor>(columns_of(size), responses_of(size))] { factor->update(); };
 }
@@ -242,6 +283,8 @@ const std::map<std::string, std::function<Step()>>& cases() {
       {"channel_update_10x20", [] { return channel_update(kLarge); }},
       {"channel_evaluate_3x3", [] { return channel_evaluate(kSmall); }},
       {"channel_evaluate_10x20", [] { return channel_evaluate(kLarge); }},
+      {"coupled_evaluate_3x3", [] { return coupled_evaluate(kSmall); }},
+      {"coupled_evaluate_10x20", [] { return coupled_evaluate(kLarge); }},
       {"mpc_step_free", [] { return mpc_step(1.0); }},
       {"mpc_step_limited", [] { return mpc_step(0.02); }},
       {"monitor_push_3x3", [] { return monitor_push(); }},

@@ -38,6 +38,8 @@ OWN = [  # case of bench_core, seconds per round, what it is
     ("channel_evaluate_3x3", 0.1, "mismatch detector 3x3: evaluate"),
     ("channel_update_10x20", 0.1, "mismatch detector 10x20: update"),
     ("channel_evaluate_10x20", 0.2, "mismatch detector 10x20: evaluate"),
+    ("coupled_evaluate_3x3", 0.2, "mismatch detector 3x3: evaluate, all CVs judged together"),
+    ("coupled_evaluate_10x20", 2.0, "mismatch detector 10x20: evaluate, all CVs judged together"),
     ("monitor_push_3x3", 0.1, "whole monitor, Shell 3x3: one frame"),
     ("mpc_step_free", 0.1, "MPC, Shell 3x3: one step, no limit active"),
     ("mpc_step_limited", 0.1, "MPC, Shell 3x3: one step, limits active"),
