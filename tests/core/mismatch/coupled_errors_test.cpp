@@ -223,20 +223,24 @@ TEST_CASE("what the errors of two CVs leave is what batch fits beside the noise'
   CHECK(said == Approx(expected).epsilon(0.02));
 }
 
-// By hand, of a unit that three CVs of fit and two of another: rows, columns and blocks multiplied
-// out as the class says it goes to work.
+// Expected: two and three CVs of a plant's usual size take less than `kMostWork`; the work grows
+// with the cube of the inputs and of the CVs that are judged together.
 TEST_CASE("of a large unit fewer CVs are judged together, of a larger one none") {
-  const auto most = [](int inputs, int cvs) {
-    return CoupledErrors::most_cvs({inputs, cvs, 20, 8, {0.9}});
+  const auto shape = [](int inputs, int cvs) { return RegressionShape{inputs, cvs, 20, 8, {0.9}}; };
+  const auto most = [&](int inputs, int cvs) {
+    return CoupledErrors::most_cvs(shape(inputs, cvs));
   };
   CHECK(most(3, 3) == 3);
   CHECK(most(2, 1) == 1);
   CHECK(most(10, 20) == 3);
   CHECK(most(20, 20) == 2);
   CHECK(most(40, 40) == 1);
-  const RegressionShape large{40, 40, 20, 8, {0.9}};
-  CHECK(CoupledErrors::work_of(large, 2) > 10.0 * CoupledErrors::work_of(large, 1) / 4.0);
-  CHECK(CoupledErrors::work_of(large, 2) > calibration::coupled_errors::kMostWork);
+  CHECK(CoupledErrors::work_of(shape(20, 20), 2) < calibration::coupled_errors::kMostWork);
+  CHECK(CoupledErrors::work_of(shape(20, 20), 3) > calibration::coupled_errors::kMostWork);
+  const double doubled =
+      CoupledErrors::work_of(shape(40, 20), 2) / CoupledErrors::work_of(shape(20, 20), 2);
+  CHECK(doubled > 4.0);
+  CHECK(doubled < 8.0);
 }
 
 }  // namespace mpm::coupled_errors_test
