@@ -61,24 +61,24 @@ double measure(const Step& step, double seconds, int fewest) {
 /// Columns of autoregressive noise, pole 0.5.
 class Signals {
  public:
-  Signals(int count, std::uint64_t seed) : values_(count, kPool) {
+  Signals(int count, std::uint64_t seed, int samples = kPool) : values_(count, samples) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
     Eigen::VectorXd state = Eigen::VectorXd::Zero(count);
-    for (int k = 0; k < kPool; ++k) {
+    for (int k = 0; k < samples; ++k) {
       for (int i = 0; i < count; ++i) state(i) = 0.5 * state(i) + normal(random);
       values_.col(k) = state;
     }
   }
   [[nodiscard]] Eigen::MatrixXd::ConstColXpr next() {
-    at_ = at_ + 1 == kPool ? 0 : at_ + 1;
+    at_ = at_ + 1 == values_.cols() ? 0 : at_ + 1;
     return now();
   }
   [[nodiscard]] Eigen::MatrixXd::ConstColXpr now() const { return values_.col(at_); }
 
  private:
   Eigen::MatrixXd values_;
-  int at_ = 0;
+  Eigen::Index at_ = 0;
 };
 
 struct Size {
@@ -113,10 +113,11 @@ ModelSpec first_order_model(const Size& size) {
   return spec;
 }
 
+/// Of samples that came before a test would find more than noise.
 struct Channels {
   explicit Channels(const Size& size)
-      : inputs(size.mvs, 1),
-        residuals(size.cvs, 2),
+      : inputs(size.mvs, 1, kRemembered),
+        residuals(size.cvs, 2, kRemembered),
         test({size.mvs, size.cvs, 20, 8, {std::exp(-1.0 / 40.0)}}, {{0.9995, 0}, {0.998, 0}},
              kRemembered, 8, LinearModel(first_order_model(size))) {
     while (test.memory(0).rows < 11 * test.shape().columns()) update();  // rows wait by now
@@ -136,8 +137,8 @@ struct Channels {
 /// judged together with others.
 struct Coupled {
   explicit Coupled(const Size& size)
-      : inputs(size.mvs, 1),
-        noise(size.cvs, 2),
+      : inputs(size.mvs, 1, kRemembered),
+        noise(size.cvs, 2, kRemembered),
         wrong(errors_of(first_order_model(size))),
         test({size.mvs, size.cvs, 20, 8, {std::exp(-1.0 / 40.0)}}, {{1.0, 0}}, kRemembered, 8,
              LinearModel(first_order_model(size))) {
