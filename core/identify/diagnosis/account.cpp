@@ -12,6 +12,7 @@
 #include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/statement.hpp"
+#include "core/identify/diagnosis/undecided.hpp"
 #include "core/identify/search/walk_odds.hpp"
 
 namespace mpm {
@@ -19,13 +20,6 @@ namespace {
 
 constexpr const char* kWanders =
     "what is left of the CV wanders, and its steps from sample to sample do not bear it out";
-
-/// Whether it says that a part of the plant is not as the model has it; what a measured signal or a
-/// set-point does accuses none.
-bool accuses(const Effect& effect) {
-  const Cause& cause = cause_of(effect);
-  return effect.place.aux < 0 && (cause.acts_through_channels() || cause.is_input_block());
-}
 
 /// Whether an answer to a signal may be no more than a CV that wanders beside one that does.
 bool may_be_a_walk(Problem& problem, const SearchResult& found, std::size_t answer,
@@ -59,10 +53,11 @@ const char* why_it_goes(const Effect& effect, const Problem& problem, const Find
   const Cause& cause = cause_of(effect);
   if (effect.certain || causes::is_unnamed(cause)) return nullptr;
   if (fate == Fate::kRefused) return why_not_in_model(fate);
-  if (fate == Fate::kNoBetter && accuses(effect) && !cause.acts_through_channels())
+  if (fate == Fate::kNoBetter && accuses(subject_of(effect)) && !cause.acts_through_channels())
     return why_not_in_model(fate);
   if (cause.contradicted(effect, problem)) return "the measurements themselves speak against it";
   if (cause.may_be_nothing(finding)) return "its interval includes that it does nothing";
+  if (is_guess(finding)) return "other causes are as probable: the data do not decide between them";
   if (const char* why = why_not_step(effect, problem.model(), problem.recording())) return why;
   if (silences(effect, finding, problem, judges))
     return "a CV that its controller holds against a disturbance looks as if it hardly answered";
@@ -88,9 +83,10 @@ bool own_setpoint_is_simpler(const SearchResult& found, std::size_t accusation, 
                              const ChannelTests& given) {
   const int cv = found.named[accusation].effect.place.cv;
   if (cv < 0 || !own_setpoint_undecided(given, cv)) return false;
-  const auto accusations = std::count_if(
-      found.named.begin(), found.named.end(),
-      [cv](const Named& named) { return accuses(named.effect) && named.effect.place.cv == cv; });
+  const auto accusations =
+      std::count_if(found.named.begin(), found.named.end(), [cv](const Named& named) {
+        return accuses(subject_of(named.effect)) && named.effect.place.cv == cv;
+      });
   return says < Confirmation::kNothing || accusations > 1;
 }
 
@@ -133,7 +129,7 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
   for (std::size_t i = 0; i < tested.size(); ++i) {
     const Effect& effect = found.named[i].effect;
     tested[i] = selection.fates[i] == Fate::kRepaired ||
-                (accuses(effect) && !causes::is_unnamed(cause_of(effect)));
+                (accuses(subject_of(effect)) && !causes::is_unnamed(cause_of(effect)));
   }
   const auto concerned = [&](std::size_t i) {
     const Effect& effect = found.named[i].effect;
@@ -167,18 +163,20 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
     if (says == Confirmation::kNone && !(overwhelming && (outside || sticks)) &&
         !(sticks && swings_by_itself(effect, judges)))
       reasons[i] = "with it the test of the channels sees no less wrong";
-    else if (accuses(effect) &&
+    else if (accuses(subject_of(effect)) &&
              measured_otherwise(effect, problem, findings[i], witness.given_nonlinear))
       reasons[i] = "the test of the channels measures another gain, and sees nothing wrong";
     else if (says == Confirmation::kLess && !outside)
       reasons[i] = "feedback moves its input, and the test of the channels still sees much wrong";
-    else if (accuses(effect) && says < Confirmation::kNothing && selection.explains[i] < 0.0)
+    else if (accuses(subject_of(effect)) && says < Confirmation::kNothing &&
+             selection.explains[i] < 0.0)
       reasons[i] =
           "with it the free run of unseen samples is worse, and the test of the channels "
           "still sees something wrong";
-    else if (accuses(effect) && own_setpoint_is_simpler(found, i, says, witness.given))
+    else if (accuses(subject_of(effect)) && own_setpoint_is_simpler(found, i, says, witness.given))
       reasons[i] = kOwnSetpoint;
-    else if (accuses(effect) && follows_setpoint(problem, found, tested, i, judges, witness))
+    else if (accuses(subject_of(effect)) &&
+             follows_setpoint(problem, found, tested, i, judges, witness))
       reasons[i] =
           "without it the CV follows a set-point, and better than any error of its channels";
     else if (selection.fates[i] == Fate::kNoBetter &&

@@ -118,6 +118,10 @@ inline constexpr double kDiverged = 1e100;
 inline constexpr double kHardlyAnswers = 0.25;
 inline constexpr double kNoFeedback = 0.95;
 
+/// An accusation that is less probable than even is a guess; not quite even, for where something
+/// acts alike without being a cause (Cause::alike) no odds are better than that.
+inline constexpr double kGuess = 0.49;
+
 /// What takes less than this share off the errors of predictions is not worth an accusation.
 inline constexpr double kLeastRepair = 0.03;
 /// What takes at least this share off the errors of predictions, beyond doubt, needs no other test.
