@@ -28,7 +28,7 @@ double Materiality::beyond(const Estimate& estimate, double limit, double freedo
 
 Materiality::Materiality(int block)
     : reduction_(std::max(block, kUsualErrors)),
-      beside_allowed_(Eigen::VectorXd::Zero(block)),
+      beside_allowed_(Eigen::VectorXd::Zero(std::max(block, kUsualErrors))),
       usual_directions_(Eigen::MatrixXd::Zero(kUsualErrors, error_column::kCount)),
       usual_estimate_(Eigen::VectorXd::Zero(kUsualErrors)) {}
 

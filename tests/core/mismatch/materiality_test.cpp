@@ -162,5 +162,27 @@ TEST_CASE("few rows and forgetting make the estimates noisier") {
         Approx(variance * (1.0 + 0.26 * 0.05 + 1.0 * 0.0025)).epsilon(1e-12));
 }
 
+// Judged together with others, a channel is as many numbers as there are usual errors, however few
+// coefficients it has: those of a channel that has settled after three samples are fewer.
+TEST_CASE("a channel of fewer coefficients than usual errors has room for these") {
+  constexpr int kFew = 3;
+  static_assert(kFew < kUsualErrors);
+  Materiality materiality(kFew);
+  UsualErrorSpace space(kUsualErrors);
+  Eigen::MatrixXd d = 20.0 * Eigen::MatrixXd::Identity(kUsualErrors, error_column::kCount);
+  for (int c = 0; c < 3; ++c) {
+    Eigen::VectorXd column = d.col(c);
+    space.add(column);
+  }
+  const Eigen::VectorXd estimate = d * Eigen::Vector4d(0.3, 0.0, 0.0, 0.0);
+  const EstimateNoise noise{1.0, 1.0, 80.0};
+  ChannelEvidence evidence;
+  evidence.dead_time = 5.0;
+  const double left = materiality.fit(estimate, d, noise, evidence);
+  materiality.judge(left, estimate, d, space, {0.05, 0.10, 0.5}, noise, evidence);
+  REQUIRE(materiality.beside_allowed().size() >= kUsualErrors);
+  CHECK(evidence.gain_error.value == Approx(0.3));
+}
+
 }  // namespace
 }  // namespace mpm::materiality_test
