@@ -47,9 +47,9 @@ bool silences(const Effect& effect, const Finding& finding, const Problem& probl
   });
 }
 
-/// Why a finding goes, for a person; null where it stays.
-const char* why_it_goes(const Effect& effect, const Problem& problem, const Finding& finding,
-                        Fate fate, const Judges& judges) {
+/// Why a finding goes, for a person; null where it stays. `all`: what was found.
+const char* why_it_goes(const Effect& effect, const std::vector<Named>& all, const Problem& problem,
+                        const Finding& finding, Fate fate, const Judges& judges) {
   const Cause& cause = cause_of(effect);
   if (effect.certain || causes::is_unnamed(cause)) return nullptr;
   if (fate == Fate::kRefused) return why_not_in_model(fate);
@@ -58,7 +58,7 @@ const char* why_it_goes(const Effect& effect, const Problem& problem, const Find
   if (cause.contradicted(effect, problem)) return "the measurements themselves speak against it";
   if (cause.may_be_nothing(finding)) return "its interval includes that it does nothing";
   if (is_guess(finding)) return "other causes are as probable: the data do not decide between them";
-  if (const char* why = why_not_step(effect, problem.model(), problem.recording())) return why;
+  if (const char* why = why_not_step(effect, all, problem.model(), problem.recording())) return why;
   if (silences(effect, finding, problem, judges))
     return "a CV that its controller holds against a disturbance looks as if it hardly answered";
   return judges.compressed.may_have_made(finding) ? kMadeByCompression : nullptr;
@@ -202,10 +202,10 @@ Account keep(Explained explained, const Judges& judges, const Witness& witness,
     for (std::size_t i = 0; i < before.named.size(); ++i) {
       const Effect& effect = before.named[i].effect;
       Finding& finding = findings.emplace_back(to_finding(before, i, problem));
-      const char* reason =
-          may_be_a_walk(problem, before, i, settings)
-              ? kWanders
-              : why_it_goes(effect, problem, finding, kept.selection.fates[i], judges);
+      const char* reason = may_be_a_walk(problem, before, i, settings)
+                               ? kWanders
+                               : why_it_goes(effect, before.named, problem, finding,
+                                             kept.selection.fates[i], judges);
       out.push_back(reason != nullptr);
       finding.repaired = false;
       finding.refused =

@@ -94,7 +94,8 @@ inline constexpr int kMostLate = 2;
 /// moves by chance (2^-8 is one of 256).
 inline constexpr double kSetpointExplains = 0.3;
 inline constexpr int kFewestSetpointMoves = 8;
-/// A CV's step may be its loop's answer to a set-point that moved so much of it. Chosen.
+/// A CV's step may be its loop's answer to a set-point that moved so much of it, but where that
+/// moved so far kFewestSetpointMoves times more, and nothing came of it. Chosen.
 inline constexpr double kAnswersSetpoint = 0.25;
 
 /// An error of one channel that the calibrated test finds too small to matter is believed to be

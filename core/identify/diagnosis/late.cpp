@@ -69,7 +69,7 @@ Late find_late(const ModelSpec& model, int model_inputs, const Recording& record
     Finding finding = to_finding(found, i, problem);
     if (cause.may_be_nothing(finding)) continue;
     finding.repaired = false;
-    const char* other = why_not_step(effect, model, recording);
+    const char* other = why_not_step(effect, found.named, model, recording);
     finding.refused = other != nullptr ? other : kNotJudged;
     (other != nullptr ? late.doubted : late.findings).push_back(std::move(finding));
   }

@@ -24,6 +24,37 @@ Eigen::Index rows_of_answer(const ModelSpec& model, int cv) {
   return static_cast<Eigen::Index>(std::min(std::ceil(quickest / model.sample_time_s), kMostRows));
 }
 
+/// How far the CV's set-point has moved at a row since it last could do nothing to the CV; NaN
+/// where unknown. `rows`: of an answer.
+double moved_before(const Recording& signals, int cv, Eigen::Index row, Eigen::Index rows) {
+  return signals.setpoints(row, cv) -
+         signals.setpoints(std::max<Eigen::Index>(0, row - 1 - rows), cv);
+}
+
+/// Whether a CV steps just after its set-point, the same way, and by no more than that may do.
+bool comes_with_setpoint(const Effect& effect, const ModelSpec& model, const Recording& signals) {
+  const int cv = effect.place.cv;
+  if (!effect.edit->jumps() || effect.onset == 0 || cv < 0 || cv >= signals.setpoints.cols())
+    return false;
+  const double moved = moved_before(signals, cv, effect.onset, rows_of_answer(model, cv));
+  const double size = effect.coordinates.front().value;
+  return moved * size > 0.0 && std::abs(moved) > kAnswersSetpoint * std::abs(size);
+}
+
+/// How often the set-point of an effect's CV moved by more than `least` at other times.
+int other_moves(const Effect& effect, const ModelSpec& model, const Recording& signals,
+                double least) {
+  const int cv = effect.place.cv;
+  const Eigen::Index rows = rows_of_answer(model, cv);
+  int count = 0;
+  for (Eigen::Index k = 1; k < signals.setpoints.rows(); ++k) {
+    if (!(std::abs(moved_before(signals, cv, k, rows)) > least)) continue;
+    if (k + rows < effect.onset || k > effect.onset) ++count;
+    k += rows;  // the same move
+  }
+  return count;
+}
+
 bool is_own(const Effect& effect, int first) { return effect.place.aux == first + effect.place.cv; }
 
 }  // namespace
@@ -64,18 +95,20 @@ const char* why_not_setpoint(const Named& named, bool alone, int moves, const Ch
              : nullptr;
 }
 
-const char* why_not_step(const Effect& effect, const ModelSpec& model, const Recording& signals) {
-  const int cv = effect.place.cv;
-  if (!effect.edit->jumps() || effect.onset == 0 || cv >= signals.setpoints.cols()) return nullptr;
-  const Eigen::Index before =
-      std::max<Eigen::Index>(0, effect.onset - 1 - rows_of_answer(model, cv));
-  const double moved =
-      signals.setpoints(effect.onset, cv) - signals.setpoints(before, cv);  // NaN where unknown
-  const double size = effect.coordinates.front().value;
-  return moved * size > 0.0 && std::abs(moved) > kAnswersSetpoint * std::abs(size)
-             ? "the CV's set-point stepped just before, the same way: its loop's answer, as of a "
-               "valve that slips, looks the same"
-             : nullptr;
+const char* why_not_step(const Effect& effect, const std::vector<Named>& all,
+                         const ModelSpec& model, const Recording& signals) {
+  if (!comes_with_setpoint(effect, model, signals)) return nullptr;
+  const auto coming = std::count_if(all.begin(), all.end(), [&](const Named& named) {
+    return named.effect.place == effect.place && comes_with_setpoint(named.effect, model, signals);
+  });
+  const double size = std::abs(effect.coordinates.front().value);
+  const bool by_chance =
+      coming <= 1 &&
+      other_moves(effect, model, signals, kAnswersSetpoint * size) >= kFewestSetpointMoves;
+  return by_chance
+             ? nullptr
+             : "the CV's set-point stepped just before, the same way: its loop's answer, as of "
+               "a valve that slips, looks the same";
 }
 
 void add_own_setpoint(const Effect& effect, const ChannelTests& tests, int first,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "core/identify/causes/finding.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
@@ -38,10 +39,11 @@ inline constexpr const char* kOwnSetpoint =
                                            const ChannelTests& tests, int first);
 
 /// Why a step of a CV is no disturbance, for a person; null where it may be one. `signals`: what
-/// the problem was made of, row for row. A step just after the CV's set-point's, and the same way,
-/// is the loop's answer to it: a valve that sticks slips so.
-[[nodiscard]] const char* why_not_step(const Effect& effect, const ModelSpec& model,
-                                       const Recording& signals);
+/// the problem was made of, row for row; `all`: what was found. A step just after the CV's
+/// set-point's, and the same way, is the loop's answer to it: a valve that sticks slips so. But an
+/// answer comes more than once: one step alone that comes with one move of many came so by chance.
+[[nodiscard]] const char* why_not_step(const Effect& effect, const std::vector<Named>& all,
+                                       const ModelSpec& model, const Recording& signals);
 
 /// Where the test does not decide: the own set-point becomes a rival of what is laid to channels of
 /// the CV, as probable beside it as before any data, and takes its share of the confidence.

@@ -102,7 +102,7 @@ TEST_CASE("a step that comes with its own set-point's, and the same way, is no d
     Effect effect = of(causes::step_disturbance(), {0});
     effect.onset = onset;
     effect.coordinates = {{.value = size}};
-    return why_not_step(effect, model, signals) != nullptr;
+    return why_not_step(effect, {Named{effect, 0.0, 0.0, {}}}, model, signals) != nullptr;
   };
   CHECK_FALSE(doubted(2.0, kStep + 5));  // no set-point
   signals.setpoints = MatrixXd::Zero(200, 1);
@@ -117,6 +117,32 @@ TEST_CASE("a step that comes with its own set-point's, and the same way, is no d
   CHECK_FALSE(doubted(2.0, 0));
   signals.setpoints.row(kStep - 11).setConstant(std::nan(""));
   CHECK_FALSE(doubted(2.0, kStep));  // it is not known where it was
+}
+
+// Nine steps of 1, 50 rows apart: eight besides the one that it comes with.
+TEST_CASE("of a set-point that moves often one step comes with a move by chance, two do not") {
+  constexpr Index kLong = 500, kHold = 50;
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  Recording signals = test::recording_of(VectorXd::Zero(kLong), VectorXd::Zero(kLong));
+  signals.setpoints = MatrixXd::Zero(kLong, 1);
+  for (Index k = 0; k < kLong; ++k) signals.setpoints(k, 0) = static_cast<double>(k / kHold % 2);
+  const auto step_at = [&](Index onset, double size) {
+    Effect effect = of(causes::step_disturbance(), {0});
+    effect.onset = onset;
+    effect.coordinates = {{.value = size}};
+    return Named{effect, 0.0, 0.0, {}};
+  };
+  const Named first = step_at(3 * kHold + 4, 2.0), second = step_at(5 * kHold + 2, 2.0);
+  const auto doubted = [&](const std::vector<Named>& all) {
+    return why_not_step(first.effect, all, model, signals) != nullptr;
+  };
+  CHECK_FALSE(doubted({first}));
+  CHECK(doubted({first, second}));
+  CHECK_FALSE(doubted({first, step_at(5 * kHold + 20, 2.0)}));  // it came long after
+  CHECK_FALSE(doubted({first, step_at(4 * kHold + 2, 2.0)}));   // the other way
+  signals.setpoints.bottomRows(kHold).setOnes();                // and in the end not back again
+  signals.setpoints.middleRows(kLong - 2 * kHold, kHold).setOnes();
+  CHECK(doubted({first}));
 }
 
 TEST_CASE("undecided, a CV's own set-point takes its share of the confidence in a channel") {
