@@ -32,25 +32,34 @@ std::vector<double> levels_of(std::vector<double> values, double tie) {
   return values;
 }
 
+/// Where another value than the last known one stands; the first that is known, too.
+std::vector<Index> reading_rows(const Eigen::Ref<const VectorXd>& values) {
+  std::vector<Index> rows;
+  double last = 0.0;
+  for (Index k = 0; k < values.size(); ++k) {
+    if (!std::isfinite(values(k)) || (!rows.empty() && values(k) == last)) continue;
+    rows.push_back(k);
+    last = values(k);
+  }
+  return rows;
+}
+
+/// By how many rows a reading may come late.
+Index jitter_of(Index every) { return every >= readings::kJitterFrom ? 1 : 0; }
+
 }  // namespace
 
 Index reading_interval(const Eigen::Ref<const VectorXd>& values) {
+  const std::vector<Index> rows = reading_rows(values);
   std::vector<Index> spacings;
-  Index last_row = -1;
-  double last = 0.0;
-  for (Index k = 0; k < values.size(); ++k) {
-    if (!std::isfinite(values(k)) || (last_row >= 0 && values(k) == last)) continue;
-    if (last_row >= 0) spacings.push_back(k - last_row);
-    last_row = k;
-    last = values(k);
-  }
+  for (std::size_t i = 1; i < rows.size(); ++i) spacings.push_back(rows[i] - rows[i - 1]);
   if (spacings.size() < readings::kFewest) return 0;
   const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
   std::nth_element(spacings.begin(), middle, spacings.end());
   const Index every = *middle;
   if (every < 2) return 0;
   // Two readings that are equal, and one that is missing, make a multiple.
-  const Index jitter = every >= readings::kJitterFrom ? 1 : 0;
+  const Index jitter = jitter_of(every);
   const auto regular = std::count_if(spacings.begin(), spacings.end(), [&](Index spacing) {
     const Index nearest = std::max<Index>(1, (spacing + every / 2) / every) * every;
     return std::abs(spacing - nearest) <= jitter;
@@ -58,6 +67,26 @@ Index reading_interval(const Eigen::Ref<const VectorXd>& values) {
   return static_cast<double>(regular) >= readings::kRegular * static_cast<double>(spacings.size())
              ? every
              : 0;
+}
+
+std::optional<Index> reading_offset(const Eigen::Ref<const VectorXd>& values, Index every) {
+  std::vector<Index> rows = reading_rows(values);
+  if (rows.size() < 2) return std::nullopt;
+  rows.erase(rows.begin());  // what stands at first was read before
+  std::vector<std::size_t> at(static_cast<std::size_t>(every), 0);
+  for (const Index row : rows) ++at[static_cast<std::size_t>(row % every)];
+  // The latest of those that belong together, so that none is missed.
+  const Index jitter = jitter_of(every);
+  const auto count = [&](Index row) { return at[static_cast<std::size_t>(row % every)]; };
+  Index best = 0;
+  std::size_t most = 0;
+  for (Index last = 0; last < every; ++last) {
+    const std::size_t all = count(last) + (jitter > 0 ? count(last + every - jitter) : 0);
+    if (count(last) > 0 && all > most) most = all, best = last;
+  }
+  const bool regular =
+      static_cast<double>(most) >= readings::kRegular * static_cast<double>(rows.size());
+  return regular ? std::optional(best) : std::nullopt;
 }
 
 HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {

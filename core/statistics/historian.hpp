@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace mpm {
 
@@ -29,6 +30,12 @@ struct HistorianTraits {
 
 /// `read_every` of a column.
 [[nodiscard]] Eigen::Index reading_interval(const Eigen::Ref<const Eigen::VectorXd>& values);
+
+/// Of a column with one reading in `every` rows: the row, 0 .. every - 1, where its cycle begins:
+/// at row + k * every the k-th reading is there, new or no more than a row old. Nothing where the
+/// readings keep to no such cycle.
+[[nodiscard]] std::optional<Eigen::Index> reading_offset(
+    const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index every);
 
 /// Whether what was lost is no longer small beside what the signal does, so that no cause can be
 /// told from it: half of the rows were drawn by the historian, or a deadband or a quantum is more

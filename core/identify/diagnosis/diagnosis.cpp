@@ -26,6 +26,7 @@
 #include "core/identify/evidence/outside_movement.hpp"
 #include "core/identify/evidence/unanswered_pulses.hpp"
 #include "core/identify/fit/channel_edit.hpp"
+#include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/split.hpp"
 #include "core/statistics/readback.hpp"
@@ -269,9 +270,13 @@ bool runs_away(const ModelSpec& model, const Recording& recording) {
   return false;
 }
 
+/// Whether an input is given at every sample, or as means of several: what is bent there is no mean
+/// of what bends them.
+enum class InputRows { kEach, kMeans };
+
 /// All of diagnose() but for giving up. `settings.progress` is there and throws.
 Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
-              const DiagnosisSettings& settings) {
+              const DiagnosisSettings& settings, InputRows inputs = InputRows::kEach) {
   Diagnosis diagnosis;
   const ModelSpec base = in_channels(given);
   const Recording measured =
@@ -311,8 +316,11 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   search_settings.max_findings = settings.max_findings;
   search_settings.threads = settings.threads;
   search_settings.progress = settings.progress;
-  search_settings.may_name =
-      nameable(model, {settings.mv_count, base.input_count, aux}, tests, by_monitor, outside);
+  search_settings.may_name = [may_name = nameable(model, {settings.mv_count, base.input_count, aux},
+                                                  tests, by_monitor, outside),
+                              inputs](const Effect& effect) {
+    return may_name(effect) && (inputs == InputRows::kEach || !cause_of(effect).is_curve());
+  };
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
   const Judges judges{unseen, aux,
@@ -412,27 +420,76 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   return diagnosis;
 }
 
-/// Without the CVs that are read only now and then.
-Diagnosis run_those_measured(const ModelSpec& given, const Recording& recording,
-                             const Recording* validation, const DiagnosisSettings& settings) {
-  const std::vector<int> cvs = read_at_every_sample(recording);
-  if (static_cast<int>(cvs.size()) == given.cv_count)
+/// Whether a part can be judged by so many rows at so long a sample time.
+bool can_judge(const ModelSpec& model, const Recording& recording) {
+  return recording.samples() >= needed_samples(model) && holds_at_any_sample_time(model);
+}
+
+/// One after the other those that are read in the same cycle.
+Diagnosis run_by_readings(const ModelSpec& given, const Recording& recording,
+                          const Recording* validation, const DiagnosisSettings& settings) {
+  const std::vector<Readings> all = readings_of(recording);
+  if (static_cast<int>(all.front().cvs.size()) == given.cv_count)
     return run(given, recording, validation, settings);
-  Diagnosis diagnosis;
-  diagnosis.samples = recording.samples();
-  diagnosis.extended = given;
-  diagnosis.reason = kReadSeldom;
-  if (cvs.empty()) return diagnosis;
   const ModelSpec base = in_channels(given);
-  std::optional<Recording> unseen;
-  if (validation != nullptr) unseen = of_cvs(*validation, cvs);
-  diagnosis = run(of_cvs(base, cvs), of_cvs(recording, cvs), unseen ? &*unseen : nullptr, settings);
-  to_whole(base, recording, validation, cvs, diagnosis);
-  diagnosis.extended = in_form_of(given, base, std::move(diagnosis.extended));
-  if (diagnosis.verdict == DiagnosisVerdict::kMatch)  // of the others
-    diagnosis.verdict = DiagnosisVerdict::kUndetermined;
-  if (diagnosis.reason.empty()) diagnosis.reason = kOneReadSeldom;
-  return diagnosis;
+  const Recorded data{recording, validation};
+  std::optional<Diagnosis> whole;
+  DiagnosisVerdict verdict = DiagnosisVerdict::kMatch;
+  std::string reason;
+  const auto take = [&](const Readings& readings, const ModelSpec& model, const Recording& rows,
+                        const Recording* unseen, double share_before) {
+    DiagnosisSettings of_part = settings;
+    of_part.progress = [&](double share) {
+      const auto parts = static_cast<double>(all.size());
+      return settings.progress(share_before + share / parts);
+    };
+    Diagnosis part = run(model, rows, unseen, of_part,
+                         readings.every == 1 ? InputRows::kEach : InputRows::kMeans);
+    if (!whole)
+      whole = unjudged(base, data,
+                       validation != nullptr ? recording.samples()
+                       : readings.every == 1 && part.fit_samples > 0
+                           ? part.fit_samples
+                           : fitted_rows(recording, settings.fit_share));
+    if (part.verdict == DiagnosisVerdict::kMismatch || verdict == DiagnosisVerdict::kMatch)
+      verdict = part.verdict;
+    if (reason.empty()) reason = part.reason;
+    take_in(base, data, readings, std::move(part), *whole);
+  };
+  bool all_judged = true;
+  double share = 0.0;
+  for (const Readings& readings : all) {
+    if (readings.cvs.empty()) continue;
+    const ModelSpec model = of_readings(base, readings);
+    const Recording rows = of_readings(base, recording, readings);
+    std::optional<Recording> unseen;
+    if (validation != nullptr)
+      if (const auto there = readings_in(*validation, readings))
+        unseen = of_readings(base, *validation, *there);
+    const bool known = validation == nullptr || unseen;
+    if (known && (readings.every == 1 || can_judge(model, rows)))
+      take(readings, model, rows, unseen ? &*unseen : nullptr, share);
+    else
+      all_judged = false;
+    share += 1.0 / static_cast<double>(all.size());
+  }
+  std::size_t cvs = 0;
+  for (const Readings& readings : all) cvs += readings.cvs.size();
+  all_judged = all_judged && static_cast<int>(cvs) == given.cv_count;
+  const char* unread = all.front().cvs.empty() ? kReadSeldom : kOneReadSeldom;
+  if (!whole) {
+    Diagnosis diagnosis;
+    diagnosis.samples = recording.samples();
+    diagnosis.extended = given;
+    diagnosis.reason = unread;
+    return diagnosis;
+  }
+  if (!all_judged && verdict == DiagnosisVerdict::kMatch) verdict = DiagnosisVerdict::kUndetermined;
+  if (!all_judged && reason.empty()) reason = unread;
+  whole->verdict = verdict;
+  whole->reason = reason;
+  whole->extended = in_form_of(given, base, std::move(whole->extended));
+  return *whole;
 }
 
 }  // namespace
@@ -456,7 +513,7 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
   bool given_up = false;
   settings.progress = or_give_up(asked.progress, given_up);
   try {
-    return run_those_measured(given, recording, validation, settings);
+    return run_by_readings(given, recording, validation, settings);
   } catch (const GivenUp&) {
     Diagnosis diagnosis;
     diagnosis.reason = "stopped";

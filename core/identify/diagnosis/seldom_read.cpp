@@ -1,9 +1,11 @@
 #include "core/identify/diagnosis/seldom_read.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
+#include <optional>
 #include <utility>
 
+#include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/statistics/historian.hpp"
 
@@ -39,20 +41,20 @@ std::vector<Item> items_of(const std::vector<Item>& all, const std::vector<int>&
   return some;
 }
 
-/// Those of the whole that the part does not have, then the part's.
+/// Puts the part's in the place of those that the whole has of these CVs; `inputs`: where each of
+/// the part's inputs is in the whole.
 template <class Item>
-std::vector<Item> items_within(const std::vector<Item>& whole, const std::vector<Item>& part,
-                               const std::vector<int>& cvs) {
-  std::vector<Item> all;
-  for (const Item& item : whole)
-    if (place_in(cvs, item.cv) < 0) all.push_back(item);
-  for (const Item& item : part) {
-    all.push_back(item);
-    all.back().cv = cvs[static_cast<std::size_t>(item.cv)];
+void put_in(const std::vector<Item>& part, const std::vector<int>& cvs,
+            const std::vector<int>& inputs, std::vector<Item>& whole) {
+  std::erase_if(whole, [&](const Item& item) { return place_in(cvs, item.cv) >= 0; });
+  for (Item item : part) {
+    item.cv = cvs[static_cast<std::size_t>(item.cv)];
+    if constexpr (requires { item.input; })
+      item.input = inputs[static_cast<std::size_t>(item.input)];
+    whole.push_back(std::move(item));
   }
-  std::stable_sort(all.begin(), all.end(),
+  std::stable_sort(whole.begin(), whole.end(),
                    [](const Item& a, const Item& b) { return a.cv < b.cv; });
-  return all;
 }
 
 class Lift {
@@ -81,20 +83,70 @@ class Lift {
   int aux_;
 };
 
-/// Free runs of the whole model, those of the part's CVs as the part has them.
-MatrixXd runs_within(const MatrixXd& whole, const MatrixXd& part, const std::vector<int>& cvs) {
-  MatrixXd all = whole;
-  for (std::size_t i = 0; i < cvs.size(); ++i) all.col(cvs[i]) = part.col(static_cast<Index>(i));
-  return all;
+/// With the aux signals that a model takes as inputs, and no others.
+Recording with_inputs(const Recording& recording, const std::vector<int>& new_inputs) {
+  Recording result = recording;
+  result.aux.resize(recording.samples(), static_cast<Index>(new_inputs.size()));
+  for (std::size_t i = 0; i < new_inputs.size(); ++i)
+    result.aux.col(static_cast<Index>(i)) = recording.aux.col(new_inputs[i]);
+  return result;
+}
+
+/// Free runs of these CVs on all rows, in the numbers of the whole.
+void run_again(const Extended& extended, const Recording& recording, const std::vector<int>& cvs,
+               MatrixXd& runs) {
+  const Recording given = with_inputs(recording, extended.new_inputs);
+  Simulator simulator(given);
+  for (const int cv : cvs) runs.col(cv) = free_run(simulator, extended.model, cv);
+}
+
+template <class Items>
+void append(Items items, Items& to) {
+  to.insert(to.end(), std::make_move_iterator(items.begin()), std::make_move_iterator(items.end()));
+}
+
+/// Where each run's cycle begins that a CV is read in; nothing where it keeps to none.
+std::optional<std::vector<Index>> offsets_of(const Recording& recording, int cv, Index every) {
+  std::vector<Index> offsets;
+  for (const auto& [first, count] : runs_of(recording)) {
+    const std::optional<Index> offset =
+        reading_offset(recording.cvs.col(cv).segment(first, count), every);
+    if (!offset) return std::nullopt;
+    offsets.push_back(*offset);
+  }
+  return offsets;
 }
 
 }  // namespace
 
-std::vector<int> read_at_every_sample(const Recording& recording) {
-  std::vector<int> cvs;
-  for (Index cv = 0; cv < recording.cvs.cols(); ++cv)
-    if (reading_interval(recording.cvs.col(cv)) == 0) cvs.push_back(static_cast<int>(cv));
-  return cvs;
+std::vector<Readings> readings_of(const Recording& recording) {
+  std::vector<Readings> all = {{1, std::vector<Index>(runs_of(recording).size(), 0), {}}};
+  for (int cv = 0; cv < recording.cvs.cols(); ++cv) {
+    const Index every = std::max<Index>(1, reading_interval(recording.cvs.col(cv)));
+    const auto offsets = every > 1 ? offsets_of(recording, cv, every) : all.front().offsets;
+    if (!offsets) continue;
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Readings& readings) {
+      return readings.every == every && readings.offsets == *offsets;
+    });
+    if (same != all.end())
+      same->cvs.push_back(cv);
+    else
+      all.push_back({every, *offsets, {cv}});
+  }
+  return all;
+}
+
+std::optional<Readings> readings_in(const Recording& other, const Readings& readings) {
+  if (readings.every == 1)
+    return Readings{1, std::vector<Index>(runs_of(other).size(), 0), readings.cvs};
+  std::vector<Readings> all = readings_of(other);
+  const auto same = std::find_if(all.begin(), all.end(), [&](const Readings& each) {
+    return each.every == readings.every && std::includes(each.cvs.begin(), each.cvs.end(),
+                                                         readings.cvs.begin(), readings.cvs.end());
+  });
+  if (same == all.end()) return std::nullopt;
+  same->cvs = readings.cvs;
+  return *same;
 }
 
 ModelSpec of_cvs(const ModelSpec& model, const std::vector<int>& cvs) {
@@ -119,55 +171,151 @@ Recording of_cvs(const Recording& recording, const std::vector<int>& cvs) {
   return part;
 }
 
-ModelSpec within(const ModelSpec& whole, const ModelSpec& part, const std::vector<int>& cvs) {
-  ModelSpec all = part;
-  all.cv_count = whole.cv_count;
-  all.channels = items_within(whole.channels, part.channels, cvs);
-  all.state_terms = items_within(whole.state_terms, part.state_terms, cvs);
-  all.disturbances = items_within(whole.disturbances, part.disturbances, cvs);
-  all.output_blocks = whole.output_blocks;
-  all.output_origin = whole.output_origin;
-  for (std::size_t i = 0; i < cvs.size(); ++i) {
-    all.output_blocks[static_cast<std::size_t>(cvs[i])] = part.output_blocks[i];
-    all.output_origin(cvs[i]) = part.output_origin(static_cast<Index>(i));
-  }
-  return all;
+ModelSpec of_readings(const ModelSpec& model, const Readings& readings) {
+  ModelSpec part = of_cvs(model, readings.cvs);
+  part.sample_time_s *= static_cast<double>(readings.every);
+  return part;
 }
 
-void to_whole(const ModelSpec& model, const Recording& recording, const Recording* validation,
-              const std::vector<int>& cvs, Diagnosis& diagnosis) {
-  const Lift lift(cvs, static_cast<int>(recording.aux.cols()));
-  for (Finding& finding : diagnosis.findings) lift(finding);
-  for (Finding& finding : diagnosis.refused) lift(finding);
-  if (diagnosis.suspect) lift(*diagnosis.suspect);
-  for (Unexplained& unexplained : diagnosis.unexplained) lift(unexplained.subject);
-  for (ChannelEstimate& channel : diagnosis.channels) lift(channel.cv);
-  for (Place& place : diagnosis.rejected) lift(place.cv);
-  diagnosis.extended = within(model, diagnosis.extended, cvs);
-  if (diagnosis.before.rows() == 0) return;  // nothing was judged
+Recording of_readings(const ModelSpec& model, const Recording& recording,
+                      const Readings& readings) {
+  Recording part = of_cvs(recording, readings.cvs);
+  if (readings.every == 1) return part;
+  Recording result = averaged(part, readings.every, readings.offsets);
+  if (result.samples() == 0) return result;
+  Simulator fine(recording), coarse(result);
+  const ModelSpec at_readings = of_readings(model, readings);
+  for (Index i = 0; i < part.cvs.cols(); ++i)
+    part.cvs.col(i) = fine.cv(model, readings.cvs[static_cast<std::size_t>(i)]);
+  const MatrixXd exact = averaged(part, readings.every, readings.offsets).cvs;
+  for (Index i = 0; i < part.cvs.cols(); ++i) {
+    const VectorXd off = exact.col(i) - coarse.cv(at_readings, static_cast<int>(i));
+    if (off.allFinite()) result.cvs.col(i) -= off;
+  }
+  return result;
+}
 
-  Simulator first(recording);
-  const MatrixXd runs = free_runs(first, model);
-  diagnosis.before = runs_within(runs, diagnosis.before, cvs);
-  diagnosis.after = runs_within(runs, diagnosis.after, cvs);
-  MatrixXd unseen_runs = runs;
-  if (validation != nullptr) {
-    Simulator second(*validation);
-    unseen_runs = free_runs(second, model);
-    diagnosis.validation_before = runs_within(unseen_runs, diagnosis.validation_before, cvs);
-    diagnosis.validation_after = runs_within(unseen_runs, diagnosis.validation_after, cvs);
+Extended within(Extended whole, const Extended& part, const std::vector<int>& cvs, int inputs) {
+  std::vector<int> where;
+  for (int input = 0; input < part.model.input_count; ++input) {
+    if (input < inputs) {
+      where.push_back(input);
+      continue;
+    }
+    const int aux = part.new_inputs[static_cast<std::size_t>(input - inputs)];
+    const auto known = std::find(whole.new_inputs.begin(), whole.new_inputs.end(), aux);
+    where.push_back(inputs + static_cast<int>(known - whole.new_inputs.begin()));
+    if (known != whole.new_inputs.end()) continue;
+    whole.new_inputs.push_back(aux);
+    ++whole.model.input_count;
+    whole.model.input_blocks.emplace_back();
+    whole.model.input_origin.conservativeResize(whole.model.input_count);
+    whole.model.input_origin(whole.model.input_count - 1) = part.model.input_origin(input);
   }
-  const MatrixXd& measured = validation != nullptr ? validation->cvs : recording.cvs;
+  ModelSpec& model = whole.model;
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    std::optional<InputBlock>& block = model.input_blocks[static_cast<std::size_t>(where[i])];
+    if (!block) block = part.model.input_blocks[i];
+  }
+  put_in(part.model.channels, cvs, where, model.channels);
+  put_in(part.model.state_terms, cvs, where, model.state_terms);
+  put_in(part.model.disturbances, cvs, where, model.disturbances);
+  for (std::size_t i = 0; i < cvs.size(); ++i) {
+    model.output_blocks[static_cast<std::size_t>(cvs[i])] = part.model.output_blocks[i];
+    model.output_origin(cvs[i]) = part.model.output_origin(static_cast<Index>(i));
+  }
+  return whole;
+}
+
+Diagnosis unjudged(const ModelSpec& model, const Recorded& data, Index fitted) {
+  Diagnosis diagnosis;
+  diagnosis.samples = data.recording.samples();
+  diagnosis.fit_samples = fitted;
+  diagnosis.validation_samples =
+      data.validation != nullptr ? data.validation->samples() : diagnosis.samples - fitted;
+  diagnosis.extended = model;
+  Simulator first(data.recording);
+  diagnosis.before = diagnosis.after = free_runs(first, model);
+  if (data.validation != nullptr) {
+    Simulator second(*data.validation);
+    diagnosis.validation_before = diagnosis.validation_after = free_runs(second, model);
+  }
+  const bool other = data.validation != nullptr;
+  const MatrixXd& measured = other ? data.validation->cvs : data.recording.cvs;
+  const MatrixXd& runs = other ? diagnosis.validation_before : diagnosis.before;
   const Index rows = diagnosis.validation_samples;
-  std::vector<CvScore> scores;
   for (int cv = 0; cv < model.cv_count; ++cv) {
-    const int at = place_in(cvs, cv);
-    const VectorXd simulated = unseen_runs.col(cv).tail(rows);
-    scores.push_back(at >= 0 ? diagnosis.scores[static_cast<std::size_t>(at)]
-                             : score(measured.col(cv).tail(rows), simulated, simulated, 1, 0));
-    scores.back().judged = at >= 0;
+    const VectorXd simulated = runs.col(cv).tail(rows);
+    diagnosis.scores.push_back(score(measured.col(cv).tail(rows), simulated, simulated, 1, 0));
+    diagnosis.scores.back().judged = false;
   }
-  diagnosis.scores = std::move(scores);
+  return diagnosis;
+}
+
+void take_in(const ModelSpec& model, const Recorded& data, const Readings& readings, Diagnosis part,
+             Diagnosis& whole) {
+  const std::vector<int>& cvs = readings.cvs;
+  const Lift lift(cvs, static_cast<int>(data.recording.aux.cols()));
+  for (auto* findings : {&part.findings, &part.refused, &part.small})
+    for (Finding& finding : *findings) lift(finding);
+  for (Unexplained& unexplained : part.unexplained) lift(unexplained.subject);
+  for (ChannelEstimate& channel : part.channels) lift(channel.cv);
+  for (auto* places : {&part.rejected, &part.bent})
+    for (Place& place : *places) lift(place.cv);
+  if (part.suspect) lift(*part.suspect);
+  // What an actuator does all CVs see: it is said once, by those that see it best.
+  std::erase_if(part.findings, [&](Finding& finding) {
+    if (finding.subject.place.cv >= 0) return false;
+    const auto same =
+        std::find_if(whole.findings.begin(), whole.findings.end(),
+                     [&](const Finding& other) { return other.subject == finding.subject; });
+    if (same == whole.findings.end()) return false;
+    if (finding.evidence > same->evidence) *same = std::move(finding);
+    return true;
+  });
+  append(std::move(part.findings), whole.findings);
+  append(std::move(part.refused), whole.refused);
+  append(std::move(part.small), whole.small);
+  append(std::move(part.unexplained), whole.unexplained);
+  append(std::move(part.channels), whole.channels);
+  append(std::move(part.rejected), whole.rejected);
+  append(std::move(part.bent), whole.bent);
+  std::stable_sort(whole.findings.begin(), whole.findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.evidence > b.evidence; });
+  if (part.suspect && (!whole.suspect || whole.suspect->evidence < part.suspect->evidence))
+    whole.suspect = std::move(part.suspect);
+  for (std::size_t i = 0; i < part.inputs.size(); ++i) {
+    if (i == whole.inputs.size()) whole.inputs.push_back(part.inputs[i]);
+    whole.inputs[i].excited = whole.inputs[i].excited || part.inputs[i].excited;
+  }
+  if (part.before.rows() == 0) return;  // nothing was judged
+
+  for (std::size_t i = 0; i < cvs.size(); ++i) {
+    for (Horizon& horizon : part.scores[i].horizons) horizon.samples *= readings.every;
+    whole.scores[static_cast<std::size_t>(cvs[i])] = std::move(part.scores[i]);
+  }
+  part.extended.sample_time_s = model.sample_time_s;
+  const Extended extended =
+      within({std::move(whole.extended), std::move(whole.new_inputs)},
+             {std::move(part.extended), std::move(part.new_inputs)}, cvs, model.input_count);
+  whole.extended = extended.model;
+  whole.new_inputs = extended.new_inputs;
+  if (readings.every > 1) {
+    run_again(extended, data.recording, cvs, whole.after);
+    if (data.validation != nullptr)
+      run_again(extended, *data.validation, cvs, whole.validation_after);
+    return;
+  }
+  append(std::move(part.unanswered), whole.unanswered);
+  append(std::move(part.validation_unanswered), whole.validation_unanswered);
+  for (std::size_t i = 0; i < cvs.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    whole.before.col(cvs[i]) = part.before.col(at);
+    whole.after.col(cvs[i]) = part.after.col(at);
+    if (data.validation == nullptr) continue;
+    whole.validation_before.col(cvs[i]) = part.validation_before.col(at);
+    whole.validation_after.col(cvs[i]) = part.validation_after.col(at);
+  }
 }
 
 }  // namespace mpm

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/identify/diagnosis/diagnosis.hpp"
@@ -7,24 +9,59 @@
 #include "core/model/model_spec.hpp"
 
 /// CVs that are read only every so many samples (an analyser's): what stands between two readings
-/// would pass for dead time, swings and noise in bursts. They take no part in a diagnosis beside
-/// those that are measured at every sample.
+/// would pass for dead time, swings and noise in bursts. They are judged at their readings, apart
+/// from those that are measured at every sample: with the model as it is at a sample time as long.
 namespace mpm {
 
-/// The CVs that are measured at every sample, ascending.
-[[nodiscard]] std::vector<int> read_at_every_sample(const Recording& recording);
+/// CVs that are read in one cycle.
+struct Readings {
+  Eigen::Index every = 1;             ///< rows
+  std::vector<Eigen::Index> offsets;  ///< of each run: where the first reading is (reading_offset)
+  std::vector<int> cvs;               ///< ascending
+};
+
+/// All CVs of a recording that are read at every sample, then cycle by cycle those that keep to
+/// one.
+[[nodiscard]] std::vector<Readings> readings_of(const Recording& recording);
+
+/// The same CVs in another recording; nothing where they are not read in the same cycle there.
+[[nodiscard]] std::optional<Readings> readings_in(const Recording& other, const Readings& readings);
 
 /// The part of a model in channels, or of a recording, that these CVs (ascending) are.
 [[nodiscard]] ModelSpec of_cvs(const ModelSpec& model, const std::vector<int>& cvs);
 [[nodiscard]] Recording of_cvs(const Recording& recording, const std::vector<int>& cvs);
 
-/// A part's model in channels, extended as it may be, within the whole.
-[[nodiscard]] ModelSpec within(const ModelSpec& whole, const ModelSpec& part,
-                               const std::vector<int>& cvs);
+/// The same at the readings of a cycle. A mean of what an input does between two readings is not
+/// all of what a quick channel makes of it: by what the model itself (whole, in channels) comes out
+/// otherwise at the longer sample time the CVs are put right, so that it fits as well as at its
+/// own.
+[[nodiscard]] ModelSpec of_readings(const ModelSpec& model, const Readings& readings);
+[[nodiscard]] Recording of_readings(const ModelSpec& model, const Recording& recording,
+                                    const Readings& readings);
 
-/// What the diagnosis of a part says, in the numbers of the whole. `model`: the whole, in channels;
-/// `validation` may be null. CVs that had no part in it are simulated and scored, not judged.
-void to_whole(const ModelSpec& model, const Recording& recording, const Recording* validation,
-              const std::vector<int>& cvs, Diagnosis& diagnosis);
+/// An extended model, and the aux signals that it takes as inputs after the given model's.
+struct Extended {
+  ModelSpec model;
+  std::vector<int> new_inputs = {};
+};
+
+/// A whole with the channels, disturbances and sensors of a part's CVs as that has them; of the
+/// actuators that both say something of the whole's word stands. `inputs`: of the given model.
+[[nodiscard]] Extended within(Extended whole, const Extended& part, const std::vector<int>& cvs,
+                              int inputs);
+
+/// The recordings that were diagnosed; `validation` may be null.
+struct Recorded {
+  const Recording& recording;
+  const Recording* validation;
+};
+
+/// Of a model in channels with no CV judged: all are simulated and scored, on what comes after the
+/// first `fitted` rows or on the second recording.
+[[nodiscard]] Diagnosis unjudged(const ModelSpec& model, const Recorded& data, Eigen::Index fitted);
+
+/// Takes the diagnosis of a part into that of the whole, in the numbers of the whole.
+void take_in(const ModelSpec& model, const Recorded& data, const Readings& readings, Diagnosis part,
+             Diagnosis& whole);
 
 }  // namespace mpm

@@ -196,16 +196,29 @@ Index rows_to_average(const Recording& recording, const PlantSpeed& speed, Index
   return wanted;
 }
 
-Index rows_to_average(const Recording& recording, const ModelSpec& model, Index most_rows) {
+bool holds_at_any_sample_time(const ModelSpec& model) {
   const auto linear = [](const ChannelSpec& channel) {
     return std::holds_alternative<TransferFunction>(channel.dynamics) && !channel.input_block;
   };
   const bool bent = std::any_of(model.input_blocks.begin(), model.input_blocks.end(),
                                 [](const auto& block) { return block.has_value(); });
-  if (model.state_space || bent || !model.state_terms.empty() ||
-      !std::all_of(model.channels.begin(), model.channels.end(), linear))
-    return 1;
-  return rows_to_average(recording, speed_of(model), most_rows);
+  return !model.state_space && !bent && model.state_terms.empty() &&
+         std::all_of(model.channels.begin(), model.channels.end(), linear);
+}
+
+Index rows_to_average(const Recording& recording, const ModelSpec& model, Index most_rows) {
+  return holds_at_any_sample_time(model) ? rows_to_average(recording, speed_of(model), most_rows)
+                                         : 1;
+}
+
+Recording averaged(const Recording& recording, Index every, const std::vector<Index>& offsets) {
+  const std::vector<Run> runs = runs_of(recording);
+  std::vector<Recording> all;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    Recording run = averaged_run(part(recording, runs[r].first, runs[r].count), offsets[r], every);
+    if (run.samples() > 0) all.push_back(std::move(run));
+  }
+  return all.empty() ? averaged_run(recording, recording.samples(), every) : joined(all);
 }
 
 Condensed condensed(const Recording& recording, Index every, Index most_rows) {

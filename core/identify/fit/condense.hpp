@@ -18,6 +18,17 @@ struct PlantSpeed {
 /// Of a model's channels, those that integrate left out; 0 where there is none.
 [[nodiscard]] PlantSpeed speed_of(const ModelSpec& model);
 
+/// Whether its numbers are in seconds, and means of what moves are what acts: transfer functions
+/// alone, for behind a valve's block the mean is not that before it.
+[[nodiscard]] bool holds_at_any_sample_time(const ModelSpec& model);
+
+/// Of each run from its row `offsets` on `every` rows as one, t(K) = t(offset + K every): MVs, DVs
+/// and aux are means over what acts from there to the next one, CVs and set-points what was read at
+/// t(K), so that no answer comes late and no input acts before its time. Runs of which no row is
+/// left go.
+[[nodiscard]] Recording averaged(const Recording& recording, Eigen::Index every,
+                                 const std::vector<Eigen::Index>& offsets);
+
 /// What of a long recording is used.
 struct Condensing {
   Eigen::Index given = 0;      ///< rows that there are
@@ -42,19 +53,15 @@ struct Condensed {
 [[nodiscard]] Eigen::Index rows_to_average(const Recording& recording, const PlantSpeed& speed,
                                            Eigen::Index most_rows);
 
-/// The same for a model: 1 where it is not of transfer functions alone, whose numbers are in
-/// seconds, for the mean of what moves before a valve's block is not the mean of what moves behind
-/// it.
+/// The same for a model: 1 where it holds at its own sample time alone.
 [[nodiscard]] Eigen::Index rows_to_average(const Recording& recording, const ModelSpec& model,
                                            Eigen::Index most_rows);
 
-/// A recording that a fit can bear. First `every` rows become one, t(K) = t(every k): MVs, DVs and
-/// aux are means over what acts from there to the next one, CVs and set-points what was read at
-/// t(K), so that no answer comes late and no input acts before its time. Rows begin where inputs
-/// that are held for several rows move. Then, if more than `most_rows` are left, of each of some
-/// equal spans the stretch in which set-points move most, or inputs where no set-point moves, as a
-/// run of its own: at its own level and from its own first state. Nothing is done to a recording
-/// that is short enough where `every` is 1.
+/// A recording that a fit can bear. First `every` rows become one (`averaged`). Rows begin where
+/// inputs that are held for several rows move. Then, if more than `most_rows` are left, of each of
+/// some equal spans the stretch in which set-points move most, or inputs where no set-point moves,
+/// as a run of its own: at its own level and from its own first state. Nothing is done to a
+/// recording that is short enough where `every` is 1.
 [[nodiscard]] Condensed condensed(const Recording& recording, Eigen::Index every,
                                   Eigen::Index most_rows);
 

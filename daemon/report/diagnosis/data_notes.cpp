@@ -9,7 +9,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string advice(const HistorianTraits& traits, const std::string& unit, double sample_time_s) {
+/// Up to the sample time that goes with it.
+const char* reading_advice(bool judged) {
+  return judged
+             ? ", and judged at its readings, apart from what is measured at every sample: as a "
+               "unit with a sample_time of "
+             : ". Beside what is measured at every sample it cannot be judged, and by itself only "
+               "in a regular cycle, by enough readings, with a model whose numbers are in seconds: "
+               "give "
+               "it a unit of its own with a sample_time of ";
+}
+
+std::string advice(const HistorianTraits& traits, const std::string& unit, double sample_time_s,
+                   bool judged) {
   const auto with_unit = [&unit](double value) {
     return number_text(value, 3) + (unit.empty() ? "" : " " + unit);
   };
@@ -23,11 +35,8 @@ std::string advice(const HistorianTraits& traits, const std::string& unit, doubl
            ". Turn the tag's exception and compression deadbands off, or set them well below its "
            "noise.";
   else if (traits.read_every > 0)
-    text =
-        "Read every " + std::to_string(traits.read_every) +
-        " samples. Beside what is measured at every sample it cannot be judged: give it a unit of "
-        "its own with a sample_time of " +
-        number_text(static_cast<double>(traits.read_every) * sample_time_s, 6) + " s.";
+    text = "Read every " + std::to_string(traits.read_every) + " samples" + reading_advice(judged) +
+           number_text(static_cast<double>(traits.read_every) * sample_time_s, 6) + " s.";
   else
     text = "Moves in steps of " + with_unit(traits.quantum) +
            ", which is coarse beside what it moves by from row to row. Record more digits, or use "
@@ -36,8 +45,9 @@ std::string advice(const HistorianTraits& traits, const std::string& unit, doubl
   return text;
 }
 
+/// `judged`: a CV that was.
 void look(const Eigen::Ref<const Eigen::VectorXd>& values, const SignalName& signal, bool is_cv,
-          double sample_time_s, Json& notes) {
+          double sample_time_s, bool judged, Json& notes) {
   HistorianTraits traits = historian_traits(values);
   if (!is_cv) traits.read_every = 0;  // it acts at every sample
   if (!traits.compressed() && !(traits.quantum > 0.0) && traits.read_every == 0) return;
@@ -49,7 +59,7 @@ void look(const Eigen::Ref<const Eigen::VectorXd>& values, const SignalName& sig
                    {"held_share", traits.held_share},
                    {"read_every", traits.read_every},
                    {"beyond_use", beyond_use(traits)},
-                   {"advice", advice(traits, signal.unit, sample_time_s)}});
+                   {"advice", advice(traits, signal.unit, sample_time_s, judged)}});
 }
 
 }  // namespace
@@ -57,12 +67,15 @@ void look(const Eigen::Ref<const Eigen::VectorXd>& values, const SignalName& sig
 Json data_notes(const DiagnosisRun& run) {
   const SignalNames names = names_of(run);
   Json notes = Json::array();
-  for (Eigen::Index cv = 0; cv < run.recording.cvs.cols(); ++cv)
+  const std::vector<CvScore>& scores = run.diagnosis.scores;
+  for (Eigen::Index cv = 0; cv < run.recording.cvs.cols(); ++cv) {
+    const auto at = static_cast<std::size_t>(cv);
     look(run.recording.cvs.col(cv), names.cv(static_cast<int>(cv)), true,
-         run.recording.sample_time_s, notes);
+         run.recording.sample_time_s, at < scores.size() && scores[at].judged, notes);
+  }
   for (Eigen::Index input = 0; input < run.recording.inputs.cols(); ++input)
     look(run.recording.inputs.col(input), names.input(static_cast<int>(input)), false,
-         run.recording.sample_time_s, notes);
+         run.recording.sample_time_s, false, notes);
   return notes;
 }
 

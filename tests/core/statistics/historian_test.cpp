@@ -126,5 +126,26 @@ TEST_CASE("what rests or bends by nature is not accused") {
   CHECK(accused == 0);  // of 500
 }
 
+TEST_CASE("a cycle of readings begins where they come, late by a row or not") {
+  const VectorXd values = signal(3);
+  const auto read = [&](Index every, Index offset, bool late) {
+    VectorXd held = values;
+    for (Index k = 0, last = 0, reading = 0; k < kRows; ++k) {
+      // Every third reading comes a row late.
+      const bool now = k >= offset && (k - offset) % every == (late && reading % 3 == 2 ? 1 : 0);
+      if (now) last = k, ++reading;
+      held(k) = values(last);
+    }
+    return held;
+  };
+  CHECK(reading_offset(read(5, 3, false), 5) == Index{3});
+  CHECK(reading_offset(read(12, 0, false), 12) == Index{0});
+  CHECK(reading_offset(read(12, 7, true), 12) == Index{8});
+  CHECK(reading_offset(read(12, 11, true), 12) == Index{0});
+  CHECK_FALSE(reading_offset(read(7, 3, false), 5));
+  CHECK_FALSE(reading_offset(values, 5));
+  CHECK_FALSE(reading_offset(VectorXd::Ones(kRows), 5));
+}
+
 }  // namespace
 }  // namespace mpm::historian_test

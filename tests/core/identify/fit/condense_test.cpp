@@ -169,5 +169,24 @@ TEST_CASE("what is short enough is left alone") {
   CHECK(all.run_of == std::vector<std::size_t>{0});
 }
 
+TEST_CASE("rows are averaged from where each run says") {
+  Recording recording =
+      test::recording_of(VectorXd::LinSpaced(20, 0.0, 19.0), VectorXd::LinSpaced(20, 100.0, 119.0));
+  recording.start_s = 50.0;
+  recording.borders = {{10, 0.0}};
+  const Recording every_third = averaged(recording, 3, {1, 2});
+  CHECK(every_third.sample_time_s == 3.0);
+  CHECK(every_third.start_s == 51.0);
+  REQUIRE(every_third.samples() == 5);  // of rows 1 to 9 and 12 to 17
+  REQUIRE(every_third.borders.size() == 1);
+  CHECK(every_third.borders[0].row == 3);
+  const double input[] = {2.0, 5.0, 8.0, 13.0, 16.0}, cv[] = {101.0, 104.0, 107.0, 112.0, 115.0};
+  for (Index r = 0; r < 5; ++r) {
+    CHECK(every_third.inputs(r, 0) == input[r]);
+    CHECK(every_third.cvs(r, 0) == cv[r]);
+  }
+  CHECK(averaged(recording, 30, {0, 0}).samples() == 0);
+}
+
 }  // namespace
 }  // namespace mpm

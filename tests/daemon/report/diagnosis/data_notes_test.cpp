@@ -108,6 +108,13 @@ TEST_CASE("a CV that is read only now and then is noted, an input that moves onl
   CHECK(notes[0]["tag"] == "y");
   CHECK(notes[0]["read_every"] == 10);
   CHECK(begins(notes[0]["advice"], "Read every 10 samples. "));
+
+  DiagnosisRun run = run_of(read, read, sound());
+  run.diagnosis.scores.resize(1);
+  run.diagnosis.scores[0].judged = true;
+  const ordered_json judged = report::data_notes(run);
+  REQUIRE(judged.size() == 1);
+  CHECK(begins(judged[0]["advice"], "Read every 10 samples, and judged at its readings"));
 }
 
 TEST_CASE("what is beyond use is said to be") {
