@@ -429,9 +429,10 @@ bool can_judge(const ModelSpec& model, const Recording& recording) {
 Diagnosis run_by_readings(const ModelSpec& given, const Recording& recording,
                           const Recording* validation, const DiagnosisSettings& settings) {
   const std::vector<Readings> all = readings_of(recording);
-  if (static_cast<int>(all.front().cvs.size()) == given.cv_count)
-    return run(given, recording, validation, settings);
   const ModelSpec base = in_channels(given);
+  if (static_cast<int>(all.front().cvs.size()) == given.cv_count || runs_away(base, recording) ||
+      (validation != nullptr && runs_away(base, *validation)))
+    return run(given, recording, validation, settings);
   const Recorded data{recording, validation};
   std::optional<Diagnosis> whole;
   DiagnosisVerdict verdict = DiagnosisVerdict::kMatch;

@@ -64,7 +64,9 @@ Json warnings(const DiagnosisRun& run) {
                    " almost only as the controller answers the CVs; what the data say of " +
                    (fed_back.size() == 1 ? "its" : "their") + " channels is weak.");
   for (const Json& note : data_notes(run))
-    json.push_back((note["compressed"].get<bool>() ? "Compressed: " : "Coarse: ") +
+    json.push_back((note["compressed"].get<bool>()        ? "Compressed: "
+                    : note["quantum"].get<double>() > 0.0 ? "Coarse: "
+                                                          : "Seldom read: ") +
                    note["tag"].get<std::string>() + ". " + note["advice"].get<std::string>());
   return json;
 }

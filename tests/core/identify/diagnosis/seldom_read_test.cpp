@@ -156,6 +156,16 @@ TEST_CASE("on a second recording a CV is read from where its cycle begins there"
   CHECK(diagnosis.validation_after.rows() == kMany - 3);
 }
 
+TEST_CASE("a model that runs away is said to, however a CV is read") {
+  ModelSpec runs_away = model();
+  runs_away.state_terms = {{1, 0, RestoringForce{0.5, 0.0}}};
+  DiagnosisSettings settings;
+  settings.mv_count = 1;
+  const Diagnosis diagnosis = diagnose(runs_away, plant(1.0, 10, kMany), nullptr, settings);
+  CHECK(diagnosis.verdict == DiagnosisVerdict::kUndetermined);
+  CHECK(diagnosis.reason.find("runs away") != std::string::npos);
+}
+
 TEST_CASE("an actuator that all CVs see is said once") {
   constexpr Index kOnset = 3000;
   const VectorXd u = test::telegraph(7, kMany, 12);
