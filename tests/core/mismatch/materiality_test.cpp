@@ -163,7 +163,7 @@ TEST_CASE("few rows and forgetting make the estimates noisier") {
 }
 
 // Judged together with others, a channel is as many numbers as there are usual errors, however few
-// coefficients it has: those of a channel that has settled after three samples are fewer.
+// coefficients it is regressed on: where rows are few these are fewer.
 TEST_CASE("a channel of fewer coefficients than usual errors has room for these") {
   constexpr int kFew = 3;
   static_assert(kFew < kUsualErrors);
