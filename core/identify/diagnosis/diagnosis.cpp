@@ -270,13 +270,10 @@ bool runs_away(const ModelSpec& model, const Recording& recording) {
   return false;
 }
 
-/// Whether an input is given at every sample, or as means of several: what is bent there is no mean
-/// of what bends them.
-enum class InputRows { kEach, kMeans };
-
-/// All of diagnose() but for giving up. `settings.progress` is there and throws.
+/// All of diagnose() but for giving up. `settings.progress` is there and throws. `curves`: as for
+/// the search.
 Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
-              const DiagnosisSettings& settings, InputRows inputs = InputRows::kEach) {
+              const DiagnosisSettings& settings, bool curves = true) {
   Diagnosis diagnosis;
   const ModelSpec base = in_channels(given);
   const Recording measured =
@@ -316,11 +313,9 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   search_settings.max_findings = settings.max_findings;
   search_settings.threads = settings.threads;
   search_settings.progress = settings.progress;
-  search_settings.may_name = [may_name = nameable(model, {settings.mv_count, base.input_count, aux},
-                                                  tests, by_monitor, outside),
-                              inputs](const Effect& effect) {
-    return may_name(effect) && (inputs == InputRows::kEach || !cause_of(effect).is_curve());
-  };
+  search_settings.curves = curves;
+  search_settings.may_name =
+      nameable(model, {settings.mv_count, base.input_count, aux}, tests, by_monitor, outside);
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
                 settings.seed);
   const Judges judges{unseen, aux,
@@ -444,8 +439,7 @@ Diagnosis run_by_readings(const ModelSpec& given, const Recording& recording,
       const auto parts = static_cast<double>(all.size());
       return settings.progress(share_before + share / parts);
     };
-    Diagnosis part = run(model, rows, unseen, of_part,
-                         readings.every == 1 ? InputRows::kEach : InputRows::kMeans);
+    Diagnosis part = run(model, rows, unseen, of_part, readings.every == 1);
     if (!whole)
       whole = unjudged(base, data,
                        validation != nullptr ? recording.samples()

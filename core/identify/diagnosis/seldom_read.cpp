@@ -213,11 +213,13 @@ Extended within(Extended whole, const Extended& part, const std::vector<int>& cv
     whole.model.input_origin(whole.model.input_count - 1) = part.model.input_origin(input);
   }
   ModelSpec& model = whole.model;
-  for (std::size_t i = 0; i < where.size(); ++i) {
-    std::optional<InputBlock>& block = model.input_blocks[static_cast<std::size_t>(where[i])];
-    if (!block) block = part.model.input_blocks[i];
+  std::vector<ChannelSpec> channels = part.model.channels;
+  for (ChannelSpec& channel : channels) {
+    const auto from = static_cast<std::size_t>(channel.input);
+    const bool known = model.input_blocks[static_cast<std::size_t>(where[from])].has_value();
+    if (!known && !channel.input_block) channel.input_block = part.model.input_blocks[from];
   }
-  put_in(part.model.channels, cvs, where, model.channels);
+  put_in(channels, cvs, where, model.channels);
   put_in(part.model.state_terms, cvs, where, model.state_terms);
   put_in(part.model.disturbances, cvs, where, model.disturbances);
   for (std::size_t i = 0; i < cvs.size(); ++i) {

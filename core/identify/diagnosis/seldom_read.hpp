@@ -45,8 +45,9 @@ struct Extended {
   std::vector<int> new_inputs = {};
 };
 
-/// A whole with the channels, disturbances and sensors of a part's CVs as that has them; of the
-/// actuators that both say something of the whole's word stands. `inputs`: of the given model.
+/// A whole with the channels, disturbances and sensors of a part's CVs as that has them. What an
+/// actuator does beyond the given model is put before the part's channels alone: the other CVs were
+/// judged, and scored, without it. `inputs`: of the given model.
 [[nodiscard]] Extended within(Extended whole, const Extended& part, const std::vector<int>& cvs,
                               int inputs);
 

@@ -138,6 +138,7 @@ class Search {
     });
     for (std::size_t i = 0; i < causes.size(); ++i) {
       const Cause* cause = causes[i];
+      if (cause->is_curve() && !settings_.curves) continue;
       for (Effect& effect : of_each[i]) {
         if (may_name(effect) != nameable || (nameable && is_settled(effect))) continue;
         const bool open =

@@ -20,6 +20,9 @@ struct SearchSettings {
   Tolerances materiality = {0.05, 0.09, 0.45};
   /// Nor is what moves a CV by less than this share of its own s.d.
   double visible = 0.015;
+  /// Whether what bends is looked for (Cause::is_curve): not where inputs are means of several
+  /// samples, for what is bent there is no mean of what bends them.
+  bool curves = true;
   /// Whether what the data show themselves is taken in (Cause::shown_by).
   bool shown = true;
   int threads = 1;  ///< >= 1; nothing of the result depends on it

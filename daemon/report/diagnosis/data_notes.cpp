@@ -15,9 +15,8 @@ const char* reading_advice(bool judged) {
              ? ", and judged at its readings, apart from what is measured at every sample: as a "
                "unit with a sample_time of "
              : ". Beside what is measured at every sample it cannot be judged, and by itself only "
-               "in a regular cycle, by enough readings, with a model whose numbers are in seconds: "
-               "give "
-               "it a unit of its own with a sample_time of ";
+               "in a regular cycle, by enough readings, with a model in seconds: give it a unit of "
+               "its own with a sample_time of ";
 }
 
 std::string advice(const HistorianTraits& traits, const std::string& unit, double sample_time_s,

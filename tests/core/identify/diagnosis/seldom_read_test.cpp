@@ -4,6 +4,7 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/fit/condense.hpp"
+#include "core/identify/fit/free_run.hpp"
 #include "core/identify/fit/simulator.hpp"
 #include "tests/core/identify/small_plant.hpp"
 
@@ -178,6 +179,22 @@ TEST_CASE("an actuator that all CVs see is said once") {
   const Diagnosis diagnosis = diagnosis_of(test::recording_of(u, cvs));
   REQUIRE(diagnosis.findings.size() == 1);
   CHECK(diagnosis.findings[0].subject == Subject{&causes::input_stuck(), {-1, 0}});
+  // What is drawn and scored is what the extended model says, of each CV.
+  const Recording recording = test::recording_of(u, cvs);
+  Simulator simulator(recording);
+  CHECK((free_runs(simulator, diagnosis.extended) - diagnosis.after).lpNorm<Eigen::Infinity>() <
+        1e-9);
+}
+
+TEST_CASE("what one part's CVs see of an actuator is not put before the others' channels") {
+  Extended part{of_cvs(model(), {1})};
+  part.model.input_blocks[0] = Stuck{.value = 0.5, .onset_s = 100.0};
+  const ModelSpec whole = within({model()}, part, {1}, 1).model;
+  CHECK_FALSE(whole.input_blocks[0]);
+  REQUIRE(whole.channels.size() == 2);
+  CHECK_FALSE(whole.channels[0].input_block);
+  REQUIRE(whole.channels[1].input_block);
+  CHECK(std::get<Stuck>(*whole.channels[1].input_block).value == 0.5);
 }
 
 TEST_CASE("where every CV is read only now and then the sample time is what is wrong") {
