@@ -39,6 +39,13 @@ inline constexpr double kPerOrder = 5.0;
 inline constexpr double kPerLogTolerance = 2.0;
 }  // namespace settling_horizon
 
+/// A channel in samples at a longer sample time is its step response: until it stays this near to
+/// its end, share of that, and no longer than so many samples. Chosen.
+namespace longer_sample_time {
+inline constexpr double kSettled = 1e-3;
+inline constexpr int kMostSamples = 20000;
+}  // namespace longer_sample_time
+
 /// Tanks that are integrated within the sample.
 namespace tanks {
 /// Steps per fastest time constant. Errors of a level: 1e-6, and up to 2e-4 for a while after a

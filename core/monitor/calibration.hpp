@@ -73,6 +73,14 @@ inline constexpr double kSpikyShare = 0.003;
 inline constexpr double kWarmUps = 2.0;
 }  // namespace bad_data
 
+/// CVs that are judged at their readings (`SeldomCvs`). Chosen.
+namespace seldom_read {
+/// Lags of a channel, readings: no fewer, so that a dead time that is off shows.
+inline constexpr int kFewestLags = 8;
+/// Cycles in which the next reading must have come, or what stands is none.
+inline constexpr double kStandingCycles = 2.0;
+}  // namespace seldom_read
+
 /// When predictions are taken for corrected by the measurement (`FeedbackCorrection`). Chosen on
 /// loops whose controller's model is another one than the unit file's, with next to no noise, where
 /// nothing is corrected, and on corrected ones whose values have four digits

@@ -46,7 +46,9 @@ class CvAlarms {
   }
   /// An alarm that another monitor of the unit raised: it stands until this one's own evidence
   /// clears it.
-  void stand(int input) { conditions_[static_cast<std::size_t>(input)].set(AlarmState::kActive); }
+  void stand(int input) { set(input, AlarmState::kActive); }
+  /// As somebody else judges the CV.
+  void set(int input, AlarmState state) { conditions_[static_cast<std::size_t>(input)].set(state); }
   /// A sample without any verdict of this CV.
   void hold();
   /// It is no channel that is wrong. Calls `changed(input)` for each alarm that cleared.

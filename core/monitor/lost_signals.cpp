@@ -23,10 +23,9 @@ LostSignals::LostSignals(const SignalCounts& counts, int lags)
     losses_[kind].resize(static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind))));
 }
 
-void LostSignals::take(const Frame& frame, SignalKind kind, int index) {
+void LostSignals::take(const Frame& frame, SignalKind kind, int index, bool usable) {
   const SignalBlock& block = frame[kind];
   Loss& loss = losses_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(index)];
-  const bool usable = block.usable(index);
   loss.share += step_ * ((usable ? 0.0 : 1.0) - loss.share);
   if (!usable) {
     loss.cause = cause_of(block, index);

@@ -35,7 +35,7 @@ class LostSignals {
   LostSignals(const SignalCounts& counts, int lags);
 
   /// Each signal once per frame.
-  void take(const Frame& frame, SignalKind kind, int index);
+  void take(const Frame& frame, SignalKind kind, int index, bool usable);
   /// MVs, DVs, CVs, predictions; within a kind in their order.
   [[nodiscard]] std::vector<LostSignal> list() const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/archive/archive.hpp"
@@ -17,6 +18,7 @@
 #include "core/monitor/derived_settings.hpp"
 #include "core/monitor/held_inputs.hpp"
 #include "core/monitor/reported_correlation.hpp"
+#include "core/monitor/seldom_cvs.hpp"
 #include "core/monitor/unit_reader.hpp"
 #include "core/nonlinear/nonlinear_detector.hpp"
 
@@ -24,7 +26,8 @@ namespace mpm {
 
 struct Monitor::State {
   State(const LinearModel& unit_model, const SignalCounts& signal_counts,
-        const std::vector<bool>& may_predict, const DerivedSettings& derived);
+        const std::vector<bool>& may_predict, const DerivedSettings& derived,
+        std::optional<SeldomCvs> seldom_cvs);
 
   void archive(Archive& a);
   /// As after construction, but for the alarms, which stay until new samples say something of
@@ -56,6 +59,11 @@ struct Monitor::State {
   void count_bad(const Frame& frame);
   void follow_compression();
   void take_outside(const Frame& frame);
+  void take_seldom(const Frame& frame);
+  void stand_at_readings(int cv);
+  [[nodiscard]] const Monitor* at_readings(int cv) const {
+    return seldom ? seldom->monitor(cv) : nullptr;
+  }
   void pass_gap(std::int64_t missing);
   void take_sample(const Frame& frame);
   void evaluate();
@@ -85,6 +93,7 @@ struct Monitor::State {
   Eigen::VectorXd outside_values;  // set-points, then auxiliary signals; NaN where unknown
   ChangeScan scan;
   ChannelJudge judge;
+  std::optional<SeldomCvs> seldom;  // none: all CVs are read at every sample
   std::vector<Cv> cvs;
   std::vector<ChannelStatus> status;
   std::vector<AlarmTransition> transitions;
@@ -97,7 +106,8 @@ struct Monitor::State {
 };
 
 Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_counts,
-                      const std::vector<bool>& may_predict, const DerivedSettings& derived)
+                      const std::vector<bool>& may_predict, const DerivedSettings& derived,
+                      std::optional<SeldomCvs> seldom_cvs)
     : model(unit_model),
       counts(signal_counts),
       expected(may_predict),
@@ -121,6 +131,7 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
       outside_values(Eigen::VectorXd::Zero(counts.cv + counts.aux)),
       scan(detector.shape()),
       judge(counts, settings),
+      seldom(std::move(seldom_cvs)),
       lost(counts, settings.fir_lags) {
   const auto channels = static_cast<std::size_t>(counts.inputs() * counts.cv);
   status.resize(channels);
@@ -137,7 +148,7 @@ Monitor::State::State(const LinearModel& unit_model, const SignalCounts& signal_
 }
 
 void Monitor::State::begin_anew() {
-  State fresh(model, counts, expected, settings);
+  State fresh(model, counts, expected, settings, std::move(seldom));
   fresh.reader.begin_with(reader.give_screen());
   fresh.cvs = std::move(cvs);
   for (Cv& cv : fresh.cvs) {
@@ -163,6 +174,7 @@ void Monitor::State::archive(Archive& a) {
   // not archived: rows, outside_values, scan (each sample and each search begins anew)
   a(reader, correlation, detector, nonlinear, outside, judge, cvs, status, judged_frames, counters,
     lost, first, last_interval);
+  if (seldom) a(*seldom);
   a.within(judged_count, 0, judged_frames.size());
   a.varying(transitions);
   const int outside_signals = counts.cv + counts.aux;
@@ -181,6 +193,7 @@ void Monitor::State::take_frame(const Frame& frame) {
   if (reader.missing() > 0) pass_gap(reader.missing());
   for (const int cv : reader.turned())
     if (reader.samples() > 1) begin_anew(cv);
+  take_seldom(frame);
   follow_compression();
   count_bad(frame);
   take_sample(frame);
@@ -195,11 +208,12 @@ void Monitor::State::count_bad(const Frame& frame) {
   for (const SignalKind kind :
        {SignalKind::kMv, SignalKind::kDv, SignalKind::kCv, SignalKind::kPrediction})
     for (int i = 0; i < counts.of(kind); ++i) {
+      // What a reading's successors repeat is marked, and serves all the same.
+      const bool usable =
+          frame[kind].usable(i) || (kind == SignalKind::kCv && seldom && seldom->stands(i));
       if (kind != SignalKind::kPrediction || expected[static_cast<std::size_t>(i)])
-        lost.take(frame, kind, i);
-      if (frame[kind].usable(i) ||
-          (kind == SignalKind::kPrediction && !reader.predictions().given(i)))
-        continue;
+        lost.take(frame, kind, i, usable);
+      if (usable || (kind == SignalKind::kPrediction && !reader.predictions().given(i))) continue;
       ++counters.bad_values;
       ++counters.bad_of[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)];
     }
@@ -218,6 +232,36 @@ void Monitor::State::begin_anew(int cv) {
   detector.start_afresh(cv, 0);
   nonlinear.silence(cv);
   of(cv).settled = 0;
+  if (!at_readings(cv)) return;
+  seldom->begin_anew(cv);
+  stand_at_readings(cv);
+}
+
+void Monitor::State::stand_at_readings(int cv) {
+  for (int i = 0; i < counts.inputs(); ++i)
+    if (of(cv).alarms.state(i) == AlarmState::kActive) seldom->stand(cv, i);
+}
+
+// What stands of a CV between two readings is left to those who judge it by them, and its alarms
+// with it.
+void Monitor::State::take_seldom(const Frame& frame) {
+  if (!seldom) return;
+  seldom->take(frame, reader);
+  for (const int cv : seldom->turned()) {
+    if (at_readings(cv))
+      stand_at_readings(cv);
+    else
+      begin_anew(cv);
+  }
+  for (int j = 0; j < counts.cv; ++j) {
+    reader.read_seldom(j, seldom->stands(j));
+    if (!seldom->judged(j)) continue;
+    for (AlarmTransition one : at_readings(j)->transitions()) {
+      one.cv = j;
+      of(j).alarms.set(one.input, one.to);
+      transitions.push_back(one);
+    }
+  }
 }
 
 void Monitor::State::pass_gap(std::int64_t missing) {
@@ -275,6 +319,7 @@ void Monitor::State::evaluate() {
       detector.fold(j);
       judge_nonlinear(j);
     }
+    if (at_readings(j)) continue;
     if (cv.alarms.isolating() || !detector.memory(j).ready()) cv.judged = false;
     cv.evaluated = (due || !cv.judged) && detector.memory(j).ready();
     if (!cv.evaluated) continue;
@@ -313,6 +358,7 @@ void Monitor::State::follow(int j) {
 
 void Monitor::State::move_alarms() {
   for (int j = 0; j < counts.cv; ++j) {
+    if (at_readings(j)) continue;
     Cv& cv = of(j);
     const auto changed = [&](int input) {
       transitions.push_back({j, input, cv.alarms.state(input), status[index(j, input)]});
@@ -333,6 +379,10 @@ void Monitor::State::judge_channels() {
   const bool mvs_still = reader.inputs().mvs_still();
   for (int i = 0; i < counts.inputs(); ++i) {
     for (int j = 0; j < counts.cv; ++j) {
+      if (at_readings(j)) {
+        seldom->read(j, i, status[index(j, i)]);
+        continue;
+      }
       const RegressionMemory& memory = detector.memory(j);
       const bool overdue = static_cast<double>(of(j).settled) >=
                            calibration::bad_data::kWarmUps * memory.needed_rows();
@@ -419,10 +469,12 @@ int Monitor::State::held_input(int cv) const {
 
 Monitor::Monitor(const ModelSpec& spec, const SignalCounts& counts,
                  const std::vector<bool>& may_predict, const MonitorSettings& settings,
-                 const AlarmSettings& alarms) {
+                 const AlarmSettings& alarms, Cycles cycles) {
   const LinearModel model(spec);
-  state_ = std::make_unique<State>(model, counts, may_predict,
-                                   derive_settings(spec, model, settings, alarms));
+  const DerivedSettings derived = derive_settings(spec, model, settings, alarms);
+  std::optional<SeldomCvs> seldom;
+  if (cycles == Cycles::kAny) seldom.emplace(spec, counts, derived.fir_lags, settings, alarms);
+  state_ = std::make_unique<State>(model, counts, may_predict, derived, std::move(seldom));
 }
 Monitor::Monitor(Monitor&&) noexcept = default;
 Monitor& Monitor::operator=(Monitor&&) noexcept = default;
@@ -442,6 +494,7 @@ void Monitor::push(const Frame& frame) {
   s.first = false;
   s.last_interval = frame.interval;
   s.reader.push(frame);
+  if (s.seldom) s.seldom->see(frame);
   if (s.reader.anew()) s.begin_anew();  // the screen keeps its frames
   while (const Frame* screened = s.reader.next()) s.take_frame(*screened);
   s.counters.implausible = s.reader.screen().counters();
@@ -464,9 +517,13 @@ const ChannelStatus& Monitor::channel(int cv, int input) const {
   return state_->status[state_->index(cv, input)];
 }
 const ChannelNonlinearity& Monitor::nonlinearity(int cv, int input) const {
-  return state_->nonlinear.result(cv, input);
+  const Monitor* seldom = state_->at_readings(cv);
+  return seldom ? seldom->nonlinearity(0, input) : state_->nonlinear.result(cv, input);
 }
-void Monitor::stand(int cv, int input) { state_->of(cv).alarms.stand(input); }
+void Monitor::stand(int cv, int input) {
+  state_->of(cv).alarms.stand(input);
+  if (state_->at_readings(cv)) state_->seldom->stand(cv, input);
+}
 AlarmState Monitor::alarm(int cv, int input) const { return state_->of(cv).alarms.state(input); }
 Eigen::Ref<const Eigen::VectorXd> Monitor::partial_correlations(int cv, int input) const {
   return state_->correlation.values(cv, input);
@@ -479,6 +536,9 @@ bool Monitor::corrected(int cv) const { return state_->reader.predictions().corr
 bool Monitor::of_other_model(int cv) const {
   return state_->reader.predictions().of_other_model(cv);
 }
+double Monitor::read_every(int cv) const {
+  return state_->at_readings(cv) ? state_->seldom->cycle(cv) : 0.0;
+}
 int Monitor::first_lag() const { return state_->settings.first_lag; }
 int Monitor::last_lag() const { return state_->settings.last_lag; }
 std::span<const JudgedFrame> Monitor::judged() const {
@@ -488,6 +548,7 @@ const std::vector<AlarmTransition>& Monitor::transitions() const { return state_
 const MonitorCounters& Monitor::counters() const { return state_->counters; }
 std::vector<LostSignal> Monitor::lost() const { return state_->lost.list(); }
 double Monitor::samples_needed(int cv) const {
+  if (state_->at_readings(cv)) return state_->seldom->samples_needed(cv);
   const RegressionMemory& memory = state_->detector.memory(cv);
   return std::max(0.0, memory.needed_rows() - static_cast<double>(memory.rows));
 }

@@ -55,15 +55,20 @@ struct MonitorCounters {
 /// The whole pipeline as one object: frame -> residual -> recursive statistics -> verdict -> alarm.
 /// Deterministic: same frames, same bytes. No allocation in `push` after construction, but where a
 /// signal turns out to live elsewhere than it did (`Screen::anew`) and all is begun anew, where the
-/// nonlinear test of a CV begins (`NonlinearRegression`), and where something is off and is asked,
+/// nonlinear test of a CV begins (`NonlinearRegression`), where one turns out to be read only every
+/// so many samples (`SeldomCvs`), and where something is off and is asked,
 /// each 20 samples at most, whether the plant bends (`Curvature`).
 class Monitor {
  public:
+  /// Whether CVs are looked at for a cycle in which they are read (`SeldomCvs`).
+  enum class Cycles { kAny, kNone };
+
   /// `may_predict[j]`: CV j's model prediction may come with the frames. Where none does
   /// (`Screen::predicted`), it is simulated from `model`; each time that this changes the CV begins
   /// anew.
   Monitor(const ModelSpec& model, const SignalCounts& counts, const std::vector<bool>& may_predict,
-          const MonitorSettings& settings, const AlarmSettings& alarms);
+          const MonitorSettings& settings, const AlarmSettings& alarms,
+          Cycles cycles = Cycles::kAny);
   Monitor(Monitor&&) noexcept;
   Monitor& operator=(Monitor&&) noexcept;
   ~Monitor();
@@ -109,6 +114,8 @@ class Monitor {
   [[nodiscard]] bool corrected(int cv) const;
   /// The predictions of the CV that come, and are used, are not what the model gives.
   [[nodiscard]] bool of_other_model(int cv) const;
+  /// Of a CV that is judged at its readings: samples from one to the next; 0 of others.
+  [[nodiscard]] double read_every(int cv) const;
   /// How many more samples the CV's verdicts need at least, if all of them serve; 0 = none.
   [[nodiscard]] double samples_needed(int cv) const;
 

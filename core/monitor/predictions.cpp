@@ -49,17 +49,20 @@ Predictions::Predictions(const LinearModel& model, const std::vector<bool>& may_
       settling_(may_predict.size(), 0),
       unseen_(may_predict.size(), 0) {}
 
-double Predictions::residual(int cv, const Frame& frame) const {
-  const SignalBlock& measured = frame[SignalKind::kCv];
+double Predictions::predicted(int cv, const Frame& frame) const {
   const SignalBlock& predicted = frame[SignalKind::kPrediction];
-  if (measured.usable(cv)) {
-    if (given(cv)) {
-      if (predicted.usable(cv) && !settling(cv)) return measured.values(cv) - predicted.values(cv);
-    } else if (started_ && !settling(cv)) {
-      return measured.values(cv) - model_.output()(cv);
-    }
+  if (given(cv)) {
+    if (predicted.usable(cv) && !settling(cv)) return predicted.values(cv);
+  } else if (started_ && !settling(cv)) {
+    return model_.output()(cv);
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+double Predictions::residual(int cv, const Frame& frame) const {
+  const SignalBlock& measured = frame[SignalKind::kCv];
+  return measured.usable(cv) ? measured.values(cv) - predicted(cv, frame)
+                             : std::numeric_limits<double>::quiet_NaN();
 }
 
 // No row may have residuals of either origin: those of one are long gone when the other one's

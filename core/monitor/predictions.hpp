@@ -48,6 +48,8 @@ class Predictions {
   [[nodiscard]] bool settling(int cv) const { return settling_[static_cast<std::size_t>(cv)] > 0; }
   /// An input that acts on it was lost, and what it did meanwhile may still show.
   [[nodiscard]] bool unseen(int cv) const { return unseen_[static_cast<std::size_t>(cv)] > 0; }
+  /// Of the CV at this frame; NaN where it is not known.
+  [[nodiscard]] double predicted(int cv, const Frame& frame) const;
   /// Measured minus predicted; NaN where the prediction is not known, or the measurement is not.
   [[nodiscard]] double residual(int cv, const Frame& frame) const;
 

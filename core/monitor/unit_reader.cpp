@@ -41,7 +41,8 @@ UnitReader::UnitReader(const LinearModel& model, const SignalCounts& counts,
           model, may_predict, acts,
           simulates_some(may_predict) ? settings.starting_samples : settings.settling_samples,
           settings.settling_samples, settings.fir_lags),
-      residuals_(counts.cv) {
+      residuals_(counts.cv),
+      predicted_(Eigen::VectorXd::Zero(counts.cv)) {
   turned_.reserve(static_cast<std::size_t>(counts.cv));
 }
 
@@ -59,6 +60,7 @@ const Frame* UnitReader::next() {
   inputs_.read(*frame);
   predictions_.begin(*frame, inputs_);
   residuals_.read(*frame, predictions_);
+  for (int j = 0; j < predicted_.size(); ++j) predicted_(j) = predictions_.predicted(j, *frame);
   predictions_.compare(*frame);
   predictions_.advance(inputs_);
   ++samples_;
@@ -77,7 +79,7 @@ void UnitReader::tell(const Frame& frame, JudgedFrame& judged) const {
 }
 
 void UnitReader::archive(Archive& a) {
-  // not archived: missing_, turned_ (of each frame anew)
+  // not archived: missing_, turned_, predicted_ (of each frame anew)
   a(screen_, inputs_, predictions_, residuals_, samples_, interval_);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -45,11 +46,16 @@ class UnitReader {
   /// What its CVs read; `judged` has room for them.
   void tell(const Frame& frame, JudgedFrame& judged) const;
 
+  /// `Screen::read_seldom`.
+  void read_seldom(int cv, bool seldom) { screen_.read_seldom(cv, seldom); }
+
   [[nodiscard]] const Screen& screen() const { return screen_; }
   [[nodiscard]] Screen&& give_screen() { return std::move(screen_); }
   [[nodiscard]] const UnitInputs& inputs() const { return inputs_; }
   [[nodiscard]] const Predictions& predictions() const { return predictions_; }
   [[nodiscard]] const UnitResiduals& residuals() const { return residuals_; }
+  /// Of the CVs at that frame, measured or not; NaN where it is not known.
+  [[nodiscard]] const Eigen::VectorXd& predicted() const { return predicted_; }
 
   void archive(Archive& a);
 
@@ -62,6 +68,7 @@ class UnitReader {
   UnitInputs inputs_;
   Predictions predictions_;
   UnitResiduals residuals_;
+  Eigen::VectorXd predicted_;
   std::int64_t samples_ = 0, interval_ = 0;  // read; of the last one
   std::int64_t missing_ = 0;
   std::vector<int> turned_;

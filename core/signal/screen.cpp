@@ -88,7 +88,8 @@ Screen::Screen(const SignalCounts& counts, std::vector<bool> may_predict, std::v
       marked_(kHeld),
       jumps_(static_cast<std::size_t>(counts.cv)),
       compression_(static_cast<std::size_t>(counts.cv)),
-      input_compression_(static_cast<std::size_t>(counts.inputs())) {
+      input_compression_(static_cast<std::size_t>(counts.inputs())),
+      read_seldom_(static_cast<std::size_t>(counts.cv), false) {
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind) {
     const auto count = static_cast<std::size_t>(counts.of(static_cast<SignalKind>(kind)));
     repeats_.emplace_back(count);
@@ -118,7 +119,7 @@ void Screen::archive(Archive& a) {
   a.within(position_, 0, kHeld - 1);
   a.within(held_, 0, kHeld);
   a.within(pushed_, 0, kDelay + 1);
-  a(repeats_, ranges_, jumps_, compression_, input_compression_, counters_);
+  a(repeats_, ranges_, jumps_, compression_, input_compression_, read_seldom_, counters_);
 }
 
 void Screen::push(const Frame& frame) {
@@ -274,6 +275,7 @@ void Screen::mark(SignalKind kind, int index, int frames, std::uint64_t ScreenCo
   Quality& quality = ago(frames)[kind].quality[static_cast<std::size_t>(index)];
   if (quality > Quality::kUncertain) return;
   quality = Quality::kImplausible;
+  if (kind == SignalKind::kCv && read_seldom_[static_cast<std::size_t>(index)]) return;
   ++(marked_[place(frames)].*counter);
 }
 

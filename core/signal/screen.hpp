@@ -75,6 +75,10 @@ class Screen {
   /// them is marked, for nobody will know whether it stays.
   void end_run();
 
+  /// The CV is read only every so many samples: what stands until its next reading is marked, and
+  /// not counted.
+  void read_seldom(int cv, bool seldom) { read_seldom_[static_cast<std::size_t>(cv)] = seldom; }
+
   [[nodiscard]] const ScreenCounters& counters() const { return counters_; }
   /// Whether with the last frame it turned out that what was learnt of some signal was of wild
   /// values, or that it lives elsewhere from now on: statistics over both are worth nothing.
@@ -207,6 +211,7 @@ class Screen {
   std::vector<Jumps> jumps_;                   // per CV
   std::vector<Compression> compression_;       // per CV
   std::vector<Compression> input_compression_;
+  std::vector<bool> read_seldom_;  // per CV
   ScreenCounters counters_;
 };
 

@@ -45,6 +45,11 @@ namespace readings {
 inline constexpr std::size_t kFewest = 20;
 inline constexpr double kRegular = 0.9;         ///< share of the spacings
 inline constexpr Eigen::Index kJitterFrom = 8;  ///< rows: the cycle need be no multiple of one
+/// While readings come (`ReadingCycle`): spacings that are remembered, the share of them that still
+/// is a cycle once it was one, and the longest that is looked for, samples.
+inline constexpr std::size_t kRemembered = 31;
+inline constexpr double kStillRegular = 0.5;
+inline constexpr double kLongest = 1e4;
 }  // namespace readings
 
 inline constexpr std::size_t kFewestRows = 100;

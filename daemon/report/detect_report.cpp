@@ -32,6 +32,8 @@ void DetectReport::take_counters(const Monitor& monitor, const config::UnitConfi
   bad_tags = config::by_tag(config, counters.bad_of);
   for (std::size_t cv = 0; cv < config.cv.size(); ++cv) {
     samples_needed[config.cv[cv].tag] = monitor.samples_needed(static_cast<int>(cv));
+    const double every = monitor.read_every(static_cast<int>(cv));
+    if (every > 0.0) read_every[config.cv[cv].tag] = every;
     if (monitor.corrected(static_cast<int>(cv)))
       corrected_predictions.push_back(config.cv[cv].prediction);
     if (monitor.of_other_model(static_cast<int>(cv)))
@@ -54,6 +56,7 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
   if (!report.corrected_predictions.empty())
     json["corrected_predictions"] = report.corrected_predictions;
   if (!report.other_predictions.empty()) json["other_predictions"] = report.other_predictions;
+  for (const auto& [tag, samples] : report.read_every) json["read_every"][tag] = samples;
   for (const files::Stretch& stretch : report.used)
     json["used"].push_back(
         {{"from", seconds(stretch.from_ns)}, {"until", seconds(stretch.until_ns)}});

@@ -31,6 +31,7 @@ struct DetectReport {
   std::vector<std::string> corrected_predictions;
   /// Of CVs whose predictions are used and are not what the unit file's model gives.
   std::vector<std::string> other_predictions;
+  std::map<std::string, double> read_every;  ///< samples, of CVs that are judged at their readings
   /// From the first row to the last of each stretch, where a part of the file was chosen.
   std::vector<files::Stretch> used;
   std::vector<ChannelRecord> channels;

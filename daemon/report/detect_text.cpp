@@ -76,6 +76,14 @@ std::string other_text(const DetectReport& report, std::size_t width) {
                         width);
 }
 
+std::string seldom_text(const DetectReport& report, std::size_t width) {
+  if (report.read_every.empty()) return "";
+  std::vector<std::string> cvs;
+  for (const auto& [tag, samples] : report.read_every)
+    cvs.push_back(printable(tag) + " every " + number_text(samples) + " samples");
+  return wrapped("Read seldom: " + config::join(cvs) + "; judged at the readings", 0, width) + '\n';
+}
+
 MatrixCell cell_of(const ChannelRecord& channel) {
   MatrixCell cell{"u", Tint::kGrey};
   if (channel.verdict == Verdict::kMatch) cell = {"m", Tint::kGreen};
@@ -215,7 +223,7 @@ std::string to_text(const DetectReport& report, const config::UnitConfig& unit,
   teller.section("Not linear", [](const auto& channel) { return nonlinear_text(channel); });
   teller.section("Undetermined", [&](const auto& channel) { return teller.open(channel); });
   teller.section("Alarms that are over", [&](const auto& channel) { return teller.past(channel); });
-  return wrapped(head(report, moment), 0, layout.width) + '\n' +
+  return wrapped(head(report, moment), 0, layout.width) + '\n' + seldom_text(report, layout.width) +
          corrected_text(report, layout.width) + other_text(report, layout.width) +
          matrix(report.channels, layout) + teller.text();
 }

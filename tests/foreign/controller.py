@@ -43,7 +43,7 @@ class Dmc:
         self.free = np.zeros((horizon + 1, cvs))
         self.ramps = np.array(integrating, float)  # 1: the prediction goes on in a straight line
         self.most, self.limit = MOST_MOVE * mv_scale, np.array(limits)
-        self.last = np.zeros(steps.shape[2])
+        self.last, self.bias = np.zeros(steps.shape[2]), np.zeros(cvs)
 
     @classmethod
     def of(cls, plant):
@@ -52,9 +52,11 @@ class Dmc:
         return cls(steps_of(plant), plant.cv_scale, plant.mv_scale, integrating,
                    LIMIT * np.array(plant.mv_scale))
 
-    def move(self, setpoint, measured):
-        """The MVs that it wants; `applied` must follow."""
-        expected = self.free[self.points] + (measured - self.free[0])
+    def move(self, setpoint, measured, read=True):
+        """The MVs that it wants; `applied` must follow. `read`: of each CV, whether it was: a bias
+        stands until it is known better."""
+        self.bias = np.where(read, measured - self.free[0], self.bias)
+        expected = self.free[self.points] + self.bias
         moves = np.clip(self.gain @ (setpoint - expected).ravel(), -self.most, self.most)
         mvs = len(moves)
         return np.clip(self.last[:mvs] + moves, -self.limit, self.limit)
@@ -93,7 +95,8 @@ class Pi:
         self.limit = LIMIT * np.array(plant.mv_scale)
         self.sums = np.zeros(cvs)
 
-    def move(self, setpoint, measured):
+    def move(self, setpoint, measured, read=True):
+        """`read`: does not matter to it; what stands is what it sees."""
         error = setpoint - measured
         wanted = np.zeros(len(self.limit))
         for cv, mv in enumerate(self.pairs):

@@ -63,9 +63,15 @@ def simulate(regime, plant, outside, hidden, samples, present=None, healthy=None
     limit = LIMIT * np.array(plant.mv_scale)
     clean, manual = np.zeros(plant.cv_count), np.zeros(plant.mv_count)
     inputs = np.zeros(plant.mv_count + 1)
+    analysed, every = outside.reading
+    read = np.ones(plant.cv_count, bool)
     for k in range(samples):
         cvs[k] = hidden["sensor"] * clean + added[k]
-        wanted = controller.move(outside.setpoints[k], cvs[k]) + outside.feedforward[k] - manual
+        read[analysed] = k % every == 0
+        if not read[analysed]:
+            cvs[k, analysed] = cvs[k - 1, analysed]
+        wanted = (controller.move(outside.setpoints[k], cvs[k], read) + outside.feedforward[k] -
+                  manual)
         manual = outside.feedforward[k]
         mvs[k] = np.clip(wanted, -limit, limit)
         inputs[:-1], inputs[-1] = mvs[k], outside.dv[k]

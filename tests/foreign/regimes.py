@@ -11,7 +11,9 @@ setpoint_disturbance  a disturbance moves with a set-point
 quantised             CVs are logged in steps of 0.3 to 1 s.d. of the noise
 compressed            CVs and MVs are logged again only once they have moved by a deadband
 finely_compressed     CVs are logged again only once they have moved by a twentieth of the noise
-analyser              one CV is read every 2 to 12 samples, and the reading stands until the next
+analyser              one CV is logged every 2 to 12 samples, and stands until the next; the
+                      controller sees every sample
+analyser_controlled   one CV is read every 2 to 12 samples, and that is all the controller sees, too
 late                  drift, step or noise x 2.9 from the last third on
 injected_steps        constant set-points, and load steps that the loop answers
 noisy_walk            what disturbs the CVs integrates slowly, under measurement noise
@@ -23,8 +25,8 @@ import numpy as np
 
 REGIMES = ["stationary", "random_walk", "day_night", "constant_setpoints", "rare_moves",
            "hidden_feedforward", "aux_disturbance", "setpoint_disturbance", "quantised",
-           "compressed", "finely_compressed", "analyser", "late", "injected_steps", "noisy_walk",
-           "pi_control"]
+           "compressed", "finely_compressed", "analyser", "analyser_controlled", "late",
+           "injected_steps", "noisy_walk", "pi_control"]
 STILL = ("constant_setpoints", "rare_moves", "injected_steps")  # neither set-points nor the DV move
 
 
@@ -121,6 +123,7 @@ class Outside:
     noise_models: list
     causes: list  # in the words of a diagnosis: what of that may rightly be named
     regressors: list  # per CV: shapes of which the best possible test does not know the size
+    reading: tuple = (0, 1)  # a CV, and every how many samples it is read
 
 
 def draw(regime, plant, samples, rng):
@@ -203,7 +206,9 @@ def draw(regime, plant, samples, rng):
             values = lagged(steps, float(rng.uniform(3, 15)))
             disturb(values)
             regressors[cv] = [values]
-    return Outside(setpoints, dv, aux, noise, feedforward, models, causes, regressors)
+    reading = ((int(rng.integers(plant.cv_count)), int(rng.integers(2, 13)))
+               if regime == "analyser_controlled" else (0, 1))
+    return Outside(setpoints, dv, aux, noise, feedforward, models, causes, regressors, reading)
 
 
 def logged(regime, plant, models, cvs, mvs, rng):

@@ -29,18 +29,6 @@ MatrixXd columns_of(const MatrixXd& all, const std::vector<int>& cvs) {
   return some;
 }
 
-template <class Item>
-std::vector<Item> items_of(const std::vector<Item>& all, const std::vector<int>& cvs) {
-  std::vector<Item> some;
-  for (const Item& item : all) {
-    const int cv = place_in(cvs, item.cv);
-    if (cv < 0) continue;
-    some.push_back(item);
-    some.back().cv = cv;
-  }
-  return some;
-}
-
 /// Puts the part's in the place of those that the whole has of these CVs; `inputs`: where each of
 /// the part's inputs is in the whole.
 template <class Item>
@@ -147,21 +135,6 @@ std::optional<Readings> readings_in(const Recording& other, const Readings& read
   if (same == all.end()) return std::nullopt;
   same->cvs = readings.cvs;
   return *same;
-}
-
-ModelSpec of_cvs(const ModelSpec& model, const std::vector<int>& cvs) {
-  ModelSpec part = model;
-  part.cv_count = static_cast<int>(cvs.size());
-  part.channels = items_of(model.channels, cvs);
-  part.state_terms = items_of(model.state_terms, cvs);
-  part.disturbances = items_of(model.disturbances, cvs);
-  part.output_blocks.clear();
-  part.output_origin.resize(part.cv_count);
-  for (std::size_t i = 0; i < cvs.size(); ++i) {
-    part.output_blocks.push_back(model.output_blocks[static_cast<std::size_t>(cvs[i])]);
-    part.output_origin(static_cast<Index>(i)) = model.output_origin(cvs[i]);
-  }
-  return part;
 }
 
 Recording of_cvs(const Recording& recording, const std::vector<int>& cvs) {

@@ -6,6 +6,7 @@
 
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/identify/fit/recording.hpp"
+#include "core/model/model_part.hpp"
 #include "core/model/model_spec.hpp"
 
 /// CVs that are read only every so many samples (an analyser's): what stands between two readings
@@ -27,8 +28,7 @@ struct Readings {
 /// The same CVs in another recording; nothing where they are not read in the same cycle there.
 [[nodiscard]] std::optional<Readings> readings_in(const Recording& other, const Readings& readings);
 
-/// The part of a model in channels, or of a recording, that these CVs (ascending) are.
-[[nodiscard]] ModelSpec of_cvs(const ModelSpec& model, const std::vector<int>& cvs);
+/// The part of a recording that these CVs (ascending) are.
 [[nodiscard]] Recording of_cvs(const Recording& recording, const std::vector<int>& cvs);
 
 /// The same at the readings of a cycle. A mean of what an input does between two readings is not

@@ -18,8 +18,8 @@ struct Scene {
     frame[SignalKind::kMv].quality[0] = Quality::kGood;
     frame[SignalKind::kCv].quality[0] = quality;
     frame[SignalKind::kCv].values(0) = value;
-    lost.take(frame, SignalKind::kMv, 0);
-    lost.take(frame, SignalKind::kCv, 0);
+    lost.take(frame, SignalKind::kMv, 0, frame[SignalKind::kMv].usable(0));
+    lost.take(frame, SignalKind::kCv, 0, frame[SignalKind::kCv].usable(0));
   }
   void samples(int count, Quality quality) {
     for (int i = 0; i < count; ++i) sample(quality);
