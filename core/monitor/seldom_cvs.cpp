@@ -210,7 +210,7 @@ void SeldomCvs::archive(Archive& a) {
     bool there = parts_[j].has_value();
     double cycle = there ? parts_[j]->cycle : 0.0;
     a(there, cycle);
-    a.require(!there || (cycle > 1.0 && cycle <= readings::kLongest + 1.0), "no cycle of readings");
+    a.require(!there || (cycle > 1.0 && cycle <= readings::kLongest), "no cycle of readings");
     if (a.reads()) {
       parts_[j].reset();
       if (there) parts_[j] = make(static_cast<int>(j), cycle);

@@ -45,6 +45,8 @@ namespace readings {
 inline constexpr std::size_t kFewest = 20;
 inline constexpr double kRegular = 0.9;         ///< share of the spacings
 inline constexpr Eigen::Index kJitterFrom = 8;  ///< rows: the cycle need be no multiple of one
+/// Rows from the line through all of them, beyond which one is no reading.
+inline constexpr double kOffLine = 2.0;
 /// While readings come (`ReadingCycle`): spacings that are remembered, the share of them that still
 /// is a cycle once it was one, and the longest that is looked for, samples.
 inline constexpr std::size_t kRemembered = 31;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "core/statistics/calibration.hpp"
 #include "core/statistics/compression.hpp"
+#include "core/statistics/reading_spacings.hpp"
 
 namespace mpm {
 namespace {
@@ -22,6 +24,18 @@ double lattice(const std::vector<double>& levels, double range) {
     if (std::abs(steps - std::round(steps)) > kOfLattice * std::max(1.0, steps)) return 0.0;
   }
   return quantum;
+}
+
+struct Line {
+  double start = 0.0, slope = 0.0;
+};
+
+/// Least squares; weights 0 or 1.
+Line line_through(const VectorXd& x, const VectorXd& y, const VectorXd& weight) {
+  const double count = weight.sum(), mean_x = weight.dot(x) / count, mean_y = weight.dot(y) / count;
+  const VectorXd from_mean = weight.cwiseProduct(x - VectorXd::Constant(x.size(), mean_x));
+  const double slope = from_mean.dot(y) / from_mean.dot(x);
+  return {mean_y - slope * mean_x, slope};
 }
 
 /// Values that differ by rounding are one.
@@ -44,49 +58,61 @@ std::vector<Index> reading_rows(const Eigen::Ref<const VectorXd>& values) {
   return rows;
 }
 
-/// By how many rows a reading may come late.
-Index jitter_of(Index every) { return every >= readings::kJitterFrom ? 1 : 0; }
-
 }  // namespace
 
 Index reading_interval(const Eigen::Ref<const VectorXd>& values) {
   const std::vector<Index> rows = reading_rows(values);
-  std::vector<Index> spacings;
+  std::vector<std::int64_t> spacings;
   for (std::size_t i = 1; i < rows.size(); ++i) spacings.push_back(rows[i] - rows[i - 1]);
   if (spacings.size() < readings::kFewest) return 0;
-  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-  std::nth_element(spacings.begin(), middle, spacings.end());
-  const Index every = *middle;
-  if (every < 2) return 0;
-  // Two readings that are equal, and one that is missing, make a multiple.
-  const Index jitter = jitter_of(every);
-  const auto regular = std::count_if(spacings.begin(), spacings.end(), [&](Index spacing) {
-    const Index nearest = std::max<Index>(1, (spacing + every / 2) / every) * every;
-    return std::abs(spacing - nearest) <= jitter;
-  });
-  return static_cast<double>(regular) >= readings::kRegular * static_cast<double>(spacings.size())
-             ? every
-             : 0;
+  const ReadingSpacings found = reading_spacings(spacings);
+  return found.regular >= readings::kRegular ? found.every : 0;
 }
 
-std::optional<Index> reading_offset(const Eigen::Ref<const VectorXd>& values, Index every) {
+double reading_cycle(const Eigen::Ref<const VectorXd>& values) {
+  const auto every = static_cast<double>(reading_interval(values));
+  if (every == 0.0 || reading_offset(values, every)) return every;
+  // No whole number of rows: what the readings' rows rise by with their numbers.
+  std::vector<Index> rows = reading_rows(values);
+  rows.erase(rows.begin());  // what stands at first was read before
+  std::vector<std::int64_t> spacings;
+  for (std::size_t i = 1; i < rows.size(); ++i) spacings.push_back(rows[i] - rows[i - 1]);
+  const double near = reading_spacings(spacings).mean;
+  VectorXd at(static_cast<Index>(rows.size())), number(at.size());
+  for (Index i = 0; i < at.size(); ++i) {
+    at(i) = static_cast<double>(rows[static_cast<std::size_t>(i)]);
+    number(i) = i == 0 ? 0.0 : number(i - 1) + std::round((at(i) - at(i - 1)) / near);
+  }
+  const Line all = line_through(number, at, VectorXd::Ones(at.size()));
+  // Once more without what came between two readings.
+  const VectorXd off = at - all.slope * number - VectorXd::Constant(at.size(), all.start);
+  const double slope =
+      line_through(number, at, (off.array().abs() < readings::kOffLine).cast<double>()).slope;
+  return slope > 1.0 ? slope : every;  // NaN where none is near
+}
+
+std::optional<double> reading_offset(const Eigen::Ref<const VectorXd>& values, double every) {
   std::vector<Index> rows = reading_rows(values);
   if (rows.size() < 2) return std::nullopt;
   rows.erase(rows.begin());  // what stands at first was read before
-  std::vector<std::size_t> at(static_cast<std::size_t>(every), 0);
-  for (const Index row : rows) ++at[static_cast<std::size_t>(row % every)];
-  // The latest of those that belong together, so that none is missed.
-  const Index jitter = jitter_of(every);
-  const auto count = [&](Index row) { return at[static_cast<std::size_t>(row % every)]; };
-  Index best = 0;
-  std::size_t most = 0;
-  for (Index last = 0; last < every; ++last) {
-    const std::size_t all = count(last) + (jitter > 0 ? count(last + every - jitter) : 0);
-    if (count(last) > 0 && all > most) most = all, best = last;
+  std::vector<double> phases;
+  for (const Index row : rows) phases.push_back(std::fmod(static_cast<double>(row), every));
+  std::sort(phases.begin(), phases.end());
+  const std::size_t count = phases.size();
+  for (std::size_t i = 0; i < count; ++i) phases.push_back(phases[i] + every);
+  // The latest of those that belong together, so that none is missed: in a cycle of no whole number
+  // of rows they come up to a row after it, in a long one up to a row late.
+  const bool whole = every == std::round(every);
+  const double width = whole && every < static_cast<double>(readings::kJitterFrom) ? 0.0 : 1.0;
+  std::size_t first = 0, most = 0;
+  double latest = 0.0;
+  for (std::size_t last = 0; last < phases.size(); ++last) {
+    while (phases[last] - phases[first] > width) ++first;
+    const std::size_t together = std::min(count, last - first + 1);
+    if (together > most) most = together, latest = phases[last];
   }
-  const bool regular =
-      static_cast<double>(most) >= readings::kRegular * static_cast<double>(rows.size());
-  return regular ? std::optional(best) : std::nullopt;
+  const bool regular = static_cast<double>(most) >= readings::kRegular * static_cast<double>(count);
+  return regular ? std::optional(std::fmod(latest, every)) : std::nullopt;
 }
 
 HistorianTraits historian_traits(const Eigen::Ref<const VectorXd>& values) {

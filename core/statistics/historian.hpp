@@ -14,8 +14,8 @@ struct HistorianTraits {
   /// Of a lattice that all values lie on and whose neighbours most moves go between: a converter
   /// coarser than what it measures moves by from row to row; 0 = none seen.
   double quantum = 0.0;
-  /// An analyser's: rows from one reading to the next, between which it stands or nothing is known;
-  /// 0 = it is no reading of every so many rows.
+  /// An analyser's: rows from one reading to the next as a rule, between which it stands or nothing
+  /// is known; 0 = it is no reading of every so many rows.
   Eigen::Index read_every = 0;
   bool interpolated = false;  ///< straight lines between archived points, with corners
   double sd = 0.0;            ///< of the known values
@@ -31,11 +31,15 @@ struct HistorianTraits {
 /// `read_every` of a column.
 [[nodiscard]] Eigen::Index reading_interval(const Eigen::Ref<const Eigen::VectorXd>& values);
 
-/// Of a column with one reading in `every` rows: the row, 0 .. every - 1, where its cycle begins:
-/// at row + k * every the k-th reading is there, new or no more than a row old. Nothing where the
-/// readings keep to no such cycle.
-[[nodiscard]] std::optional<Eigen::Index> reading_offset(
-    const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index every);
+/// The same to a part of a row: a whole number where the readings keep to one, else what their rows
+/// rise by from one to the next.
+[[nodiscard]] double reading_cycle(const Eigen::Ref<const Eigen::VectorXd>& values);
+
+/// Of a column with one reading in `every` rows: where its cycle begins, rows in [0, every): by row
+/// floor(offset + k every) the k-th reading is there, new or no more than a row old. Nothing where
+/// the readings keep to no such cycle.
+[[nodiscard]] std::optional<double> reading_offset(const Eigen::Ref<const Eigen::VectorXd>& values,
+                                                   double every);
 
 /// Whether what was lost is no longer small beside what the signal does, so that no cause can be
 /// told from it: half of the rows were drawn by the historian, or a deadband or a quantum is more

@@ -439,11 +439,11 @@ Diagnosis run_by_readings(const ModelSpec& given, const Recording& recording,
       const auto parts = static_cast<double>(all.size());
       return settings.progress(share_before + share / parts);
     };
-    Diagnosis part = run(model, rows, unseen, of_part, readings.every == 1);
+    Diagnosis part = run(model, rows, unseen, of_part, readings.every == 1.0);
     if (!whole)
       whole = unjudged(base, data,
                        validation != nullptr ? recording.samples()
-                       : readings.every == 1 && part.fit_samples > 0
+                       : readings.every == 1.0 && part.fit_samples > 0
                            ? part.fit_samples
                            : fitted_rows(recording, settings.fit_share));
     if (part.verdict == DiagnosisVerdict::kMismatch || verdict == DiagnosisVerdict::kMatch)
@@ -462,7 +462,7 @@ Diagnosis run_by_readings(const ModelSpec& given, const Recording& recording,
       if (const auto there = readings_in(*validation, readings))
         unseen = of_readings(base, *validation, *there);
     const bool known = validation == nullptr || unseen;
-    if (known && (readings.every == 1 || can_judge(model, rows)))
+    if (known && (readings.every == 1.0 || can_judge(model, rows)))
       take(readings, model, rows, unseen ? &*unseen : nullptr, share);
     else
       all_judged = false;

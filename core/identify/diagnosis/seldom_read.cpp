@@ -1,10 +1,12 @@
 #include "core/identify/diagnosis/seldom_read.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
 
+#include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/free_run.hpp"
 #include "core/statistics/historian.hpp"
@@ -94,10 +96,10 @@ void append(Items items, Items& to) {
 }
 
 /// Where each run's cycle begins that a CV is read in; nothing where it keeps to none.
-std::optional<std::vector<Index>> offsets_of(const Recording& recording, int cv, Index every) {
-  std::vector<Index> offsets;
+std::optional<std::vector<double>> offsets_of(const Recording& recording, int cv, double every) {
+  std::vector<double> offsets;
   for (const auto& [first, count] : runs_of(recording)) {
-    const std::optional<Index> offset =
+    const std::optional<double> offset =
         reading_offset(recording.cvs.col(cv).segment(first, count), every);
     if (!offset) return std::nullopt;
     offsets.push_back(*offset);
@@ -105,13 +107,23 @@ std::optional<std::vector<Index>> offsets_of(const Recording& recording, int cv,
   return offsets;
 }
 
+/// Rows from one reading of a CV to the next; 0: it is read at every row, or in no cycle.
+double cycle_of(const Recording& recording, int cv) {
+  const auto whole = static_cast<double>(reading_interval(recording.cvs.col(cv)));
+  if (whole == 0.0 || offsets_of(recording, cv, whole)) return whole;
+  const std::vector<Run> runs = runs_of(recording);
+  const auto longest = std::max_element(
+      runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.count < b.count; });
+  return reading_cycle(recording.cvs.col(cv).segment(longest->first, longest->count));
+}
+
 }  // namespace
 
 std::vector<Readings> readings_of(const Recording& recording) {
-  std::vector<Readings> all = {{1, std::vector<Index>(runs_of(recording).size(), 0), {}}};
+  std::vector<Readings> all = {{1.0, std::vector<double>(runs_of(recording).size(), 0.0), {}}};
   for (int cv = 0; cv < recording.cvs.cols(); ++cv) {
-    const Index every = std::max<Index>(1, reading_interval(recording.cvs.col(cv)));
-    const auto offsets = every > 1 ? offsets_of(recording, cv, every) : all.front().offsets;
+    const double every = std::max(1.0, cycle_of(recording, cv));
+    const auto offsets = every > 1.0 ? offsets_of(recording, cv, every) : all.front().offsets;
     if (!offsets) continue;
     const auto same = std::find_if(all.begin(), all.end(), [&](const Readings& readings) {
       return readings.every == every && readings.offsets == *offsets;
@@ -125,16 +137,17 @@ std::vector<Readings> readings_of(const Recording& recording) {
 }
 
 std::optional<Readings> readings_in(const Recording& other, const Readings& readings) {
-  if (readings.every == 1)
-    return Readings{1, std::vector<Index>(runs_of(other).size(), 0), readings.cvs};
-  std::vector<Readings> all = readings_of(other);
-  const auto same = std::find_if(all.begin(), all.end(), [&](const Readings& each) {
-    return each.every == readings.every && std::includes(each.cvs.begin(), each.cvs.end(),
-                                                         readings.cvs.begin(), readings.cvs.end());
-  });
-  if (same == all.end()) return std::nullopt;
-  same->cvs = readings.cvs;
-  return *same;
+  if (readings.every == 1.0)
+    return Readings{1.0, std::vector<double>(runs_of(other).size(), 0.0), readings.cvs};
+  Readings there{readings.every, {}, readings.cvs};
+  for (const int cv : readings.cvs) {
+    if (std::abs(cycle_of(other, cv) - readings.every) > kSameCycle * readings.every)
+      return std::nullopt;
+    auto offsets = offsets_of(other, cv, readings.every);
+    if (!offsets || (!there.offsets.empty() && there.offsets != *offsets)) return std::nullopt;
+    there.offsets = *std::move(offsets);
+  }
+  return there;
 }
 
 Recording of_cvs(const Recording& recording, const std::vector<int>& cvs) {
@@ -146,14 +159,14 @@ Recording of_cvs(const Recording& recording, const std::vector<int>& cvs) {
 
 ModelSpec of_readings(const ModelSpec& model, const Readings& readings) {
   ModelSpec part = of_cvs(model, readings.cvs);
-  part.sample_time_s *= static_cast<double>(readings.every);
+  part.sample_time_s *= readings.every;
   return part;
 }
 
 Recording of_readings(const ModelSpec& model, const Recording& recording,
                       const Readings& readings) {
   Recording part = of_cvs(recording, readings.cvs);
-  if (readings.every == 1) return part;
+  if (readings.every == 1.0) return part;
   Recording result = averaged(part, readings.every, readings.offsets);
   if (result.samples() == 0) return result;
   Simulator fine(recording), coarse(result);
@@ -266,7 +279,9 @@ void take_in(const ModelSpec& model, const Recorded& data, const Readings& readi
   if (part.before.rows() == 0) return;  // nothing was judged
 
   for (std::size_t i = 0; i < cvs.size(); ++i) {
-    for (Horizon& horizon : part.scores[i].horizons) horizon.samples *= readings.every;
+    for (Horizon& horizon : part.scores[i].horizons)
+      horizon.samples =
+          static_cast<Index>(std::round(static_cast<double>(horizon.samples) * readings.every));
     whole.scores[static_cast<std::size_t>(cvs[i])] = std::move(part.scores[i]);
   }
   part.extended.sample_time_s = model.sample_time_s;
@@ -275,7 +290,7 @@ void take_in(const ModelSpec& model, const Recorded& data, const Readings& readi
              {std::move(part.extended), std::move(part.new_inputs)}, cvs, model.input_count);
   whole.extended = extended.model;
   whole.new_inputs = extended.new_inputs;
-  if (readings.every > 1) {
+  if (readings.every > 1.0) {
     run_again(extended, data.recording, cvs, whole.after);
     if (data.validation != nullptr)
       run_again(extended, *data.validation, cvs, whole.validation_after);

@@ -16,9 +16,9 @@ namespace mpm {
 
 /// CVs that are read in one cycle.
 struct Readings {
-  Eigen::Index every = 1;             ///< rows
-  std::vector<Eigen::Index> offsets;  ///< of each run: where the first reading is (reading_offset)
-  std::vector<int> cvs;               ///< ascending
+  double every = 1.0;           ///< rows, whole or not
+  std::vector<double> offsets;  ///< of each run: where the first reading is (reading_offset)
+  std::vector<int> cvs;         ///< ascending
 };
 
 /// All CVs of a recording that are read at every sample, then cycle by cycle those that keep to

@@ -77,6 +77,7 @@ inline constexpr Eigen::Index kShortestRun = 40;  ///< rows
 inline constexpr double kSettlingTimeConstants = 3.0;
 
 // Long recordings (condense.hpp).
+inline constexpr double kOfRow = 1e-6;         ///< by which a row may be short of a whole number
 inline constexpr Eigen::Index kStretches = 8;  ///< that are chosen, where not all rows are taken
 inline constexpr double kRowsOfFastest = 8.0;  ///< in the fastest time constant, at least
 inline constexpr double kSlowestSpanned =

@@ -52,39 +52,55 @@ Hold hold_of(const Recording& recording) {
   return hold;
 }
 
-/// Of each of the rows first, first + every, ...: the mean of the known values up to the next.
-VectorXd means(const Eigen::Ref<const VectorXd>& values, Index first, Index every, Index count) {
+/// Where the rows of an average begin: floor(offset + r every).
+struct Grid {
+  double offset = 0.0, every = 1.0;
+  [[nodiscard]] Index row(Index r) const {
+    return static_cast<Index>(offset + static_cast<double>(r) * every + kOfRow);
+  }
+  /// How many end within so many rows.
+  [[nodiscard]] Index count(Index rows) const {
+    auto count =
+        static_cast<Index>(std::max(0.0, static_cast<double>(rows) - offset) / every + 1.0);
+    while (count > 0 && row(count) > rows) --count;
+    return count;
+  }
+};
+
+/// Of each: the mean of the known values up to the next.
+VectorXd means(const Eigen::Ref<const VectorXd>& values, const Grid& grid, Index count) {
   VectorXd result(count);
   for (Index r = 0; r < count; ++r) {
     double sum = 0.0, known = 0.0;
-    for (const double value : values.segment(first + r * every, every))
+    for (const double value : values.segment(grid.row(r), grid.row(r + 1) - grid.row(r)))
       if (std::isfinite(value)) sum += value, known += 1.0;
     result(r) = known > 0.0 ? sum / known : kUnknown;
   }
   return result;
 }
 
-/// The last known value up to each of these rows, no older than half of `every`.
-VectorXd readings(const Eigen::Ref<const VectorXd>& values, Index first, Index every, Index count) {
+/// The last known value up to each of these rows, no older than half of what is averaged.
+VectorXd readings(const Eigen::Ref<const VectorXd>& values, const Grid& grid, Index count) {
   VectorXd result(count);
   for (Index r = 0; r < count; ++r) {
-    const Index at = first + r * every;
+    const Index at = grid.row(r);
+    const auto oldest = static_cast<Index>(grid.every) / 2;
     Index k = at;
-    while (k > 0 && at - k < every / 2 && !std::isfinite(values(k))) --k;
+    while (k > 0 && at - k < oldest && !std::isfinite(values(k))) --k;
     result(r) = values(k);
   }
   return result;
 }
 
-/// One run, averaged from its row `offset` on.
-Recording averaged_run(const Recording& run, Index offset, Index every) {
+/// One run, averaged.
+Recording averaged_run(const Recording& run, const Grid& grid) {
   Recording result;
-  result.sample_time_s = run.sample_time_s * static_cast<double>(every);
-  result.start_s = run.start_s + static_cast<double>(offset) * run.sample_time_s;
-  const Index count = std::max<Index>(0, run.samples() - offset) / every;
+  result.sample_time_s = run.sample_time_s * grid.every;
+  result.start_s = run.start_s + grid.offset * run.sample_time_s;
+  const Index count = grid.count(run.samples());
   const auto each = [&](const MatrixXd& from, auto take) {
     MatrixXd to(count, from.cols());
-    for (Index c = 0; c < from.cols(); ++c) to.col(c) = take(from.col(c), offset, every, count);
+    for (Index c = 0; c < from.cols(); ++c) to.col(c) = take(from.col(c), grid, count);
     return to;
   };
   result.inputs = each(run.inputs, means);
@@ -211,14 +227,16 @@ Index rows_to_average(const Recording& recording, const ModelSpec& model, Index 
                                          : 1;
 }
 
-Recording averaged(const Recording& recording, Index every, const std::vector<Index>& offsets) {
+Recording averaged(const Recording& recording, double every, const std::vector<double>& offsets) {
   const std::vector<Run> runs = runs_of(recording);
   std::vector<Recording> all;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    Recording run = averaged_run(part(recording, runs[r].first, runs[r].count), offsets[r], every);
+    Recording run =
+        averaged_run(part(recording, runs[r].first, runs[r].count), {offsets[r], every});
     if (run.samples() > 0) all.push_back(std::move(run));
   }
-  return all.empty() ? averaged_run(recording, recording.samples(), every) : joined(all);
+  const auto end = static_cast<double>(recording.samples());
+  return all.empty() ? averaged_run(recording, {end, every}) : joined(all);
 }
 
 Condensed condensed(const Recording& recording, Index every, Index most_rows) {
@@ -234,7 +252,8 @@ Condensed condensed(const Recording& recording, Index every, Index most_rows) {
     std::vector<std::size_t> run_of;
     for (std::size_t r = 0; r < runs.size(); ++r) {
       const Index offset = hold.rows > 1 ? hold.first[r] % every : 0;
-      Recording run = averaged_run(part(recording, runs[r].first, runs[r].count), offset, every);
+      Recording run = averaged_run(part(recording, runs[r].first, runs[r].count),
+                                   {static_cast<double>(offset), static_cast<double>(every)});
       if (run.samples() < kShortestRun && runs.size() > 1) continue;
       averaged.push_back(std::move(run));
       run_of.push_back(r);

@@ -22,12 +22,12 @@ struct PlantSpeed {
 /// alone, for behind a valve's block the mean is not that before it.
 [[nodiscard]] bool holds_at_any_sample_time(const ModelSpec& model);
 
-/// Of each run from its row `offsets` on `every` rows as one, t(K) = t(offset + K every): MVs, DVs
-/// and aux are means over what acts from there to the next one, CVs and set-points what was read at
-/// t(K), so that no answer comes late and no input acts before its time. Runs of which no row is
-/// left go.
-[[nodiscard]] Recording averaged(const Recording& recording, Eigen::Index every,
-                                 const std::vector<Eigen::Index>& offsets);
+/// Of each run from its row `offsets` on `every` rows as one, t(K) = t(floor(offset + K every)):
+/// MVs, DVs and aux are means over what acts from there to the next one, CVs and set-points what
+/// was read at t(K), so that no answer comes late and no input acts before its time. Runs of which
+/// no row is left go.
+[[nodiscard]] Recording averaged(const Recording& recording, double every,
+                                 const std::vector<double>& offsets);
 
 /// What of a long recording is used.
 struct Condensing {

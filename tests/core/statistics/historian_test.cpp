@@ -138,13 +138,43 @@ TEST_CASE("a cycle of readings begins where they come, late by a row or not") {
     }
     return held;
   };
-  CHECK(reading_offset(read(5, 3, false), 5) == Index{3});
-  CHECK(reading_offset(read(12, 0, false), 12) == Index{0});
-  CHECK(reading_offset(read(12, 7, true), 12) == Index{8});
-  CHECK(reading_offset(read(12, 11, true), 12) == Index{0});
+  CHECK(reading_offset(read(5, 3, false), 5) == 3.0);
+  CHECK(reading_offset(read(12, 0, false), 12) == 0.0);
+  CHECK(reading_offset(read(12, 7, true), 12) == 8.0);
+  CHECK(reading_offset(read(12, 11, true), 12) == 0.0);
+  CHECK(reading_cycle(read(5, 3, false)) == 5.0);
+  CHECK(reading_cycle(read(12, 7, false)) == 12.0);
   CHECK_FALSE(reading_offset(read(7, 3, false), 5));
   CHECK_FALSE(reading_offset(values, 5));
   CHECK_FALSE(reading_offset(VectorXd::Ones(kRows), 5));
+}
+
+TEST_CASE("a cycle that is no whole number of rows is found, with each of its readings") {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const VectorXd values = signal(seed);
+    for (const double every : {2.5, 4.97, 5.03, 7.3, 10.3, 24.6, 59.9}) {
+      // The n-th reading is taken at 1.7 + n every, and is in the rows from the next one on.
+      CAPTURE(seed, every);
+      const auto row_of = [&](Index n) {
+        return static_cast<Index>(std::ceil(1.7 + static_cast<double>(n) * every));
+      };
+      VectorXd held = values;
+      for (Index n = 0; row_of(n) < kRows; ++n)
+        for (Index k = row_of(n); k < std::min<Index>(kRows, row_of(n + 1)); ++k)
+          held(k) = values(row_of(n));
+      const double cycle = reading_cycle(held);
+      CHECK(std::abs(cycle - every) * kRows / every < 0.5);  // rows, at the end
+      const auto offset = reading_offset(held, cycle);
+      REQUIRE(offset);
+      const Index skipped = static_cast<Index>(std::round((1.7 - *offset) / every));
+      Index found = 0, all = 0;
+      for (Index n = 1; row_of(n) + 1 < kRows; ++n, ++all)
+        found +=
+            std::abs(static_cast<Index>(*offset + static_cast<double>(n + skipped) * cycle + 1e-6) -
+                     row_of(n)) <= 1;
+      CHECK(found >= all - all / 20);
+    }
+  }
 }
 
 }  // namespace

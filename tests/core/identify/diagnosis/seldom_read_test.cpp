@@ -113,13 +113,32 @@ TEST_CASE("where every CV is read in a cycle each is judged in its own") {
   REQUIRE(readings.size() == 3);
   CHECK(readings[0].cvs.empty());
   CHECK(readings[1].every == 10);
-  CHECK(readings[1].offsets == std::vector<Index>{0});
+  CHECK(readings[1].offsets == std::vector{0.0});
   CHECK(readings[1].cvs == std::vector<int>{0});
   CHECK(readings[2].every == 6);
-  CHECK(readings[2].offsets == std::vector<Index>{2});
+  CHECK(readings[2].offsets == std::vector{2.0});
   const Diagnosis diagnosis = diagnosis_of(recording);
   REQUIRE(diagnosis.findings.size() == 1);
   CHECK(diagnosis.findings[0].subject == Subject{&causes::gain(), {1, 0}});
+  CHECK(diagnosis.findings[0].parameters[0].value == Approx(1.4).margin(0.1));
+}
+
+TEST_CASE("a CV that is read every 10.3 rows is judged, and its gain found") {
+  const double ratio = GENERATE(1.0, 1.4);
+  Recording recording = plant(1.0, 1, kMany, ratio);
+  VectorXd first = recording.cvs.col(0);
+  for (Index k = 0, last = 0; k < kMany; ++k) {
+    if (std::floor(static_cast<double>(k) / 10.3) > std::floor(static_cast<double>(k - 1) / 10.3))
+      last = k;
+    recording.cvs(k, 0) = first(last);
+  }
+  const std::vector<Readings> readings = readings_of(recording);
+  REQUIRE(readings.size() == 2);
+  CHECK(readings[1].every == Approx(10.3).epsilon(1e-4));
+  const Diagnosis diagnosis = diagnosis_of(recording);
+  REQUIRE(diagnosis.findings.size() == (ratio > 1.0 ? 1 : 0));
+  if (ratio == 1.0) return;
+  CHECK(diagnosis.findings[0].subject == Subject{&causes::gain(), {0, 0}});
   CHECK(diagnosis.findings[0].parameters[0].value == Approx(1.4).margin(0.1));
 }
 
@@ -146,7 +165,7 @@ TEST_CASE("on a second recording a CV is read from where its cycle begins there"
   other = part(other, 3, kMany - 3);  // readings at 7, 17, ...
   const auto there = readings_in(other, readings_of(recording)[1]);
   REQUIRE(there);
-  CHECK(there->offsets == std::vector<Index>{7});
+  CHECK(there->offsets == std::vector{7.0});
   DiagnosisSettings settings;
   settings.mv_count = 1;
   const Diagnosis diagnosis = diagnose(model(), recording, &other, settings);
