@@ -67,7 +67,7 @@ def simulate(regime, plant, outside, hidden, samples, present=None, healthy=None
     read = np.ones(plant.cv_count, bool)
     for k in range(samples):
         cvs[k] = hidden["sensor"] * clean + added[k]
-        read[analysed] = k % every == 0
+        read[analysed] = k == 0 or k // every > (k - 1) // every
         if not read[analysed]:
             cvs[k, analysed] = cvs[k - 1, analysed]
         wanted = (controller.move(outside.setpoints[k], cvs[k], read) + outside.feedforward[k] -

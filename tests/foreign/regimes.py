@@ -13,7 +13,8 @@ compressed            CVs and MVs are logged again only once they have moved by 
 finely_compressed     CVs are logged again only once they have moved by a twentieth of the noise
 analyser              one CV is logged every 2 to 12 samples, and stands until the next; the
                       controller sees every sample
-analyser_controlled   one CV is read every 2 to 12 samples, and that is all the controller sees, too
+analyser_controlled   one CV is read every 2 to 12 samples, whole or not, and that is all the
+                      controller sees, too
 late                  drift, step or noise x 2.9 from the last third on
 injected_steps        constant set-points, and load steps that the loop answers
 noisy_walk            what disturbs the CVs integrates slowly, under measurement noise
@@ -123,7 +124,7 @@ class Outside:
     noise_models: list
     causes: list  # in the words of a diagnosis: what of that may rightly be named
     regressors: list  # per CV: shapes of which the best possible test does not know the size
-    reading: tuple = (0, 1)  # a CV, and every how many samples it is read
+    reading: tuple = (0, 1.0)  # a CV, and every how many samples it is read, whole or not
 
 
 def draw(regime, plant, samples, rng):
@@ -206,8 +207,10 @@ def draw(regime, plant, samples, rng):
             values = lagged(steps, float(rng.uniform(3, 15)))
             disturb(values)
             regressors[cv] = [values]
-    reading = ((int(rng.integers(plant.cv_count)), int(rng.integers(2, 13)))
-               if regime == "analyser_controlled" else (0, 1))
+    reading = (0, 1.0)
+    if regime == "analyser_controlled":
+        every = float(rng.uniform(2, 12))
+        reading = int(rng.integers(plant.cv_count)), every if rng.random() < 0.5 else round(every)
     return Outside(setpoints, dv, aux, noise, feedforward, models, causes, regressors, reading)
 
 
