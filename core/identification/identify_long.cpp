@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/identification/calibration.hpp"
+#include "core/identification/identify_readings.hpp"
 
 namespace mpm {
 
@@ -41,6 +42,7 @@ LongIdentification identify_long(const Recording& recording,
   result.data =
       condensed(recording, rows_to_average(recording, speed, kMostIdentified), kMostIdentified);
   result.identification = identify(result.data.recording, settings);
+  identify_readings(recording, settings, result.identification);
   return result;
 }
 

@@ -12,7 +12,8 @@ struct LongIdentification {
 
 /// identify() on a recording of any length. Of one that is too long, the stretches in which most
 /// moves are used, their rows averaged as far as the plant is slow for it; how slow it is a first
-/// look at few rows of all of the recording tells.
+/// look at few rows of all of the recording tells. CVs that are read seldom by their readings
+/// (`identify_readings`).
 [[nodiscard]] LongIdentification identify_long(const Recording& recording,
                                                const IdentificationSettings& settings);
 

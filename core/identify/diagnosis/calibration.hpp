@@ -145,10 +145,6 @@ inline constexpr double kBeyondDoubt = 1e-6;
 /// Chosen: what is taken away is off by one at most, for as long as the signal stays within.
 inline constexpr double kDeadbandsThatTell = 3.0;
 
-/// A CV is read in the same cycle in another recording where they differ by no more than this
-/// share. Chosen: an analyser's clock is better, and where it is not its readings keep to no grid.
-inline constexpr double kSameCycle = 0.01;
-
 /// Horizons of predictions take at most one of so many parts of the rows.
 inline constexpr Eigen::Index kHorizonsInRows = 4;
 

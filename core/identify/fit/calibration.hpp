@@ -76,6 +76,10 @@ inline constexpr Eigen::Index kShortestRun = 40;  ///< rows
 /// A model has settled after so many slowest time constants: 5 % are left to come (horizons.hpp).
 inline constexpr double kSettlingTimeConstants = 3.0;
 
+/// A CV is read in the same cycle in another recording where they differ by no more than this
+/// share. Chosen: an analyser's clock is better, and where it is not its readings keep to no grid.
+inline constexpr double kSameCycle = 0.01;
+
 // Long recordings (condense.hpp).
 inline constexpr double kOfRow = 1e-6;         ///< by which a row may be short of a whole number
 inline constexpr Eigen::Index kStretches = 8;  ///< that are chosen, where not all rows are taken

@@ -85,6 +85,7 @@ Json cv_json(const IdentificationRun& run, const CvAnswer& answer) {
             {"whiteness_p_value", answer.whiteness_p_value},
             {"unseen_rmse", answer.unseen_rmse},
             {"unseen_sd", answer.unseen_spread}};
+  if (answer.read_every > 0) json["read_every"] = answer.read_every;
   json["past_input_p_values"] = Json::object();
   for (std::size_t i = 0; i < answer.input_p_values.size(); ++i)
     json["past_input_p_values"][run.unit.input_tag(static_cast<int>(i))] = answer.input_p_values[i];
@@ -213,6 +214,12 @@ std::string to_text(const IdentificationRun& run) {
   if (!unseen.empty() && found_any(run))
     text += "\nerror of the free run on the last quarter, fitted like the rest, and s.d. there:\n" +
             unseen;
+  std::string seldom;
+  for (const CvAnswer& answer : run.identification.cvs)
+    if (answer.read_every > 0 && answer.rows > 0.0)
+      seldom += "  " + cv_tag(run, answer.cv) + ": every " + std::to_string(answer.read_every) +
+                " samples\n";
+  if (!seldom.empty()) text += "\nread seldom, and identified by the readings:\n" + seldom;
   const std::string doubt = doubts(run);
   if (!doubt.empty()) text += "\nin doubt:\n" + doubt;
   if (run.plan) text += '\n' + plan_text(run);

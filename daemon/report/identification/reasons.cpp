@@ -53,8 +53,8 @@ std::string reason_text(const IdentificationRun& run, const ChannelAnswer& answe
     case LeftOut::kReadSeldom: {
       const auto every = run.identification.cvs.at(static_cast<std::size_t>(answer.cv)).read_every;
       return cv + " is read every " + std::to_string(every) +
-             " samples: give it a unit of its own with a sample_time of " +
-             number_text(static_cast<double>(every) * run.recording.sample_time_s, 6) + " s";
+             " samples, in no cycle that holds, or too few times: " +
+             std::to_string(needed_rows(run.recording.inputs.cols())) + " readings are needed";
     }
     case LeftOut::kTooFewRows:
       return "too few samples for so many inputs: " +

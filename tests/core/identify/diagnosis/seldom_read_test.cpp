@@ -142,23 +142,6 @@ TEST_CASE("a CV that is read every 10.3 rows is judged, and its gain found") {
   CHECK(diagnosis.findings[0].parameters[0].value == Approx(1.4).margin(0.1));
 }
 
-// Closed form: without noise, at every 6th row from the third on.
-TEST_CASE("at its readings a CV is what the model says at its own sample time") {
-  const VectorXd u = test::telegraph(1, kMany, 12);
-  MatrixXd cvs(kMany, 2);
-  cvs.col(0) = test::first_order(u, 1.0, 20.0);
-  cvs.col(1) = test::first_order(u, 2.0, 10.0);
-  read_every(6, 2, cvs.col(1));
-  const Recording recording = test::recording_of(u, cvs);
-  const Readings readings{6, {2}, {1}};
-  const Recording rows = of_readings(model(), recording, readings);
-  Simulator simulator(rows);
-  const VectorXd simulated = simulator.cv(of_readings(model(), readings), 0);
-  const Recording as_read = averaged(of_cvs(recording, {1}), 6, {2});
-  CHECK((simulated - rows.cvs.col(0)).lpNorm<Eigen::Infinity>() < 1e-9);
-  CHECK((simulated - as_read.cvs.col(0)).lpNorm<Eigen::Infinity>() > 0.05);
-}
-
 TEST_CASE("on a second recording a CV is read from where its cycle begins there") {
   const Recording recording = plant(1.0, 10, kMany, 1.5);
   Recording other = plant(1.0, 10, kMany, 1.5, 20);
