@@ -69,8 +69,7 @@ void identify_readings(const Recording& recording, const IdentificationSettings&
   for (const Readings& readings : readings_of(recording)) {
     for (const int cv : readings.cvs) {
       if (readings.every == 1.0 || !seldom(cv)) continue;
-      const Recording rows =
-          averaged(of_cvs(recording, {cv}), readings.every, readings.offsets);
+      const Recording rows = averaged(of_cvs(recording, {cv}), readings.every, readings.offsets);
       if (rows.samples() < needed_rows(rows.inputs.cols())) continue;
       put_in(identify_long(rows, of_cv(settings, cv)).identification, cv, whole);
     }

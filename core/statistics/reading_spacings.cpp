@@ -9,9 +9,11 @@
 namespace mpm {
 namespace {
 
-/// Rows by which a spacing may be off a multiple of the median one.
+/// Rows by which a spacing may be off the median one, and where `multiples` off a multiple of it:
+/// of a short one they would be all there are.
 struct Slack {
   std::int64_t below = 0, above = 0;
+  bool multiples = true;
 };
 
 ReadingSpacings within(std::span<const std::int64_t> spacings, std::int64_t every,
@@ -20,7 +22,8 @@ ReadingSpacings within(std::span<const std::int64_t> spacings, std::int64_t ever
   for (const std::int64_t spacing : spacings) {
     const std::int64_t multiple = std::max<std::int64_t>(1, (spacing + (every - 1) / 2) / every);
     const std::int64_t off = spacing - multiple * every;
-    if (off < -slack.below || off > slack.above) continue;
+    const bool strict = multiple > 1 && !slack.multiples;
+    if (strict ? off != 0 : off < -slack.below || off > slack.above) continue;
     ++regular;
     rows += spacing;
     cycles += multiple;
@@ -41,7 +44,8 @@ ReadingSpacings reading_spacings(std::span<std::int64_t> spacings) {
   const std::int64_t early = every > 2 ? 1 : 0;
   const std::int64_t jitter = every >= readings::kJitterFrom ? 1 : 0;
   ReadingSpacings best;
-  for (const Slack& slack : {Slack{0, 0}, Slack{0, 1}, Slack{early, 0}, Slack{jitter, jitter}}) {
+  for (const Slack& slack :
+       {Slack{0, 0}, Slack{0, 1, false}, Slack{early, 0, false}, Slack{jitter, jitter}}) {
     const ReadingSpacings found = within(spacings, every, slack);
     if (found.regular <= best.regular) continue;
     best = found;
