@@ -78,6 +78,7 @@ struct Monitor::State {
   [[nodiscard]] int spoilt_input(int cv, int input) const;
   [[nodiscard]] int missing_input(int cv, int input) const;
   [[nodiscard]] int held_input(int cv) const;
+  [[nodiscard]] const NoiseLevel& noise_of(int cv) const;
 
   LinearModel model;
   SignalCounts counts;
@@ -193,8 +194,8 @@ void Monitor::State::take_frame(const Frame& frame) {
   if (reader.missing() > 0) pass_gap(reader.missing());
   for (const int cv : reader.turned())
     if (reader.samples() > 1) begin_anew(cv);
-  take_seldom(frame);
   follow_compression();
+  take_seldom(frame);
   count_bad(frame);
   take_sample(frame);
   take_outside(frame);
@@ -255,7 +256,7 @@ void Monitor::State::take_seldom(const Frame& frame) {
   }
   for (int j = 0; j < counts.cv; ++j) {
     reader.read_seldom(j, seldom->stands(j));
-    if (!seldom->judged(j)) continue;
+    if (!seldom->judged(j) || of(j).compressed) continue;
     for (AlarmTransition one : at_readings(j)->transitions()) {
       one.cv = j;
       of(j).alarms.set(one.input, one.to);
@@ -294,7 +295,7 @@ void Monitor::State::take_sample(const Frame& frame) {
     of(j).quality.take({settling || std::isfinite(reader.residuals().values()(j)), implausible,
                         took_row, reader.screen().spikes(j)},
                        reader.samples());
-    used = used || took_row;
+    used = used || took_row || (seldom && seldom->judged(j));
   }
   if (used) ++counters.used;
   correlation.take(reader.inputs(), reader.residuals());
@@ -358,7 +359,7 @@ void Monitor::State::follow(int j) {
 
 void Monitor::State::move_alarms() {
   for (int j = 0; j < counts.cv; ++j) {
-    if (at_readings(j)) continue;
+    if (at_readings(j) && !of(j).compressed) continue;
     Cv& cv = of(j);
     const auto changed = [&](int input) {
       transitions.push_back({j, input, cv.alarms.state(input), status[index(j, input)]});
@@ -379,7 +380,7 @@ void Monitor::State::judge_channels() {
   const bool mvs_still = reader.inputs().mvs_still();
   for (int i = 0; i < counts.inputs(); ++i) {
     for (int j = 0; j < counts.cv; ++j) {
-      if (at_readings(j)) {
+      if (at_readings(j) && !of(j).compressed) {
         seldom->read(j, i, status[index(j, i)]);
         continue;
       }
@@ -461,7 +462,7 @@ int Monitor::State::missing_input(int cv, int input) const {
 // nobody wrote it down. Once said, it takes half as much to be said again.
 int Monitor::State::held_input(int cv) const {
   if (reader.screen().predicted(cv)) return -1;
-  const NoiseLevel& noise = detector.regression(cv).noise();
+  const NoiseLevel& noise = noise_of(cv);
   const double share = calibration::held_inputs::kShareOfNoise *
                        (cvs[static_cast<std::size_t>(cv)].compressed ? 0.5 : 1.0);
   return held.heaviest(cv, reader.screen(), noise.known() ? noise.scale() : 0.0, share);
@@ -536,6 +537,11 @@ bool Monitor::corrected(int cv) const { return state_->reader.predictions().corr
 bool Monitor::of_other_model(int cv) const {
   return state_->reader.predictions().of_other_model(cv);
 }
+const NoiseLevel& Monitor::State::noise_of(int cv) const {
+  const Monitor* seldom_read = at_readings(cv);
+  return seldom_read ? seldom_read->state_->noise_of(0) : detector.regression(cv).noise();
+}
+
 double Monitor::read_every(int cv) const {
   return state_->at_readings(cv) ? state_->seldom->cycle(cv) : 0.0;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/archive/archive.hpp"
+#include "tests/core/counter_noise.hpp"
 #include "tests/core/monitor/experiment.hpp"
 
 namespace mpm::seldom_cvs_test {
@@ -112,6 +113,26 @@ TEST_CASE("channels in samples are judged at readings as well") {
   });
   CHECK(all_verdicts(monitor, Verdict::kMismatch) ==
         (truth.gain_ratio > 1.0 ? std::vector{1} : std::vector<int>{}));
+}
+
+TEST_CASE("an analyser's CV that is simulated from a compressed input has no verdict") {
+  // An MV that wanders, held until it has left a deadband of half its s.d.
+  Analysed unit;
+  unit.predictions = false;
+  Monitor monitor = unit.monitor();
+  double held = 0.0;
+  unit.run(kSamples, [&](Frame frame) {
+    double& value = frame[SignalKind::kMv].values(1);
+    const double moved = value + test::coloured(900, frame.interval);
+    if (std::abs(moved - held) > 0.3) held = moved;
+    value = held;
+    frame[SignalKind::kPrediction].quality.assign(2, Quality::kBad);
+    monitor.push(frame);
+    CHECK(monitor.alarm(0, 1) == AlarmState::kCleared);
+  });
+  CHECK(monitor.read_every(0) == 5.0);
+  for (int i = 0; i < 2; ++i) CHECK(monitor.channel(0, i).reason == Reason::kCompressed);
+  CHECK(monitor.channel(0, 0).confounder == 1);
 }
 
 TEST_CASE("an analyser that stands still is bad data, and lost") {
