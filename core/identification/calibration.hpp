@@ -162,4 +162,11 @@ inline constexpr double kWantedSd = 5.0;           ///< an effect that matters, 
 inline constexpr double kLongDeadTime = 5.0;
 inline constexpr double kLeastReturn = 0.02;  ///< of the noise to its level, per sample
 
+/// A CV's readings are put right by the model that they gave and identified again, so many times at
+/// most, or until they change by less than this share of the one-step errors. Chosen: in cycles as
+/// long as a time constant each leaves six tenths of what the one before was off, in shorter ones
+/// a tenth (tests/core/identification/identify_readings_test.cpp).
+inline constexpr int kReadingsAgain = 8;
+inline constexpr double kReadingsPutRight = 0.05;
+
 }  // namespace mpm

@@ -1,12 +1,14 @@
 #include "core/identification/identify_readings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "core/identification/calibration.hpp"
 #include "core/identification/identify_long.hpp"
 #include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/readings.hpp"
@@ -32,6 +34,28 @@ double level_of(const ModelSpec& part, const Eigen::VectorXd& inputs) {
     level += gain(0, channel.input) * (inputs(channel.input) - part.input_origin(channel.input));
   }
   return level;
+}
+
+/// A mean is not all of what a quick channel makes of its input: again on the CV as it would be if
+/// it were, by what the model before says, until that changes it by little (a model that swings
+/// holds at its own sample time alone).
+Identification identify_one(const Recording& recording, const Readings& readings, Recording rows,
+                            const IdentificationSettings& settings) {
+  Identification found = identify_long(rows, settings).identification;
+  for (int time = 0; time < kReadingsAgain; ++time) {
+    const bool swings = std::any_of(found.channels.begin(), found.channels.end(),
+                                    [](const ChannelAnswer& answer) { return answer.pair; });
+    if (found.model.channels.empty() || swings) break;
+    const ModelSpec model = model_at(found, recording.sample_time_s);
+    Recording again = of_readings(model, recording, readings);
+    const auto moved = (again.cvs - rows.cvs).array();
+    const Eigen::ArrayXd known = moved.isFinite().select(moved, 0.0);
+    const double rms = std::sqrt(known.square().mean());
+    rows = std::move(again);
+    if (rms < kReadingsPutRight * found.cvs.front().innovation_sd) break;
+    found = identify_long(rows, settings).identification;
+  }
+  return found;
 }
 
 void put_in(const Identification& part, int cv, Identification& whole) {
@@ -69,9 +93,11 @@ void identify_readings(const Recording& recording, const IdentificationSettings&
   for (const Readings& readings : readings_of(recording)) {
     for (const int cv : readings.cvs) {
       if (readings.every == 1.0 || !seldom(cv)) continue;
-      const Recording rows = averaged(of_cvs(recording, {cv}), readings.every, readings.offsets);
+      const Recording one = of_cvs(recording, {cv});
+      Recording rows = averaged(one, readings.every, readings.offsets);
       if (rows.samples() < needed_rows(rows.inputs.cols())) continue;
-      put_in(identify_long(rows, of_cv(settings, cv)).identification, cv, whole);
+      const Readings its{readings.every, readings.offsets, {0}};
+      put_in(identify_one(one, its, std::move(rows), of_cv(settings, cv)), cv, whole);
     }
   }
 }
