@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 
 /// Numbers that decide what a historian is accused of (compression.hpp, historian.hpp).
 namespace mpm {
@@ -52,6 +53,8 @@ inline constexpr double kOffLine = 2.0;
 inline constexpr std::size_t kRemembered = 31;
 inline constexpr double kStillRegular = 0.5;
 inline constexpr double kLongest = 1e4;
+/// Between two intervals, which are within 2^53 either way.
+inline constexpr std::int64_t kFarthest = std::int64_t{1} << 54;
 }  // namespace readings
 
 inline constexpr std::size_t kFewestRows = 100;

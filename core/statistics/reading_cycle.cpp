@@ -57,7 +57,10 @@ void ReadingCycle::look_at_spacings() {
 }
 
 void ReadingCycle::archive(Archive& a) {
-  a(spacings_, last_, changed_, samples_, read_, assumed_);
+  for (std::int64_t& spacing : spacings_) a.within(spacing, 0, readings::kFarthest);
+  a(last_, changed_, samples_, read_, assumed_);
+  a.require(std::abs(read_) <= static_cast<double>(readings::kFarthest),
+            "a reading beyond all intervals");
   a.within(count_, 0, spacings_.size());
   a.within(next_, 0, spacings_.size() - 1);
   a.require(samples_ == 0.0 || (samples_ > 1.0 && samples_ <= readings::kLongest),

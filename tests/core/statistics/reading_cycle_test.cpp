@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 #include "core/archive/archive.hpp"
@@ -124,6 +125,27 @@ TEST_CASE("what it has learnt is put away and taken back") {
   for (std::int64_t k = 333; k < 700; ++k)
     CHECK(then.take(k, value(k)).has_value() == whole.take(k, value(k)).has_value());
   CHECK(put_away(then) == put_away(whole));
+}
+
+TEST_CASE("bytes of a cycle that cannot be are refused") {
+  ReadingCycle cycle;
+  for (std::int64_t k = 0; k < 333; ++k) (void)cycle.take(k, shown(k / 7));
+  const std::vector<std::byte> bytes = put_away(cycle);
+  int refused = 0;
+  for (std::size_t at = 0; at + 8 <= bytes.size(); at += 8) {
+    std::vector<std::byte> damaged = bytes;
+    for (std::size_t i = 0; i < 8; ++i)
+      damaged[at + i] = i == 7 ? std::byte{0x7F} : std::byte{0xFF};
+    ReadingCycle back;
+    try {
+      take_back(damaged, back);
+      (void)back.take(334, 5.0);
+    } catch (const std::runtime_error&) {
+      ++refused;
+    }
+  }
+  // Every number but the last value, which may be any.
+  CHECK(refused == static_cast<int>(bytes.size() / 8) - 1);
 }
 
 }  // namespace mpm::reading_cycle_test
