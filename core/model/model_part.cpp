@@ -33,7 +33,9 @@ StepResponse at_cycles(const Eigen::VectorXd& pulse, double cycle) {
   StepResponse step;
   double reached = 0.0;
   Eigen::Index next = 1;  // whose pulse has not been added
-  for (double at = 0.0; at < static_cast<double>(pulse.size() - 1); at += cycle) {
+  const auto cycles = static_cast<int>(std::ceil(static_cast<double>(pulse.size() - 1) / cycle));
+  for (int n = 0; n < cycles; ++n) {
+    const double at = n * cycle;
     const auto before = static_cast<Eigen::Index>(at);
     for (; next <= before; ++next) reached += pulse(next);
     step.values.push_back(reached + (at - std::floor(at)) * pulse(before + 1));
