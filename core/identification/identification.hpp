@@ -67,7 +67,7 @@ struct ChannelAnswer {
 struct CvAnswer {
   int cv = 0;
   double rows = 0.0;            ///< that were fitted
-  Eigen::Index read_every = 0;  ///< samples, where that is why it was not identified
+  Eigen::Index read_every = 0;  ///< samples, as a rule; 0: it is read at every one
   double spread = 0.0;          ///< s.d. of the CV
   /// Fitted by the errors of the free run, for which no feedback and better carrying over speak.
   bool output_error = false;

@@ -48,9 +48,8 @@ Identification identify_one(const Recording& recording, const Readings& readings
     if (found.model.channels.empty() || swings) break;
     const ModelSpec model = model_at(found, recording.sample_time_s);
     Recording again = of_readings(model, recording, readings);
-    const auto moved = (again.cvs - rows.cvs).array();
-    const Eigen::ArrayXd known = moved.isFinite().select(moved, 0.0);
-    const double rms = std::sqrt(known.square().mean());
+    const Eigen::ArrayXd moved = (again.cvs - rows.cvs).col(0).array();
+    const double rms = std::sqrt(moved.isFinite().select(moved, 0.0).square().mean());
     rows = std::move(again);
     if (rms < kReadingsPutRight * found.cvs.front().innovation_sd) break;
     found = identify_long(rows, settings).identification;

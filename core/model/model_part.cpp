@@ -27,8 +27,8 @@ bool in_samples(const ChannelSpec& channel) {
          std::holds_alternative<StepResponse>(channel.dynamics);
 }
 
-/// What a step does up to the end of the last cycle that begins within `length` samples; between
-/// two samples a straight line.
+/// What a step does, from one cycle to the next as far as the pulse is given; between two samples a
+/// straight line.
 StepResponse at_cycles(const Eigen::VectorXd& pulse, double cycle) {
   StepResponse step;
   double reached = 0.0;

@@ -34,7 +34,7 @@ class LostSignals {
   /// `lags`: samples without an input after which no channel of it has a verdict.
   LostSignals(const SignalCounts& counts, int lags);
 
-  /// Each signal once per frame.
+  /// Each signal once per frame; `usable`: whether its value there serves.
   void take(const Frame& frame, SignalKind kind, int index, bool usable);
   /// MVs, DVs, CVs, predictions; within a kind in their order.
   [[nodiscard]] std::vector<LostSignal> list() const;

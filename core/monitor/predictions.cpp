@@ -59,12 +59,6 @@ double Predictions::predicted(int cv, const Frame& frame) const {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-double Predictions::residual(int cv, const Frame& frame) const {
-  const SignalBlock& measured = frame[SignalKind::kCv];
-  return measured.usable(cv) ? measured.values(cv) - predicted(cv, frame)
-                             : std::numeric_limits<double>::quiet_NaN();
-}
-
 // No row may have residuals of either origin: those of one are long gone when the other one's
 // begin, or are made so.
 void Predictions::turn(std::size_t cv) {

@@ -50,8 +50,6 @@ class Predictions {
   [[nodiscard]] bool unseen(int cv) const { return unseen_[static_cast<std::size_t>(cv)] > 0; }
   /// Of the CV at this frame; NaN where it is not known.
   [[nodiscard]] double predicted(int cv, const Frame& frame) const;
-  /// Measured minus predicted; NaN where the prediction is not known, or the measurement is not.
-  [[nodiscard]] double residual(int cv, const Frame& frame) const;
 
   /// Where they have begun or ceased to come with the screen's frames: `turns(cv)`, of which all
   /// statistics are to begin anew.

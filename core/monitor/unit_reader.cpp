@@ -59,8 +59,8 @@ const Frame* UnitReader::next() {
   predictions_.follow(screen_, [&](int cv) { turned_.push_back(cv); });
   inputs_.read(*frame);
   predictions_.begin(*frame, inputs_);
-  residuals_.read(*frame, predictions_);
   for (int j = 0; j < predicted_.size(); ++j) predicted_(j) = predictions_.predicted(j, *frame);
+  residuals_.read(*frame, predicted_);
   predictions_.compare(*frame);
   predictions_.advance(inputs_);
   ++samples_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/mismatch/calibration.hpp"
 
@@ -13,13 +14,15 @@ UnitResiduals::UnitResiduals(int cvs)
       largest_(Eigen::VectorXd::Zero(cvs)),
       unknown_runs_(static_cast<std::size_t>(cvs), 0) {}
 
-void UnitResiduals::read(const Frame& frame, const Predictions& predictions) {
+void UnitResiduals::read(const Frame& frame, const Eigen::VectorXd& predicted) {
+  const SignalBlock& measured = frame[SignalKind::kCv];
   for (int j = 0; j < static_cast<int>(values_.size()); ++j) {
-    values_(j) = predictions.residual(j, frame);
+    values_(j) = measured.usable(j) ? measured.values(j) - predicted(j)
+                                    : std::numeric_limits<double>::quiet_NaN();
     std::int64_t& run = unknown_runs_[static_cast<std::size_t>(j)];
     run = std::isfinite(values_(j)) ? 0 : run + 1;
     if (run > 0) continue;
-    largest_(j) = std::max(largest_(j), std::abs(frame[SignalKind::kCv].values(j)));
+    largest_(j) = std::max(largest_(j), std::abs(measured.values(j)));
     if (std::abs(values_(j)) < calibration::kRounding * largest_(j)) values_(j) = 0.0;
     held_(j) = values_(j);
   }

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/monitor/predictions.hpp"
 #include "core/signal/frame.hpp"
 
 namespace mpm {
@@ -15,8 +14,8 @@ class UnitResiduals {
  public:
   explicit UnitResiduals(int cvs);
 
-  /// Takes a frame's.
-  void read(const Frame& frame, const Predictions& predictions);
+  /// Takes a frame's: measured minus predicted; `predicted`: per CV, NaN where unknown.
+  void read(const Frame& frame, const Eigen::VectorXd& predicted);
   /// `missing` intervals of which nothing is known.
   void skip(std::int64_t missing);
 

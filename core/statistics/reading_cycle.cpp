@@ -37,8 +37,7 @@ std::optional<ReadingCycle::Reading> ReadingCycle::take(std::int64_t interval, d
     return Reading{value, since};
   }
   // The next reading is there, and no other than the last; it may have come a sample late.
-  const double late = samples_ < static_cast<double>(readings::kJitterFrom) ? 0.0 : 1.0 / samples_;
-  const std::int64_t since = static_cast<std::int64_t>(std::floor(cycles - late)) - assumed_;
+  const auto since = static_cast<std::int64_t>(std::floor(cycles - 1.0 / samples_)) - assumed_;
   if (since < 1) return std::nullopt;
   assumed_ += since;
   return Reading{value, since};

@@ -43,7 +43,7 @@ struct Unit {
     predictions.follow(screen, [&](int) { ++turned; });
     inputs.read(frame);
     predictions.begin(frame, inputs);
-    residuals.read(frame, predictions);
+    residuals.read(frame, Eigen::VectorXd::Constant(1, predictions.predicted(0, frame)));
     predictions.compare(frame);
     predictions.advance(inputs);
     if (std::isfinite(u)) held = u;

@@ -43,7 +43,7 @@ Found readings_in(ReadingCycle& cycle, std::int64_t rows, Value value) {
 }  // namespace
 
 TEST_CASE("a signal that is read in a cycle is known after twenty readings, and each is found") {
-  const double every = GENERATE(2.0, 3.0, 7.0, 10.0, 10.3, 24.6, 60.0);
+  const double every = GENERATE(2.0, 2.5, 3.0, 4.97, 5.03, 7.0, 7.4, 10.0, 10.3, 24.6, 60.0);
   const double offset = GENERATE(0.0, 1.0);
   ReadingCycle cycle;
   const auto number = [&](std::int64_t k) {
