@@ -60,36 +60,39 @@ ModelSpec of_cvs(const ModelSpec& model, const std::vector<int>& cvs) {
   return part;
 }
 
-std::optional<ModelSpec> at_longer_sample_time(const ModelSpec& model, int cv, double cycle) {
-  ModelSpec part = of_cvs(model, {cv});
+std::optional<ModelSpec> at_longer_sample_time(const ModelSpec& model, const std::vector<int>& cvs,
+                                               double cycle) {
+  ModelSpec part = of_cvs(model, cvs);
   part.sample_time_s *= cycle;
-  part.disturbances.clear();
   part.state_space.reset();
-  std::vector<int> sampled;  // inputs
-  if (model.state_space)
-    for (int input = 0; input < model.input_count; ++input) sampled.push_back(input);
+  std::vector<std::pair<int, int>> sampled;  // CV of the part, input
+  for (int cv = 0; model.state_space && cv < part.cv_count; ++cv)
+    for (int input = 0; input < model.input_count; ++input) sampled.emplace_back(cv, input);
   for (const ChannelSpec& channel : part.channels)
-    if (in_samples(channel)) sampled.push_back(channel.input);
+    if (in_samples(channel)) sampled.emplace_back(channel.cv, channel.input);
   if (sampled.empty()) return part;
 
   const LinearModel fine(model);
   constexpr int kMost = calibration::longer_sample_time::kMostSamples;
-  for (const int input : sampled) {
+  for (const auto& [place, input] : sampled) {
+    const int cv = cvs[static_cast<std::size_t>(place)];
+    const auto is_it = [cv = place, input = input](const ChannelSpec& one) {
+      return one.cv == cv && one.input == input;
+    };
     const int settled =
         fine.channel(cv, input).settling_samples(calibration::longer_sample_time::kSettled, kMost);
     if (settled >= kMost || fine.integrating()(cv, input)) return std::nullopt;
     const Eigen::VectorXd pulse =
         fine.impulse_response(cv, input, settled + static_cast<int>(std::ceil(cycle)) + 2);
     if ((pulse.array() == 0.0).all()) {
-      std::erase_if(part.channels, [&](const ChannelSpec& one) { return one.input == input; });
+      std::erase_if(part.channels, is_it);
       continue;
     }
-    const auto same = std::find_if(part.channels.begin(), part.channels.end(),
-                                   [&](const ChannelSpec& one) { return one.input == input; });
+    const auto same = std::find_if(part.channels.begin(), part.channels.end(), is_it);
     if (same != part.channels.end())
       same->dynamics = at_cycles(pulse, cycle);
     else
-      part.channels.push_back({0, input, at_cycles(pulse, cycle)});
+      part.channels.push_back({place, input, at_cycles(pulse, cycle)});
   }
   return part;
 }

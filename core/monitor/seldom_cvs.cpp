@@ -64,8 +64,9 @@ int SeldomCvs::lags_at(double cycle) const {
 }
 
 std::optional<SeldomCvs::Part> SeldomCvs::make(int cv, double cycle) const {
-  std::optional<ModelSpec> model = at_longer_sample_time(model_, cv, cycle);
+  std::optional<ModelSpec> model = at_longer_sample_time(model_, {cv}, cycle);
   if (!model) return std::nullopt;
+  model->disturbances.clear();  // they are in the predictions
   MonitorSettings settings = settings_;
   settings.fir_lags = lags_at(cycle);
   settings.channel_materiality.clear();

@@ -85,15 +85,14 @@ std::vector<Coordinate> open_channel_coordinates(double removable_samples) {
 }
 
 void edit_channels(const Effect& effect, const Surroundings& surroundings, ModelSpec& model) {
-  const double sample_time_s = surroundings.sample_time_s;
   const ChannelError error = {effect.value(kGainRatio, 1.0),
                               std::exp(effect.value(kTimeConstantRatio, 0.0)),
-                              effect.value(kDeadTimeError, 0.0) * sample_time_s,
+                              effect.value(kDeadTimeError, 0.0) * surroundings.sample_time_s,
                               std::exp(effect.value(kDampingRatio, 0.0))};
   for (ChannelSpec& channel : model.channels) {
     const bool meant = (effect.place.cv < 0 || channel.cv == effect.place.cv) &&
                        (effect.place.input < 0 || channel.input == effect.place.input);
-    if (meant) channel = edited(channel, error, sample_time_s);
+    if (meant) channel = edited(channel, error, model.sample_time_s);
   }
 }
 

@@ -38,13 +38,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr const char* kReadSeldom =
-    "every CV is read only once in several samples: let sample_time be as long";
 constexpr const char* kCompressed =
     "a historian has compressed a CV, and what it took away can look like errors of the model";
-constexpr const char* kOneReadSeldom =
-    "a CV is read only once in several samples and was not judged beside the others: give it a "
-    "unit of its own, with a sample_time as long";
 
 /// Thrown where the caller's `progress` says so; ends all loops at once.
 struct GivenUp {};
@@ -182,21 +177,20 @@ void state(const Account& kept, const Recording& fitted, const Judges& judges,
     }
 }
 
-/// The model with all that was repaired. The small corrections that came with the findings have to
-/// carry over too, CV by CV.
-ModelSpec extended_model(const Problem& problem, const SearchResult& found,
-                         const Selection& selection, const ModelSpec& model, const Judges& judges) {
-  const std::vector<bool> in = repaired(selection);
-  if (std::find(in.begin(), in.end(), true) == in.end()) return model;
+/// Of each CV, whether the small corrections that came with what was repaired carry over too.
+std::vector<bool> carries_over(const Problem& problem, const SearchResult& found,
+                               const std::vector<bool>& in, const Judges& judges) {
+  const ModelSpec& model = problem.model();
   Unseen& unseen = judges.unseen;
   std::vector<bool> keep(static_cast<std::size_t>(model.cv_count), true);
+  if (std::find(in.begin(), in.end(), true) == in.end()) return keep;
   const ModelSpec with_all = extend(problem, found, in, keep, judges.open);
   for (int cv = 0; cv < model.cv_count; ++cv) {
     const CvScore gain = score(unseen.measured(cv), unseen.simulated(model, cv),
                                unseen.simulated(with_all, cv), unseen.block(), unseen.seed());
     if (gain.rmse_after > gain.rmse_before) keep[static_cast<std::size_t>(cv)] = false;
   }
-  return extend(problem, found, in, keep, judges.open);
+  return keep;
 }
 
 /// What was given as a state space is one again where it can be.
@@ -270,12 +264,14 @@ bool runs_away(const ModelSpec& model, const Recording& recording) {
   return false;
 }
 
-/// All of diagnose() but for giving up. `settings.progress` is there and throws. `curves`: as for
-/// the search.
-Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* unseen_runs,
-              const DiagnosisSettings& settings, bool curves = true) {
+/// All of diagnose() of CVs that are read in one cycle, but for giving up. `settings.progress` is
+/// there and throws.
+Diagnosis judge(const ModelSpec& given, const AtReadings& at_readings,
+                const DiagnosisSettings& settings) {
+  const Recording& whole = at_readings.recording;
+  const Recording* unseen_runs = at_readings.validation;
   Diagnosis diagnosis;
-  const ModelSpec base = in_channels(given);
+  const ModelSpec base = in_channels(at_readings.model);
   const Recording measured =
       without_unanswered(base, without_readbacks(whole), diagnosis.unanswered);
   Recording recording = with_setpoints(measured);
@@ -313,7 +309,7 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   search_settings.max_findings = settings.max_findings;
   search_settings.threads = settings.threads;
   search_settings.progress = settings.progress;
-  search_settings.curves = curves;
+  search_settings.curves = at_readings.every == 1.0;
   search_settings.may_name =
       nameable(model, {settings.mv_count, base.input_count, aux}, tests, by_monitor, outside);
   Unseen unseen(validation ? *validation : recording, diagnosis.validation_samples, model,
@@ -336,7 +332,9 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   Problem& problem = *kept.problem;
   diagnosis.channels = estimate_channels(problem, kept.found, search_settings);
   diagnosis.inputs = movements(outside, diagnosis.channels);
-  const ModelSpec extended = extended_model(problem, kept.found, kept.selection, model, judges);
+  const std::vector<bool> in = repaired(kept.selection);
+  const std::vector<bool> keep = carries_over(problem, kept.found, in, judges);
+  const ModelSpec extended = extend(problem, kept.found, in, keep, judges.open);
   diagnosis.before = unseen.free_runs(model);
   diagnosis.after = unseen.free_runs(extended);
   for (int cv = 0; cv < model.cv_count; ++cv) {
@@ -348,9 +346,12 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
     add_horizons(unseen, unseen.measured(cv) - diagnosis.before.col(cv).tail(rows),
                  unseen.measured(cv) - diagnosis.after.col(cv).tail(rows), diagnosis.scores.back());
   }
-  const std::vector<bool> in = repaired(kept.selection);
-  if (std::find(in.begin(), in.end(), true) != in.end())
-    diagnosis.extended = in_form_of(given, base, finish(extended, base, diagnosis.new_inputs));
+  if (std::find(in.begin(), in.end(), true) != in.end()) {
+    const ModelSpec own = in_channels(given);
+    const ModelSpec repaired_own =
+        extend(with_aux_inputs(own, recording), problem, kept.found, in, keep, judges.open);
+    diagnosis.extended = in_form_of(given, own, finish(repaired_own, own, diagnosis.new_inputs));
+  }
   if (validation) {
     diagnosis.validation_before = std::move(diagnosis.before);
     diagnosis.validation_after = std::move(diagnosis.after);
@@ -415,78 +416,6 @@ Diagnosis run(const ModelSpec& given, const Recording& whole, const Recording* u
   return diagnosis;
 }
 
-/// Whether a part can be judged by so many rows at so long a sample time.
-bool can_judge(const ModelSpec& model, const Recording& recording) {
-  return recording.samples() >= needed_samples(model) && holds_at_any_sample_time(model);
-}
-
-/// One after the other those that are read in the same cycle.
-Diagnosis run_by_readings(const ModelSpec& given, const Recording& recording,
-                          const Recording* validation, const DiagnosisSettings& settings) {
-  const std::vector<Readings> all = readings_of(recording);
-  const ModelSpec base = in_channels(given);
-  if (static_cast<int>(all.front().cvs.size()) == given.cv_count || runs_away(base, recording) ||
-      (validation != nullptr && runs_away(base, *validation)))
-    return run(given, recording, validation, settings);
-  const Recorded data{recording, validation};
-  std::optional<Diagnosis> whole;
-  DiagnosisVerdict verdict = DiagnosisVerdict::kMatch;
-  std::string reason;
-  const auto take = [&](const Readings& readings, const ModelSpec& model, const Recording& rows,
-                        const Recording* unseen, double share_before) {
-    DiagnosisSettings of_part = settings;
-    of_part.progress = [&](double share) {
-      const auto parts = static_cast<double>(all.size());
-      return settings.progress(share_before + share / parts);
-    };
-    Diagnosis part = run(model, rows, unseen, of_part, readings.every == 1.0);
-    if (!whole)
-      whole = unjudged(base, data,
-                       validation != nullptr ? recording.samples()
-                       : readings.every == 1.0 && part.fit_samples > 0
-                           ? part.fit_samples
-                           : fitted_rows(recording, settings.fit_share));
-    if (part.verdict == DiagnosisVerdict::kMismatch || verdict == DiagnosisVerdict::kMatch)
-      verdict = part.verdict;
-    if (reason.empty()) reason = part.reason;
-    take_in(base, data, readings, std::move(part), *whole);
-  };
-  bool all_judged = true;
-  double share = 0.0;
-  for (const Readings& readings : all) {
-    if (readings.cvs.empty()) continue;
-    const ModelSpec model = of_readings(base, readings);
-    const Recording rows = of_readings(base, recording, readings);
-    std::optional<Recording> unseen;
-    if (validation != nullptr)
-      if (const auto there = readings_in(*validation, readings))
-        unseen = of_readings(base, *validation, *there);
-    const bool known = validation == nullptr || unseen;
-    if (known && (readings.every == 1.0 || can_judge(model, rows)))
-      take(readings, model, rows, unseen ? &*unseen : nullptr, share);
-    else
-      all_judged = false;
-    share += 1.0 / static_cast<double>(all.size());
-  }
-  std::size_t cvs = 0;
-  for (const Readings& readings : all) cvs += readings.cvs.size();
-  all_judged = all_judged && static_cast<int>(cvs) == given.cv_count;
-  const char* unread = all.front().cvs.empty() ? kReadSeldom : kOneReadSeldom;
-  if (!whole) {
-    Diagnosis diagnosis;
-    diagnosis.samples = recording.samples();
-    diagnosis.extended = given;
-    diagnosis.reason = unread;
-    return diagnosis;
-  }
-  if (!all_judged && verdict == DiagnosisVerdict::kMatch) verdict = DiagnosisVerdict::kUndetermined;
-  if (!all_judged && reason.empty()) reason = unread;
-  whole->verdict = verdict;
-  whole->reason = reason;
-  whole->extended = in_form_of(given, base, std::move(whole->extended));
-  return *whole;
-}
-
 }  // namespace
 
 Index needed_samples(const ModelSpec& model) {
@@ -508,7 +437,14 @@ Diagnosis diagnose(const ModelSpec& given, const Recording& recording, const Rec
   bool given_up = false;
   settings.progress = or_give_up(asked.progress, given_up);
   try {
-    return run_by_readings(given, recording, validation, settings);
+    const ModelSpec base = in_channels(given);
+    const std::vector<Readings> all = readings_of(recording);
+    if (static_cast<int>(all.front().cvs.size()) == given.cv_count || runs_away(base, recording) ||
+        (validation != nullptr && runs_away(base, *validation)))
+      return judge(given, {given, 1.0, recording, validation}, settings);
+    Diagnosis diagnosis = by_readings(base, {recording, validation}, all, settings, judge);
+    diagnosis.extended = in_form_of(given, base, std::move(diagnosis.extended));
+    return diagnosis;
   } catch (const GivenUp&) {
     Diagnosis diagnosis;
     diagnosis.reason = "stopped";

@@ -12,7 +12,12 @@ using Eigen::Index;
 
 ModelSpec extend(const Problem& problem, const SearchResult& found, const std::vector<bool>& in,
                  const std::vector<bool>& keep, const OpenChannels& open, Index at) {
-  ModelSpec model = problem.model();
+  return extend(problem.model(), problem, found, in, keep, open, at);
+}
+
+ModelSpec extend(ModelSpec model, const Problem& problem, const SearchResult& found,
+                 const std::vector<bool>& in, const std::vector<bool>& keep,
+                 const OpenChannels& open, Index at) {
   std::vector<bool> touched(keep.size(), false), wrong = touched;
   for (std::size_t i = 0; i < found.named.size(); ++i) {
     if (!in[i]) continue;
@@ -42,7 +47,7 @@ ModelSpec extend(const Problem& problem, const SearchResult& found, const std::v
         else if (data.meaning[b].quantity == &kTimeConstantRatio)
           error.time_constant_ratio = std::exp(value);
         else
-          error.dead_time_error_s = value * model.sample_time_s;
+          error.dead_time_error_s = value * problem.surroundings().sample_time_s;
       }
       channel = edited(channel, error, model.sample_time_s);
     }

@@ -25,6 +25,12 @@ using OpenChannels = std::function<bool(int, int, bool)>;
                                const OpenChannels& open = {},
                                Eigen::Index at = std::numeric_limits<Eigen::Index>::max());
 
+/// The same model at another sample time, with what was found by the problem's.
+[[nodiscard]] ModelSpec extend(ModelSpec model, const Problem& problem, const SearchResult& found,
+                               const std::vector<bool>& in, const std::vector<bool>& keep,
+                               const OpenChannels& open = {},
+                               Eigen::Index at = std::numeric_limits<Eigen::Index>::max());
+
 /// The same from row 0 on, and from each row on where one of the effects begins.
 [[nodiscard]] std::vector<Stage> stages_of(const Problem& problem, const SearchResult& found,
                                            const std::vector<bool>& in,

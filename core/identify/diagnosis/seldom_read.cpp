@@ -6,10 +6,19 @@
 #include <optional>
 #include <utility>
 
+#include "core/identify/fit/condense.hpp"
 #include "core/identify/fit/free_run.hpp"
+#include "core/identify/fit/split.hpp"
+#include "core/model/model_part.hpp"
 
 namespace mpm {
 namespace {
+
+constexpr const char* kReadSeldom =
+    "every CV is read only once in several samples: let sample_time be as long";
+constexpr const char* kOneReadSeldom =
+    "a CV is read only once in several samples and was not judged beside the others: give it a "
+    "unit of its own, with a sample_time as long";
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -121,6 +130,10 @@ Extended within(Extended whole, const Extended& part, const std::vector<int>& cv
   return whole;
 }
 
+namespace {
+
+/// With no CV judged: all are simulated and scored, on what comes after the first `fitted` rows or
+/// on the second recording.
 Diagnosis unjudged(const ModelSpec& model, const Recorded& data, Index fitted) {
   Diagnosis diagnosis;
   diagnosis.samples = data.recording.samples();
@@ -146,6 +159,7 @@ Diagnosis unjudged(const ModelSpec& model, const Recorded& data, Index fitted) {
   return diagnosis;
 }
 
+/// Takes the diagnosis of a part into that of the whole, in the numbers of the whole.
 void take_in(const ModelSpec& model, const Recorded& data, const Readings& readings, Diagnosis part,
              Diagnosis& whole) {
   const std::vector<int>& cvs = readings.cvs;
@@ -190,7 +204,6 @@ void take_in(const ModelSpec& model, const Recorded& data, const Readings& readi
           static_cast<Index>(std::round(static_cast<double>(horizon.samples) * readings.every));
     whole.scores[static_cast<std::size_t>(cvs[i])] = std::move(part.scores[i]);
   }
-  part.extended.sample_time_s = model.sample_time_s;
   const Extended extended =
       within({std::move(whole.extended), std::move(whole.new_inputs)},
              {std::move(part.extended), std::move(part.new_inputs)}, cvs, model.input_count);
@@ -212,6 +225,80 @@ void take_in(const ModelSpec& model, const Recorded& data, const Readings& readi
     whole.validation_before.col(cvs[i]) = part.validation_before.col(at);
     whole.validation_after.col(cvs[i]) = part.validation_after.col(at);
   }
+}
+
+/// CVs that are read in one cycle.
+struct Cycle {
+  const Readings& readings;
+  ModelSpec own;  ///< at its own sample time
+  std::optional<ModelSpec> model;
+  Recording recording;
+  std::optional<Recording> validation;
+
+  [[nodiscard]] bool can_be_judged(bool validated) const {
+    if (!model || (validated && !validation)) return false;
+    return readings.every == 1.0 ||
+           (recording.samples() >= needed_samples(*model) && is_linear(*model));
+  }
+};
+
+Cycle cycle_of(const ModelSpec& model, const Recorded& data, const Readings& readings) {
+  Cycle cycle{readings, of_cvs(model, readings.cvs), of_readings(model, readings), {}, {}};
+  cycle.recording = of_readings(model, data.recording, readings);
+  if (data.validation == nullptr) return cycle;
+  if (const auto there = readings_in(*data.validation, readings))
+    cycle.validation = of_readings(model, *data.validation, *there);
+  return cycle;
+}
+
+}  // namespace
+
+Diagnosis by_readings(const ModelSpec& model, const Recorded& data,
+                      const std::vector<Readings>& all, const DiagnosisSettings& settings,
+                      const Judge& judge) {
+  std::optional<Diagnosis> whole;
+  DiagnosisVerdict verdict = DiagnosisVerdict::kMatch;
+  std::string reason;
+  std::size_t judged = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Readings& readings = all[i];
+    if (readings.cvs.empty()) continue;
+    const Cycle cycle = cycle_of(model, data, readings);
+    if (!cycle.can_be_judged(data.validation != nullptr)) continue;
+    judged += readings.cvs.size();
+    DiagnosisSettings of_part = settings;
+    of_part.progress = [&](double share) {
+      return settings.progress((static_cast<double>(i) + share) / static_cast<double>(all.size()));
+    };
+    Diagnosis part = judge(cycle.own,
+                           {*cycle.model, readings.every, cycle.recording,
+                            cycle.validation ? &*cycle.validation : nullptr},
+                           of_part);
+    if (!whole)
+      whole = unjudged(model, data,
+                       data.validation != nullptr ? data.recording.samples()
+                       : readings.every == 1.0 && part.fit_samples > 0
+                           ? part.fit_samples
+                           : fitted_rows(data.recording, settings.fit_share));
+    if (part.verdict == DiagnosisVerdict::kMismatch || verdict == DiagnosisVerdict::kMatch)
+      verdict = part.verdict;
+    if (reason.empty()) reason = part.reason;
+    take_in(model, data, readings, std::move(part), *whole);
+  }
+  const char* unread = all.front().cvs.empty() ? kReadSeldom : kOneReadSeldom;
+  if (!whole) {
+    Diagnosis diagnosis;
+    diagnosis.samples = data.recording.samples();
+    diagnosis.extended = model;
+    diagnosis.reason = unread;
+    return diagnosis;
+  }
+  const bool all_judged = static_cast<int>(judged) == model.cv_count;
+  if (!all_judged && verdict == DiagnosisVerdict::kMatch) verdict = DiagnosisVerdict::kUndetermined;
+  if (!all_judged && reason.empty()) reason = unread;
+  whole->verdict = verdict;
+  whole->reason = reason;
+  return *std::move(whole);
 }
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "core/identify/diagnosis/diagnosis.hpp"
@@ -30,12 +31,22 @@ struct Recorded {
   const Recording* validation;
 };
 
-/// Of a model in channels with no CV judged: all are simulated and scored, on what comes after the
-/// first `fitted` rows or on the second recording.
-[[nodiscard]] Diagnosis unjudged(const ModelSpec& model, const Recorded& data, Eigen::Index fitted);
+/// CVs that are read in one cycle as they are judged, at a sample time as long.
+struct AtReadings {
+  const ModelSpec& model;
+  double every;  ///< samples
+  const Recording& recording;
+  const Recording* validation;  ///< may be null
+};
 
-/// Takes the diagnosis of a part into that of the whole, in the numbers of the whole.
-void take_in(const ModelSpec& model, const Recorded& data, const Readings& readings, Diagnosis part,
-             Diagnosis& whole);
+/// The diagnosis of a model (of such CVs, at its own sample time) at their readings.
+using Judge =
+    std::function<Diagnosis(const ModelSpec&, const AtReadings&, const DiagnosisSettings&)>;
+
+/// That of a model in channels: one after the other those that are read in the same cycle.
+/// `settings.progress` is there.
+[[nodiscard]] Diagnosis by_readings(const ModelSpec& model, const Recorded& data,
+                                    const std::vector<Readings>& all,
+                                    const DiagnosisSettings& settings, const Judge& judge);
 
 }  // namespace mpm

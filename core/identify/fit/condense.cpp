@@ -212,14 +212,19 @@ Index rows_to_average(const Recording& recording, const PlantSpeed& speed, Index
   return wanted;
 }
 
+bool is_linear(const ModelSpec& model) {
+  const auto bent = [](const auto& of) { return of.has_value(); };
+  return std::none_of(model.input_blocks.begin(), model.input_blocks.end(), bent) &&
+         std::none_of(model.channels.begin(), model.channels.end(),
+                      [&](const ChannelSpec& channel) { return bent(channel.input_block); }) &&
+         model.state_terms.empty();
+}
+
 bool holds_at_any_sample_time(const ModelSpec& model) {
-  const auto linear = [](const ChannelSpec& channel) {
-    return std::holds_alternative<TransferFunction>(channel.dynamics) && !channel.input_block;
-  };
-  const bool bent = std::any_of(model.input_blocks.begin(), model.input_blocks.end(),
-                                [](const auto& block) { return block.has_value(); });
-  return !model.state_space && !bent && model.state_terms.empty() &&
-         std::all_of(model.channels.begin(), model.channels.end(), linear);
+  return !model.state_space && is_linear(model) &&
+         std::all_of(model.channels.begin(), model.channels.end(), [](const ChannelSpec& channel) {
+           return std::holds_alternative<TransferFunction>(channel.dynamics);
+         });
 }
 
 Index rows_to_average(const Recording& recording, const ModelSpec& model, Index most_rows) {

@@ -85,25 +85,25 @@ Recording of_cvs(const Recording& recording, const std::vector<int>& cvs) {
   return part;
 }
 
-ModelSpec of_readings(const ModelSpec& model, const Readings& readings) {
-  ModelSpec part = of_cvs(model, readings.cvs);
-  part.sample_time_s *= readings.every;
-  return part;
+std::optional<ModelSpec> of_readings(const ModelSpec& model, const Readings& readings) {
+  if (readings.every == 1.0) return of_cvs(model, readings.cvs);
+  return at_longer_sample_time(model, readings.cvs, readings.every);
 }
 
 Recording of_readings(const ModelSpec& model, const Recording& recording,
                       const Readings& readings) {
   Recording part = of_cvs(recording, readings.cvs);
   if (readings.every == 1.0) return part;
+  const std::optional<ModelSpec> at_readings = of_readings(model, readings);
+  if (!at_readings) return {};
   Recording result = averaged(part, readings.every, readings.offsets);
   if (result.samples() == 0) return result;
   Simulator fine(recording), coarse(result);
-  const ModelSpec at_readings = of_readings(model, readings);
   for (Index i = 0; i < part.cvs.cols(); ++i)
     part.cvs.col(i) = fine.cv(model, readings.cvs[static_cast<std::size_t>(i)]);
   const MatrixXd exact = averaged(part, readings.every, readings.offsets).cvs;
   for (Index i = 0; i < part.cvs.cols(); ++i) {
-    const VectorXd off = exact.col(i) - coarse.cv(at_readings, static_cast<int>(i));
+    const VectorXd off = exact.col(i) - coarse.cv(*at_readings, static_cast<int>(i));
     if (off.allFinite()) result.cvs.col(i) -= off;
   }
   return result;

@@ -32,8 +32,9 @@ struct Readings {
 /// The same at the readings of a cycle. A mean of what an input does between two readings is not
 /// all of what a quick channel makes of it: by what the model itself (whole, in channels) comes out
 /// otherwise at the longer sample time the CVs are put right, so that it fits as well as at its
-/// own.
-[[nodiscard]] ModelSpec of_readings(const ModelSpec& model, const Readings& readings);
+/// own. No model where it cannot be had at that sample time (at_longer_sample_time), and no rows.
+[[nodiscard]] std::optional<ModelSpec> of_readings(const ModelSpec& model,
+                                                   const Readings& readings);
 [[nodiscard]] Recording of_readings(const ModelSpec& model, const Recording& recording,
                                     const Readings& readings);
 

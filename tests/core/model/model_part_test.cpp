@@ -30,7 +30,7 @@ ModelSpec in_samples() {
 TEST_CASE("at a longer sample time a channel answers a step as it did") {
   const double cycle = GENERATE(2.0, 5.0, 7.5);
   const ModelSpec model = GENERATE(two_by_two(), in_samples());
-  const auto part = at_longer_sample_time(model, 0, cycle);
+  const auto part = at_longer_sample_time(model, {0}, cycle);
   REQUIRE(part);
   CHECK(part->cv_count == 1);
   CHECK(part->sample_time_s == cycle * model.sample_time_s);
@@ -55,7 +55,7 @@ TEST_CASE("a state space becomes step responses, and channels that do nothing ar
   states.c = Eigen::Matrix2d{{0.5, 0.0}, {0.2, 0.3}};
   states.d = Eigen::Matrix2d::Zero();
   model.state_space = states;
-  const auto part = at_longer_sample_time(model, 0, 4.0);
+  const auto part = at_longer_sample_time(model, {0}, 4.0);
   REQUIRE(part);
   CHECK_FALSE(part->state_space);
   REQUIRE(part->channels.size() == 1);
@@ -66,11 +66,26 @@ TEST_CASE("a state space becomes step responses, and channels that do nothing ar
     CHECK(coarse(n) == Approx(5.0 * (1.0 - std::pow(0.9, 4.0 * n))).margin(5.5e-3));
 }
 
+// As one by one: each CV's channels are its own.
+TEST_CASE("several CVs at a longer sample time are as each of them alone") {
+  ModelSpec model = in_samples();
+  model.channels[3].dynamics = StepResponse{{0.0, 0.5, 0.8, 1.0}};
+  const auto both = at_longer_sample_time(model, {0, 1}, 5.0);
+  REQUIRE(both);
+  CHECK(both->cv_count == 2);
+  for (int cv = 0; cv < 2; ++cv) {
+    const auto one = at_longer_sample_time(model, {cv}, 5.0);
+    REQUIRE(one);
+    for (int input = 0; input < 2; ++input)
+      CHECK(steps(*both, cv, input, 20) == steps(*one, 0, input, 20));
+  }
+}
+
 TEST_CASE("what integrates in samples has no step response that settles") {
   ModelSpec model = two_by_two();
   model.channels[1].dynamics = DiscreteFilter{{0.1}, {1.0, -1.0}, 0};
-  CHECK_FALSE(at_longer_sample_time(model, 0, 3.0));
-  CHECK(at_longer_sample_time(model, 1, 3.0));
+  CHECK_FALSE(at_longer_sample_time(model, {0}, 3.0));
+  CHECK(at_longer_sample_time(model, {1}, 3.0));
 }
 
 TEST_CASE("a part has the CVs that were asked for, in their order") {

@@ -103,6 +103,18 @@ TEST_CASE("small errors and levels go into the model beside what was found") {
   CHECK(std::get<TransferFunction>(nothing.channels[1].dynamics).gain == 1.0);
 }
 
+// Dead times are in rows of the problem: one row of 2 s is two of a second.
+TEST_CASE("what was found is put into the same model at another sample time") {
+  const Bench bench;
+  const SearchResult found = found_with({&causes::dead_time(), {1, 0}, {{&kDeadTimeError, 1.5}}});
+  ModelSpec own = bench.model;
+  own.sample_time_s = 1.0;
+  own.channels[1].dynamics = DiscreteFilter{{0.1}, {1.0, -0.9}, 4};
+  const ModelSpec extended = extend(own, bench.problem, found, {true}, {true, true});
+  CHECK(extended.sample_time_s == 1.0);
+  CHECK(std::get<DiscreteFilter>(extended.channels[1].dynamics).delay_samples == 7);
+}
+
 TEST_CASE("a plant has a stage from where each of what was found begins") {
   const Bench bench;
   SearchResult found = found_with({&causes::gain(), {0, 0}, {{&kGainRatio, 1.3}}, 100});

@@ -1,6 +1,7 @@
 #include "core/identify/diagnosis/seldom_read.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/fit/condense.hpp"
@@ -121,6 +122,73 @@ TEST_CASE("where every CV is read in a cycle each is judged in its own") {
   REQUIRE(diagnosis.findings.size() == 1);
   CHECK(diagnosis.findings[0].subject == Subject{&causes::gain(), {1, 0}});
   CHECK(diagnosis.findings[0].parameters[0].value == Approx(1.4).margin(0.1));
+}
+
+// A DMC model's step coefficients, and a filter: closed form of the first CV's lag, sampled.
+TEST_CASE("a channel in samples is judged at readings, and repaired at its own sample time") {
+  const bool coefficients = GENERATE(true, false);
+  const double ratio = GENERATE(1.0, 1.5);
+  CAPTURE(coefficients, ratio);
+  const double pole = std::exp(-1.0 / 20.0);
+  ModelSpec sampled = model();
+  if (coefficients) {
+    StepResponse step;
+    for (int k = 0; k <= 150; ++k) step.values.push_back(1.0 - std::pow(pole, k));
+    sampled.channels[0].dynamics = step;
+  } else {
+    sampled.channels[0].dynamics = DiscreteFilter{{1.0 - pole}, {1.0, -pole}, 0};
+  }
+  const Recording recording = plant(1.0, 10, kMany, ratio);
+  DiagnosisSettings settings;
+  settings.mv_count = 1;
+  const Diagnosis diagnosis = diagnose(sampled, recording, nullptr, settings);
+  REQUIRE(diagnosis.scores.size() == 2);
+  CHECK(diagnosis.scores[0].judged);
+  REQUIRE(diagnosis.findings.size() == (ratio > 1.0 ? 1 : 0));
+  if (ratio == 1.0) {
+    CHECK(diagnosis.verdict == DiagnosisVerdict::kMatch);
+    return;
+  }
+  CHECK(diagnosis.findings[0].subject == Subject{&causes::gain(), {0, 0}});
+  CHECK(diagnosis.findings[0].parameters[0].value == Approx(1.5).margin(0.1));
+  CHECK(diagnosis.extended.sample_time_s == 1.0);
+  REQUIRE(diagnosis.extended.channels.size() == 2);
+  const auto& dynamics = diagnosis.extended.channels[0].dynamics;
+  CHECK(std::holds_alternative<StepResponse>(dynamics) == coefficients);
+  if (coefficients) {
+    CHECK(std::get<StepResponse>(dynamics).values.size() == Approx(151).margin(10));
+    CHECK(std::get<StepResponse>(dynamics).values.back() == Approx(1.5).margin(0.1));
+  } else {
+    CHECK(std::get<DiscreteFilter>(dynamics).denominator[1] == Approx(-pole).epsilon(0.01));
+  }
+  const VectorXd truth = ratio * test::first_order(recording.inputs.col(0), 1.0, 20.0);
+  CHECK((diagnosis.after.col(0) - truth).norm() < 0.2 * (diagnosis.before.col(0) - truth).norm());
+}
+
+TEST_CASE("a state space of which a CV is read seldom is judged, and is one again") {
+  ModelSpec states = model();
+  states.channels.clear();
+  StateSpaceSpec space;
+  const double first = std::exp(-1.0 / 20.0), second = std::exp(-1.0 / 10.0);
+  space.a = Eigen::Matrix2d{{first, 0.0}, {0.0, second}};
+  space.b = Eigen::Vector2d{1.0 - first, 2.0 * (1.0 - second)};
+  space.c = Eigen::Matrix2d::Identity();
+  space.d = Eigen::Vector2d::Zero();
+  states.state_space = space;
+  DiagnosisSettings settings;
+  settings.mv_count = 1;
+  const Diagnosis diagnosis = diagnose(states, plant(1.0, 10, kMany, 1.5), nullptr, settings);
+  REQUIRE(diagnosis.findings.size() == 1);
+  CHECK(diagnosis.findings[0].subject == Subject{&causes::gain(), {0, 0}});
+  REQUIRE(diagnosis.extended.state_space);
+  const StateSpaceSpec& repaired = *diagnosis.extended.state_space;
+  const VectorXd gain =
+      repaired.c * (MatrixXd::Identity(repaired.a.rows(), repaired.a.cols()) - repaired.a)
+                       .lu()
+                       .solve(repaired.b) +
+      repaired.d;
+  CHECK(gain(0) == Approx(1.5).margin(0.1));
+  CHECK(gain(1) == Approx(2.0).margin(1e-6));
 }
 
 TEST_CASE("a CV that is read every 10.3 rows is judged, and its gain found") {

@@ -53,7 +53,7 @@ TEST_CASE("at its readings a CV is what the model says at its own sample time") 
   const Readings readings{6, {2}, {1}};
   const Recording rows = of_readings(model(), recording, readings);
   Simulator simulator(rows);
-  const VectorXd simulated = simulator.cv(of_readings(model(), readings), 0);
+  const VectorXd simulated = simulator.cv(*of_readings(model(), readings), 0);
   const Recording as_read = averaged(of_cvs(recording, {1}), 6, {2});
   CHECK((simulated - rows.cvs.col(0)).lpNorm<Eigen::Infinity>() < 1e-9);
   CHECK((simulated - as_read.cvs.col(0)).lpNorm<Eigen::Infinity>() > 0.05);
