@@ -218,6 +218,12 @@ inline constexpr double kMostLogTime = 2.5;
 namespace confounding {
 inline constexpr double kMargin = 10.0;
 inline constexpr double kShare = 0.5;
+/// What goes with the inputs of a CV, so many s.d. beyond chance, is like no errors of its channels
+/// where these explain less than this share of it. Chosen on the same loops: of what an operator's
+/// answer to a hidden disturbance makes of six MVs they explain 0.14 at most once that is 70 noise
+/// variances, of true errors 0.4 to 1.5.
+inline constexpr double kBeyondChance = 1.0;
+inline constexpr double kUsualShare = 0.25;
 }  // namespace confounding
 
 /// The other inputs mask one where they make its gain's s.d. this many times larger. Chosen.

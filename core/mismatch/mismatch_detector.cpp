@@ -1,6 +1,7 @@
 #include "core/mismatch/mismatch_detector.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <span>
 #include <utility>
@@ -96,6 +97,17 @@ RivalSignal MismatchDetector::rival(int cv, const FollowedSignal& followed) cons
   const bool much = followed.explained > calibration::confounding::kShare * inputs;
   return {followed.signal, much && followed.explained > by.usual_errors + margin,
           !much || followed.explained < by.usual_errors - margin};
+}
+
+bool MismatchDetector::unlike_errors(int cv) const {
+  const ChannelEvaluator::Explained& by = explained_[static_cast<std::size_t>(cv)];
+  // Without what so many coefficients explain by chance: chi-square, in variances of the noise.
+  const double coefficients = shape_.inputs * shape_.block();
+  const double inputs = by.inputs - by.variance * coefficients;
+  const double usual_errors = by.usual_errors - by.variance * shape_.inputs * kUsualErrors;
+  const double chance = by.variance * std::sqrt(2.0 * coefficients);
+  return inputs > calibration::confounding::kBeyondChance * chance &&
+         usual_errors < calibration::confounding::kUsualShare * inputs;
 }
 
 bool MismatchDetector::take_in_curvature(int cv, double least) {

@@ -76,6 +76,9 @@ class MismatchDetector {
   /// What a signal that is no input says of a CV beside errors of its channels. After
   /// `evaluate(cv, 0)`.
   [[nodiscard]] RivalSignal rival(int cv, const FollowedSignal& followed) const;
+  /// Whether the inputs go with what is off in a CV, but errors of its channels explain little of
+  /// that. After `evaluate(cv, 0)`.
+  [[nodiscard]] bool unlike_errors(int cv) const;
   /// Forgets of this CV what is older than its last `samples` samples (>= 0).
   void start_afresh(int cv, int samples);
 

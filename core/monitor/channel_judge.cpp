@@ -32,7 +32,7 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
   read_evidence(channel, status);
   status.gain_variation = channel.gain_variation;
   const bool exceeding = exceeds(channel, status);
-  if (exceeding && channel.confounder >= 0) {
+  if (exceeding && channel.confounded) {
     status.reason = Reason::kConfounded;
     status.confounder = channel.confounder;
     return;

@@ -4,6 +4,7 @@
 #include "core/mismatch/regression_memory.hpp"
 #include "core/mismatch/verdict.hpp"
 #include "core/monitor/belief.hpp"
+#include "core/monitor/calibration.hpp"
 #include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/derived_settings.hpp"
 #include "core/monitor/f_thresholds.hpp"
@@ -23,7 +24,8 @@ struct JudgedChannel {
   const CvAlarms& alarms;       ///< the CV's
   bool mvs_still = false;       ///< no MV moves
   bool at_limit = false;        ///< the input rests at the end of its range
-  int confounder = -1;          ///< the signal that the CV follows, as in ChannelStatus
+  bool confounded = false;      ///< what is off in the CV may be no error of its channels
+  int confounder = -1;          ///< and follows this signal, as in ChannelStatus; -1: none logged
   CorrelationPeak peak;         ///< with ThresholdKind::kMeanLine, else unused
   double mean_line = 0.0;       ///< likewise
   double gain_variation = 0.0;  ///< as in ChannelStatus
@@ -41,6 +43,11 @@ class ChannelJudge {
   /// The evidence speaks against the channel.
   [[nodiscard]] bool unlikely(const ChannelEvidence& evidence) const {
     return evidence.p_value < channel_rate_;
+  }
+  /// An error of interest would show.
+  [[nodiscard]] bool shows_errors(const ChannelEvidence& evidence) const {
+    return calibration::visibility::kSeenDeviations * evidence.excitation_index <=
+           gain_error_of_interest_;
   }
   /// Brings the status up to the sample, but for the reported correlation.
   void judge(const JudgedChannel& channel, ChannelStatus& status);

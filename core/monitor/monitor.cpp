@@ -68,6 +68,7 @@ struct Monitor::State {
   void take_sample(const Frame& frame);
   void evaluate();
   void follow(int cv);
+  [[nodiscard]] bool is_unlike_errors(int cv) const;
   void move_alarms();
   void judge_channels();
   [[nodiscard]] Belief belief(int cv) const;
@@ -344,7 +345,8 @@ void Monitor::State::judge_nonlinear(int j) {
   }
 }
 
-// Where something is off: whether it follows a signal that is no input of the model.
+// Where something is off: whether it follows a signal that is no input of the model, or one that
+// nobody logs.
 void Monitor::State::follow(int j) {
   Cv& cv = of(j);
   bool off = false;
@@ -355,6 +357,20 @@ void Monitor::State::follow(int j) {
   if (!off || reader.samples() < cv.followed_next) return;
   cv.followed_next = reader.samples() + calibration::confounding::kBetween;
   cv.rival = detector.rival(j, outside.followed(j, detector.history(), detector.regression(j)));
+  if (cv.rival.loses && is_unlike_errors(j)) cv.rival = {-1, true, false};
+}
+
+// Of a CV of which no channel that is off would show an error of interest: more inputs than CVs
+// that move together can make up between them what nobody logs but an operator answers.
+bool Monitor::State::is_unlike_errors(int j) const {
+  bool off = false;
+  for (int i = 0; i < counts.inputs(); ++i) {
+    const ChannelEvidence& evidence = detector.evidence(j, i);
+    if (!judge.unlikely(evidence)) continue;
+    if (judge.shows_errors(evidence)) return false;
+    off = true;
+  }
+  return off && detector.memory(j).ready() && detector.unlike_errors(j);
 }
 
 void Monitor::State::move_alarms() {
@@ -396,7 +412,8 @@ void Monitor::State::judge_channels() {
                    .alarms = of(j).alarms,
                    .mvs_still = mvs_still,
                    .at_limit = reader.inputs().at_limit(i),
-                   .confounder = !of(j).rival.loses ? counts.inputs() + of(j).rival.signal : -1,
+                   .confounded = !of(j).rival.loses,
+                   .confounder = of(j).rival.signal < 0 ? -1 : counts.inputs() + of(j).rival.signal,
                    .peak = against_line ? correlation.peak(j, i) : CorrelationPeak{},
                    .mean_line = line,
                    .gain_variation = gain_variation(j, i),

@@ -233,6 +233,11 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
     case Reason::kCollinear:
       return collinear_text(channel, file);
     case Reason::kConfounded:
+      if (channel.confounder.empty())
+        return "what is off in " + printable(channel.cv) +
+               " goes with the inputs together, and is like no error of their channels: they may "
+               "answer something that acts on " +
+               printable(channel.cv) + " and is not logged; log it as aux";
       return "what is off in " + printable(channel.cv) + " follows " +
              printable(channel.confounder) +
              ", which is no input of the model, no less than it follows the inputs: something that "

@@ -39,6 +39,7 @@ struct Bench {
                  .alarms = alarms,
                  .mvs_still = mvs_still,
                  .at_limit = at_limit,
+                 .confounded = confounded,
                  .confounder = confounder,
                  .peak = peak,
                  .mean_line = line,
@@ -52,7 +53,7 @@ struct Bench {
   CvAlarms alarms;
   Reason bad_data = Reason::kNone;
   int spoilt = -1;
-  bool overdue = false, mvs_still = false, at_limit = false;
+  bool overdue = false, mvs_still = false, at_limit = false, confounded = false;
   int confounder = -1;
   CorrelationPeak peak;
   double line = 0.0;
@@ -131,12 +132,16 @@ TEST_CASE("of a CV whose readings hardly ever change nothing is a mismatch") {
 
 TEST_CASE("what follows a signal that is no input is no channel's mismatch") {
   Bench bench;
+  bench.confounded = true;
   bench.confounder = 2;
   CHECK(bench.judge().verdict == Verdict::kMatch);  // nothing is off in this one
   bench.evidence.p_value = 1e-9;
   CHECK(bench.judge().verdict == Verdict::kUndetermined);
   CHECK(bench.judge().reason == Reason::kConfounded);
   CHECK(bench.judge().confounder == 2);
+  bench.confounder = -1;  // one that nobody logs
+  CHECK(bench.judge().reason == Reason::kConfounded);
+  CHECK(bench.judge().confounder == -1);
 }
 
 TEST_CASE("without rows or with bad data there is no verdict") {

@@ -393,6 +393,39 @@ TEST_CASE("what moves with a set-point is told of the set-point, and no channel 
   }
 }
 
+// The second MV moves by itself, the first one with what that did before and, by little, against a
+// disturbance that nobody logs: between them they make up the disturbance.
+TEST_CASE("what MVs together make up of a hidden disturbance is no channel's mismatch") {
+  test::OpenLoopUnit unit;
+  for (const bool disturbed : {true, false}) {
+    CAPTURE(disturbed);
+    Monitor monitor(unit.model, unit.counts, {true, true}, {}, {});
+    const auto moves = [](std::int64_t k) { return 0.3 * test::uniform(78, k / 3); };
+    double lag = 0.0, gain_error = 0.0;
+    int alarms = 0;
+    unit.run(3000, [&](Frame frame) {
+      const std::int64_t k = frame.interval;
+      const double second = moves(k + 30), hidden = 0.1 * test::uniform(79, k / 6);
+      const double first = moves(k + 28) - 0.8 * moves(k + 23) - 0.3 * hidden;
+      frame[SignalKind::kMv].values = unit.model.input_origin + Eigen::Vector2d(first, second);
+      frame[SignalKind::kCv].values(0) += disturbed ? lag : gain_error;
+      lag += 0.5 * (hidden - lag);
+      gain_error += (-0.6 * second - gain_error) / 8.0;
+      monitor.push(frame);
+      for (const AlarmTransition& transition : monitor.transitions())
+        alarms += transition.to == AlarmState::kActive ? 1 : 0;
+    });
+    CHECK(alarms == (disturbed ? 0 : 1));
+    const ChannelStatus& wrong = monitor.channel(0, 1);
+    CHECK(wrong.p_value < 1e-30);
+    CHECK(wrong.smallest_error > 0.25);  // an error of interest need not have shown
+    CHECK(wrong.verdict == (disturbed ? Verdict::kUndetermined : Verdict::kMismatch));
+    CHECK(wrong.reason == (disturbed ? Reason::kConfounded : Reason::kWeakExcitation));
+    CHECK(wrong.confounder == -1);
+    CHECK(monitor.channel(0, 0).verdict == Verdict::kUndetermined);
+  }
+}
+
 TEST_CASE("the monitor allocates nothing per sample and repeats itself exactly") {
   Experiment experiment;
   experiment.gain_ratio = GENERATE(1.0, 0.8);

@@ -161,6 +161,8 @@ TEST_CASE("every reason has its words") {
   CHECK(undetermined_text(undetermined("FIC-101", "AI-201", Reason::kNotExcited, 0.2503), file) ==
         "needs a gain error of 26 % to show; move FIC-101");  // 25 % would have been enough
   CHECK(text(Reason::kCoarse).find("AI-201 is read so coarsely") == 0);
+  CHECK(text(Reason::kConfounded).find("what is off in AI-201 goes with the inputs together") == 0);
+  CHECK(text(Reason::kConfounded, "AIC-201.SP").find("follows AIC-201.SP") != std::string::npos);
   CHECK(text(Reason::kCollinear, "FIC-102") ==
         "moved only together with FIC-102; move one without the other");
   CHECK(
