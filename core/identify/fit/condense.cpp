@@ -213,10 +213,12 @@ Index rows_to_average(const Recording& recording, const PlantSpeed& speed, Index
 }
 
 bool is_linear(const ModelSpec& model) {
-  const auto bent = [](const auto& of) { return of.has_value(); };
-  return std::none_of(model.input_blocks.begin(), model.input_blocks.end(), bent) &&
-         std::none_of(model.channels.begin(), model.channels.end(),
-                      [&](const ChannelSpec& channel) { return bent(channel.input_block); }) &&
+  const auto bent = [](const ChannelSpec& channel) {
+    return channel.input_block || std::holds_alternative<TankChain>(channel.dynamics);
+  };
+  return std::none_of(model.input_blocks.begin(), model.input_blocks.end(),
+                      [](const auto& block) { return block.has_value(); }) &&
+         std::none_of(model.channels.begin(), model.channels.end(), bent) &&
          model.state_terms.empty();
 }
 

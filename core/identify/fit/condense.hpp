@@ -21,7 +21,7 @@ struct PlantSpeed {
 /// Whether its numbers are in seconds, and means of what moves are what acts: transfer functions
 /// alone, for behind a valve's block the mean is not that before it.
 [[nodiscard]] bool holds_at_any_sample_time(const ModelSpec& model);
-/// No curves before its channels, no terms of a CV's own.
+/// No curves before its channels, no tanks, no terms of a CV's own.
 [[nodiscard]] bool is_linear(const ModelSpec& model);
 
 /// Of each run from its row `offsets` on `every` rows as one, t(K) = t(floor(offset + K every)):

@@ -165,6 +165,19 @@ TEST_CASE("a channel in samples is judged at readings, and repaired at its own s
   CHECK((diagnosis.after.col(0) - truth).norm() < 0.2 * (diagnosis.before.col(0) - truth).norm());
 }
 
+// A mean of what fills a tank is not what its level answers.
+TEST_CASE("tanks are not judged at readings") {
+  ModelSpec tank = model();
+  tank.channels[0].dynamics = TankChain{{20.0}, -4.0, -2.0, {}, 0.0, 0.0};
+  DiagnosisSettings settings;
+  settings.mv_count = 1;
+  const Diagnosis diagnosis = diagnose(tank, plant(1.0, 10, kMany), nullptr, settings);
+  REQUIRE(diagnosis.scores.size() == 2);
+  CHECK_FALSE(diagnosis.scores[0].judged);
+  CHECK(diagnosis.scores[1].judged);
+  CHECK(diagnosis.reason.find("was not judged") != std::string::npos);
+}
+
 TEST_CASE("a state space of which a CV is read seldom is judged, and is one again") {
   ModelSpec states = model();
   states.channels.clear();
