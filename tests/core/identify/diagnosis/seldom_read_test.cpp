@@ -1,5 +1,6 @@
 #include "core/identify/diagnosis/seldom_read.hpp"
 
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
 
