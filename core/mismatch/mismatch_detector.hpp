@@ -21,7 +21,7 @@ class Archive;
 
 /// A signal that a CV follows, beside errors of the CV's channels as the cause of what is off.
 struct RivalSignal {
-  int signal = -1;
+  int signal = -1;    ///< -1: none, or one that nobody logs
   bool wins = false;  ///< it clearly explains more
   bool loses = true;  ///< it clearly explains less
 

@@ -15,6 +15,11 @@ bool alarmed(const JudgedChannel& channel) {
   return channel.alarms.state(channel.input) == AlarmState::kActive;
 }
 
+double smallest_error(const ChannelEvidence& evidence) {
+  return std::min(visibility::kSeenDeviations * evidence.excitation_index,
+                  visibility::kBlindGainError);
+}
+
 }  // namespace
 
 ChannelJudge::ChannelJudge(const SignalCounts& counts, const DerivedSettings& settings)
@@ -23,6 +28,10 @@ ChannelJudge::ChannelJudge(const SignalCounts& counts, const DerivedSettings& se
       gain_error_of_interest_(settings.gain_error_of_interest),
       mean_line_(settings.threshold == ThresholdKind::kMeanLine),
       channel_rate_(settings.false_alarm_rate / (counts.inputs() * counts.cv)) {}
+
+bool ChannelJudge::shows_errors(const ChannelEvidence& evidence) const {
+  return smallest_error(evidence) <= gain_error_of_interest_;
+}
 
 void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
   status.effective_samples = channel.memory.effective_rows();
@@ -105,9 +114,8 @@ void ChannelJudge::read_evidence(const JudgedChannel& channel, ChannelStatus& st
                        evidence.reference_gain;
   status.effect_low = status.effect_size - half * std::abs(evidence.reference_gain);
   status.effect_high = status.effect_size + half * std::abs(evidence.reference_gain);
-  status.smallest_error = std::min(visibility::kSeenDeviations * evidence.excitation_index,
-                                   visibility::kBlindGainError);
-  status.excited = status.smallest_error <= gain_error_of_interest_;
+  status.smallest_error = smallest_error(evidence);
+  status.excited = shows_errors(evidence);
   status.material = alarmed(channel) || evidence.p_value_material < channel_rate_;
 }
 

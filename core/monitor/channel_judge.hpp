@@ -4,7 +4,6 @@
 #include "core/mismatch/regression_memory.hpp"
 #include "core/mismatch/verdict.hpp"
 #include "core/monitor/belief.hpp"
-#include "core/monitor/calibration.hpp"
 #include "core/monitor/cv_alarms.hpp"
 #include "core/monitor/derived_settings.hpp"
 #include "core/monitor/f_thresholds.hpp"
@@ -45,10 +44,7 @@ class ChannelJudge {
     return evidence.p_value < channel_rate_;
   }
   /// An error of interest would show.
-  [[nodiscard]] bool shows_errors(const ChannelEvidence& evidence) const {
-    return calibration::visibility::kSeenDeviations * evidence.excitation_index <=
-           gain_error_of_interest_;
-  }
+  [[nodiscard]] bool shows_errors(const ChannelEvidence& evidence) const;
   /// Brings the status up to the sample, but for the reported correlation.
   void judge(const JudgedChannel& channel, ChannelStatus& status);
 

@@ -363,6 +363,7 @@ void Monitor::State::follow(int j) {
 // Of a CV of which no channel that is off would show an error of interest: more inputs than CVs
 // that move together can make up between them what nobody logs but an operator answers.
 bool Monitor::State::is_unlike_errors(int j) const {
+  if (!detector.memory(j).ready()) return false;
   bool off = false;
   for (int i = 0; i < counts.inputs(); ++i) {
     const ChannelEvidence& evidence = detector.evidence(j, i);
@@ -370,7 +371,7 @@ bool Monitor::State::is_unlike_errors(int j) const {
     if (judge.shows_errors(evidence)) return false;
     off = true;
   }
-  return off && detector.memory(j).ready() && detector.unlike_errors(j);
+  return off && detector.unlike_errors(j);
 }
 
 void Monitor::State::move_alarms() {
