@@ -65,7 +65,7 @@ std::optional<std::string> why_not(const StateTerm& term, const ChannelSpec& cha
 std::vector<std::string> own_keys(DisturbanceShape shape) {
   switch (shape) {
     case DisturbanceShape::kStep:
-      return {"time_constant", "until"};
+      return {"time_constant", "decay", "until"};
     case DisturbanceShape::kDrift:
       return {"until"};
     case DisturbanceShape::kPeriodic:
@@ -81,7 +81,7 @@ std::optional<DisturbanceShape> read_shape(const Map& map) {
   for (const Choice<DisturbanceShape>& choice : choices(DisturbanceShape{})) {
     if (name != choice.name) continue;
     const std::vector<std::string> own = own_keys(choice.kind);
-    for (const char* key : {"time_constant", "period", "wave", "until"})
+    for (const char* key : {"time_constant", "decay", "period", "wave", "until"})
       if (map.entry(key) != nullptr && std::find(own.begin(), own.end(), key) == own.end())
         map.entry(key)->key_at.error("does not go with the shape " + name);
     return choice.kind;
@@ -91,8 +91,8 @@ std::optional<DisturbanceShape> read_shape(const Map& map) {
 }
 
 std::optional<DisturbanceTerm> read_disturbance(const Value& item, const ModelSignals& signals) {
-  const Map map =
-      item.map({"cv", "shape", "onset", "size", "time_constant", "period", "wave", "until"});
+  const Map map = item.map(
+      {"cv", "shape", "onset", "size", "time_constant", "decay", "period", "wave", "until"});
   const std::optional<DisturbanceShape> shape = read_shape(map);
   if (!shape) return std::nullopt;
   DisturbanceTerm term;
@@ -103,6 +103,7 @@ std::optional<DisturbanceTerm> read_disturbance(const Value& item, const ModelSi
   const Value* onset = periodic ? map.find("onset") : map.require("onset");
   if (onset != nullptr) term.onset_s = read_clock(*onset).value_or(0.0);
   term.time_constant_s = read_number(map, "time_constant", kNotNegative, 0.0);
+  if (map.find("decay") != nullptr) term.decay_s = require_number(map, "decay", kPositive, 1.0);
   if (periodic) term.period_s = require_number(map, "period", kPositive, 1.0);
   if (const Value* wave = map.find("wave")) {
     const std::string name = wave->is_scalar() ? wave->free_text().value_or("") : "";

@@ -94,6 +94,7 @@ std::string disturbance_text(const DisturbanceTerm& term) {
            ", wave: " + (term.square ? "square" : "sine");
   if (term.shape == DisturbanceShape::kStep)
     text += ", time_constant: " + yaml_text(term.time_constant_s);
+  if (std::isfinite(term.decay_s)) text += ", decay: " + yaml_text(term.decay_s);
   if (std::isfinite(term.until_s)) text += ", until: " + yaml_text(term.until_s);
   return text;
 }

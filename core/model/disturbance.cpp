@@ -14,6 +14,11 @@ double lagged_step(double since_s, double time_constant_s, double tolerance_s) {
   return time_constant_s > 0.0 ? -std::expm1(-std::max(0.0, since_s) / time_constant_s) : 1.0;
 }
 
+/// What is left of it then.
+double passing(double since_s, double decay_s) {
+  return std::isfinite(decay_s) ? std::exp(-std::max(0.0, since_s) / decay_s) : 1.0;
+}
+
 }  // namespace
 
 void check_disturbance(const DisturbanceTerm& disturbance) {
@@ -21,6 +26,8 @@ void check_disturbance(const DisturbanceTerm& disturbance) {
     throw std::invalid_argument("disturbance: onset and size must be finite");
   if (!(disturbance.time_constant_s >= 0.0 && std::isfinite(disturbance.time_constant_s)))
     throw std::invalid_argument("disturbance: time constant must not be negative");
+  if (!(disturbance.decay_s > 0.0))
+    throw std::invalid_argument("disturbance: decay must be positive");
   if (disturbance.shape == DisturbanceShape::kPeriodic &&
       !(disturbance.period_s > 0.0 && std::isfinite(disturbance.period_s)))
     throw std::invalid_argument("disturbance: period must be positive");
@@ -32,7 +39,7 @@ double disturbance_at(const DisturbanceTerm& disturbance, double time_s, double 
   const double since_s = time_s - disturbance.onset_s;
   switch (disturbance.shape) {
     case DisturbanceShape::kStep:
-      return disturbance.size *
+      return disturbance.size * passing(since_s, disturbance.decay_s) *
              (lagged_step(since_s, disturbance.time_constant_s, tolerance_s) -
               lagged_step(time_s - disturbance.until_s, disturbance.time_constant_s, tolerance_s));
     case DisturbanceShape::kDrift:

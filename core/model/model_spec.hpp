@@ -143,7 +143,8 @@ struct StateTerm {
 
 /// What adds itself to a CV at known times, on the clock of the data, before its output block.
 enum class DisturbanceShape {
-  kStep,      ///< `size` from the onset on, through a first-order lag where time_constant_s > 0
+  kStep,      ///< `size` from the onset on, through a first-order lag where time_constant_s > 0;
+              ///< passes with a time constant of decay_s where that is finite
   kDrift,     ///< `size` CV units per s from the onset on
   kPeriodic,  ///< size sin(2 pi (t - onset) / period) at all times, or its sign times size
 };
@@ -156,6 +157,7 @@ struct DisturbanceTerm {
   double period_s = 0.0;
   bool square = false;  ///< of a periodic one: what a limit cycle switches, not a sine
   double until_s = std::numeric_limits<double>::infinity();  ///< a step goes back, a drift stops
+  double decay_s = std::numeric_limits<double>::infinity();  ///< of a step that passes; > 0
 };
 
 struct ModelSpec {

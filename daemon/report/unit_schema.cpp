@@ -172,6 +172,7 @@ constexpr const char* kSkeleton = R"json({
         "cv": {"$ref": "#/$defs/text"}, "shape": {},
         "onset": {"$ref": "#/$defs/moment"}, "size": {"type": "number"},
         "time_constant": {"$ref": "#/$defs/not_negative", "description": "s"},
+        "decay": {"$ref": "#/$defs/positive", "description": "s, with which it passes"},
         "period": {"$ref": "#/$defs/positive", "description": "s"},
         "wave": {"enum": ["sine", "square"]}, "until": {"$ref": "#/$defs/moment"}}},
     "channel_materiality": {"type": "object", "required": ["cv", "mv"],

@@ -78,7 +78,9 @@ void check_full(const UnitConfig& config) {
   CHECK(model.disturbances[2].period_s == 70);
   CHECK(model.disturbances[2].onset_s == 7);
   CHECK(model.disturbances[2].square);
+  CHECK(std::isinf(step.decay_s));
   CHECK(std::isinf(model.disturbances[3].until_s));
+  CHECK(model.disturbances[3].decay_s == 600);
   REQUIRE(config.simulation.aux_movement.size() == 2);
   CHECK(config.simulation.aux_movement[0].sigma == 0);
   CHECK(config.simulation.aux_movement[1].sigma == 0.2);
@@ -284,6 +286,10 @@ TEST_CASE("every mistake in an extended model is told at its place") {
        "model.disturbances[0].cv: 'y3' is no cv of this unit (did you mean 'y1'?)"},
       {disturbed("{cv: y1, shape: step, onset: 5, size: 2, until: @5}"),
        "model.disturbances[0].until: must be after `onset`"},
+      {disturbed("{cv: y1, shape: drift, onset: 1, size: 2, @decay: 5}"),
+       "model.disturbances[0].decay: does not go with the shape drift"},
+      {disturbed("{cv: y1, shape: step, onset: 1, size: 2, decay: @0}"),
+       "model.disturbances[0].decay: must be > 0, not 0"},
       {disturbed("{cv: y1, shape: drift, onset: 1, size: 2, @period: 5}"),
        "model.disturbances[0].period: does not go with the shape drift"},
       {disturbed("@{cv: y1, shape: periodic, size: 2}"),
@@ -299,6 +305,7 @@ TEST_CASE("every mistake in an extended model is told at its place") {
        "model.disturbances[0].wave: does not go with the shape step"},
       {disturbed("{cv: y1, shape: step, onset: 1, size: 2, @foo: 3}"),
        "model.disturbances[0].foo: unknown key (known: cv, shape, onset, size, time_constant, "
+       "decay, "
        "period, wave, until)"},
       {channels + "simulation: {aux_movement: {@t_am: {sigma: 1}}}\n",
        "simulation.aux_movement.t_am: unknown tag or key (did you mean 't_amb'?)"},

@@ -30,7 +30,7 @@ inline const std::string kExtendedUnit =
     "       until: 2024-03-02 12:00Z}\n"
     "    - {cv: y2, shape: drift, onset: -100.5, size: 1e-4, until: 1e6}\n"
     "    - {cv: y2, shape: periodic, size: 0.5, period: 70, onset: 7, wave: square}\n"
-    "    - {cv: y1, shape: step, onset: 0, size: 1}\n"
+    "    - {cv: y1, shape: step, onset: 0, size: 1, decay: 600}\n"
     "simulation:\n"
     "  aux_movement: {p_atm: {sigma: 0.2, pole: 0.98}}\n";
 

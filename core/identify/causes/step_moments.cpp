@@ -18,17 +18,21 @@ constexpr Index kStepMomentsApart = 4;   ///< rows
 
 }  // namespace
 
-std::vector<Index> step_moments(const CvData& data, const CvFit& fit, double time_constant,
+std::vector<Index> step_moments(const CvData& data, const CvFit& fit, const StepForm& form,
                                 std::size_t most) {
   const VectorXd slope = misfit_slope(data, fit);
   const Index rows = slope.size();
-  const double pole = time_constant > 0.0 ? std::exp(-1.0 / time_constant) : 0.0;
+  // The step is stays^j, less coming^j where it goes through a lag.
+  const bool lagged = form.time_constant > 0.0;
+  const double stays = form.decay > 0.0 ? std::exp(-1.0 / form.decay) : 1.0;
+  const double coming = lagged ? stays * std::exp(-1.0 / form.time_constant) : 0.0;
   const VectorXd& a = fit.noise.coefficients;
 
   // Squares of the whitened step, summed over the rows since its onset.
   VectorXd step(rows);
   for (Index k = 0; k < rows; ++k)
-    step(k) = time_constant > 0.0 ? 1.0 - std::pow(pole, static_cast<double>(k)) : 1.0;
+    step(k) = std::pow(stays, static_cast<double>(k)) -
+              (lagged ? std::pow(coming, static_cast<double>(k)) : 0.0);
   VectorXd squares = VectorXd::Zero(rows + 1);
   for (Index k = 0; k < rows; ++k) {
     double whitened = step(k);
@@ -37,13 +41,13 @@ std::vector<Index> step_moments(const CvData& data, const CvFit& fit, double tim
   }
 
   VectorXd gain = VectorXd::Zero(rows);
-  double plain = 0.0, lagged = 0.0;  // sums with 1 and with pole^j, from the end
+  double plain = 0.0, missing = 0.0;  // sums with stays^j and with coming^j, from the end
   for (Index k = rows - 1; k >= 0; --k) {
-    plain += slope(k);
-    lagged = time_constant > 0.0 ? slope(k) + pole * lagged : 0.0;
+    plain = slope(k) + stays * plain;
+    missing = lagged ? slope(k) + coming * missing : 0.0;
     const double norm = squares(rows - k);
     if (k >= kStepMomentsMargin && k + kStepMomentsMargin < rows && norm > 0.0)
-      gain(k) = (plain - lagged) * (plain - lagged) / norm;
+      gain(k) = (plain - missing) * (plain - missing) / norm;
   }
   std::vector<Index> order(static_cast<std::size_t>(rows));
   std::iota(order.begin(), order.end(), Index{0});

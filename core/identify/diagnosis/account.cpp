@@ -259,6 +259,8 @@ const char* why_not_in_model(Fate fate) {
   switch (fate) {
     case Fate::kNoBetter:
       return "with it unseen samples are explained no better, beyond doubt and by enough to matter";
+    case Fate::kOver:
+      return "it had passed before the samples on which repairs are measured";
     case Fate::kRefused:
       return "with it unseen samples are explained worse";
     case Fate::kRepaired:

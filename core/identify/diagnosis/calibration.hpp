@@ -125,6 +125,9 @@ inline constexpr double kGuess = 0.49;
 
 /// What takes less than this share off the errors of predictions is not worth an accusation.
 inline constexpr double kLeastRepair = 0.03;
+/// A disturbance of whose sum of squares no more than this share is in the rows that judge it has
+/// passed: one that fades is a tenth of what it was. Chosen.
+inline constexpr double kPassed = 0.01;
 /// What takes at least this share off the errors of predictions, beyond doubt, needs no other test.
 inline constexpr double kOverwhelmingGain = 0.3;
 

@@ -1,11 +1,13 @@
 #include "core/identify/diagnosis/selection.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/validation.hpp"
 #include "core/identify/fit/channel_edit.hpp"
@@ -155,6 +157,19 @@ Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
   return in_doubt && !(errors.innovations(seed).gain_low > 0.0) ? Fate::kNoBetter : fate;
 }
 
+/// Whether a disturbance is all but over in the rows that judge it.
+bool has_passed(const Effect& effect, const Problem& problem, Unseen& unseen) {
+  ModelSpec disturbed = problem.model();
+  apply(effect, problem.surroundings(), disturbed);
+  const int cv = effect.place.cv;
+  const VectorXd added =
+      unseen.residual_throughout(problem.model(), cv) - unseen.residual_throughout(disturbed, cv);
+  const auto energy = [](const auto& rows) {
+    return rows.unaryExpr([](double x) { return std::isfinite(x) ? x * x : 0.0; }).sum();
+  };
+  return energy(added.tail(unseen.rows())) <= kPassed * energy(added);
+}
+
 /// Each may be better beside the others, some of which have gone since, and what is left of them
 /// worse than none: in every CV those of one kind are judged once more together, and the weakest
 /// that does not carry over in all CVs that it acts on gets `fate(errors)` until they are better
@@ -287,6 +302,10 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     const std::vector<bool> in = repaired(selection);
     const Errors errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen);
     selection.wanders[i] = errors.wander();
+    if (causes::is_break(effect) && has_passed(effect, problem, judges.unseen)) {
+      selection.fates[i] = Fate::kOver;
+      continue;
+    }
     selection.fates[i] = judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
                                 selection.wanders[i], selection.sure_gains[i]);
     // A slow disturbance was fitted together with small errors of the channels, which the extended

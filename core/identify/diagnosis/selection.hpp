@@ -14,6 +14,7 @@ namespace mpm {
 /// What unseen data say of something that was named.
 enum class Fate {
   kRepaired,  ///< with it the model is better: the extended model holds it
+  kOver,      ///< a disturbance that had passed before: named, no repair
   kNoBetter,  ///< not beyond doubt: named, but the extended model does without
   kRefused,   ///< worse: it does not carry over
 };

@@ -62,7 +62,7 @@ class Key {
   void add(const CoulombFriction& v) { add(v.force), add(v.speed); }
   void add(const DisturbanceTerm& v) {
     add(static_cast<double>(v.shape)), add(v.onset_s), add(v.size), add(v.until_s);
-    add(v.time_constant_s), add(v.period_s), add(v.square);
+    add(v.time_constant_s), add(v.decay_s), add(v.period_s), add(v.square);
   }
   template <class... Types>
   void add(const std::variant<Types...>& value) {

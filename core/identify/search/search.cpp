@@ -82,6 +82,7 @@ class Search {
       named_.push_back(found.named[i]);
     }
     drop_superfluous(0);
+    find_disturbances(found, out);
     SearchResult result = conclude();
     result.suspect = found.suspect;
     result.doubted = found.doubted;
@@ -89,6 +90,31 @@ class Search {
   }
 
  private:
+  /// What is `out` may have stood for something that disturbs its CVs: such is looked for there.
+  void find_disturbances(const SearchResult& found, const std::vector<bool>& out) {
+    std::vector<int> cvs;
+    int rounds = 0;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const Effect& effect = found.named[i].effect;
+      if (!out[i] || causes::is_break(effect) || causes::is_constant_offset(effect)) continue;
+      ++rounds;
+      for (const int cv : touched(effect, problem_)) cvs.push_back(cv);
+    }
+    if (rounds == 0) return;
+    const std::function<bool(const Effect&)> may_name = settings_.may_name;
+    settings_.may_name = [&](const Effect& effect) {
+      return causes::is_break(effect) &&
+             std::find(cvs.begin(), cvs.end(), effect.place.cv) != cvs.end() &&
+             (!may_name || may_name(effect));
+    };
+    only_ = &kOutputDisturbance;
+    last_ = everything();
+    while (rounds-- > 0 && find_one()) continue;
+    drop_superfluous(0);
+    settings_.may_name = may_name;
+    only_ = nullptr;
+  }
+
   SearchResult conclude() {
     SearchResult result;
     result.fit = everything();
@@ -134,6 +160,7 @@ class Search {
     const auto& causes = causes::all();
     std::vector<std::vector<Effect>> of_each(causes.size());
     trials_.parallel().for_each(causes.size(), [&](std::size_t i) {
+      if (only_ != nullptr && &causes[i]->name() != only_) return;
       causes[i]->propose({problem_, accepted_, nulls_, trials_.parallel()}, of_each[i]);
     });
     for (std::size_t i = 0; i < causes.size(); ++i) {
@@ -167,13 +194,15 @@ class Search {
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
     std::vector<Effect> list;
-    std::map<const CauseName*, int> of_cause;
+    std::map<const void*, int> of_cause;  // of each shape of a disturbance
     for (const std::size_t i : order) {
       const auto repeats = std::count_if(list.begin(), list.end(), [&](const Effect& effect) {
         return same_form(effect, all[i]);
       });
       if (repeats >= kStartsOfOneForm) continue;
-      int& likes = of_cause[&cause_of(all[i]).name()];
+      const Cause& cause = cause_of(all[i]);
+      int& likes = of_cause[causes::is_break(all[i]) ? static_cast<const void*>(&cause)
+                                                     : static_cast<const void*>(&cause.name())];
       const bool first_of_cause = likes < kOfEachCause && scores[i] > kHopelessOfCause;
       if (scores[i] < kHopeless || (list.size() >= kShortlist && !first_of_cause)) continue;
       ++likes;
@@ -201,10 +230,28 @@ class Search {
       refine(trials[i + 1], trials[0]);
     });
     std::sort(trials.begin(), trials.end(), more_probable);
-    if (trials[0].odds < settings_.decisive) return false;
+    while (!trials.empty() && trials[0].odds >= settings_.decisive) {
+      std::vector<Trial> again = once_more(trials);
+      if (again[0].odds >= settings_.decisive) {
+        accept(again);
+        return true;
+      }
+      const Effect& best = trials[0].candidate;
+      if (!best.edit->jumps()) return false;
+      // A shock of the noise is no jump: what else there is may have been hidden by it.
+      if (!doubted_) doubted_ = Named{best, trials[0].odds, 0.0, {}};
+      const int cv = best.place.cv;
+      std::erase_if(trials, [cv](const Trial& trial) {
+        return trial.candidate.edit->jumps() && trial.candidate.place.cv == cv;
+      });
+    }
+    return false;
+  }
 
-    // Once more with rows weighed as the best explanation's innovations ask for. A shock in the
-    // noise would vanish with a jump fitted to it, so a jump has to do without that row's help.
+  /// The best trials beside rows that are weighed as the best explanation's innovations ask for. A
+  /// shock in the noise would vanish with a jump fitted to it, so a jump has to do without that
+  /// row's help.
+  std::vector<Trial> once_more(const std::vector<Trial>& trials) {
     const bool jump = trials[0].candidate.edit->jumps();
     const Fit weighing =
         jump ? trials_.without(touched(trials[0].candidate, problem_)) : trials[0].fit;
@@ -218,12 +265,7 @@ class Search {
     }
     std::vector<Trial> again = trials_.attempt_all(best, kSecondTrialSteps);
     std::sort(again.begin(), again.end(), more_probable);
-    if (again[0].odds < settings_.decisive) {
-      if (jump) doubted_ = Named{trials[0].candidate, trials[0].odds, 0.0, {}};
-      return false;
-    }
-    accept(again);
-    return true;
+    return again;
   }
 
   [[nodiscard]] double cost_of_cvs() const {
@@ -429,8 +471,9 @@ class Search {
   double share_ = 0.0;  // of the work done, as last told
   std::vector<Effect> accepted_;
   std::vector<Named> named_;
-  std::vector<int> settled_;   // CVs; -1: of effects on several
-  std::vector<int> no_level_;  // CVs of which no constant offset is to be named
+  const CauseName* only_ = nullptr;  // what is looked for; null: everything
+  std::vector<int> settled_;         // CVs; -1: of effects on several
+  std::vector<int> no_level_;        // CVs of which no constant offset is to be named
   Trials trials_;
   std::optional<Named> doubted_;
   std::vector<CvFit> nulls_;  // of this round, one per CV; what the screening looks at

@@ -211,6 +211,19 @@ TEST_CASE("disturbances follow the clock of the data") {
       CHECK(result[static_cast<std::size_t>(k)] == Approx(expected).margin(1e-15));
     }
   }
+  SECTION("a step that passes, at once or through a lag") {
+    term.decay_s = 6.0;
+    for (const double lag : {0.0, 5.0}) {
+      term.time_constant_s = lag;
+      const Values result = values(term, 0.0, 8);
+      for (int k = 0; k < 8; ++k) {
+        const double since = 2.0 * k - 4.0;
+        const double risen = lag > 0.0 ? 1.0 - std::exp(-since / lag) : 1.0;
+        const double expected = since < 0.0 ? 0.0 : 3.0 * risen * std::exp(-since / 6.0);
+        CHECK(result[static_cast<std::size_t>(k)] == Approx(expected).margin(1e-15));
+      }
+    }
+  }
   SECTION("a drift, which stops") {
     term.shape = DisturbanceShape::kDrift;
     CHECK(values(term, 0.0, 5) == Values{0, 0, 0, 6, 12});
@@ -309,5 +322,6 @@ TEST_CASE("impossible disturbances are refused") {
   refused([](DisturbanceTerm& d) { d.size = std::nan(""); });
   refused([](DisturbanceTerm& d) { d.time_constant_s = -1.0; });
   refused([](DisturbanceTerm& d) { d.until_s = 0.0; });
+  refused([](DisturbanceTerm& d) { d.decay_s = 0.0; });
   refused([](DisturbanceTerm& d) { d.shape = DisturbanceShape::kPeriodic; });
 }

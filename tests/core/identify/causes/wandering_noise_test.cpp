@@ -53,7 +53,7 @@ TEST_CASE("a step in wandering noise is found at its row") {
     VectorXd residual = wandering_noise(seed);
     residual.tail(kRows - 613).array() += 1.0;  // 6.7 s.d. of the innovations
     const Fitted found = fitted(residual);
-    const auto moments = step_moments(found.data, found.fit, 0.0, 5);
+    const auto moments = step_moments(found.data, found.fit, {}, 5);
     INFO("seed " << seed);
     REQUIRE(moments.size() == 5);
     CHECK(moments[0] == 613);
@@ -67,7 +67,7 @@ TEST_CASE("a step through a lag is found within its rise") {
     for (Eigen::Index k = 900; k < kRows; ++k)
       residual(k) += 4.0 * (1.0 - std::exp(-static_cast<double>(k - 900) / 15.0));
     const Fitted found = fitted(residual);
-    const auto moments = step_moments(found.data, found.fit, 15.0, 3);
+    const auto moments = step_moments(found.data, found.fit, {15.0, 0.0}, 3);
     INFO("seed " << seed);
     REQUIRE(!moments.empty());
     CHECK(std::abs(moments[0] - 900) <= 8);

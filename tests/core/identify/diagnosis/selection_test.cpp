@@ -122,6 +122,25 @@ TEST_CASE(
   CHECK(selection.fates == std::vector<Fate>{Fate::kNoBetter, Fate::kNoBetter});
 }
 
+// Of a jump of 1 in noise of 0.1 that passes with a time constant of 50 s, and of one of 500 s.
+TEST_CASE("of what had passed before the unseen rows they say nothing") {
+  const auto fate_of = [](double decay_s) {
+    Bench bench(1.0, 1.0);
+    const Quantity& size = test::quantity_of(causes::step_disturbance(), "size");
+    const Quantity& decay = test::quantity_of(causes::step_disturbance(), "decay");
+    Named named;
+    named.effect = {&causes::step_disturbance(), {0}, {{&size, 1.0}, {&decay, std::log(decay_s)}}};
+    named.effect.onset = 100;
+    for (Index k = named.effect.onset; k < kRows; ++k)
+      bench.all.cvs(k, 0) += std::exp(-static_cast<double>(k - named.effect.onset) / decay_s);
+    bench.found.named = {named};
+    bench.found.fit.effects = {named.effect};
+    return bench.select_on(bench.all, kRows - kFitted).fates;
+  };
+  CHECK(fate_of(50.0) == std::vector<Fate>{Fate::kOver});
+  CHECK(fate_of(500.0) == std::vector<Fate>{Fate::kRepaired});
+}
+
 // Two inputs that move alike: 1.5 times the gain of one and 0.4 times that of the other leave an
 // error of a tenth where none was; without either of them it is half as large as the response.
 TEST_CASE("repairs that are better beside each other and worse than none are refused") {
