@@ -161,20 +161,44 @@ std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left) {
   return text + " (p " + number_text(left.p_value, 2) + ")";
 }
 
+namespace {
+
+/// "AI-1 lies 0.4 % above"
+std::string level_text(const config::CvSignal& signal, double level) {
+  return signal.tag + " lies " + number_text(std::abs(level), 2) +
+         (signal.unit.empty() ? "" : " " + signal.unit) + (level > 0.0 ? " above" : " below");
+}
+
+bool is_mostly(double level, double rmse) { return level * level > kMostlyLevel * rmse * rmse; }
+
+/// Whether a shift of the CV throughout is among the findings.
+bool is_named(const DiagnosisRun& run, int cv) {
+  return std::any_of(run.diagnosis.findings.begin(), run.diagnosis.findings.end(),
+                     [cv](const Finding& finding) {
+                       return causes::is_from_outside(finding.subject) && !finding.onset_s &&
+                              finding.subject.place == Place{cv};
+                     });
+}
+
+}  // namespace
+
 std::vector<std::string> moved_levels(const DiagnosisRun& run) {
+  constexpr const char* kWhy =
+      "which is more than it moves: what is not measured has moved its level, or its sensor "
+      "drifts. A disturbance that wanders looks the same";
   std::vector<std::string> texts;
   for (std::size_t cv = 0; cv < run.diagnosis.scores.size(); ++cv) {
     const CvScore& score = run.diagnosis.scores[cv];
-    const double share = score.level_after / score.rmse_after;
-    if (!(score.fit_after < 0.0 && share * share > kMostlyLevel)) continue;
     const config::CvSignal& signal = run.unit.cv.at(cv);
-    texts.push_back(
-        signal.tag + " lies " + number_text(std::abs(score.level_after), 2) +
-        (signal.unit.empty() ? "" : " " + signal.unit) +
-        (score.level_after > 0.0 ? " above" : " below") +
-        " its simulation on unseen samples, which is more than it moves: what is not "
-        "measured has moved its level, or its sensor drifts. A disturbance that wanders "
-        "looks the same");
+    if (score.fit_after < 0.0 && is_mostly(score.level_after, score.rmse_after))
+      texts.push_back(level_text(signal, score.level_after) +
+                      " its simulation on unseen samples, " + kWhy);
+    else if (score.fit_before < 0.0 && is_mostly(score.level_before, score.rmse_before) &&
+             !is_named(run, static_cast<int>(cv)))
+      texts.push_back(
+          level_text(signal, score.level_before) +
+          " the unit file's simulation on unseen samples, " + kWhy +
+          ". The extended model has it at its new level: most of what it gains is that");
   }
   return texts;
 }

@@ -21,7 +21,8 @@ namespace mpm::report {
 /// "dead_time of u1 -> y1: 14.2 worse (odds 1 to 1200)"
 [[nodiscard]] std::string rival_text(const DiagnosisRun& run, const Rival& rival);
 [[nodiscard]] std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left);
-/// Of each CV whose free run is off by more than the CV moves, most of it by a constant.
+/// Of each CV whose free run is off by more than the CV moves, most of it by a constant, or was
+/// before the extended model took that over without a finding.
 [[nodiscard]] std::vector<std::string> moved_levels(const DiagnosisRun& run);
 
 [[nodiscard]] const char* name_of(DiagnosisVerdict verdict);

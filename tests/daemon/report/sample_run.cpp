@@ -213,7 +213,11 @@ report::DiagnosisRun matching_run() {
   run.diagnosis.unexplained.clear();
   run.closed_loop.reset();
   for (CvScore& each : run.diagnosis.scores)
-    each = {0.1, 0.1, 80.0, 80.0, 0.0, 0.0, 0.0, false, {}};
+    each = {.rmse_before = 0.1,
+            .rmse_after = 0.1,
+            .fit_before = 80.0,
+            .fit_after = 80.0,
+            .horizons = {}};
   return run;
 }
 

@@ -133,6 +133,35 @@ TEST_CASE("a level that has moved by more than the CV does is said, and no other
   CHECK_FALSE(says("its simulation on unseen samples"));
 }
 
+// A repair of something else begins at the level where the CV is: it gets no credit for that.
+TEST_CASE("a level that the extended model has taken over without a finding is said") {
+  DiagnosisRun run = matching_run();
+  const auto says = [&](const std::string& text) {
+    return report::to_text(run).find(text) != std::string::npos;
+  };
+  CvScore& score = run.diagnosis.scores[1];
+  score.fit_before = -20.0;
+  score.rmse_before = 0.5;
+  score.level_before = 0.4;
+  CHECK(says("y2 lies 0.4 "));
+  CHECK(says(" above the unit file's simulation on unseen samples"));
+  CHECK(says("most of what it gains is that"));
+  score.fit_after = -10.0;  // it is there still
+  score.rmse_after = 0.5;
+  score.level_after = 0.4;
+  CHECK_FALSE(says("most of what it gains is that"));
+  score.fit_after = 90.0;
+  score.level_before = 0.3;
+  CHECK_FALSE(says("y2 lies"));
+  score.level_before = 0.4;
+  Finding shift;
+  shift.subject = {&causes::step_disturbance(), {1}};
+  run.diagnosis.findings = {shift};
+  CHECK_FALSE(says("y2 lies"));
+  run.diagnosis.findings[0].onset_s = 5.0;  // a later step is not that level
+  CHECK(says("y2 lies"));
+}
+
 TEST_CASE("what is not a number is null, and the report stays JSON") {
   DiagnosisRun run = sample_run(600);
   run.diagnosis.scores[0].rmse_after = std::nan("");
