@@ -325,6 +325,7 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
   const std::vector<bool> in = repaired(selection);
   for (const std::size_t i : selection.order) {
     tell();
+    if (selection.fates[i] == Fate::kOver) continue;
     const Effect& effect = found.named[i].effect;
     const CvScore score =
         Errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen)

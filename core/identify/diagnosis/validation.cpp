@@ -68,18 +68,16 @@ CvScore score(const Eigen::Ref<const VectorXd>& measured, const Eigen::Ref<const
   const VectorXd old_errors = (measured - before).cwiseAbs2();
   const VectorXd new_errors = (measured - after).cwiseAbs2();
   CvScore result = score_errors(old_errors, new_errors, block, seed);
-  double mean = 0.0, spread = 0.0, count = 0.0, old_level = 0.0, level = 0.0, compared = 0.0;
+  double mean = 0.0, spread = 0.0, count = 0.0, level = 0.0, compared = 0.0;
   for (Index k = 0; k < measured.size(); ++k) {
     if (!std::isfinite(measured(k))) continue;
     mean += measured(k);
     ++count;
     if (!std::isfinite(after(k))) continue;
-    old_level += measured(k) - before(k);
     level += measured(k) - after(k);
     ++compared;
   }
   mean /= std::max(1.0, count);
-  result.level_before = old_level / std::max(1.0, compared);
   result.level_after = level / std::max(1.0, compared);
   for (const double value : measured)
     if (std::isfinite(value)) spread += (value - mean) * (value - mean);

@@ -10,9 +10,9 @@ namespace mpm {
 
 /// One CV's free-running simulation on the samples that no fit has seen.
 struct CvScore {
-  double rmse_before = 0.0, rmse_after = 0.0;    ///< CV units
-  double fit_before = 0.0, fit_after = 0.0;      ///< 100 (1 - |y - ysim| / |y - mean y|)
-  double level_before = 0.0, level_after = 0.0;  ///< mean of y - ysim, CV units
+  double rmse_before = 0.0, rmse_after = 0.0;  ///< CV units
+  double fit_before = 0.0, fit_after = 0.0;    ///< 100 (1 - |y - ysim| / |y - mean y|)
+  double level_after = 0.0;                    ///< mean of y - ysim, CV units
   /// 95 % block-bootstrap interval of 1 - rmse_after / rmse_before.
   double gain_low = 0.0, gain_high = 0.0;
   bool refused = false;  ///< an extension was fitted and did not carry over

@@ -163,42 +163,40 @@ std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left) {
 
 namespace {
 
-/// "AI-1 lies 0.4 % above"
-std::string level_text(const config::CvSignal& signal, double level) {
-  return signal.tag + " lies " + number_text(std::abs(level), 2) +
-         (signal.unit.empty() ? "" : " " + signal.unit) + (level > 0.0 ? " above" : " below");
-}
-
 bool is_mostly(double level, double rmse) { return level * level > kMostlyLevel * rmse * rmse; }
 
-/// Whether a shift of the CV throughout is among the findings.
-bool is_named(const DiagnosisRun& run, int cv) {
-  return std::any_of(run.diagnosis.findings.begin(), run.diagnosis.findings.end(),
-                     [cv](const Finding& finding) {
-                       return causes::is_from_outside(finding.subject) && !finding.onset_s &&
-                              finding.subject.place == Place{cv};
-                     });
+/// By how much the extended model has the CV at another level than the unit file's, beside all that
+/// is in it as a finding.
+double taken_over(const DiagnosisRun& run, int cv) {
+  const Eigen::VectorXd& before = run.unit.model.output_origin;
+  const Eigen::VectorXd& after = run.diagnosis.extended.output_origin;
+  return cv < before.size() && cv < after.size() ? after(cv) - before(cv) : 0.0;
 }
 
 }  // namespace
 
 std::vector<std::string> moved_levels(const DiagnosisRun& run) {
   constexpr const char* kWhy =
-      "which is more than it moves: what is not measured has moved its level, or its sensor "
-      "drifts. A disturbance that wanders looks the same";
+      " what is not measured has moved its level, or its sensor drifts. A disturbance that wanders "
+      "looks the same";
   std::vector<std::string> texts;
   for (std::size_t cv = 0; cv < run.diagnosis.scores.size(); ++cv) {
     const CvScore& score = run.diagnosis.scores[cv];
     const config::CvSignal& signal = run.unit.cv.at(cv);
+    const auto amount = [&](double level) {
+      return number_text(std::abs(level), 2) + (signal.unit.empty() ? "" : " " + signal.unit);
+    };
+    const double moved = taken_over(run, static_cast<int>(cv));
     if (score.fit_after < 0.0 && is_mostly(score.level_after, score.rmse_after))
-      texts.push_back(level_text(signal, score.level_after) +
-                      " its simulation on unseen samples, " + kWhy);
-    else if (score.fit_before < 0.0 && is_mostly(score.level_before, score.rmse_before) &&
-             !is_named(run, static_cast<int>(cv)))
+      texts.push_back(signal.tag + " lies " + amount(score.level_after) +
+                      (score.level_after > 0.0 ? " above" : " below") +
+                      " its simulation on unseen samples, which is more than it moves:" + kWhy);
+    else if (score.fit_before < 0.0 && is_mostly(moved, score.rmse_before))
       texts.push_back(
-          level_text(signal, score.level_before) +
-          " the unit file's simulation on unseen samples, " + kWhy +
-          ". The extended model has it at its new level: most of what it gains is that");
+          "The extended model has " + signal.tag + " " + amount(moved) +
+          (moved > 0.0 ? " higher" : " lower") +
+          " than the unit file's, which is more than it moves, and most of what it gains is that:" +
+          kWhy);
   }
   return texts;
 }

@@ -256,6 +256,7 @@ TEST_CASE("a disturbance that passes is named, with how long it takes, and is no
     CHECK(finding.parameters[1].low < 60.0);
     CHECK(finding.parameters[1].high > 60.0);
     CHECK_FALSE(finding.repaired);
+    CHECK(finding.explains == 0.0);
     CHECK(finding.refused == "it had passed before the samples on which repairs are measured");
     CHECK(diagnosis.extended.disturbances.empty());
     CHECK(diagnosis.refused.empty());

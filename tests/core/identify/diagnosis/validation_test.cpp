@@ -39,7 +39,6 @@ TEST_CASE("errors and fits of two simulations") {
   CHECK(result.rmse_after == Approx(0.5));
   CHECK(result.fit_before == Approx(100.0 * (1.0 - 2.0 / std::sqrt(1.25))));
   CHECK(result.fit_after == Approx(100.0 * (1.0 - 0.5 / std::sqrt(1.25))));
-  CHECK(result.level_before == Approx(-2.0));
   CHECK(result.level_after == Approx(-0.25));
   CHECK_FALSE(result.refused);
 }
