@@ -44,6 +44,8 @@ namespace causes {
 [[nodiscard]] bool is_break(const Effect& effect);
 /// How many of these are such, of that CV.
 [[nodiscard]] std::size_t breaks_of(const std::vector<Effect>& effects, int cv);
+/// A step that comes back by itself.
+[[nodiscard]] bool passes(const Effect& effect);
 }  // namespace causes
 
 }  // namespace mpm

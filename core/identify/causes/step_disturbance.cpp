@@ -141,6 +141,8 @@ const StepDisturbance& the_step() {
 
 const Cause& step_disturbance() { return the_step(); }
 
+bool passes(const Effect& effect) { return effect.find(kDecay) != nullptr; }
+
 bool is_constant_offset(const Effect& effect) {
   return effect.edit == &the_step() && effect.onset == 0;
 }

@@ -48,11 +48,15 @@ bool silences(const Effect& effect, const Finding& finding, const Problem& probl
 }
 
 /// Why a finding goes, for a person; null where it stays. `all`: what was found.
-const char* why_it_goes(const Effect& effect, const std::vector<Named>& all, const Problem& problem,
+const char* why_it_goes(const Named& named, const std::vector<Named>& all, const Problem& problem,
                         const Finding& finding, Fate fate, const Judges& judges) {
+  const Effect& effect = named.effect;
   const Cause& cause = cause_of(effect);
   if (effect.certain || causes::is_unnamed(cause)) return nullptr;
   if (fate == Fate::kRefused) return why_not_in_model(fate);
+  if (fate == Fate::kOver && named.evidence < kStrongEvidence)
+    return "it had passed before the samples that could bear it out, and its own evidence is not "
+           "strong";
   if (fate == Fate::kNoBetter && accuses(subject_of(effect)) && !cause.acts_through_channels())
     return why_not_in_model(fate);
   if (cause.contradicted(effect, problem)) return "the measurements themselves speak against it";
@@ -200,11 +204,10 @@ Account keep(Explained explained, const Judges& judges, const Witness& witness,
     std::vector<Finding> findings;
     std::vector<bool> out;
     for (std::size_t i = 0; i < before.named.size(); ++i) {
-      const Effect& effect = before.named[i].effect;
       Finding& finding = findings.emplace_back(to_finding(before, i, problem));
       const char* reason = may_be_a_walk(problem, before, i, settings)
                                ? kWanders
-                               : why_it_goes(effect, before.named, problem, finding,
+                               : why_it_goes(before.named[i], before.named, problem, finding,
                                              kept.selection.fates[i], judges);
       out.push_back(reason != nullptr);
       finding.repaired = false;

@@ -39,7 +39,8 @@ inline constexpr double kBlindGainSd = 0.25;
 /// small; of sound plants that matched (tests/foreign: score.py 100065, physical.py 100011 to
 /// 100017) the farthest was off by 3.
 inline constexpr double kBeyondDoubtSd = 4.0;
-/// 2 ln odds of a finding that leaves the verdict open even if it does not carry over.
+/// 2 ln odds of a finding that leaves the verdict open even if it does not carry over, and of a
+/// disturbance that has passed, of which no unseen sample says anything.
 inline constexpr double kStrongEvidence = 30.0;
 /// p-value of a channel's match below which the model does not hold whatever is named beside it.
 /// Chosen: so small none came of 652 sound channels, and an alarm stands for less.

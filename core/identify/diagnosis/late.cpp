@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/identify/causes/catalog.hpp"
+#include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
@@ -68,6 +69,7 @@ Late find_late(const ModelSpec& model, int model_inputs, const Recording& record
     if (causes::is_unnamed(cause) || cause.is_input_block() || effect.onset < from) continue;
     Finding finding = to_finding(found, i, problem);
     if (cause.may_be_nothing(finding)) continue;
+    if (causes::passes(effect) && found.named[i].evidence < kStrongEvidence) continue;
     finding.repaired = false;
     const char* other = why_not_step(effect, found.named, model, recording);
     finding.refused = other != nullptr ? other : kNotJudged;

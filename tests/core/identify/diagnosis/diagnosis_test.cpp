@@ -264,6 +264,19 @@ TEST_CASE("a disturbance that passes is named, with how long it takes, and is no
   }
 }
 
+// The same of 0.3, two and a half s.d. of the noise: enough beside rows that bear it out, and there
+// are none.
+TEST_CASE("what has passed and hardly shows is not named") {
+  VectorXd added = VectorXd::Zero(kRows);
+  for (Index k = 150; k < kRows; ++k)
+    added(k) = 0.3 * std::exp(-static_cast<double>(k - 150) / 60.0);
+  const Diagnosis diagnosis = diagnosis_of(plant(1.0, added));
+  CHECK(diagnosis.findings.empty());
+  REQUIRE(diagnosis.refused.size() == 1);
+  CHECK(diagnosis.refused[0].subject == Subject{&causes::step_disturbance(), {0}});
+  CHECK(diagnosis.refused[0].evidence < 30.0);
+}
+
 // A shock is what noise of that colour makes of one large sample: each of twelve in noise that
 // forgets by a tenth a sample. None is an event that began.
 TEST_CASE("a shock of the noise is no disturbance that passes") {
