@@ -105,7 +105,6 @@ class StepDisturbance : public OutputDisturbance {
       for (const double share : kDecays) {
         if (share * rows <= kFastestDecay) continue;
         propose_form({.decay = share * rows});
-        propose_form({kLags[0] * slowest / sample_time_s, share * rows});
       }
     }
   }

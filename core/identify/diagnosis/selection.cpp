@@ -157,7 +157,7 @@ Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
   return in_doubt && !(errors.innovations(seed).gain_low > 0.0) ? Fate::kNoBetter : fate;
 }
 
-/// Whether a disturbance is all but over in the rows that judge it.
+/// Whether a disturbance that comes back is all but over in the rows that judge it.
 bool has_passed(const Effect& effect, const Problem& problem, Unseen& unseen) {
   ModelSpec disturbed = problem.model();
   apply(effect, problem.surroundings(), disturbed);
@@ -302,7 +302,7 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     const std::vector<bool> in = repaired(selection);
     const Errors errors(effect, model_of(in, i, true), model_of(in, i, false), judges.unseen);
     selection.wanders[i] = errors.wander();
-    if (causes::is_break(effect) && has_passed(effect, problem, judges.unseen)) {
+    if (causes::passes(effect) && has_passed(effect, problem, judges.unseen)) {
       selection.fates[i] = Fate::kOver;
       continue;
     }

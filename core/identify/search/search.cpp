@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -103,7 +104,7 @@ class Search {
     if (rounds == 0) return;
     const std::function<bool(const Effect&)> may_name = settings_.may_name;
     settings_.may_name = [&](const Effect& effect) {
-      return causes::is_break(effect) &&
+      return causes::passes(effect) &&
              std::find(cvs.begin(), cvs.end(), effect.place.cv) != cvs.end() &&
              (!may_name || may_name(effect));
     };
@@ -194,15 +195,13 @@ class Search {
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
     std::vector<Effect> list;
-    std::map<const void*, int> of_cause;  // of each shape of a disturbance
+    std::map<std::pair<const CauseName*, bool>, int> of_cause;
     for (const std::size_t i : order) {
       const auto repeats = std::count_if(list.begin(), list.end(), [&](const Effect& effect) {
         return same_form(effect, all[i]);
       });
       if (repeats >= kStartsOfOneForm) continue;
-      const Cause& cause = cause_of(all[i]);
-      int& likes = of_cause[causes::is_break(all[i]) ? static_cast<const void*>(&cause)
-                                                     : static_cast<const void*>(&cause.name())];
+      int& likes = of_cause[{&cause_of(all[i]).name(), causes::passes(all[i])}];
       const bool first_of_cause = likes < kOfEachCause && scores[i] > kHopelessOfCause;
       if (scores[i] < kHopeless || (list.size() >= kShortlist && !first_of_cause)) continue;
       ++likes;
@@ -238,11 +237,12 @@ class Search {
       }
       const Effect& best = trials[0].candidate;
       if (!best.edit->jumps()) return false;
-      // A shock of the noise is no jump: what else there is may have been hidden by it.
+      // A shock of the noise is no jump, nor any other function of time: what else there is may
+      // have been hidden by it.
       if (!doubted_) doubted_ = Named{best, trials[0].odds, 0.0, {}};
       const int cv = best.place.cv;
       std::erase_if(trials, [cv](const Trial& trial) {
-        return trial.candidate.edit->jumps() && trial.candidate.place.cv == cv;
+        return causes::is_break(trial.candidate) && trial.candidate.place.cv == cv;
       });
     }
     return false;
