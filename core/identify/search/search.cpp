@@ -5,7 +5,6 @@
 #include <map>
 #include <numeric>
 #include <optional>
-#include <utility>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -83,7 +82,6 @@ class Search {
       named_.push_back(found.named[i]);
     }
     drop_superfluous(0);
-    find_disturbances(found, out);
     SearchResult result = conclude();
     result.suspect = found.suspect;
     result.doubted = found.doubted;
@@ -91,31 +89,6 @@ class Search {
   }
 
  private:
-  /// What is `out` may have stood for something that disturbs its CVs: such is looked for there.
-  void find_disturbances(const SearchResult& found, const std::vector<bool>& out) {
-    std::vector<int> cvs;
-    int rounds = 0;
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const Effect& effect = found.named[i].effect;
-      if (!out[i] || causes::is_break(effect) || causes::is_constant_offset(effect)) continue;
-      ++rounds;
-      for (const int cv : touched(effect, problem_)) cvs.push_back(cv);
-    }
-    if (rounds == 0) return;
-    const std::function<bool(const Effect&)> may_name = settings_.may_name;
-    settings_.may_name = [&](const Effect& effect) {
-      return causes::passes(effect) &&
-             std::find(cvs.begin(), cvs.end(), effect.place.cv) != cvs.end() &&
-             (!may_name || may_name(effect));
-    };
-    only_ = &kOutputDisturbance;
-    last_ = everything();
-    while (rounds-- > 0 && find_one()) continue;
-    drop_superfluous(0);
-    settings_.may_name = may_name;
-    only_ = nullptr;
-  }
-
   SearchResult conclude() {
     SearchResult result;
     result.fit = everything();
@@ -161,7 +134,6 @@ class Search {
     const auto& causes = causes::all();
     std::vector<std::vector<Effect>> of_each(causes.size());
     trials_.parallel().for_each(causes.size(), [&](std::size_t i) {
-      if (only_ != nullptr && &causes[i]->name() != only_) return;
       causes[i]->propose({problem_, accepted_, nulls_, trials_.parallel()}, of_each[i]);
     });
     for (std::size_t i = 0; i < causes.size(); ++i) {
@@ -195,15 +167,23 @@ class Search {
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return scores[a] > scores[b]; });
     std::vector<Effect> list;
-    std::map<std::pair<const CauseName*, bool>, int> of_cause;
+    std::map<const CauseName*, int> of_cause;
+    std::size_t passing = 0;  // beside the others, of whose places they take none
     for (const std::size_t i : order) {
       const auto repeats = std::count_if(list.begin(), list.end(), [&](const Effect& effect) {
         return same_form(effect, all[i]);
       });
       if (repeats >= kStartsOfOneForm) continue;
-      int& likes = of_cause[{&cause_of(all[i]).name(), causes::passes(all[i])}];
+      if (causes::passes(all[i])) {
+        if (passing == kOfEachCause || scores[i] < kHopelessOfCause) continue;
+        ++passing;
+        list.push_back(all[i]);
+        continue;
+      }
+      int& likes = of_cause[&cause_of(all[i]).name()];
       const bool first_of_cause = likes < kOfEachCause && scores[i] > kHopelessOfCause;
-      if (scores[i] < kHopeless || (list.size() >= kShortlist && !first_of_cause)) continue;
+      if (scores[i] < kHopeless || (list.size() - passing >= kShortlist && !first_of_cause))
+        continue;
       ++likes;
       list.push_back(all[i]);
     }
@@ -471,9 +451,8 @@ class Search {
   double share_ = 0.0;  // of the work done, as last told
   std::vector<Effect> accepted_;
   std::vector<Named> named_;
-  const CauseName* only_ = nullptr;  // what is looked for; null: everything
-  std::vector<int> settled_;         // CVs; -1: of effects on several
-  std::vector<int> no_level_;        // CVs of which no constant offset is to be named
+  std::vector<int> settled_;   // CVs; -1: of effects on several
+  std::vector<int> no_level_;  // CVs of which no constant offset is to be named
   Trials trials_;
   std::optional<Named> doubted_;
   std::vector<CvFit> nulls_;  // of this round, one per CV; what the screening looks at

@@ -59,8 +59,7 @@ struct SearchResult {
 [[nodiscard]] SearchResult search(Problem& problem, const SearchSettings& settings);
 
 /// What is left of a result when some of what was named goes (`out`, one per named): the rest is
-/// fitted anew, and what only made sense beside it goes too; disturbances of its CVs that it hid
-/// are named.
+/// fitted anew, and what only made sense beside it goes too.
 [[nodiscard]] SearchResult without(Problem& problem, const SearchResult& found,
                                    const std::vector<bool>& out, const SearchSettings& settings);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/identify/causes/catalog.hpp"
@@ -197,36 +196,6 @@ TEST_CASE("a shock that is no jump hides nothing else") {
       gains += named.effect.edit == &causes::gain() ? 1 : 0;
   }
   CHECK(gains >= 9);
-}
-
-// A gain was named for what a disturbance did: once it goes the disturbance is looked for, and
-// only where it acted. Of what itself disturbs nothing is looked for again.
-TEST_CASE("what is taken out gives way to the disturbance that it hid") {
-  Eigen::MatrixXd u(kRows, 2), y(kRows, 2);
-  u << test::telegraph(1, kRows, 12), test::telegraph(3, kRows, 9);
-  y.col(0) = test::first_order(u.col(0), 2.0, 10.0) + 0.1 * test::white(4, kRows);
-  y.col(1) = test::first_order(u.col(1), -1.0, 5.0) + 0.1 * test::white(5, kRows);
-  for (int cv = 0; cv < 2; ++cv)
-    for (Index k = 300; k < kRows; ++k) y(k, cv) += std::exp(-static_cast<double>(k - 300) / 80.0);
-  const ModelSpec two = test::model_of({lag(0, 0, 2.0, 10.0), lag(1, 1, -1.0, 5.0)}, 2, 2);
-  const Recording recording = test::recording_of(u, y);
-  Problem problem(two, 2, recording, Tolerances{}, NoiseModel{});
-  const auto left = [&](const Effect& taken_out) {
-    SearchResult found;
-    found.fit = problem.fit({taken_out}, 0, {0, 1}, 5);
-    found.named = {{found.fit.effects[0], 20.0, 1.0, {}}};
-    return without(problem, found, {true}, SearchSettings{});
-  };
-  const SearchResult disturbed =
-      left({&causes::gain(), {1, 1}, {{&kGainRatio, 1.0, 1.0, 0.25, 0.01, 0.02, 20.0}}});
-  REQUIRE(disturbed.named.size() == 1);
-  const Effect& effect = disturbed.named[0].effect;
-  CHECK(subject_of(effect) == Subject{&causes::step_disturbance(), {1}});
-  CHECK(std::abs(effect.onset - 300) <= 3);
-  CHECK(effect.coordinates.front().value == Approx(1.0).margin(0.15));
-  CHECK(effect.coordinates.back().quantity->name == std::string("decay"));
-  CHECK(std::exp(effect.coordinates.back().value) == Approx(80.0).epsilon(0.3));
-  CHECK(left(effect).named.empty());
 }
 
 }  // namespace
