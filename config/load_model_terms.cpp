@@ -103,7 +103,7 @@ std::optional<DisturbanceTerm> read_disturbance(const Value& item, const ModelSi
   const Value* onset = periodic ? map.find("onset") : map.require("onset");
   if (onset != nullptr) term.onset_s = read_clock(*onset).value_or(0.0);
   term.time_constant_s = read_number(map, "time_constant", kNotNegative, 0.0);
-  if (map.find("decay") != nullptr) term.decay_s = require_number(map, "decay", kPositive, 1.0);
+  term.decay_s = read_number(map, "decay", kPositive, term.decay_s);
   if (periodic) term.period_s = require_number(map, "period", kPositive, 1.0);
   if (const Value* wave = map.find("wave")) {
     const std::string name = wave->is_scalar() ? wave->free_text().value_or("") : "";

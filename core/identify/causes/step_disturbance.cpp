@@ -61,6 +61,7 @@ class StepDisturbance : public OutputDisturbance {
   }
   [[nodiscard]] bool knows_onset() const override { return true; }
   [[nodiscard]] bool jumps() const override { return true; }
+
   void propose(const Outlook& outlook, std::vector<Effect>& found) const override {
     const double sample_time_s = outlook.sample_time_s();
     const auto samples = static_cast<std::size_t>(outlook.problem.samples());

@@ -54,9 +54,7 @@ const char* why_it_goes(const Named& named, const std::vector<Named>& all, const
   const Cause& cause = cause_of(effect);
   if (effect.certain || causes::is_unnamed(cause)) return nullptr;
   if (fate == Fate::kRefused) return why_not_in_model(fate);
-  if (fate == Fate::kOver && named.evidence < kStrongEvidence)
-    return "it had passed before the samples that could bear it out, and its own evidence is not "
-           "strong";
+  if (fate == Fate::kOver && named.evidence < kStrongEvidence) return kNotBorneOut;
   if (fate == Fate::kNoBetter && accuses(subject_of(effect)) && !cause.acts_through_channels())
     return why_not_in_model(fate);
   if (cause.contradicted(effect, problem)) return "the measurements themselves speak against it";

@@ -8,6 +8,7 @@
 #include "core/identify/causes/output_disturbance.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
+#include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/statement.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
@@ -69,9 +70,10 @@ Late find_late(const ModelSpec& model, int model_inputs, const Recording& record
     if (causes::is_unnamed(cause) || cause.is_input_block() || effect.onset < from) continue;
     Finding finding = to_finding(found, i, problem);
     if (cause.may_be_nothing(finding)) continue;
-    if (causes::passes(effect) && found.named[i].evidence < kStrongEvidence) continue;
     finding.repaired = false;
-    const char* other = why_not_step(effect, found.named, model, recording);
+    const char* other = causes::passes(effect) && found.named[i].evidence < kStrongEvidence
+                            ? kNotBorneOut
+                            : why_not_step(effect, found.named, model, recording);
     finding.refused = other != nullptr ? other : kNotJudged;
     (other != nullptr ? late.doubted : late.findings).push_back(std::move(finding));
   }

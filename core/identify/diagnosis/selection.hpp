@@ -19,6 +19,10 @@ enum class Fate {
   kRefused,   ///< worse: it does not carry over
 };
 
+/// Why a disturbance that passes is not named, for a person: nothing judges it.
+inline constexpr const char* kNotBorneOut =
+    "no sample is left that could bear it out, and its own evidence is not strong";
+
 /// Everything named and taken into a model at first; then, the weakest first, what does not make
 /// the model better on unseen samples goes. What acts through channels is judged by predictions
 /// over the horizons (95 % interval of the bootstrap above zero), and where its inputs move mostly

@@ -59,6 +59,16 @@ std::string rejected_text(const DiagnosisRun& run) {
   return text;
 }
 
+bool is_mostly(double level, double rmse) { return level * level > kMostlyLevel * rmse * rmse; }
+
+/// By how much the extended model has the CV at another level than the unit file's, beside all that
+/// is in it as a finding.
+double taken_over(const DiagnosisRun& run, int cv) {
+  const Eigen::VectorXd& before = run.unit.model.output_origin;
+  const Eigen::VectorXd& after = run.diagnosis.extended.output_origin;
+  return cv < before.size() && cv < after.size() ? after(cv) - before(cv) : 0.0;
+}
+
 }  // namespace
 
 const char* name_of(DiagnosisVerdict verdict) {
@@ -160,20 +170,6 @@ std::string unexplained_text(const DiagnosisRun& run, const Unexplained& left) {
   text += left.subject.cause->sentence(unnamed, names);
   return text + " (p " + number_text(left.p_value, 2) + ")";
 }
-
-namespace {
-
-bool is_mostly(double level, double rmse) { return level * level > kMostlyLevel * rmse * rmse; }
-
-/// By how much the extended model has the CV at another level than the unit file's, beside all that
-/// is in it as a finding.
-double taken_over(const DiagnosisRun& run, int cv) {
-  const Eigen::VectorXd& before = run.unit.model.output_origin;
-  const Eigen::VectorXd& after = run.diagnosis.extended.output_origin;
-  return cv < before.size() && cv < after.size() ? after(cv) - before(cv) : 0.0;
-}
-
-}  // namespace
 
 std::vector<std::string> moved_levels(const DiagnosisRun& run) {
   constexpr const char* kWhy =

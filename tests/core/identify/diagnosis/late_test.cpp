@@ -1,6 +1,7 @@
 #include "core/identify/diagnosis/late.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/diagnosis/diagnosis.hpp"
@@ -41,6 +42,25 @@ TEST_CASE("a step in the rows kept for validation is named, and no repair is cla
     CHECK(*late[0].onset_s == Approx(double{kOnset}).margin(3.0));
     CHECK_FALSE(late[0].repaired);
     CHECK_FALSE(late[0].refused.empty());
+  }
+}
+
+// In noise of s.d. 0.12, with a time constant of 60 s. No rows are left that could bear it out.
+TEST_CASE(
+    "what comes late and passes is named where it stands out, and not where it hardly shows") {
+  const auto passing = [](double size) {
+    VectorXd added = VectorXd::Zero(kRows);
+    for (Index k = kOnset; k < kRows; ++k)
+      added(k) = size * std::exp(-static_cast<double>(k - kOnset) / 60.0);
+    return added;
+  };
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    const std::vector<Finding> late = late_in(passing(1.5), seed);
+    REQUIRE(late.size() == 1);
+    CHECK(late[0].subject == Subject{&causes::step_disturbance(), {0}});
+    CHECK(late[0].parameters.back().name() == "decay");
+    CHECK(late_in(passing(0.25), seed).empty());
   }
 }
 
