@@ -10,7 +10,7 @@ namespace {
 
 // Were the intervals right, 15 or fewer of 20 would hold the true number once in 400 such sets; the
 // seeds are fixed.
-TEST_CASE("intervals of a dead time under feedback hold the true one") {
+TEST_CASE("intervals of a dead time under feedback hold the true one", "[trials]") {
   int held = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Loop loop;

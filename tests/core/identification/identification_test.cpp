@@ -145,7 +145,7 @@ TEST_CASE("a CV that answers within the row is told so, and not taken for feedba
 }
 
 // Time constant half of the record: the slope is known well, the gain is not.
-TEST_CASE("a slow channel of vague gain stays where predictions are worse without it") {
+TEST_CASE("a slow channel of vague gain stays where predictions are worse without it", "[trials]") {
   constexpr Eigen::Index kRows = 1500;
   int kept = 0;
   for (std::uint64_t seed = 740; seed < 780; seed += 4) {
@@ -218,7 +218,8 @@ TEST_CASE("a level that integrates is told from one that settles, with the input
   CHECK(found.model.input_origin(0) == Approx(0.1).margin(0.02));
 }
 
-TEST_CASE("a controlled level integrates all its flows, however little each one shows it") {
+TEST_CASE("a controlled level integrates all its flows, however little each one shows it",
+          "[trials]") {
   const Index rows = 8000;
   MatrixXd inputs(rows, 3), cvs(rows, 1);
   const VectorXd feed = 2.0 * autoregressive(0.1 * white(811, rows), 0.995);

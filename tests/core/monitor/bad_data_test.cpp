@@ -148,7 +148,7 @@ TEST_CASE("implausible values are a part of the bad ones at every moment") {
 }
 
 // Steps of ten s.d. of the noise, about as far as a CV moves: what changes with them is no change.
-TEST_CASE("a sound CV that is read in steps raises no alarm and no mismatch") {
+TEST_CASE("a sound CV that is read in steps raises no alarm and no mismatch", "[trials]") {
   constexpr double kStep = 0.8;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     CAPTURE(seed);

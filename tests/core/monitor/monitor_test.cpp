@@ -395,7 +395,8 @@ TEST_CASE("what moves with a set-point is told of the set-point, and no channel 
 
 // The second MV moves by itself, the first one with what that did before and, by little, against a
 // disturbance that nobody logs: between them they make up the disturbance.
-TEST_CASE("what MVs together make up of a hidden disturbance is no channel's mismatch") {
+TEST_CASE("what MVs together make up of a hidden disturbance is no channel's mismatch",
+          "[trials]") {
   test::OpenLoopUnit unit;
   for (const bool disturbed : {true, false}) {
     CAPTURE(disturbed);

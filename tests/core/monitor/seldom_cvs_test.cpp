@@ -49,7 +49,8 @@ std::vector<int> all_verdicts(const Monitor& monitor, Verdict verdict) {
 
 }  // namespace
 
-TEST_CASE("a sound unit with an analyser matches in every channel, and nothing is raised") {
+TEST_CASE("a sound unit with an analyser matches in every channel, and nothing is raised",
+          "[trials]") {
   Analysed unit;
   unit.every = GENERATE(2.0, 5.0, 10.3);
   unit.blank = GENERATE(false, true);

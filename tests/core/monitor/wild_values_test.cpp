@@ -212,7 +212,7 @@ TEST_CASE("what is simulated from a wild input is forgotten too") {
       check_healed(1.0, false, {SignalKind::kMv, value, 1500, samples});
 }
 
-TEST_CASE("what a signal said while it was elsewhere is forgotten once it is back") {
+TEST_CASE("what a signal said while it was elsewhere is forgotten once it is back", "[trials]") {
   for (const double value : {1e6, 1e9})
     for (const bool predictions : {true, false})
       check_healed(1.0, predictions, {SignalKind::kMv, value, 1500, 100});
@@ -221,7 +221,7 @@ TEST_CASE("what a signal said while it was elsewhere is forgotten once it is bac
       check_healed(0.75, true, {kind, value, 1500, 100});
 }
 
-TEST_CASE("a wild value among the first is forgotten too") {
+TEST_CASE("a wild value among the first is forgotten too", "[trials]") {
   for (const double value : {1e6, 1e60, 1e200})
     for (const SignalKind kind : {SignalKind::kMv, SignalKind::kCv})
       for (const int from : {0, 5}) check_healed(1.0, true, {kind, value, from, 1});

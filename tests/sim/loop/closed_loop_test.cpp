@@ -63,7 +63,7 @@ std::string csv_of(const LoopSetup& setup, int samples) {
 
 }  // namespace
 
-TEST_CASE("control-error variances are those of an independent simulation") {
+TEST_CASE("control-error variances are those of an independent simulation", "[trials]") {
   // Measured by a separate numpy prototype of the same loop before this code existed (set-points
   // +-0.5, hold 100, N = 3000; no limits). 15 % covers the seeds: one mean of 20 has a standard
   // error of 4 %.

@@ -139,7 +139,7 @@ TEST_CASE("the thesis's scenario 2 as written is refused with integral action, i
   }
 }
 
-TEST_CASE("a drawn change is one that the loop can bear, and the seed decides") {
+TEST_CASE("a drawn change is one that the loop can bear, and the seed decides", "[trials]") {
   LoopSetup setup = healthy_loop(load_plant("shell3x3"));
   setup.scenario.draw =
       mpm::config::RandomDraw{{0.6, 0.7, 1.3, 1.4}, {0.5, 2.0}, {-3.0, 4.0}, 100.0, 1};

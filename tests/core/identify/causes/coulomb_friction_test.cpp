@@ -43,7 +43,8 @@ constexpr double kFriction = 0.1;
 }  // namespace
 
 // The truth is the friction of the servo, which no simulator of ours moved.
-TEST_CASE("Dry friction on a spring is named, and its force is right within its interval") {
+TEST_CASE("Dry friction on a spring is named, and its force is right within its interval",
+          "[trials]") {
   int covered = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     CAPTURE(seed);

@@ -203,7 +203,8 @@ Told told_of_signal(std::uint64_t seed, double gain) {
 
 // Between two walks a regression finds something (Granger and Newbold 1974); a gain of 3 moves the
 // CV by three times what it does by itself, in its steps too.
-TEST_CASE("a signal that wanders beside a CV that does acts on it only where its steps say so") {
+TEST_CASE("a signal that wanders beside a CV that does acts on it only where its steps say so",
+          "[trials]") {
   int refused = 0, found = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     CAPTURE(seed);

@@ -213,7 +213,7 @@ TEST_CASE("a dead time that is not there is named, with whatever else is wrong o
 // constant is a tenth of the data: no piece of it is a drift, a shift or a cycle. Two of twenty may
 // be said to have one (1 % of walks pass for tame however they are cut: more than two of twenty
 // with a probability of 1e-3). A drift of 3 in noise that forgets is one.
-TEST_CASE("a random walk is not cut into drifts and shifts") {
+TEST_CASE("a random walk is not cut into drifts and shifts", "[trials]") {
   constexpr Index kLong = 3000;
   constexpr double kSlow = 300.0;
   const VectorXd u = test::telegraph(31, kLong, 400);

@@ -72,7 +72,7 @@ std::string accusations(const Diagnosis& diagnosis) {
 }
 
 // A free run is best without any gain here: the controller undoes what disturbs the CV.
-TEST_CASE("a sound loop at rest accuses nothing, whatever disturbs it") {
+TEST_CASE("a sound loop at rest accuses nothing, whatever disturbs it", "[trials]") {
   const VectorXd still = VectorXd::Zero(kRows);
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     CAPTURE(seed);
@@ -86,7 +86,8 @@ TEST_CASE("a sound loop at rest accuses nothing, whatever disturbs it") {
 // them, the controller has made to go with the input. With eight coefficients 17 of the 20
 // intervals miss the sound gain, which is 2 to 3 times too large for them.
 TEST_CASE(
-    "the gain of a loop whose CV wanders and is measured with noise is known as well as it is") {
+    "the gain of a loop whose CV wanders and is measured with noise is known as well as it is",
+    "[trials]") {
   struct Case {
     double walk, noise, moves;
     Index hold;
@@ -234,7 +235,7 @@ TEST_CASE("test signals make a wrong gain known in the same loops") {
 }
 
 // Before the actuator is repaired nobody sees it: its CVs are off by far more.
-TEST_CASE("what follows a set-point beside a stuck actuator is laid to no channel") {
+TEST_CASE("what follows a set-point beside a stuck actuator is laid to no channel", "[trials]") {
   for (const std::uint64_t seed : {71, 81}) {
     CAPTURE(seed);
     const Diagnosis diagnosis =

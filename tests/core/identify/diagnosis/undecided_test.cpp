@@ -88,7 +88,8 @@ Diagnosis leak_beside(double second, std::uint64_t seed) {
                   test::recording_of(inputs, cvs), nullptr, settings);
 }
 
-TEST_CASE("which of two actuators leaks is not said where both do the same to all CVs") {
+TEST_CASE("which of two actuators leaks is not said where both do the same to all CVs",
+          "[trials]") {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     CAPTURE(seed);
     const Diagnosis apart = leak_beside(-1.0, seed);

@@ -117,8 +117,8 @@ int steps_named(const std::function<Eigen::VectorXd(std::uint64_t seed)>& noise)
 // walk: n (1 - p) / (1 + p) = 33 for a pole of 0.93. Of that a search among all rows (900 / 4
 // moments) would take 11, and the priors of size and noise some 10: 3 of the 12 were named so. A
 // shock that dies away as all of the noise does leaves nothing of the kind.
-TEST_CASE(
-    "a step is named where a shock tells its row and the level stays, not where it dies away") {
+TEST_CASE("a step is named where a shock tells its row and the level stays, not where it dies away",
+          "[trials]") {
   constexpr Index kShock = 450;
   constexpr double kInnovation = 0.1, kPole = 0.93;
   const auto innovations = [&](std::uint64_t seed) {
