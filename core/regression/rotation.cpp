@@ -80,4 +80,13 @@ void inner_products(const double* a, const RowBlock& x, std::size_t count, doubl
   kKernels.inner_products(a, x, count, products);
 }
 
+void reflect(const double* v, const RowBlock& x, std::size_t count, double factor, double* top) {
+  kKernels.reflect(v, x, count, factor, top);
+}
+
+void subtract_past(const double* x, std::size_t count, const double* coefficients,
+                   std::size_t order, double* left) {
+  kKernels.subtract_past(x, count, coefficients, order, left);
+}
+
 }  // namespace mpm

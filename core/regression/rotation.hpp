@@ -2,7 +2,8 @@
 
 #include <cstddef>
 
-/// The numerical kernel of this project: plane (Givens) rotations of long rows.
+/// The numerical kernel of this project: plane (Givens) rotations of long rows, and the two long
+/// loops of a least-squares fit.
 ///
 /// The loops are compiled for several instruction sets and picked once at start. All of them give
 /// the same bits: the operations are element-wise and each multiply-add is rounded once, as the
@@ -71,5 +72,14 @@ void project_block(const double* const* r, const RowBlock& x, std::size_t count,
                    const double* entries);
 /// Inner products of `a` with each row of x, `count` (whole granules) values each.
 void inner_products(const double* a, const RowBlock& x, std::size_t count, double* products);
+
+/// Householder's reflection of columns, each a row of `x` here and one value of `top` above it:
+/// with share = factor (top + v' x), top' = top - share and x' = x - share v. `v` and each column
+/// have `count` values, a multiple of a granule; no alignment is asked, and no overlap is allowed.
+void reflect(const double* v, const RowBlock& x, std::size_t count, double factor, double* top);
+/// left_k = x_k - sum over l = 1..order of coefficients_(l-1) x_(k-l), for k = order..count-1,
+/// summed in that order; the `order` values before are left alone. No overlap.
+void subtract_past(const double* x, std::size_t count, const double* coefficients,
+                   std::size_t order, double* left);
 
 }  // namespace mpm

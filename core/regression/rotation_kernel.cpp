@@ -20,6 +20,7 @@ constexpr std::size_t kLaneBytes = 16;
 #endif
 using Lanes [[gnu::vector_size(kLaneBytes)]] = double;
 using Eight [[gnu::vector_size(64)]] = double;
+using AnyEight [[gnu::vector_size(64), gnu::aligned(8)]] = double;  // wherever they are
 constexpr std::size_t kLanes = kLaneBytes / sizeof(double);
 constexpr std::size_t kEight = kRowGranule;
 static_assert(kEight == 8);
@@ -32,6 +33,10 @@ template <typename Vector>
 const Vector& at(const double* p) {
   return *reinterpret_cast<const Vector*>(p);
 }
+
+// Not by the above: a template's argument forgets how its type is aligned.
+inline AnyEight& any_eight(double* p) { return *reinterpret_cast<AnyEight*>(p); }
+inline const AnyEight& any_eight(const double* p) { return *reinterpret_cast<const AnyEight*>(p); }
 
 // a * b + c and c - a * b, rounded once whatever the instruction set: where it has no such
 // operation, the library does the same slowly.
@@ -186,6 +191,50 @@ void eliminate_head(double* const* r, const RowBlock& x, const HeadBlock& head, 
     head.gains[s * kEight + a] = gain[a];
     head.kept[s * kEight + a] = kept[a];
   }
+}
+
+inline double total(const Eight& sum) {
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
+template <std::size_t kColumns>
+inline void reflect_columns(const double* v, double* columns, std::size_t stride, std::size_t count,
+                            double factor, double* top) {
+  Eight sum[kColumns] = {};
+  for (std::size_t i = 0; i < count; i += kEight) {
+    const Eight own = any_eight(v + i);
+#pragma GCC unroll 4
+    for (std::size_t c = 0; c < kColumns; ++c) sum[c] += own * any_eight(columns + c * stride + i);
+  }
+  double share[kColumns];
+  for (std::size_t c = 0; c < kColumns; ++c) {
+    share[c] = factor * (top[c] + total(sum[c]));
+    top[c] -= share[c];
+  }
+  for (std::size_t i = 0; i < count; i += kEight) {
+    const Eight own = any_eight(v + i);
+#pragma GCC unroll 4
+    for (std::size_t c = 0; c < kColumns; ++c) {
+      any_eight(columns + c * stride + i) -= share[c] * own;
+    }
+  }
+}
+
+// Values of one sum that are taken side by side.
+template <std::size_t kWide>
+inline void subtract_past_of(const double* x, const double* coefficients, std::size_t order,
+                             double* left) {
+  Eight now[kWide];
+#pragma GCC unroll 4
+  for (std::size_t w = 0; w < kWide; ++w) now[w] = any_eight(x + w * kEight);
+  for (std::size_t l = 0; l < order; ++l) {
+    const double* past = x - (l + 1);
+#pragma GCC unroll 4
+    for (std::size_t w = 0; w < kWide; ++w)
+      now[w] -= coefficients[l] * any_eight(past + w * kEight);
+  }
+#pragma GCC unroll 4
+  for (std::size_t w = 0; w < kWide; ++w) any_eight(left + w * kEight) = now[w];
 }
 
 // Registers of columns that are taken side by side: what they wait for, others fill, and the
@@ -368,9 +417,6 @@ void project_block(const double* const* r, const RowBlock& x, std::size_t count,
 // Summed in eight lanes whatever the instruction set, so the bits are the same; four rows at a
 // time, whose additions need not wait for each other.
 void inner_products(const double* a, const RowBlock& x, std::size_t count, double* products) {
-  const auto total = [](const Eight& sum) {
-    return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
-  };
   int k = 0;
   for (; k + 4 <= x.rows; k += 4) {
     const double* row = x.first + static_cast<std::size_t>(k) * x.stride;
@@ -393,6 +439,30 @@ void inner_products(const double* a, const RowBlock& x, std::size_t count, doubl
     for (std::size_t c = 0; c < count; c += kEight)
       add_product(at<Eight>(a + c), at<Eight>(row + c), sum);
     products[k] = total(sum);
+  }
+}
+
+void reflect(const double* v, const RowBlock& x, std::size_t count, double factor, double* top) {
+  constexpr int kTogether = kLaneBytes > 16 ? 4 : 1;
+  int k = 0;
+  for (; k + kTogether <= x.rows; k += kTogether)
+    reflect_columns<kTogether>(v, x.first + static_cast<std::size_t>(k) * x.stride, x.stride, count,
+                               factor, top + k);
+  for (; k < x.rows; ++k)
+    reflect_columns<1>(v, x.first + static_cast<std::size_t>(k) * x.stride, x.stride, count, factor,
+                       top + k);
+}
+
+void subtract_past(const double* x, std::size_t count, const double* coefficients,
+                   std::size_t order, double* left) {
+  constexpr std::size_t kWide = kLaneBytes > 16 ? 4 : 2;
+  std::size_t k = order;
+  for (; k + kWide * kEight <= count; k += kWide * kEight)
+    subtract_past_of<kWide>(x + k, coefficients, order, left + k);
+  for (; k < count; ++k) {
+    double now = x[k];
+    for (std::size_t l = 0; l < order; ++l) now -= coefficients[l] * x[k - l - 1];
+    left[k] = now;
   }
 }
 

@@ -20,6 +20,9 @@
   void project_block(const double* const* r, const RowBlock& x, std::size_t count,                 \
                      const double* entries);                                                       \
   void inner_products(const double* a, const RowBlock& x, std::size_t count, double* products);    \
+  void reflect(const double* v, const RowBlock& x, std::size_t count, double factor, double* top); \
+  void subtract_past(const double* x, std::size_t count, const double* coefficients,               \
+                     std::size_t order, double* left);                                             \
   }
 
 MPM_DECLARE_KERNELS(kernels_base)
@@ -39,13 +42,16 @@ struct KernelSet {
   decltype(&kernels_base::project_heads) project_heads;
   decltype(&kernels_base::project_block) project_block;
   decltype(&kernels_base::inner_products) inner_products;
+  decltype(&kernels_base::reflect) reflect;
+  decltype(&kernels_base::subtract_past) subtract_past;
 };
 
 #define MPM_KERNELS(set)                                                                   \
   ::mpm::KernelSet {                                                                       \
     ::mpm::set::rotate_rows, ::mpm::set::eliminate_row, ::mpm::set::blend_row,             \
         ::mpm::set::project_row, ::mpm::set::eliminate_heads, ::mpm::set::eliminate_block, \
-        ::mpm::set::project_heads, ::mpm::set::project_block, ::mpm::set::inner_products   \
+        ::mpm::set::project_heads, ::mpm::set::project_block, ::mpm::set::inner_products,  \
+        ::mpm::set::reflect, ::mpm::set::subtract_past                                     \
   }
 
 }  // namespace mpm

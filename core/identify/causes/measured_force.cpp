@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/identify/fit/channel_edit.hpp"
+#include "core/identify/fit/triangle.hpp"
 #include "core/model/linear_model.hpp"
 
 namespace mpm {
@@ -45,16 +46,17 @@ Eigen::Vector2d measured_force(const Outlook& outlook, const ChannelSpec& channe
   const VectorXd own = answer(channel, sample_time_s, moves) + misfit;
 
   const Index samples = own.size(), small = data.nuisances.cols(), forces = 2;
+  const WhitenedRows rows_of(data, fit);
   MatrixXd system = MatrixXd::Zero(samples + small, small + forces + 1);
   for (Index b = 0; b < small; ++b) {
-    system.col(b).head(samples) = rows_of(data, fit, data.nuisances.col(b));
+    system.col(b).head(samples) = rows_of(data.nuisances.col(b));
     system(samples + b, b) = 1.0;
   }
   const VectorXd square = own.cwiseAbs2();
-  system.col(small).head(samples) = rows_of(data, fit, -answer(channel, sample_time_s, square));
+  system.col(small).head(samples) = rows_of(-answer(channel, sample_time_s, square));
   system.col(small + 1).head(samples) =
-      rows_of(data, fit, -answer(channel, sample_time_s, square.cwiseProduct(own)));
-  system.col(small + forces).head(samples) = rows_of(data, fit, misfit);
+      rows_of(-answer(channel, sample_time_s, square.cwiseProduct(own)));
+  system.col(small + forces).head(samples) = rows_of(misfit);
   const MatrixXd r = triangle(system);
   const Eigen::Vector2d force = r.block<2, 2>(small, small)
                                     .triangularView<Eigen::Upper>()

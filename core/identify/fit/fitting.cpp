@@ -4,6 +4,7 @@
 
 #include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/problem.hpp"
+#include "core/identify/fit/triangle.hpp"
 
 namespace mpm {
 namespace {
@@ -146,19 +147,19 @@ class Problem::Fitting {
         reduced.where.push_back(i);
     const Index nuisances = small_[s].cols(), m = static_cast<Index>(reduced.where.size());
     const Index samples = data.measured.size();
+    const WhitenedRows rows_of(data, state);
     MatrixXd system = MatrixXd::Zero(samples + nuisances, nuisances + m + 1);
     for (Index b = 0; b < nuisances; ++b) {
-      system.col(b).head(samples) = rows_of(data, state, small_[s].col(b));
+      system.col(b).head(samples) = rows_of(small_[s].col(b));
       system(samples + b, b) = 1.0;
     }
     for (Index c = 0; c < m; ++c) {
       const Index i = reduced.where[static_cast<std::size_t>(c)];
       const Free& f = free_[static_cast<std::size_t>(i)];
       system.col(nuisances + c).head(samples) =
-          rows_of(data, state,
-                  problem_.sensitivity(effects_, f.effect, f.coordinate, state.cv, simulated_[s]));
+          rows_of(problem_.sensitivity(effects_, f.effect, f.coordinate, state.cv, simulated_[s]));
     }
-    system.col(nuisances + m).head(samples) = rows_of(data, state, data.measured - simulated_[s]);
+    system.col(nuisances + m).head(samples) = rows_of(data.measured - simulated_[s]);
     reduced.triangle = triangle(system);
     return reduced;
   }

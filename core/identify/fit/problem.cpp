@@ -10,16 +10,14 @@
 #include "core/identify/fit/noise_before.hpp"
 #include "core/identify/fit/plateau.hpp"
 #include "core/identify/fit/row_weights.hpp"
+#include "core/identify/fit/triangle.hpp"
 
 namespace mpm {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::RowVectorXd;
 using Eigen::VectorXd;
-
-constexpr Index kRowsAtOnce = 256;
 
 double spread(const VectorXd& values, const VectorXd& known) {
   const double count = std::max(1.0, known.sum());
@@ -36,35 +34,6 @@ VectorXd or_nothing(VectorXd slope) {
 }
 
 }  // namespace
-
-// Rows come in blocks that stay in the cache, each reflected into the triangle of those before
-// (Householder; Golub and Van Loan 2013, 5.2). A column that is zero in a block costs nothing
-// there: a level or first state of a run has nothing to say of the others' rows.
-MatrixXd triangle(const MatrixXd& matrix) {
-  const Index columns = matrix.cols();
-  MatrixXd result = MatrixXd::Zero(columns, columns);
-  MatrixXd block;
-  RowVectorXd shared(columns);
-  for (Index first = 0; first < matrix.rows(); first += kRowsAtOnce) {
-    block = matrix.middleRows(first, std::min(kRowsAtOnce, matrix.rows() - first));
-    for (Index j = 0; j < columns; ++j) {
-      const double below = block.col(j).squaredNorm();
-      if (below == 0.0) continue;  // not where it is no number
-      const double top = result(j, j);
-      const double diagonal = std::copysign(std::sqrt(top * top + below), -top);
-      block.col(j) /= top - diagonal;
-      result(j, j) = diagonal;
-      const Index right = columns - j - 1;
-      auto row = shared.head(right);
-      row = result.row(j).tail(right);
-      row.noalias() += block.col(j).transpose() * block.rightCols(right);
-      row *= (diagonal - top) / diagonal;
-      result.row(j).tail(right) -= row;
-      block.rightCols(right).noalias() -= block.col(j) * row;
-    }
-  }
-  return result.topRows(std::min(columns, matrix.rows()));
-}
 
 double mean_level(const CvData& data, const CvFit& fit) {
   const double all = std::max(1.0, data.known.sum());
@@ -84,9 +53,11 @@ VectorXd left_of(const CvData& data, const CvFit& fit) {
   return (data.known.array() > 0.0).select(left, std::numeric_limits<double>::quiet_NaN());
 }
 
-VectorXd rows_of(const CvData& data, const CvFit& fit, const Eigen::Ref<const VectorXd>& x) {
-  const VectorXd root = (data.weights / fit.variance).cwiseSqrt();
-  return fit.noise.apply(x.cwiseProduct(data.known)).cwiseProduct(root);
+WhitenedRows::WhitenedRows(const CvData& data, const CvFit& fit)
+    : known_(&data.known), noise_(&fit.noise), root_((data.weights / fit.variance).cwiseSqrt()) {}
+
+VectorXd WhitenedRows::operator()(const Eigen::Ref<const VectorXd>& x) const {
+  return noise_->apply(x.cwiseProduct(*known_)).cwiseProduct(root_);
 }
 
 Problem::Problem(const ModelSpec& model, int model_inputs, const Recording& recording,
@@ -292,11 +263,10 @@ double Problem::cost_with_noise_of(const Fit& fit, const std::vector<Effect>& ef
     const CvData& data = this->data(state.cv);
     const MatrixXd small = nuisances(effects, state.cv);
     const Index samples = data.measured.size(), count = small.cols();
+    const WhitenedRows rows_of(data, state);
     MatrixXd system = MatrixXd::Zero(samples + count, count + 1);
-    for (Index b = 0; b < count; ++b)
-      system.col(b).head(samples) = rows_of(data, state, small.col(b));
-    system.col(count).head(samples) =
-        rows_of(data, state, data.measured - simulate(effects, state.cv));
+    for (Index b = 0; b < count; ++b) system.col(b).head(samples) = rows_of(small.col(b));
+    system.col(count).head(samples) = rows_of(data.measured - simulate(effects, state.cv));
     system.bottomLeftCorner(count, count).setIdentity();
     const MatrixXd r = triangle(system);
     cost += r(count, count) * r(count, count);

@@ -49,10 +49,6 @@ struct CvFit {
   double variance = 1.0;        ///< of the innovations, weighted
 };
 
-/// Upper triangle of a QR without Q; the last column is a right-hand side. Columns that are zero in
-/// most rows cost least in front.
-[[nodiscard]] Eigen::MatrixXd triangle(const Eigen::MatrixXd& matrix);
-
 /// How far the CV is off by itself, CV units: the mean over its known rows of the levels that a fit
 /// gave its runs.
 [[nodiscard]] double mean_level(const CvData& data, const CvFit& fit);
@@ -62,10 +58,18 @@ struct CvFit {
 /// enough to follow a walk.
 [[nodiscard]] Eigen::VectorXd left_of(const CvData& data, const CvFit& fit);
 
-/// Whitened and weighted, in s.d. of the innovations; 0 where the CV is unknown: as the rows of a
-/// fit's least squares are.
-[[nodiscard]] Eigen::VectorXd rows_of(const CvData& data, const CvFit& fit,
-                                      const Eigen::Ref<const Eigen::VectorXd>& x);
+/// Signals as the rows of a fit's least squares: whitened and weighted, in s.d. of the innovations;
+/// 0 where the CV is unknown. Both must outlive it.
+class WhitenedRows {
+ public:
+  WhitenedRows(const CvData& data, const CvFit& fit);
+  [[nodiscard]] Eigen::VectorXd operator()(const Eigen::Ref<const Eigen::VectorXd>& x) const;
+
+ private:
+  const Eigen::VectorXd* known_;
+  const Whitening* noise_;
+  Eigen::VectorXd root_;  // of the weights, per s.d.
+};
 
 /// Effects with fitted numbers, and how well they explain the CVs they touch.
 struct Fit {

@@ -6,6 +6,7 @@
 
 #include "core/identify/fit/calibration.hpp"
 #include "core/identify/fit/row_weights.hpp"
+#include "core/identify/fit/triangle.hpp"
 
 namespace mpm {
 

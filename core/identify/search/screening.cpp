@@ -1,8 +1,9 @@
 #include "core/identify/search/screening.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <cmath>
+
+#include "core/identify/fit/triangle.hpp"
 
 namespace mpm {
 
@@ -15,9 +16,8 @@ Screening::Screening(Problem& problem, const std::vector<Effect>& accepted,
     : problem_(problem), accepted_(accepted) {
   for (const CvFit& fit : without) {
     const CvData& data = problem.data(fit.cv);
-    Cv cv;
-    cv.fit = &fit;
-    cv.simulated = problem.simulate(accepted, fit.cv);
+    Cv cv{&fit, WhitenedRows(data, fit), problem.simulate(accepted, fit.cv), {}, {}};
+    const WhitenedRows& whiten = cv.whiten;
     const Index samples = data.measured.size(), nuisances = data.nuisances.cols();
     std::vector<std::pair<std::size_t, std::size_t>> own;  // numbers of what was accepted
     for (std::size_t e = 0; e < accepted.size(); ++e)
@@ -25,16 +25,14 @@ Screening::Screening(Problem& problem, const std::vector<Effect>& accepted,
         for (std::size_t c = 0; c < accepted[e].coordinates.size(); ++c) own.emplace_back(e, c);
     const Index columns = nuisances + static_cast<Index>(own.size());
     MatrixXd system = MatrixXd::Zero(samples + columns, columns);
-    const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) { return rows_of(data, fit, x); };
     for (Index b = 0; b < nuisances; ++b)
       system.col(b).head(samples) = whiten(data.nuisances.col(b));
     for (std::size_t i = 0; i < own.size(); ++i)
       system.col(nuisances + static_cast<Index>(i)).head(samples) =
           whiten(problem.sensitivity(accepted, own[i].first, own[i].second, fit.cv, cv.simulated));
     system.bottomRows(columns).setIdentity();
-    const Eigen::HouseholderQR<MatrixXd> qr(system);
-    const MatrixXd thin = qr.householderQ() * MatrixXd::Identity(samples + columns, columns);
-    cv.basis = thin.topRows(samples);
+    const MatrixXd r = triangle(system);
+    cv.basis = r.triangularView<Eigen::Upper>().solve<Eigen::OnTheRight>(system.topRows(samples));
     cv.residual = whiten(data.measured - cv.simulated);
     cvs_.push_back(std::move(cv));
   }
@@ -64,9 +62,7 @@ double Screening::score(const Effect& candidate) const {
     const CvData& data = problem_.data(cv.fit->cv);
     const VectorXd at = problem_.simulate(with, cv.fit->cv);
     if (!at.allFinite()) return -1e300;
-    const auto whiten = [&](const Eigen::Ref<const VectorXd>& x) {
-      return rows_of(data, *cv.fit, x);
-    };
+    const WhitenedRows& whiten = cv.whiten;
     MatrixXd columns(at.size(), count);
     for (Index i = 0; i < count; ++i)
       columns.col(i) = whiten(

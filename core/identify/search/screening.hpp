@@ -22,6 +22,7 @@ class Screening {
  private:
   struct Cv {
     const CvFit* fit;
+    WhitenedRows whiten;
     Eigen::VectorXd simulated;
     Eigen::MatrixXd basis;     ///< orthonormal, of the whitened nuisances beside their prior
     Eigen::VectorXd residual;  ///< whitened

@@ -213,12 +213,16 @@ std::vector<double> run(const KernelSet& kernels) {
   kernels.eliminate_row(r[1], x.get() + 8, 39, 0.3, 0.7);
   kernels.blend_row(r[2], x.get() + 8, 39, 0.1, 0.2, 0.9);
   kernels.project_row(r[3], x.get() + 8, 39, 0.4);
+  std::vector<double> tops(7, 0.3);
+  kernels.reflect(r[4], {x.get() + 9 * kWidth + 8, kWidth, 7}, kWidth - 8, 0.4, tops.data());
+  kernels.subtract_past(x.get(), 5 * kWidth - 1, gains.data(), 5, projected.get());
   std::vector<double> all = {stored.get(), stored.get() + 8 * kWidth};
   for (const double* values : {x.get(), projected.get()})
     for (int k = 0; k < kRows; ++k)  // what is left of a head is of no use to anybody
       all.insert(all.end(), values + static_cast<std::size_t>(k) * kWidth + 8,
                  values + static_cast<std::size_t>(k + 1) * kWidth);
-  for (const auto* values : {&weights, &row_weights, &entries, &gains, &kept, &products})
+  all.insert(all.end(), projected.get(), projected.get() + 5 * kWidth);
+  for (const auto* values : {&tops, &weights, &row_weights, &entries, &gains, &kept, &products})
     all.insert(all.end(), values->begin(), values->end());
   return all;
 }

@@ -49,6 +49,34 @@ TEST_CASE("an exact autoregression gives back its coefficients, whatever its wei
   CHECK(robust.coefficients(1) == Approx(-0.8).epsilon(1e-10));
 }
 
+// Fitted to a swing of one frequency, orders beyond two are any: the fit stays finite and exact.
+TEST_CASE("more past than there is to say has coefficients all the same") {
+  VectorXd pulse = VectorXd::Zero(400);
+  pulse(0) = 1.0;
+  const VectorXd swing = second_order(pulse, 1.99, -0.9999).tail(398);
+  const Whitening fitted = fit_whitening(swing, VectorXd::Ones(398), {6, 0.0});
+  REQUIRE(fitted.coefficients.allFinite());
+  CHECK(fitted.coefficients.norm() < 10.0);
+  CHECK(fitted.apply(swing).norm() < 1e-9 * swing.norm());
+}
+
+// Rows before a whole past are silent, and so are those after a border; the others are as summed by
+// hand, in any number of them.
+TEST_CASE("whitening sums as many rows as there are") {
+  for (const Index rows : {1, 3, 4, 5, 40, 67, 300}) {
+    CAPTURE(rows);
+    Whitening whitening;
+    whitening.coefficients = test::white(5, 4);
+    const VectorXd x = test::white(6, rows);
+    VectorXd expected = VectorXd::Zero(rows);
+    for (Index k = 4; k < rows; ++k) {
+      expected(k) = x(k);
+      for (Index l = 1; l <= 4; ++l) expected(k) -= whitening.coefficients(l - 1) * x(k - l);
+    }
+    CHECK((whitening.apply(x) - expected).norm() <= 1e-14 * x.norm());
+  }
+}
+
 // The asymptotic covariance of a fitted autoregression is (A A' - B B') / n with A and B triangular
 // of its true coefficients (Gohberg and Semencul 1972), so none varies by more than their squares.
 TEST_CASE("a longer autoregression finds the order by itself") {
