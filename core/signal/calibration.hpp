@@ -84,6 +84,12 @@ inline constexpr double kBackShare = 0.1;
 inline constexpr double kTooFar = 1e4;
 inline constexpr double kTooFarAlone = 1e3;
 inline constexpr int kPatience = 60;
+/// Of so many values, the first, a signal may turn out to have been elsewhere from its start on:
+/// later, what was before is known better than to be given up. Chosen.
+inline constexpr int kFirstPhase = 1000;
+/// Where it has been since it must have moved so often. Chosen: what is switched between two values
+/// does not.
+inline constexpr int kMovesOfItself = 3;
 /// No instrument gives more, in whatever unit.
 inline constexpr double kLargest = 1e100;
 }  // namespace extent

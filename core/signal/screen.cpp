@@ -9,6 +9,7 @@
 
 namespace mpm {
 
+using calibration::extent::kMovesOfItself;
 using calibration::repeats::kEndHits;
 using calibration::repeats::kReturns;
 using calibration::spikes::kFirstSamples;
@@ -107,8 +108,9 @@ void Screen::Predicted::archive(Archive& a) { a(comes, came, against); }
 void Screen::Jumps::archive(Archive& a) { a(scale, samples, home, moved, since_home, spikes); }
 
 void Screen::Range::archive(Archive& a) {
-  a(extent, far, former, left, last, taken, rejected, pulses);
+  a(extent, far, former, left, last, taken, rejected, pulses, low, high, close, moved, came_from);
   a.within(out, 0, kLongestDelay);
+  a.within(values, 0, calibration::extent::kFirstPhase);
 }
 
 void Screen::archive(Archive& a) {
@@ -378,11 +380,39 @@ void Screen::screen_far(SignalKind kind) {
       ++range.out;
     else if (!usable || marked)
       continue;
+    if (usable && !marked && began_wild(range, ago(0)[kind].values(i))) {
+      range = Range{};
+      repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(i)].forget_ends();
+      forget_jumps(kind, i);
+      anew_ = true;
+    }
     if (usable && !marked) follow_excursion(kind, i, range);
     if (usable) range.last = ago(0)[kind].values(i);
     if (range.out > kLongestDelay) end_excursion(kind, i, range);
     longest_out_ = std::max(longest_out_, range.out);
   }
+}
+
+/// Whether the signal has jumped to where it has been for long now, and what it was before, from
+/// its first values on, is too far away for any process. One that rests there may have been
+/// switched.
+bool Screen::began_wild(Range& range, double value) {
+  if (range.values == calibration::extent::kFirstPhase) return false;
+  const double narrow = range.extent.width() / calibration::extent::kTooFar;
+  const double low = std::min(range.low, value), high = std::max(range.high, value);
+  if (++range.values == 1 || high - low > narrow) {
+    range.low = range.high = value;
+    range.came_from = range.last;
+    range.close = 1;
+    range.moved = 0;
+    return false;
+  }
+  range.low = low;
+  range.high = high;
+  ++range.close;
+  range.moved += value != range.last ? 1 : 0;
+  return range.close > calibration::extent::kPatience && range.moved >= kMovesOfItself &&
+         std::abs(range.low - range.came_from) > calibration::extent::kIsolated * narrow;
 }
 
 /// Marks a value that is too far away for any process, until it has been there for long.
@@ -451,7 +481,12 @@ void Screen::reject_excursion(SignalKind kind, int index, Range& range) {
   repeats_[static_cast<std::size_t>(kind)][static_cast<std::size_t>(index)].forget_ends();
   if (!std::exchange(range.taken, false)) return;
   anew_ = true;
-  if (is_input(kind)) return;
+  forget_jumps(kind, index);
+}
+
+/// What was learnt of how far it moves from one value to the next was not of the process.
+void Screen::forget_jumps(SignalKind kind, int index) {
+  if (kind != SignalKind::kCv && kind != SignalKind::kPrediction) return;
   Jumps& jumps = jumps_[static_cast<std::size_t>(index)];
   jumps = {.spikes = jumps.spikes};
 }

@@ -31,7 +31,8 @@ struct ScreenCounters {
 /// ever been (wild, counted with the spikes). To judge a value by what follows it,
 /// frames pass with a delay of `kDelay`. Where a signal goes far beyond all that it has been, they
 /// wait until it is back, which then was an excursion and none of the process, or has stayed: a
-/// step is taken whole, only later, `kLongestDelay` at most.
+/// step is taken whole, only later, `kLongestDelay` at most. Where it has begun absurdly far away
+/// and jumps to where it is from then on, what was learnt until then is worth nothing (`anew`).
 ///
 /// An input that leaves all that it has been by as much again, for a sample or two, and is right
 /// back, is marked too, unless it does so often: the plant may have seen it, but one such value
@@ -153,6 +154,12 @@ class Screen {
     bool taken = false;   // some of it has left the screen
     int rejected = 0;     // excursions that came back
     double pulses = 0.0;  // of an input, lately
+    // Where the last values are that lie close together for what it has ranged:
+    double low = 0.0, high = 0.0;
+    int close = 0;           // so many
+    int moved = 0;           // that differ from the one before
+    double came_from = 0.0;  // the one before the first of them
+    int values = 0;          // since it began anew, until kFirstPhase
     void archive(Archive& a);
   };
   [[nodiscard]] std::size_t place(int frames) const {
@@ -182,9 +189,11 @@ class Screen {
   void follow_excursion(SignalKind kind, int index, Range& range);
   void mark_isolated(SignalKind kind, int index, const Range& range, int first);
   void reject_excursion(SignalKind kind, int index, Range& range);
+  void forget_jumps(SignalKind kind, int index);
   void end_excursion(SignalKind kind, int index, Range& range);
   void learn_range(SignalKind kind);
   void learn_first(SignalKind kind, int index, Range& range);
+  [[nodiscard]] static bool began_wild(Range& range, double value);
   [[nodiscard]] bool level(int cv, int frames, double& value);
 
   SignalCounts counts_;

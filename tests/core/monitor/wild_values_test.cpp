@@ -229,6 +229,43 @@ TEST_CASE("a wild value among the first is forgotten too", "[trials]") {
     check_healed(0.75, true, {.kind = kind, .value = 1e13, .from = 1, .samples = 8, .every = 3});
 }
 
+// What it was learnt to be is then what it never is; the twin begins when that is over.
+TEST_CASE("a signal that is elsewhere from its first sample on is forgotten once it is home") {
+  struct Elsewhere {
+    SignalKind kind;
+    double factor;  // of where it is: another unit
+    double wild;    // and this, at random, either way
+  };
+  constexpr int kLasts = 100;
+  for (const Elsewhere& at : {Elsewhere{SignalKind::kCv, 1e5, 0.0},
+                              {SignalKind::kCv, 1.0, 1e8},
+                              {SignalKind::kMv, 1.0, 1e80},
+                              {SignalKind::kMv, 1e6, 0.0},
+                              {SignalKind::kPrediction, 1.0, 1e20}}) {
+    CAPTURE(static_cast<int>(at.kind), at.factor, at.wild);
+    const auto seen = [&](bool injured) {
+      test::OpenLoopUnit unit;
+      unit.gain_ratio = 0.75;
+      Monitor monitor(unit.model, unit.counts, {true, true}, {}, {});
+      std::string result;
+      unit.run(kLasts + 2 * kMemory, [&](Frame frame) {
+        double& value = frame[at.kind].values(0);
+        if (injured && frame.interval < kLasts)
+          value = at.factor * value + at.wild * test::uniform(950, frame.interval);
+        monitor.push(frame);
+        for (const AlarmTransition& moved : monitor.transitions())
+          if (frame.interval > kLasts + 100 && (moved.cv != 0 || moved.input != 1))
+            result += "an alarm that the twin has not ";
+      });
+      for (int cv = 0; cv < 2; ++cv)
+        for (int input = 0; input < 2; ++input)
+          result += std::to_string(static_cast<int>(monitor.channel(cv, input).verdict));
+      return result;
+    };
+    CHECK(seen(true) == seen(false));
+  }
+}
+
 TEST_CASE("values that no instrument gives count as bad") {
   CHECK(outcome({}, true, {SignalKind::kMv, 1e153, 500, 3}, 600).bad_values == 3);
 }

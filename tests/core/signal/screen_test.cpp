@@ -203,6 +203,26 @@ TEST_CASE("a controller in manual is no frozen sensor") {
   }
 }
 
+// A pump that is switched, a step a thousand times the usual movement, and what settles without
+// noise: all that is learnt of them stays.
+TEST_CASE("what a process does in its first samples is never taken for wild") {
+  const std::vector<std::function<double(int)>> ways = {
+      [](int k) { return k < 50 ? 0.0 : 1.0; },
+      [](int k) { return (k < 50 ? 0.0 : 1000.0) + test::uniform(43, k); },
+      [](int k) { return 1e6 * std::exp(-k / 20.0); },
+      [](int k) { return k % 200 < 40 ? 1e6 : 0.0; }};
+  for (std::size_t way = 0; way < ways.size(); ++way) {
+    CAPTURE(way);
+    Screen screen(kCounts, {true}, {true}, 0, 30);
+    int anew = 0;
+    usable(screen, [&](int k, Frame& frame) {
+      anew += screen.anew() ? 1 : 0;  // with the frame before
+      frame[SignalKind::kMv].values(0) = ways[way](k);
+    });
+    CHECK(anew == 0);
+  }
+}
+
 TEST_CASE("the screen allocates nothing per frame") {
   Screen screen(kCounts, {true}, {true}, 0, 30);
   Frame frame(kCounts);
