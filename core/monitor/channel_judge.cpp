@@ -46,7 +46,7 @@ void ChannelJudge::judge(const JudgedChannel& channel, ChannelStatus& status) {
     status.confounder = channel.confounder;
     return;
   }
-  if (!exceeding && channel.bends) {
+  if (!exceeding && channel.bends && status.excited) {
     status.verdict = Verdict::kMismatch;
     status.reason = Reason::kOperatingPoint;
     return;

@@ -64,7 +64,8 @@ class DriftDisturbance : public OutputDisturbance {
  protected:
   [[nodiscard]] std::string what_it_does(const Finding& finding,
                                          const SignalNames& names) const override {
-    return "drifts " + up_or_down(finding, names) + " until the end of the data that were fitted";
+    return "drifts " + up_or_down(finding, names) + " until the end of the data" +
+           (finding.late ? "" : " that were fitted");
   }
 };
 

@@ -57,6 +57,7 @@ struct Finding {
   std::vector<Rival> rivals;      ///< closest first
   bool repaired = true;           ///< the extended model holds it, and is the better for it
   std::string refused;            ///< why the extended model does not, for a person; else empty
+  bool late = false;              ///< fitted on all samples: it began too late for the first part
   /// Another finding without which the extended model would not hold it.
   std::optional<Subject> with;
   /// Share of the mean square error on unseen samples of the CVs it acts on that goes with it; may

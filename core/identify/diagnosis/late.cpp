@@ -21,7 +21,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr const char* kNotJudged = "it began in the samples on which repairs are measured";
+constexpr const char* kNotJudged =
+    "it began in the samples on which repairs are measured, or shortly before them";
 
 double mean_square(const CvData& data, const VectorXd& residual, Index first, Index count) {
   const double known = data.known.segment(first, count).sum();
@@ -70,6 +71,7 @@ Late find_late(const ModelSpec& model, int model_inputs, const Recording& record
     if (causes::is_unnamed(cause) || cause.is_input_block() || effect.onset < from) continue;
     Finding finding = to_finding(found, i, problem);
     if (cause.may_be_nothing(finding)) continue;
+    finding.late = true;
     finding.repaired = false;
     const char* other = causes::passes(effect) && found.named[i].evidence < kStrongEvidence
                             ? kNotBorneOut

@@ -317,7 +317,7 @@ class Search {
       if (subject == subject_of(best.candidate)) continue;
       const bool known = std::any_of(named.rivals.begin(), named.rivals.end(),
                                      [&](const Rival& r) { return r.subject == subject; });
-      if (known) continue;
+      if (known || !share_a_cv(best.candidate, trials[i].candidate)) continue;
       // Odds are against the same CVs without either, whichever CVs a rival touches.
       const double worse = best.odds - trials[i].odds;
       named.rivals.push_back({subject, worse, worse < settings_.decisive});
@@ -333,6 +333,13 @@ class Search {
     accepted_.push_back(best.candidate);
     last_ = best.fit;
     merge();
+  }
+
+  /// What happens to another CV is no other explanation of this one: it may be so besides.
+  [[nodiscard]] bool share_a_cv(const Effect& a, const Effect& b) const {
+    const std::vector<int> cvs = touched(a, problem_);
+    return std::any_of(cvs.begin(), cvs.end(),
+                       [&](int cv) { return touches(b, problem_.model(), cv); });
   }
 
   /// Says what was accepted with fewer parts wrong, where a cause knows how and that explains the

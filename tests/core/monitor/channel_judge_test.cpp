@@ -43,6 +43,7 @@ struct Bench {
                  .confounder = confounder,
                  .peak = peak,
                  .mean_line = line,
+                 .bends = bends,
                  .belief = belief},
                 status);
     return status;
@@ -57,6 +58,7 @@ struct Bench {
   int confounder = -1;
   CorrelationPeak peak;
   double line = 0.0;
+  bool bends = false;
   Belief belief;
 };
 
@@ -101,6 +103,15 @@ TEST_CASE("an error that would not show is not ruled out, and the reason is told
   bench.evidence.p_value = 4e-4;
   CHECK(bench.judge().verdict == Verdict::kMismatch);
   CHECK(bench.judge().reason == Reason::kWeakExcitation);
+}
+
+TEST_CASE("that a gain varies is said of a channel whose gain would be known") {
+  Bench bench;
+  bench.bends = true;
+  CHECK(bench.judge().verdict == Verdict::kMismatch);
+  CHECK(bench.judge().reason == Reason::kOperatingPoint);
+  bench.evidence.excitation_index = 0.05;  // 29 % would show, of interest are 25 %
+  CHECK(bench.judge().verdict == Verdict::kUndetermined);
 }
 
 TEST_CASE("of a CV with coarse readings only what is beyond doubt and would show is a mismatch") {

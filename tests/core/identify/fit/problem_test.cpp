@@ -293,21 +293,6 @@ TEST_CASE("a CV that clips is known where it does not") {
   CHECK(problem.data(1).known.sum() == Approx(double(kRows)));
 }
 
-TEST_CASE("a triangle has the same normal equations as what it came from") {
-  MatrixXd tall(7, 3), wide(2, 4);
-  for (Index i = 0; i < 7; ++i)
-    for (Index j = 0; j < 3; ++j) tall(i, j) = test::uniform(1, 10 * i + j);
-  for (Index i = 0; i < 2; ++i)
-    for (Index j = 0; j < 4; ++j) wide(i, j) = test::uniform(2, 10 * i + j);
-  for (const MatrixXd& matrix : {tall, wide}) {
-    const MatrixXd r = triangle(matrix);
-    CHECK(r.rows() == std::min(matrix.rows(), matrix.cols()));
-    CHECK((r.transpose() * r).isApprox(matrix.transpose() * matrix, 1e-12));
-    for (Index i = 0; i < r.rows(); ++i)
-      for (Index j = 0; j < i; ++j) CHECK(r(i, j) == 0.0);
-  }
-}
-
 TEST_CASE("an effect touches the CVs of its channels") {
   const Recording recording = test::recording_of(two_inputs(), MatrixXd::Zero(kRows, 2));
   const Problem problem(
@@ -329,31 +314,8 @@ TEST_CASE("rows are whitened, weighted and in s.d.") {
   CvFit fit;
   fit.noise.coefficients = VectorXd::Constant(1, 0.5);
   fit.variance = 4.0;
-  CHECK(rows_of(data, fit, Eigen::Vector4d(2.0, 4.0, 9.0, 4.0))
+  CHECK(WhitenedRows(data, fit)(Eigen::Vector4d(2.0, 4.0, 9.0, 4.0))
             .isApprox(Eigen::Vector4d(0.0, 1.5, -2.0, 2.0), 1e-14));
-}
-
-// R'R = A'A of any matrix, however its zeros lie (Golub and Van Loan 2013, 5.2).
-TEST_CASE("a triangle is that of its rows, zeros or not") {
-  constexpr Index kColumns = 9, kLong = 1000;
-  MatrixXd matrix(kLong, kColumns);
-  for (Index c = 0; c < kColumns; ++c)
-    matrix.col(c) = test::white(static_cast<std::uint64_t>(c), kLong);
-  matrix.col(0).tail(kLong - 300).setZero();
-  matrix.col(1).head(300).setZero();
-  matrix.col(4).setZero();
-  matrix.col(6) = 1e8 * matrix.col(2);
-  const MatrixXd r = triangle(matrix);
-  REQUIRE(r.rows() == kColumns);
-  CHECK(r.isUpperTriangular(0.0));
-  const VectorXd scale = matrix.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-  const MatrixXd as_given = scale.asDiagonal() * (matrix.transpose() * matrix) * scale.asDiagonal();
-  const MatrixXd as_made = scale.asDiagonal() * (r.transpose() * r) * scale.asDiagonal();
-  CHECK((as_made - as_given).cwiseAbs().maxCoeff() < 1e-13);
-  CHECK(triangle(matrix.topRows(4)).rows() == 4);
-
-  matrix(500, 3) = std::numeric_limits<double>::quiet_NaN();
-  CHECK(std::isnan(triangle(matrix)(3, 3)));
 }
 
 }  // namespace

@@ -46,15 +46,15 @@ Effect shaped(const VectorXd& shape, double sd) {
 double by_bayes(const Problem& problem, const CvFit& fit, const VectorXd& simulated,
                 const VectorXd& per_sd, const MatrixXd& accepted) {
   const CvData& data = problem.data(0);
+  const WhitenedRows rows_of(data, fit);
   MatrixXd small(kRows, data.nuisances.cols() + accepted.cols());
-  for (Index b = 0; b < data.nuisances.cols(); ++b)
-    small.col(b) = rows_of(data, fit, data.nuisances.col(b));
+  for (Index b = 0; b < data.nuisances.cols(); ++b) small.col(b) = rows_of(data.nuisances.col(b));
   for (Index b = 0; b < accepted.cols(); ++b)
-    small.col(data.nuisances.cols() + b) = rows_of(data, fit, accepted.col(b));
+    small.col(data.nuisances.cols() + b) = rows_of(accepted.col(b));
   const MatrixXd covariance = MatrixXd::Identity(kRows, kRows) + small * small.transpose();
   const Eigen::LLT<MatrixXd> inverse(covariance);
-  const VectorXd residual = rows_of(data, fit, data.measured - simulated);
-  const VectorXd z = rows_of(data, fit, per_sd);
+  const VectorXd residual = rows_of(data.measured - simulated);
+  const VectorXd z = rows_of(per_sd);
   const double before = residual.dot(inverse.solve(residual));
   const double information = z.dot(inverse.solve(z)), right = z.dot(inverse.solve(residual));
   const double size = right / (1.0 + information);

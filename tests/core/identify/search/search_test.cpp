@@ -46,6 +46,26 @@ TEST_CASE("a search names one cause after the other and then ends") {
   CHECK(search(problem, one).named.size() == 1);
 }
 
+// The same gain error in each of two CVs that share nothing: neither is what the other might be.
+TEST_CASE("what is as wrong in another CV is no rival") {
+  Eigen::MatrixXd u(kRows, 2), y(kRows, 2);
+  u << test::telegraph(1, kRows, 12), test::telegraph(3, kRows, 12);
+  y.col(0) = 1.3 * test::first_order(u.col(0), 2.0, 10.0) + 0.1 * test::white(4, kRows);
+  y.col(1) = 1.3 * test::first_order(u.col(1), 2.0, 10.0) + 0.1 * test::white(5, kRows);
+  const ModelSpec two = test::model_of({lag(0, 0, 2.0, 10.0), lag(1, 1, 2.0, 10.0)}, 2, 2);
+  const Recording recording = test::recording_of(u, y);
+  Problem problem(two, 2, recording, Tolerances{}, NoiseModel{});
+  const SearchResult found = search(problem, SearchSettings{});
+  REQUIRE(found.named.size() == 2);
+  for (const Named& named : found.named) {
+    CHECK(named.confidence > 0.9);
+    for (const Rival& rival : named.rivals) {
+      CAPTURE(rival.subject.place.cv, rival.subject.place.input);
+      CHECK((rival.subject.place.cv < 0 || rival.subject.place.cv == named.effect.place.cv));
+    }
+  }
+}
+
 // The suspect is looked for with nuisances beside what was found; the fit had them without it. A
 // channel more has three more of them.
 TEST_CASE("what a search has fitted can be read with the problem that it leaves") {
