@@ -1,6 +1,7 @@
 #include "daemon/report/detect_report.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "config/unit_layout.hpp"
 #include "daemon/report/record_json.hpp"
@@ -12,6 +13,22 @@ namespace {
 double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) / 1e9; }
 
 }  // namespace
+
+bool all_match(const std::vector<ChannelRecord>& channels) {
+  const auto are = [&](Verdict verdict) {
+    return std::any_of(channels.begin(), channels.end(),
+                       [=](const ChannelRecord& channel) { return channel.verdict == verdict; });
+  };
+  return are(Verdict::kMatch) && !are(Verdict::kMismatch);
+}
+
+int DetectReport::mismatching_cvs() const {
+  std::set<std::string> cvs;
+  for (const ChannelRecord& channel : channels)
+    if (channel.verdict == Verdict::kMismatch || channel.alarm == AlarmState::kActive)
+      cvs.insert(channel.cv);
+  return static_cast<int>(cvs.size());
+}
 
 bool DetectReport::mismatch() const {
   return std::any_of(channels.begin(), channels.end(), [](const ChannelRecord& channel) {
@@ -57,6 +74,9 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
     json["corrected_predictions"] = report.corrected_predictions;
   if (!report.other_predictions.empty()) json["other_predictions"] = report.other_predictions;
   for (const auto& [tag, samples] : report.read_every) json["read_every"][tag] = samples;
+  if (report.other_row != OtherRow::kNone)
+    json["matches_with_cvs"] =
+        report.other_row == OtherRow::kEarlier ? "a row earlier" : "a row later";
   for (const files::Stretch& stretch : report.used)
     json["used"].push_back(
         {{"from", seconds(stretch.from_ns)}, {"until", seconds(stretch.until_ns)}});

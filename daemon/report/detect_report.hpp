@@ -16,6 +16,12 @@
 
 namespace mpm::report {
 
+/// Where every channel would match: with the CVs a row earlier, or later.
+enum class OtherRow { kNone, kEarlier, kLater };
+
+/// Whether no channel is a mismatch, and some match.
+[[nodiscard]] bool all_match(const std::vector<ChannelRecord>& channels);
+
 /// What `mpm detect` found in a file: the verdicts after its last row and every alarm on the way.
 struct DetectReport {
   std::string unit;
@@ -38,8 +44,11 @@ struct DetectReport {
   std::map<std::string, double> samples_needed;  ///< at least, by CV; 0 = none
   std::vector<AlarmRecord> alarms;
   PerformanceRecord performance;  ///< over all rows
+  OtherRow other_row = OtherRow::kNone;
 
   [[nodiscard]] bool mismatch() const;
+  /// CVs of which some channel mismatches or is in alarm.
+  [[nodiscard]] int mismatching_cvs() const;
   /// What the monitor says of the unit's tags, beside its records.
   void take_counters(const Monitor& monitor, const config::UnitConfig& config);
 };

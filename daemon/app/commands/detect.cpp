@@ -20,6 +20,7 @@
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/folder_name.hpp"
+#include "daemon/files/shifted_cvs.hpp"
 #include "daemon/history/journal.hpp"
 #include "daemon/host/terminal.hpp"
 #include "daemon/live/sample_journal.hpp"
@@ -112,6 +113,32 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
   return report;
 }
 
+using Way = files::ShiftedCvs::Way;
+
+/// Whether every channel matches with CVs a row earlier or later: asked where channels of several
+/// CVs look wrong, for nothing that happens to one channel looks so.
+report::OtherRow other_row(const config::UnitConfig& unit, const DetectOptions& options,
+                           const files::TimeStyle& times, const files::TimeChoice& choice,
+                           const report::DetectReport& report) {
+  if (report.mismatching_cvs() < 2) return report::OtherRow::kNone;
+  for (const Way way : {Way::kEarlier, Way::kLater}) {
+    const std::unique_ptr<files::FrameSource> frames =
+        bag::open_recording(options.data, unit, times);
+    files::ShiftedCvs shifted(*frames, unit.counts(), way);
+    report::UnitMonitor monitor(unit);
+    Frame frame(unit.counts());
+    bool alarms = false;
+    while (!alarms && shifted.next(frame)) {
+      if (!choice.takes(frame.source_time_ns)) continue;
+      monitor.push(frame);
+      alarms = !monitor.alarms().empty();
+    }
+    if (!alarms && report::all_match(monitor.channels()))
+      return way == Way::kEarlier ? report::OtherRow::kEarlier : report::OtherRow::kLater;
+  }
+  return report::OtherRow::kNone;
+}
+
 /// Tells every finding; false if one is an error.
 bool report(const std::vector<config::Finding>& findings) {
   for (const config::Finding& finding : findings) std::cerr << config::format(finding) << '\n';
@@ -149,7 +176,8 @@ int detect(const DetectOptions& options) {
         bag::open_recording(options.data, loaded.config, times);
     const files::TimeChoice choice(options.time, times);
     Journals journals(options, loaded.config);
-    const report::DetectReport report = run(loaded.config, *frames, choice, journals);
+    report::DetectReport report = run(loaded.config, *frames, choice, journals);
+    report.other_row = other_row(loaded.config, options, times, choice, report);
     tell_notices(frames->notices(), options.data.size() == 1 ? options.data.front() : "");
     if (report.samples == 0)
       throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",

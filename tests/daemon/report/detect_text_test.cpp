@@ -176,4 +176,22 @@ TEST_CASE("predictions of another model than the unit file's are named") {
   CHECK(to_json(report)["other_predictions"] == report.other_predictions);
 }
 
+TEST_CASE("CVs that are a row off are told as such") {
+  DetectReport report = march();
+  CHECK(report.mismatching_cvs() == 1);
+  CHECK_FALSE(all_match(report.channels));
+  CHECK(to_text(report, column(), {200, false}).find("Time stamps") == std::string::npos);
+  CHECK_FALSE(to_json(report).contains("matches_with_cvs"));
+  report.other_row = OtherRow::kEarlier;
+  CHECK(to_text(report, column(), {200, false})
+            .find("Time stamps: with the CVs a row earlier all channels match. They are probably "
+                  "logged a row too late beside the MVs") != std::string::npos);
+  CHECK(to_json(report)["matches_with_cvs"] == "a row earlier");
+  report.channels = {match("FIC-101", "AI-201"),
+                     undetermined("FIC-101", "AI-202", Reason::kNotExcited, 0.28)};
+  CHECK(all_match(report.channels));
+  report.channels.erase(report.channels.begin());
+  CHECK_FALSE(all_match(report.channels));  // none does
+}
+
 }  // namespace mpm::report
