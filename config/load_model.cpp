@@ -1,9 +1,20 @@
 #include <algorithm>
 
 #include "config/load_model_parts.hpp"
+#include "core/text/number_text.hpp"
 
 namespace mpm::config {
 namespace {
+
+/// A digit too many: what lies outside by more than the limits are apart is hardly an operating
+/// point. (CVs may rest outside theirs, which are soft.)
+void warn_if_far_outside(const Value& place, double value, const SignalLimits& limits) {
+  if (!limits.low || !limits.high) return;
+  const double span = *limits.high - *limits.low;
+  if (value >= *limits.low - span && value <= *limits.high + span) return;
+  place.warning("lies far outside the signal's own limits, " + number_text(*limits.low) + " to " +
+                number_text(*limits.high));
+}
 
 void load_origin(const Value& section, UnitConfig& config) {
   std::vector<std::string> tags = config.input_tags();
@@ -16,6 +27,8 @@ void load_origin(const Value& section, UnitConfig& config) {
     const double value = entry.value.number().value_or(0.0);
     if (index < input_count) {
       config.model.input_origin(index) = value;
+      if (static_cast<std::size_t>(index) < config.mv.size())
+        warn_if_far_outside(entry.value, value, config.mv[static_cast<std::size_t>(index)].limits);
     } else {
       config.model.output_origin(index - input_count) = value;
     }

@@ -351,6 +351,25 @@ TEST_CASE("A CV that no channel leads to is a warning, an MV without a channel i
   CHECK(format(result.findings[0]) == "u.yaml:4:8: warning: model: no channel leads to cv 'y2'");
 }
 
+TEST_CASE("An operating point far outside an MV's limits is a warning, one beside them is none") {
+  const auto findings = [](const std::string& value) {
+    const auto result = load_unit_text(
+        "unit: t\nsample_time: 1\nsignals: {mv: {tag: u1, low: 80, high: 160}, cv: y1}\n"
+        "model:\n  channels: [{cv: y1, mv: u1, gain: 1}]\n  operating_point: {u1: " +
+            value + "}\n",
+        "u.yaml");
+    CHECK(result.ok());
+    std::vector<std::string> texts;
+    for (const auto& finding : result.findings) texts.push_back(format(finding));
+    return texts;
+  };
+  CHECK(findings("120").empty());
+  CHECK(findings("200").empty());
+  CHECK(findings("1200") ==
+        std::vector<std::string>{"u.yaml:6:25: warning: model.operating_point.u1: lies far outside "
+                                 "the signal's own limits, 80 to 160"});
+}
+
 // A byte of ISO 8859-1 (the degree sign), one that is cut off, a surrogate: all pass yaml-cpp, and
 // no JSON could be made of them later.
 TEST_CASE("A file that is no UTF-8 is refused at the first byte that is none") {
