@@ -96,6 +96,17 @@ std::string other_row_text(const DetectReport& report, std::size_t width) {
          '\n';
 }
 
+/// A few rows are told by their number alone.
+std::string order_text(const DetectReport& report, std::size_t width) {
+  if (100 * report.out_of_order <= report.samples) return "";
+  return wrapped("Left out: " + std::to_string(report.out_of_order) +
+                     " rows, for their time does not grow. Where that comes of time stamps that "
+                     "jitter by more than half a sample, the others are beside the wrong inputs, "
+                     "too: export them with the times at which they were read",
+                 0, width) +
+         '\n';
+}
+
 MatrixCell cell_of(const ChannelRecord& channel) {
   MatrixCell cell{"u", Tint::kGrey};
   if (channel.verdict == Verdict::kMatch) cell = {"m", Tint::kGreen};
@@ -237,7 +248,8 @@ std::string to_text(const DetectReport& report, const config::UnitConfig& unit,
   teller.section("Alarms that are over", [&](const auto& channel) { return teller.past(channel); });
   return wrapped(head(report, moment), 0, layout.width) + '\n' + seldom_text(report, layout.width) +
          corrected_text(report, layout.width) + other_text(report, layout.width) +
-         other_row_text(report, layout.width) + matrix(report.channels, layout) + teller.text();
+         order_text(report, layout.width) + other_row_text(report, layout.width) +
+         matrix(report.channels, layout) + teller.text();
 }
 
 }  // namespace mpm::report

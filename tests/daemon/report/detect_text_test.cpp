@@ -194,4 +194,14 @@ TEST_CASE("CVs that are a row off are told as such") {
   CHECK_FALSE(all_match(report.channels));  // none does
 }
 
+TEST_CASE("many rows out of order are told apart, a few by their number") {
+  DetectReport report = march();  // of 2880 samples
+  report.out_of_order = 28;
+  CHECK(to_text(report, column(), {200, false}).find("Left out") == std::string::npos);
+  report.out_of_order = 29;
+  CHECK(to_text(report, column(), {200, false})
+            .find("Left out: 29 rows, for their time does not grow. Where that comes of time "
+                  "stamps that jitter by more than half a sample") != std::string::npos);
+}
+
 }  // namespace mpm::report
