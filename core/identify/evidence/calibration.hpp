@@ -38,6 +38,11 @@ inline constexpr double kMovementRowsPerColumn = 4.0;
 /// does. Chosen.
 inline constexpr Eigen::Index kMirrored = 2 * calibration::extent::kFirstValues;
 inline constexpr Eigen::Index kLongestGlitch = 2;  ///< rows
+/// Of a signal that is elsewhere for long: at most so many of its rows at either end, and so many
+/// ranges of the others away. Chosen: bar in place of Pa is 1e5 times its level, and no step of a
+/// test is so many times what the input does between tests.
+inline constexpr double kFewRows = 0.1;
+inline constexpr double kElsewhere = 1e5;
 
 /// Pulses of inputs (unanswered_pulses.hpp). So many times the input's usual move away and back;
 /// back where no more than this share of it is left; and more of them than this share of the rows

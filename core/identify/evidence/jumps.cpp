@@ -82,6 +82,33 @@ Index leave_out(const std::vector<Index>& marked, Eigen::Ref<Eigen::VectorXd> va
   return count;
 }
 
+/// In hindsight, whatever it lasts: what few rows have that lies a hundred thousand times the range
+/// of most others away is another unit's, or nobody's. How many.
+Index leave_out_elsewhere(Eigen::Ref<Eigen::VectorXd> values) {
+  std::vector<double> known;
+  for (const double value : values)
+    if (std::isfinite(value)) known.push_back(value);
+  if (known.empty()) return 0;
+  const auto quantile = [&](double share) {
+    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
+    std::nth_element(known.begin(), known.begin() + at, known.end());
+    return known[static_cast<std::size_t>(at)];
+  };
+  const double low = quantile(kFewRows), high = quantile(1.0 - kFewRows);
+  const double farthest = kElsewhere * (high - low);
+  const auto elsewhere = [&](double value) {
+    return low - value > farthest || value - high > farthest;
+  };
+  if (!(high > low)) return 0;
+  Index count = 0;
+  for (double& value : values)
+    if (std::isfinite(value) && elsewhere(value)) {
+      value = std::numeric_limits<double>::quiet_NaN();
+      ++count;
+    }
+  return count;
+}
+
 }  // namespace
 
 Index JumpTally::total() const {
@@ -92,6 +119,10 @@ Index JumpTally::total() const {
 JumpTally leave_out_jumps(Recording& recording) {
   const SignalCounts counts = counts_of(recording);
   Marks inputs(static_cast<std::size_t>(counts.mv)), cvs(static_cast<std::size_t>(counts.cv));
+  JumpTally left_out;
+  for (auto&& input : recording.inputs.colwise())
+    left_out.inputs.push_back(leave_out_elsewhere(input));
+  for (auto&& cv : recording.cvs.colwise()) left_out.cvs.push_back(leave_out_elsewhere(cv));
   Frame frame(counts);
   for (const Run& run : runs_of(recording)) {
     Screen screen(counts, Screen::Looks::kFar);
@@ -117,11 +148,10 @@ JumpTally leave_out_jumps(Recording& recording) {
     for (Index k = 0; k < run.count; ++k) push(k, run.first + k);
     for (Index k = 1; k <= mirrored; ++k) push(run.count - 1 - k, kNoRow);
   }
-  JumpTally left_out;
   for (std::size_t i = 0; i < inputs.size(); ++i)
-    left_out.inputs.push_back(leave_out(inputs[i], recording.inputs.col(static_cast<Index>(i))));
+    left_out.inputs[i] += leave_out(inputs[i], recording.inputs.col(static_cast<Index>(i)));
   for (std::size_t j = 0; j < cvs.size(); ++j)
-    left_out.cvs.push_back(leave_out(cvs[j], recording.cvs.col(static_cast<Index>(j))));
+    left_out.cvs[j] += leave_out(cvs[j], recording.cvs.col(static_cast<Index>(j)));
   return left_out;
 }
 

@@ -53,6 +53,28 @@ TEST_CASE("one wild value of any signal is left out, wherever it is, and no othe
 }
 
 // A historian's or an instrument's: causes are told by them.
+TEST_CASE("a signal that is in another unit for a while is left out there, a test's pulse is not") {
+  for (const Index row : {Index{0}, Index{200}}) {
+    Recording recording = sound();
+    recording.inputs.col(1).segment(row, 30).array() =
+        1e6 * (20.0 + recording.inputs.col(1).segment(row, 30).array());
+    recording.cvs.col(0).segment(row, 35) *= 1e9;
+    const JumpTally left_out = leave_out_jumps(recording);
+    CHECK(left_out.inputs == std::vector<Index>{0, 30});
+    CHECK(left_out.cvs[0] >= 30);  // some were hardly anything
+    CHECK(recording.cvs.col(0)
+              .array()
+              .isFinite()
+              .select(recording.cvs.col(0).array(), 0.0)
+              .abs()
+              .maxCoeff() < 1e6);
+  }
+  Recording tested = sound();
+  tested.inputs.col(1) = 1e-3 * test::white(7, kRows);
+  tested.inputs.col(1).segment(150, 30).setConstant(20.0);
+  CHECK(leave_out_jumps(tested).total() == 0);
+}
+
 TEST_CASE("values that stand still, or rest at the end of a range, stay") {
   Recording recording = sound();
   recording.cvs.col(0) = recording.cvs.col(0).cwiseMin(1.0);
