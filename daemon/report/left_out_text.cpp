@@ -23,7 +23,7 @@ std::string jumps_text(const config::UnitConfig& unit, const JumpTally& jumps) {
     add(unit.input_tag(static_cast<int>(i)), jumps.inputs[i]);
   for (std::size_t j = 0; j < jumps.cvs.size(); ++j) add(unit.cv[j].tag, jumps.cvs[j]);
   return counted(static_cast<std::uint64_t>(jumps.total()), "value") +
-         " left out, far beyond all that the signal had been and back at once" + worst_tags(tags);
+         " left out, far beyond all that the signal is otherwise" + worst_tags(tags);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST_CASE("what was left out is told, values with their tags") {
             "300 rows left out, for an input was missing for more than 20 intervals; a new run "
             "begins after",
             "1 row left out, of runs too short to tell anything",
-            "3 values left out, far beyond all that the signal had been and back at once, of d "
+            "3 values left out, far beyond all that the signal is otherwise, of d "
             "(2), y (1)"});
 }
 
