@@ -431,6 +431,10 @@ std::optional<std::string> read_text_file(const std::string& path, Report& repor
       return std::nullopt;
     }
   }
+  if (file.bad()) {
+    report.add(Severity::kError, nowhere, "", "cannot be read: " + failure_text(errno));
+    return std::nullopt;
+  }
   return text;
 }
 

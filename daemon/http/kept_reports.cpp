@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <regex>
-#include <sstream>
 #include <system_error>
 
+#include "config/whole_file.hpp"
 #include "daemon/files/folder_name.hpp"
 
 namespace mpm::http {
@@ -44,10 +43,8 @@ std::optional<std::string> KeptReports::read(const std::string& unit, const std:
   std::error_code error;
   const auto bytes = fs::file_size(path, error);
   if (error || bytes > kMostBytes) return std::nullopt;
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) return std::nullopt;
-  return text.str();
+  std::string why;
+  return config::read_whole_file(path.string(), why);
 }
 
 }  // namespace mpm::http

@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <fstream>
-#include <iterator>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "config/failure_text.hpp"
+#include "config/whole_file.hpp"
 
 namespace mpm::keys {
 namespace {
@@ -70,11 +71,11 @@ class UnfinishedFolder {
 }  // namespace
 
 std::string read_text(const fs::path& path) {
-  std::ifstream file(path);
-  if (!file) fail(path);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (text.empty()) throw std::runtime_error(path.string() + ": nothing is in it");
-  return text;
+  std::string why;
+  std::optional<std::string> text = config::read_whole_file(path.string(), why);
+  if (text && text->empty()) why = "nothing is in it";
+  if (!why.empty()) throw std::runtime_error(path.string() + ": " + why);
+  return *std::move(text);
 }
 
 void write_participant(const fs::path& folder, const Identity& identity, const Identity& authority,

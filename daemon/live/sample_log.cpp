@@ -10,13 +10,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "config/whole_file.hpp"
+#include "core/text/number_text.hpp"
 #include "daemon/live/numbered_files.hpp"
 
 namespace mpm::live {
@@ -108,9 +108,10 @@ std::optional<std::string_view> next_record(std::string_view& bytes) {
   return record;
 }
 
-// A file, or the names in a folder. Where it fails nobody could do better.
+// A file, or the names in a folder. Where it fails nobody could do better. What somebody has put
+// there as a pipe is not waited for.
 void sync_path(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return;
   static_cast<void>(::fsync(descriptor));
   ::close(descriptor);
@@ -137,17 +138,22 @@ std::vector<std::uint64_t> SampleLog::files() const { return numbers_in(folder_,
 
 // False where the file is of another meaning.
 bool SampleLog::read(File& file, const Visit& visit, std::string& why) {
-  std::ifstream stream(path_of(file.number), std::ios::binary);
-  const std::string all((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  std::string_view bytes = all;
+  const std::string path = path_of(file.number);
+  std::string failure;
+  const std::optional<std::string> all = config::read_whole_file(path, failure);
+  if (!all) {
+    why = path + " cannot be read: " + failure;
+    return true;
+  }
+  std::string_view bytes = *all;
   if (!bytes.starts_with(kMagic)) {
-    why = "some of it is damaged";
+    why = path + ": some of it is damaged";
     return true;
   }
   bytes.remove_prefix(kMagic.size());
   const auto meaning = next_record(bytes);
   if (!meaning) {
-    if (!bytes.empty()) why = "some of it is damaged";
+    if (!bytes.empty()) why = path + ": some of it is damaged";
     return true;
   }
   if (*meaning != meaning_) return false;
@@ -163,33 +169,38 @@ bool SampleLog::read(File& file, const Visit& visit, std::string& why) {
     }
   }
   // The last record of a file may be torn; what is behind it would have been written later.
-  if (!bytes.empty()) why = "some of it is damaged";
+  if (!bytes.empty()) why = path + ": some of it is damaged";
   return true;
 }
 
 std::string SampleLog::recall(const Visit& visit, std::uint64_t from, const Visit& earlier) {
-  std::string why, ignored_why;
+  std::vector<std::string> lost;
+  bool changed = false;
   files_.clear();
   std::error_code unreadable;
   if (fs::exists(folder_, unreadable)) {
     (void)fs::directory_iterator(folder_, unreadable);
-    if (unreadable) why = folder_ + " cannot be read: " + unreadable.message();
+    if (unreadable) lost.push_back(folder_ + " cannot be read: " + unreadable.message());
   }
   const Visit ignore = [](const BlockView*) {};
   const Visit& before = earlier ? earlier : ignore;
   // Of another meaning is what was before the unit file changed: what follows is a new beginning.
   for (const std::uint64_t number : files()) {
     File file{number, 0};
-    if (number < from ? read(file, before, ignored_why) : read(file, visit, why)) {
+    std::string why;
+    if (read(file, number < from ? before : visit, why)) {
       files_.push_back(file);
+      if (!why.empty() && number >= from) lost.push_back(why);
       continue;
     }
-    why = "the unit file has changed what it means";
+    changed = true;
     std::error_code ignored;
     fs::remove(path_of(number), ignored);
   }
   // A new file is begun for what comes: behind a torn record nothing is found again.
-  return why;
+  if (lost.empty()) return changed ? kChanged : "";
+  return lost.front() +
+         (lost.size() == 1 ? "" : ", and " + counted(lost.size() - 1, "file") + " more like it");
 }
 
 std::optional<std::uint64_t> SampleLog::push(const BlockView& block) {

@@ -37,9 +37,11 @@ class SampleLog {
 
   /// The numbers of the files that there are, ascending.
   [[nodiscard]] std::vector<std::uint64_t> files() const;
+  /// Why what was kept is not used although nothing is wrong with it.
+  static constexpr const char* kChanged = "the unit file has changed what it means";
   /// To be called once, before anything is added: all that is there, oldest first; what comes
   /// before the beginning of file `from` goes to `earlier`, where that is any. Returns why some of
-  /// what goes to `visit` is not used, in words; empty: all is.
+  /// what goes to `visit` is not used, with the file, in words; empty: all is.
   std::string recall(const Visit& visit, std::uint64_t from = 0, const Visit& earlier = nullptr);
   /// Never throws for the disk: see `problem`. The number of the file that begins with this block,
   /// where one does.

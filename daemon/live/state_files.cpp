@@ -4,19 +4,16 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "config/replacement_file.hpp"
+#include "config/whole_file.hpp"
 #include "core/text/netstring.hpp"
 #include "daemon/host/low_priority.hpp"
 #include "daemon/live/numbered_files.hpp"
@@ -91,14 +88,12 @@ std::string write_state(const std::string& folder, const std::string& belongs, s
 std::optional<std::vector<std::byte>> read_state(const std::string& folder,
                                                  const std::string& belongs, std::uint64_t number,
                                                  std::string& why) {
-  errno = 0;
-  std::ifstream stream(path_of(folder, number), std::ios::binary);
-  if (!stream) {
-    why = std::string("it cannot be read: ") + std::strerror(errno);
+  const std::optional<std::string> all = config::read_whole_file(path_of(folder, number), why);
+  if (!all) {
+    why = "it cannot be read: " + why;
     return std::nullopt;
   }
-  const std::string all((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  std::string_view rest = all;
+  std::string_view rest = *all;
   const auto cut = [&rest](std::string_view expected) {
     if (!rest.starts_with(expected)) return false;
     rest.remove_prefix(expected.size());

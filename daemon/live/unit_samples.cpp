@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "config/load_unit.hpp"
+#include "config/whole_file.hpp"
 #include "core/monitor/cost.hpp"
 #include "core/text/netstring.hpp"
 #include "core/text/number_text.hpp"
@@ -32,8 +31,8 @@ std::string identity_of(const std::string& text) {
 }
 
 std::string identity_of_program() {
-  std::ifstream program("/proc/self/exe", std::ios::binary);
-  return identity_of({std::istreambuf_iterator<char>(program), std::istreambuf_iterator<char>()});
+  std::string why;
+  return identity_of(config::read_whole_file("/proc/self/exe", why).value_or(""));
 }
 
 }  // namespace

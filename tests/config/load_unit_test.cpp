@@ -315,6 +315,11 @@ TEST_CASE("Files that cannot be read are findings") {
   const LoadResult directory = load_unit(folder.path());
   REQUIRE(directory.findings.size() == 1);
   CHECK(format(directory.findings[0]) == folder.path() + ": error: is a folder, not a file");
+  // A regular file whose first byte is no memory of this process.
+  const LoadResult broken = load_unit("/proc/self/mem");
+  REQUIRE(broken.findings.size() == 1);
+  CHECK(format(broken.findings[0]) ==
+        "/proc/self/mem: error: cannot be read: Input/output error");
 }
 
 TEST_CASE("What may not be read is told with the reason and the user") {

@@ -1,7 +1,5 @@
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +8,7 @@
 
 #include "config/load_unit.hpp"
 #include "config/replacement_file.hpp"
+#include "config/whole_file.hpp"
 #include "core/identification/identify_long.hpp"
 #include "core/parallel/parallel.hpp"
 #include "daemon/app/commands/commands.hpp"
@@ -54,8 +53,11 @@ std::optional<config::UnitConfig> load(const std::string& file) {
 }
 
 std::string text_of(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::string why;
+  std::optional<std::string> text = config::read_whole_file(file, why);
+  if (!text)
+    throw config::InputError({file, 0, 0, config::Severity::kError, "", "cannot be read: " + why});
+  return *std::move(text);
 }
 
 report::IdentificationRun prepare(const IdentifyOptions& options, config::UnitConfig unit) {
@@ -84,6 +86,7 @@ std::string outcome(const IdentifyOptions& options, bool found) {
 
 // 0, or 1 where nothing could be identified.
 int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
+  const std::string unit_file = options.out.empty() ? "" : text_of(options.config);
   std::optional<files::OutputFolder> folder;
   if (!options.report.empty()) folder.emplace(options.report);
   report::IdentificationRun run = prepare(options, std::move(unit));
@@ -109,7 +112,7 @@ int identify_unit(const IdentifyOptions& options, config::UnitConfig unit) {
     run.plan = test_plan(run.identification, report::test_limits(run.unit), run.unit.counts().mv);
   const bool found = report::found_any(run);
   if (found && !options.out.empty()) {
-    const std::string yaml = report::new_unit_yaml(run, text_of(options.config));
+    const std::string yaml = report::new_unit_yaml(run, unit_file);
     config::ReplacementFile out(options.out);
     out.write(yaml);
     out.commit();

@@ -77,6 +77,10 @@ TEST_CASE("keys are never overwritten, and new ones come from the authority that
                     Catch::Contains("none/certificate.pem: No such file"));
   for (const auto& entry : fs::directory_iterator(first.parent_path()))
     CHECK(entry.path().filename().string().find("keys-3") == std::string::npos);
+
+  fs::create_directories(folder.file("ca") + "/certificate.pem");
+  CHECK_THROWS_WITH(make_keys(folder.file("keys-3"), folder.file("ca"), 30, now),
+                    Catch::Contains("ca/certificate.pem: Is a directory"));
 }
 
 }  // namespace

@@ -227,7 +227,38 @@ TEST_CASE("zeros at the end of a file are damage, and nothing that happened") {
   test::write_file(file, test::read_file(file) + std::string(4096, '\0'));
   const Told told = recall(place);
   CHECK(told.lines == lines);
-  CHECK(told.why == "some of it is damaged");
+  CHECK(told.why == file + ": some of it is damaged");
+}
+
+TEST_CASE("a file that cannot be read is told, and the others come back") {
+  const test::TemporaryFolder folder;
+  const std::string place = folder.file("samples");
+  std::vector<std::string> lines;
+  for (int life = 0; life < 3; ++life) {
+    SampleLog log(place, "a", 1000);
+    (void)recall(log);
+    push(log, SignalKind::kMv, life, &lines);
+  }
+  const std::vector<fs::path> files = files_of(place);
+  REQUIRE(files.size() == 3);
+  fs::remove(files[0]);
+  fs::create_directory(files[0]);
+  const Told one = recall(place);
+  CHECK(one.lines == std::vector<std::string>{lines[1], lines[2]});
+  CHECK(one.why == files[0].string() + " cannot be read: Is a directory");
+  fs::remove(files[2]);
+  REQUIRE(::mkfifo(files[2].c_str(), 0600) == 0);
+  const Told two = recall(place);
+  CHECK(two.lines == std::vector<std::string>{lines[1]});
+  CHECK(two.why == one.why + ", and 1 file more like it");
+  SampleLog::sync(place);  // does not wait for whoever writes to the pipe
+
+  SampleLog log(place, "a", 1000);
+  std::vector<std::string> after = {lines[1]};
+  (void)recall(log);
+  push(log, SignalKind::kMv, 9, &after);
+  CHECK(log.problem().empty());
+  CHECK(recall(place).lines == after);
 }
 
 /// Files of this process end there, as on a disk that is full.

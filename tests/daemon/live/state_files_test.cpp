@@ -124,6 +124,9 @@ TEST_CASE("why a state is not used is told") {
   test::write_file(path(folder, 8), "mpm state 1\nhalf");
   CHECK_FALSE(StateFiles(place, "a").read(8, why));
   CHECK(why == "it is damaged");
+  fs::create_directory(path(folder, 9));
+  CHECK_FALSE(StateFiles(place, "a").read(9, why));
+  CHECK(why == "it cannot be read: Is a directory");
 }
 
 // CRC-32 finds every burst of up to 32 bits.
