@@ -49,10 +49,12 @@ bool Checkpoints::take_back() {
   return taken_back_ > 0;
 }
 
-std::string Checkpoints::recall(const SampleLog::Visit& visit, const SampleLog::Visit& earlier) {
-  std::string lost = log_.recall(visit, taken_back_, earlier);
+void Checkpoints::recall(const SampleLog::Visit& visit, const SampleLog::Visit& earlier) {
+  const std::string lost = log_.recall(visit, taken_back_, earlier);
+  if (!lost.empty())
+    spdlog::log(lost == SampleLog::kChanged ? spdlog::level::info : spdlog::level::warn,
+                "{}: not all samples that were kept are used: {}", unit_, lost);
   next_state_ = log_.last() + 1;
-  return lost;
 }
 
 void Checkpoints::keep_now() {

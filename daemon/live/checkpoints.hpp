@@ -26,8 +26,8 @@ class Checkpoints {
   /// `recall`, before all others. False: there is none, and all is as before.
   [[nodiscard]] bool take_back();
   /// The samples behind that state go to `visit`, those before it to `earlier`, where that is any.
-  /// Returns as SampleLog::recall.
-  std::string recall(const SampleLog::Visit& visit, const SampleLog::Visit& earlier);
+  /// What of them is not used is logged, and why.
+  void recall(const SampleLog::Visit& visit, const SampleLog::Visit& earlier);
   /// As things stand after `recall`, which took long: from now on this is the state.
   void keep_now();
 

@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "config/failure_text.hpp"
 #include "config/whole_file.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/live/numbered_files.hpp"
@@ -178,10 +179,9 @@ std::string SampleLog::recall(const Visit& visit, std::uint64_t from, const Visi
   bool changed = false;
   files_.clear();
   std::error_code unreadable;
-  if (fs::exists(folder_, unreadable)) {
-    (void)fs::directory_iterator(folder_, unreadable);
-    if (unreadable) lost.push_back(folder_ + " cannot be read: " + unreadable.message());
-  }
+  (void)fs::directory_iterator(folder_, unreadable);
+  if (unreadable && unreadable != std::errc::no_such_file_or_directory)
+    lost.push_back(folder_ + " cannot be read: " + config::failure_text(unreadable.value()));
   const Visit ignore = [](const BlockView*) {};
   const Visit& before = earlier ? earlier : ignore;
   // Of another meaning is what was before the unit file changed: what follows is a new beginning.

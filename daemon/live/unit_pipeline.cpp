@@ -247,8 +247,7 @@ std::string UnitPipeline::recall(const UnitSamples& samples) {
     };
   };
   recalling_ = true;
-  const std::string lost =
-      checkpoints_->recall(into(aligner_), observer_ != nullptr ? into(earlier) : nullptr);
+  checkpoints_->recall(into(aligner_), observer_ != nullptr ? into(earlier) : nullptr);
   recalling_ = false;
   health_.recall(aligner_.counters());
   if (aligner_.counters().frames > 0)
@@ -261,7 +260,6 @@ std::string UnitPipeline::recall(const UnitSamples& samples) {
   std::string text =
       frames == 0 ? "begins anew" : "goes on behind " + counted(frames, "sample") + " from before";
   if (before > 0) text += ", of which it judges " + std::to_string(frames - before) + " again";
-  if (!lost.empty()) text += "; not all that was kept is used: " + lost;
   return text;
 }
 

@@ -206,6 +206,43 @@ TEST_CASE("a state that is damaged is replaced by the one before, or by the samp
   CHECK(kept < 2000);
 }
 
+TEST_CASE("what of the state cannot be read is named, and the monitor goes on without it") {
+  namespace fs = std::filesystem;
+  Corner corner("restart-unreadable", "monitor: {memory: 200, diagnosis_samples: 0}\n");
+  Plant plant(3.0);
+  for (int i = 0; i < 3; ++i) corner.play(plant, 1000);
+  const std::string samples = corner.folder.file("state") + "/samples";
+  const auto make_folder_of_last = [&](const std::string& prefix) {
+    std::string last;
+    for (const auto& entry : fs::directory_iterator(samples + "/toy"))
+      if (entry.path().filename().string().starts_with(prefix))
+        last = std::max(last, entry.path().string());
+    fs::remove(last);
+    fs::create_directory(last);
+    return last;
+  };
+  const auto warned = [&](const std::string& text) {
+    const std::string log = read_file(corner.folder.file("err"));
+    CAPTURE(log);
+    CHECK(log.find("warning toy: " + text) != std::string::npos);
+  };
+  corner.kill();
+  const std::string state = make_folder_of_last("state-");
+  const std::string kept = make_folder_of_last("samples-");
+  CHECK(corner.start() > 0);
+  warned(state + " is not used: it cannot be read: Is a directory");
+  warned("not all samples that were kept are used: " + kept + " cannot be read: Is a directory");
+  corner.play(plant, 5);
+
+  corner.kill();
+  fs::remove_all(samples);
+  write_file(samples, "");
+  CHECK(corner.start() == 0);
+  warned("not all samples that were kept are used: " + samples +
+         "/toy cannot be read: Not a directory");
+  corner.play(plant, 5);
+}
+
 // Some twelve minutes: a reader that was killed is waited for until its lease has run out.
 TEST_CASE("a monitor that is killed a hundred times goes on as if it had not been", "[.long]") {
   (void)go_on_over_kills("restart-hundred", 78, 100,

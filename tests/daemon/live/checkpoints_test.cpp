@@ -39,7 +39,7 @@ struct Process {
                     [this](Archive& a) { a(sums); }) {
     had_state = checkpoints.take_back();
     at_state = sums.count;
-    (void)checkpoints.recall([this](const BlockView* block) { sums.take(block); }, nullptr);
+    checkpoints.recall([this](const BlockView* block) { sums.take(block); }, nullptr);
   }
 
   void push(std::int64_t k) {
