@@ -25,6 +25,7 @@
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/quantity.hpp"
+#include "daemon/history/alarm_store.hpp"
 #include "daemon/host/lock_file.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
@@ -335,6 +336,10 @@ int run(Options& options) {
     } catch (const std::exception& error) {
       loaded.findings.push_back({"--token-file", 0, 0, config::Severity::kError, "", error.what()});
     }
+  // Its own, in the state folder, it puts aside; what somebody names may be named by mistake.
+  if (const std::string& journal = options.service.alarm_journal; history::is_foreign(journal))
+    loaded.findings.push_back({"--alarm-journal", 0, 0, config::Severity::kError, "",
+                               journal + ": holds something else than a journal of alarms"});
   for (const config::Finding& finding : loaded.findings)
     (options.check ? std::cout : std::cerr) << config::format(finding) << '\n';
   if (!loaded.ok()) return options.check ? kFound : kBadInput;

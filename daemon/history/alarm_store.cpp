@@ -9,7 +9,9 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -154,14 +156,18 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> file_at(const std::string
   return std::pair<std::uint64_t, std::uint64_t>(there.st_dev, there.st_ino);
 }
 
-/// In words, for SQLite has one for all: what there is instead of a file that may be read.
-void check_readable(const std::string& path) {
+/// In words, for SQLite has one for all, and would wait for a pipe: what there is instead of a
+/// file.
+void check_kind(const std::string& path) {
   struct stat there {};
-  if (stat(path.c_str(), &there) == 0) {
-    if (S_ISDIR(there.st_mode))
-      throw std::runtime_error(path + ": is a folder; the journal is a file, as alarms.sqlite");
-    if (!S_ISREG(there.st_mode)) throw std::runtime_error(path + ": is no file");
-  }
+  if (stat(path.c_str(), &there) != 0) return;
+  if (S_ISDIR(there.st_mode))
+    throw std::runtime_error(path + ": is a folder; the journal is a file, as alarms.sqlite");
+  if (!S_ISREG(there.st_mode)) throw std::runtime_error(path + ": is no file");
+}
+
+/// Likewise, where it may not be read.
+void check_readable(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0)
     throw std::runtime_error(path + ": cannot be read: " + std::generic_category().message(errno));
@@ -193,12 +199,24 @@ std::string as_opened(const std::string& path, AlarmStore::Access access) {
 
 }  // namespace
 
+bool is_foreign(const std::string& path) {
+  constexpr std::string_view kHeader("SQLite format 3\0", 16);
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) return false;
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, kHeader.size()> begin{};
+  file.read(begin.data(), begin.size());
+  const auto count = static_cast<std::size_t>(file.gcount());
+  return count > 0 && std::string_view(begin.data(), count) != kHeader;
+}
+
 void AlarmStore::CloseStatement::operator()(sqlite3_stmt* statement) const {
   sqlite3_finalize(statement);
 }
 
 AlarmStore::AlarmStore(const std::string& path, Access access, std::int64_t most)
     : path_(path), most_(most) {
+  check_kind(path);
   if (access == Access::kRead) check_readable(path);
   if (access == Access::kAppend)  // before anything is in it
     if (const int made =

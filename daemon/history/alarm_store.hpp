@@ -48,6 +48,10 @@ class DamagedStore : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Whether a file is there that was never a journal: it holds something, and not what every SQLite
+/// file begins with. False where nobody can tell.
+[[nodiscard]] bool is_foreign(const std::string& path);
+
 /// The journal of all alarms of a daemon, one SQLite file: entries are added and never changed; of
 /// more than `kMostEntries` the oldest go. An entry that was appended survives whatever becomes of
 /// the process or the machine. Each carries a SHA-256 over itself and the one before: what was

@@ -265,6 +265,16 @@ TEST_CASE("command lines end with the agreed exit codes") {
         "--token-file: error: token file " + token + ": No such file or directory\n");
   CHECK(run({"mpmd", "--config", folder.file("good.yaml"), "--token-file", token, "--check"}, out,
             err) == 1);
+  const std::string unit = read_file(folder.file("good.yaml"));
+  for (const bool check : {false, true}) {
+    std::vector<std::string> command = {"mpmd", "--config", folder.file("good.yaml"),
+                                        "--alarm-journal", folder.file("good.yaml")};
+    if (check) command.emplace_back("--check");
+    CHECK(run(command, out, err) == (check ? 1 : 3));
+    CHECK(read_file(check ? out : err) == "--alarm-journal: error: " + folder.file("good.yaml") +
+                                              ": holds something else than a journal of alarms\n");
+    CHECK(read_file(folder.file("good.yaml")) == unit);
+  }
   write_file(folder.file("nic.yaml"), unit_yaml("nic") + "dds: {interface: nosuchnic0}\n");
   CHECK(run({"mpmd", "--config", folder.file("nic.yaml")}, out, err) == 2);
   CHECK(read_file(err).find("nosuchnic0") != std::string::npos);  // Cyclone's reason is passed on

@@ -200,6 +200,27 @@ TEST_CASE("others may not read the journal, and what is none is refused") {
   const std::string other = journal.folder.file("other");
   std::ofstream(other) << "no data base at all, but long enough to be looked at by somebody";
   CHECK_THROWS(AlarmStore(other, AlarmStore::Access::kAppend));
+  const std::string pipe = journal.folder.file("pipe");  // is not waited for
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(AlarmStore(pipe, AlarmStore::Access::kAppend), pipe + ": is no file");
+}
+
+TEST_CASE("a file that was never a journal is known by its first bytes") {
+  const Journal journal;
+  CHECK_FALSE(is_foreign(journal.path));  // none is there
+  const auto holds = [&](const std::string& text) {
+    test::write_file(journal.path, text);
+    return is_foreign(journal.path);
+  };
+  CHECK_FALSE(holds(""));
+  CHECK(holds("unit: toy\n"));
+  CHECK(holds("SQLite format 4, a novel"));
+  CHECK(holds("SQLite"));
+  CHECK_FALSE(is_foreign(journal.folder.file("")));
+  test::write_file(journal.path, "");
+  (void)journal.open();
+  CHECK_FALSE(is_foreign(journal.path));
+  CHECK_FALSE(holds(test::read_file(journal.path).substr(0, 16) + std::string(5000, 'x')));
 }
 
 }  // namespace
