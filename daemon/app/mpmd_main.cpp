@@ -26,7 +26,7 @@
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/quantity.hpp"
 #include "daemon/history/alarm_store.hpp"
-#include "daemon/host/lock_file.hpp"
+#include "daemon/host/locked_places.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
 #include "daemon/host/standard_output.hpp"
@@ -45,6 +45,7 @@ namespace mpm::app {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience{500};    // with a diagnosis that is to end
+constexpr std::chrono::seconds kLookPeriod{1};         // whether places are still there
 constexpr std::uint64_t kSmallestJournal = 1'000'000;  // bytes
 // Exit codes of all programs of the project.
 constexpr int kDone = 0, kFound = 1, kFailed = 2, kBadInput = 3;
@@ -256,7 +257,7 @@ std::optional<std::vector<config::UnitConfig>> load_anew(const Options& options,
 
 /// What two would spoil if both wrote to it: journals whose entries build upon one another, samples
 /// and states. Throws where another mpmd does.
-std::vector<host::LockFile> lock_places(const Options& options) {
+host::LockedPlaces lock_places(const Options& options) {
   namespace fs = std::filesystem;
   std::error_code ignored;  // who writes there tells
   std::set<std::string> places;
@@ -274,15 +275,14 @@ std::vector<host::LockFile> lock_places(const Options& options) {
     add(folder, "/.lock");
   }
   if (!options.service.alarm_journal.empty()) add(options.service.alarm_journal, ".lock");
-  std::vector<host::LockFile> locks;
-  for (const std::string& place : places)
-    if (locks.emplace_back(place); !locks.back().problem().empty())
-      spdlog::warn("cannot be locked against another mpmd: {}", locks.back().problem());
-  return locks;
+  host::LockedPlaces locked(places);
+  for (const std::string& problem : locked.problems())
+    spdlog::warn("cannot be locked against another mpmd: {}", problem);
+  return locked;
 }
 
 int serve(const Options& options, std::vector<config::UnitConfig> units, host::StopSignal& stop,
-          host::AwaitedSignal& hang_up) {
+          host::AwaitedSignal& hang_up, host::LockedPlaces& places) {
   spdlog::info("{} starts", idl::version_text("mpmd"));
   const live::ReportStore store(options.state_folder);
   live::DiagnosisWorker worker(
@@ -292,6 +292,7 @@ int serve(const Options& options, std::vector<config::UnitConfig> units, host::S
   // Read anew, all units begin anew, and take again what they took: one way for what has changed
   // and for what has not.
   int askers = 0;
+  std::chrono::steady_clock::time_point next_look{};
   for (bool again = true; again;) {
     again = false;
     std::optional<Page> page;
@@ -302,6 +303,10 @@ int serve(const Options& options, std::vector<config::UnitConfig> units, host::S
     service_options.first_asker = std::exchange(askers, askers + static_cast<int>(units.size()));
     live::MonitorService service(units, service_options, worker);
     service.run([&] {
+      if (const auto now = std::chrono::steady_clock::now(); now >= next_look) {
+        next_look = now + kLookPeriod;
+        for (const std::string& line : places.look()) spdlog::warn(line);
+      }
       if (hang_up.take()) {
         host::Notifier& notifier = service.notifier();
         notifier.reloading();
@@ -371,8 +376,8 @@ int run(Options& options) {
       options.service.alarm_journal = options.state_folder + "/alarms.sqlite";
     if (options.standby) options.service.standby_rank = options.standby_rank;
     if (!options.state_folder.empty()) options.service.samples = options.state_folder + "/samples";
-    const std::vector<host::LockFile> locks = lock_places(options);
-    return serve(options, std::move(loaded.units), stop, hang_up);
+    host::LockedPlaces places = lock_places(options);
+    return serve(options, std::move(loaded.units), stop, hang_up, places);
   } catch (const std::exception& error) {
     if (!spdlog::should_log(spdlog::level::err)) throw;  // no log is silence
     spdlog::error("mpmd: error: {}", error.what());

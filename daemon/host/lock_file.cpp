@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -41,8 +42,9 @@ std::string holder(int descriptor) {
 }  // namespace
 
 LockFile::LockFile(const std::string& path)
-    // No link: it would be somebody else's file that is written to.
-    : descriptor_(
+    : path_(path),
+      // No link: it would be somebody else's file that is written to.
+      descriptor_(
           open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, kMode)) {
   if (descriptor_ < 0) {
     problem_ = path + ": " + config::failure_text(errno);
@@ -70,7 +72,24 @@ LockFile::LockFile(const std::string& path)
 }
 
 LockFile::LockFile(LockFile&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), problem_(std::move(other.problem_)) {}
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      problem_(std::move(other.problem_)) {}
+
+LockFile& LockFile::operator=(LockFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(problem_, other.problem_);
+  return *this;
+}
+
+bool LockFile::in_place() const {
+  if (descriptor_ < 0) return true;
+  struct stat held {};
+  struct stat there {};
+  return fstat(descriptor_, &held) == 0 && stat(path_.c_str(), &there) == 0 &&
+         held.st_dev == there.st_dev && held.st_ino == there.st_ino;
+}
 
 LockFile::~LockFile() {
   if (descriptor_ >= 0) close(descriptor_);

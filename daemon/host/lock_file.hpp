@@ -11,15 +11,21 @@ class LockFile {
   /// Throws std::runtime_error, which says who holds it, where another one does.
   explicit LockFile(const std::string& path);
   LockFile(LockFile&& other) noexcept;
+  LockFile& operator=(LockFile&& other) noexcept;
   LockFile(const LockFile&) = delete;
   LockFile& operator=(const LockFile&) = delete;
   ~LockFile();
 
+  /// False where the file was removed, so that another process would make and hold one of its own.
+  /// True where none is held.
+  [[nodiscard]] bool in_place() const;
+  [[nodiscard]] const std::string& path() const { return path_; }
   /// Why it is not held although nobody else holds it: it cannot be made there, as on a full disk.
   /// That is no reason not to watch a plant. Empty where it is held.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
+  std::string path_;
   int descriptor_ = -1;
   std::string problem_;
 };
