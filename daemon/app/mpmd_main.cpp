@@ -301,7 +301,14 @@ int serve(const Options& options, std::vector<config::UnitConfig> units, host::S
     if (page) page->attach_to(service_options);
     service_options.report_problem = store.problem();
     service_options.first_asker = std::exchange(askers, askers + static_cast<int>(units.size()));
-    live::MonitorService service(units, service_options, worker);
+    service_options.stop = [&stop] { return stop.received(); };
+    std::optional<live::MonitorService> made;
+    try {
+      made.emplace(units, service_options, worker);
+    } catch (const live::RecallStopped&) {
+      break;
+    }
+    live::MonitorService& service = *made;
     service.run([&] {
       if (const auto now = std::chrono::steady_clock::now(); now >= next_look) {
         next_look = now + kLookPeriod;

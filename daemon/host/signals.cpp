@@ -32,7 +32,7 @@ bool AwaitedSignal::take() {
 }
 
 bool StopSignal::received() {
-  received_ = received_ || signal_.take();
+  if (signal_.take()) received_ = true;
   return received_;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <csignal>
 #include <initializer_list>
 
@@ -28,12 +29,12 @@ class StopSignal {
   explicit StopSignal(std::initializer_list<int> signals = {SIGTERM, SIGINT, SIGHUP})
       : signal_(signals) {}
 
-  /// True once one of them came.
+  /// True once one of them came. From any thread.
   [[nodiscard]] bool received();
 
  private:
   AwaitedSignal signal_;
-  bool received_ = false;
+  std::atomic<bool> received_ = false;
 };
 
 }  // namespace mpm::host

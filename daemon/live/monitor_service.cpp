@@ -30,12 +30,13 @@ idl::DomainOptions settings_of(const config::UnitConfig& unit, const ServiceOpti
 
 // Each takes its samples again on a thread of its own, and tells nobody.
 void recall(const std::vector<UnitPipeline*>& pipelines,
-            const std::vector<config::UnitConfig>& units, const std::string& folder) {
+            const std::vector<config::UnitConfig>& units, const std::string& folder,
+            const std::function<bool()>& stop) {
   std::vector<std::string> texts(units.size());
   const Parallel threads(available_threads());
   threads.for_each(units.size(), [&](std::size_t i) {
     const auto start = std::chrono::steady_clock::now();
-    const std::string text = pipelines[i]->recall(samples_of(units[i], units.size(), folder));
+    const std::string text = pipelines[i]->recall(samples_of(units[i], units.size(), folder), stop);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     texts[i] = fmt::format("{}: {} ({:.1f} s)", units[i].unit, text, seconds.count());
   });
@@ -86,7 +87,7 @@ MonitorService::MonitorService(const std::vector<config::UnitConfig>& units,
     if (options.observer) pipeline.show_to(options.observer(unit));
     pipelines.push_back(&pipeline);
   }
-  if (!options.samples.empty()) recall(pipelines, units, options.samples);
+  if (!options.samples.empty()) recall(pipelines, units, options.samples, options.stop);
   for (std::size_t i = 0; i < units.size(); ++i) {
     const config::UnitConfig& unit = units[i];
     UnitPipeline& pipeline = *pipelines[i];

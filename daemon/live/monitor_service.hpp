@@ -30,7 +30,10 @@ struct ServiceOptions {
   /// Who looks on at a unit, null: nobody; may be empty. They must outlive the service.
   std::function<UnitObserver*(const config::UnitConfig&)> observer;
   CommandQueue* commands = nullptr;  ///< to be answered by the loop; may be null
-  std::optional<int> standby_rank;   ///< as Role's; none: all units are this process's alone
+  /// Whether to give up while samples from before are taken again, which may take long; asked from
+  /// several threads. May be empty: never.
+  std::function<bool()> stop;
+  std::optional<int> standby_rank;  ///< as Role's; none: all units are this process's alone
 };
 
 /// All units of a daemon and the loop that drives them. Everything but the diagnoses happens in the
@@ -38,7 +41,7 @@ struct ServiceOptions {
 class MonitorService {
  public:
   /// `worker` diagnoses alarms and must outlive the service. Throws if DDS or the journal cannot be
-  /// set up.
+  /// set up, and RecallStopped.
   MonitorService(const std::vector<config::UnitConfig>& units, const ServiceOptions& options,
                  DiagnosisWorker& worker);
 

@@ -225,7 +225,7 @@ void UnitPipeline::archive(Archive& a) {
   if (diagnosis_) a(*diagnosis_);
 }
 
-std::string UnitPipeline::recall(const UnitSamples& samples) {
+std::string UnitPipeline::recall(const UnitSamples& samples, const std::function<bool()>& stop) {
   checkpoints_.emplace(samples, config_.unit, [this](Archive& a) { archive(a); });
   if (checkpoints_->take_back()) {
     health_.move_to(monitor_.interval(), monitor_.source_time_ns());
@@ -241,8 +241,9 @@ std::string UnitPipeline::recall(const UnitSamples& samples) {
         observer_->on_recalled(calculated_, nullptr);
       },
       files::aligner_settings(config_));
-  const auto into = [](Aligner& aligner) -> SampleLog::Visit {
-    return [&aligner](const BlockView* block) {
+  const auto into = [&stop](Aligner& aligner) -> SampleLog::Visit {
+    return [&aligner, &stop](const BlockView* block) {
+      if (stop && stop()) throw RecallStopped();
       block != nullptr ? aligner.push(*block) : aligner.expire();
     };
   };

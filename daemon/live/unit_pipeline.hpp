@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -34,6 +35,9 @@
 
 namespace mpm::live {
 
+/// Thrown where somebody wants the process to end while samples from before are taken again.
+struct RecallStopped : std::exception {};
+
 /// One unit from samples to outputs: aligner -> calculated signals -> monitor -> records -> DDS and
 /// journal, and what its alarms are diagnosed to come from.
 class UnitPipeline {
@@ -49,7 +53,8 @@ class UnitPipeline {
   /// Takes again what a process before this one took, and tells nobody: statistics, alarms and
   /// what a diagnosis needs are as they were. From now on what is taken is kept there. After
   /// `diagnose_with`, before anything else is taken. Says what became of it, in words for the log.
-  [[nodiscard]] std::string recall(const UnitSamples& samples);
+  /// Throws RecallStopped once `stop`, if any, says so; then the pipeline is of no use.
+  [[nodiscard]] std::string recall(const UnitSamples& samples, const std::function<bool()>& stop);
   /// From now on what happens to alarms is kept there, and what people did about them before holds.
   void keep(AlarmJournal& journal) {
     if (checkpoints_) journal.rest_on(config_.unit, checkpoints_->folder());

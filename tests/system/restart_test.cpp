@@ -7,7 +7,11 @@
 #include <regex>
 #include <thread>
 
+#include "config/load_unit.hpp"
 #include "daemon/history/alarm_store.hpp"
+#include "daemon/live/monitor_service.hpp"
+#include "daemon/live/sample_log.hpp"
+#include "daemon/live/unit_samples.hpp"
 #include "daemon/report/record_json.hpp"
 #include "tests/daemon/http/connection.hpp"
 #include "tests/system/bench.hpp"
@@ -241,6 +245,28 @@ TEST_CASE("what of the state cannot be read is named, and the monitor goes on wi
   warned("not all samples that were kept are used: " + samples +
          "/toy cannot be read: Not a directory");
   corner.play(plant, 5);
+}
+
+TEST_CASE("a monitor that is to end does not first judge all samples from before") {
+  const TemporaryFolder folder;
+  write_file(folder.file("toy.yaml"), unit_yaml("toy"));
+  config::UnitConfig unit = config::load_unit(folder.file("toy.yaml")).config;
+  unit.dds.partition = idl::test_domain("restart-stopped").partition;
+  live::ServiceOptions options;
+  options.samples = folder.file("samples");
+  {
+    const live::UnitSamples samples = live::samples_of(unit, 1, options.samples);
+    live::SampleLog log(samples.folder, samples.meaning, samples.keep);
+    const std::vector<double> values = {0.0, 0.0};
+    for (int k = 0; k < 100; ++k) (void)log.push({SignalKind::kMv, k, k, values, {}});
+  }
+  live::DiagnosisWorker worker([](const live::DiagnosisJob&, const live::DiagnosisWorker::GoOn&) {
+    return std::optional<live::DiagnosisOutcome>();
+  });
+  int asked = 0;
+  options.stop = [&] { return ++asked == 10; };
+  CHECK_THROWS_AS(live::MonitorService({unit}, options, worker), live::RecallStopped);
+  CHECK(asked == 10);
 }
 
 // Some twelve minutes: a reader that was killed is waited for until its lease has run out.
