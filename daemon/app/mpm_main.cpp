@@ -7,6 +7,7 @@
 #include "config/cli/decimals.hpp"
 #include "config/cli/help_format.hpp"
 #include "config/cli/slips.hpp"
+#include "core/text/printable.hpp"
 #include "daemon/app/commands/commands.hpp"
 #include "daemon/host/standard_output.hpp"
 #include "idl/version.hpp"
@@ -66,6 +67,10 @@ int run(int argc, char** argv) {
       app.exit(error);
     else
       std::cerr << slips << "Run with --help for more information.\n";
+    if (app.got_subcommand("status"))  // what asks it reads standard output alone
+      std::cout << "MPM UNKNOWN: bad usage: "
+                << printable(slips.empty() ? error.what() : slips.substr(0, slips.find('\n')))
+                << '\n';
     return 3;
   }
   return exit_code;

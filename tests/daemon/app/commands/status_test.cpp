@@ -22,6 +22,14 @@ TEST_CASE("mpm status says one line, whatever happens") {
   CHECK(run({"mpm", "status", "--interface", "nosuchnic0"}, out, err) == 3);
   CHECK(lines_of(read_file(out)).size() == 1);
   CHECK(read_file(err).empty());
+  for (const std::string option : {"--wait=soon", "--no-such-option", "left"}) {
+    CAPTURE(option);
+    CHECK(run({"mpm", "status", option}, out, err) == 3);
+    CHECK(read_file(out).find("MPM UNKNOWN: bad usage: ") == 0);
+    CHECK(lines_of(read_file(out)).size() == 1);
+  }
+  CHECK(run({"mpm", "watch", "--no-such-option"}, out, err) == 3);
+  CHECK(read_file(out).empty());
 }
 
 TEST_CASE("mpm status asks for every unit where its file says") {
