@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 
+#include "config/failure_text.hpp"
 #include "config/finding.hpp"
 
 namespace mpm::files {
@@ -18,7 +20,8 @@ OutputFolder::OutputFolder(const std::string& path) : path_(fs::absolute(path)) 
   while (!fs::exists(parent, ignored) && parent.has_relative_path()) parent = parent.parent_path();
   if (!fs::is_directory(parent, ignored))
     fail(parent == path_ ? "is a file; --out takes a folder" : parent.string() + " is no folder");
-  if (access(parent.c_str(), W_OK | X_OK) != 0) fail("cannot be written to");
+  if (access(parent.c_str(), W_OK | X_OK) != 0)
+    fail("cannot be written to: " + config::failure_text(errno));
 }
 
 OutputFolder::~OutputFolder() {

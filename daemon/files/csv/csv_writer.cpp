@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "config/failure_text.hpp"
 #include "config/finding.hpp"
 #include "core/signal/nanoseconds.hpp"
 #include "daemon/files/times/time_text.hpp"
@@ -139,13 +141,17 @@ void CsvWriter::drain() {
   out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
   bytes_ += buffer_.size();
   buffer_.clear();
-  if (!out_) throw std::runtime_error(name_ + ": cannot be written to");
+  if (!out_) fail();
 }
 
 void CsvWriter::finish() {
   drain();
   out_.flush();
-  if (!out_) throw std::runtime_error(name_ + ": cannot be written to");
+  if (!out_) fail();
+}
+
+void CsvWriter::fail() const {
+  throw std::runtime_error(name_ + ": cannot be written to: " + config::failure_text(errno));
 }
 
 }  // namespace mpm::files

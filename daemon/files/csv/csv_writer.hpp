@@ -44,6 +44,7 @@ class CsvWriter {
   void add_value(double value);
   void set_time(std::int64_t time_ns);
   void drain();
+  [[noreturn]] void fail() const;
 
   std::ostream& out_;
   std::string name_;

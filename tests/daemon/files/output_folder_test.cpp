@@ -1,8 +1,11 @@
 #include "daemon/files/output_folder.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <exception>
+#include <string>
 
 #include "tests/system/process.hpp"
 
@@ -42,4 +45,22 @@ TEST_CASE("what others laid beside the files of a folder is not written to") {
   reports.commit();
   CHECK(read_file(folder.file("report.json")) == "{}");
   CHECK(read_file(victim) == "precious");
+}
+
+TEST_CASE("a folder in which nobody may write is refused with the reason") {
+  const TemporaryFolder folder;
+  REQUIRE(::chmod(folder.file(".").c_str(), 0555) == 0);
+  // To root nothing is forbidden.
+  const uid_t user = ::getuid(), nobody = 65534;
+  if (user == 0) REQUIRE(::setresuid(nobody, nobody, 0) == 0);
+  std::string said;
+  try {
+    const OutputFolder reports(folder.file("reports"));
+  } catch (const std::exception& error) {
+    said = error.what();
+  }
+  if (user == 0) REQUIRE(::setresuid(0, 0, 0) == 0);
+  REQUIRE(::chmod(folder.file(".").c_str(), 0755) == 0);
+  CHECK_THAT(said, Catch::StartsWith(folder.file("reports") +
+                                     ": error: cannot be written to: Permission denied"));
 }

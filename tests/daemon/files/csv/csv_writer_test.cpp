@@ -1,6 +1,7 @@
 #include "daemon/files/csv/csv_writer.hpp"
 
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <limits>
 #include <sstream>
 
@@ -24,4 +25,10 @@ TEST_CASE("A time that no reader takes is not written") {
     frame.source_time_ns = time_ns;
     CHECK_THROWS_WITH(writer.write(frame), Catch::Contains("which no data file may have"));
   }
+}
+
+TEST_CASE("Why a file cannot be written to is told") {
+  std::ofstream full("/dev/full");
+  CsvWriter writer(full, "out.csv", {{"u1", SignalKind::kMv, 0}}, {});
+  CHECK_THROWS_WITH(writer.finish(), "out.csv: cannot be written to: No space left on device");
 }
