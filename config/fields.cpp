@@ -93,7 +93,7 @@ const std::vector<Field<ControllerAlarmSettings>>& controller_alarm_fields() {
 const std::vector<Field<DdsSettings>>& bus_fields() {
   using S = DdsSettings;
   static const std::vector<Field<S>> fields = {
-      {"domain", &S::domain, {.low = 0, .high = 100}, ""},
+      {"domain", &S::domain, {.low = 0, .high = kHighestDomain}, ""},
       {"interface", &S::interface, kAny, "network interface; empty = Cyclone's choice"},
       {"multicast", &S::multicast, kAny, ""},
       {"partition", &S::partition, kAny, "keeps plants on one network apart"},

@@ -42,8 +42,11 @@ struct CalculatedSignal {
   std::vector<std::string> inputs;  ///< tags in the expression, each once, in its order
 };
 
+/// The UDP ports of a greater one would be beyond 65535. Options and permissions have it, too.
+inline constexpr int kHighestDomain = 230;
+
 struct DdsSettings {
-  int domain = 0;                  ///< 0..100
+  int domain = 0;                  ///< 0..kHighestDomain
   std::string interface = "lo";    ///< network interface by name; empty = Cyclone's choice
   std::vector<std::string> peers;  ///< host addresses beside 127.0.0.1
   bool multicast = false;

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "config/cli/number_value.hpp"
+#include "config/unit_config.hpp"
 
 namespace mpm::sim {
 namespace {
@@ -53,7 +54,7 @@ void declare(CLI::App& app, Options& options) {
       ->capture_default_str()
       ->check(cli::number_value(1.0));
   app.add_option("--domain", options.domain, "DDS domain, instead of the unit file's")
-      ->check(CLI::Range(0, 230));
+      ->check(CLI::Range(0, config::kHighestDomain));
   app.add_option("--partition", options.partition, "discovery tag, instead of the unit file's");
   app.add_option("--security", options.security,
                  "folder of keys, as `mpm keys` makes, instead of the unit file's; taken are those "

@@ -86,7 +86,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag("--print-config", options.print_config,
                "print the effective unit files, defaults included, and exit");
   app.add_option("--domain", options.domain, "DDS domain of all units, instead of the unit files'")
-      ->check(CLI::Range(0, 230));
+      ->check(CLI::Range(0, config::kHighestDomain));
   app.add_option("--partition", options.partition,
                  "discovery tag of all units, instead of the unit files'");
   app.add_option("--security", options.security,

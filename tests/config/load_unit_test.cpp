@@ -307,6 +307,13 @@ TEST_CASE("Sections may be empty or missing, and defaults have the right length"
   CHECK(printed(config) == printed(load_clean(kSmall)));
 }
 
+TEST_CASE(
+    "A unit on the highest domain that options take loads, and so does what is printed of it") {
+  const UnitConfig config = load_clean(kSmall + "dds: {domain: 230}\n");
+  CHECK(config.dds.domain == kHighestDomain);
+  CHECK(load_clean(printed(config)).dds.domain == kHighestDomain);
+}
+
 TEST_CASE("Files that cannot be read are findings") {
   const TemporaryFolder folder;
   const LoadResult missing = load_unit(folder.path() + "/nope.yaml");
@@ -318,8 +325,7 @@ TEST_CASE("Files that cannot be read are findings") {
   // A regular file whose first byte is no memory of this process.
   const LoadResult broken = load_unit("/proc/self/mem");
   REQUIRE(broken.findings.size() == 1);
-  CHECK(format(broken.findings[0]) ==
-        "/proc/self/mem: error: cannot be read: Input/output error");
+  CHECK(format(broken.findings[0]) == "/proc/self/mem: error: cannot be read: Input/output error");
 }
 
 TEST_CASE("What may not be read is told with the reason and the user") {

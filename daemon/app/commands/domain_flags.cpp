@@ -35,7 +35,7 @@ void warn_of_environment(const idl::DomainOptions& domain) {
 void add_bus_flags(CLI::App& command, idl::DomainOptions& domain) {
   command.add_option("--domain", domain.domain, "DDS domain")
       ->capture_default_str()
-      ->check(CLI::Range(0, 230));
+      ->check(CLI::Range(0, config::kHighestDomain));
   command.add_option("--partition", domain.partition, "discovery tag");
   command.add_option("--interface", domain.interface, "network interface")->capture_default_str();
   command.add_option("--peer", domain.peers, "host to look for others on; repeatable")

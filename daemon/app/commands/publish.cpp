@@ -163,7 +163,7 @@ void add_publish(CLI::App& app, int& exit_code) {
   command->add_flag("--real-time", options->real_time,
                     "never wait for a slow reader; it loses the oldest samples");
   command->add_option("--domain", options->domain, "DDS domain, instead of the unit file's")
-      ->check(CLI::Range(0, 230));
+      ->check(CLI::Range(0, config::kHighestDomain));
   command->add_option("--partition", options->partition,
                       "discovery tag, instead of the unit file's");
   command->add_option("--security", options->security,

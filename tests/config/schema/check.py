@@ -62,7 +62,7 @@ identify: {channels: [{cv: y1, mv: u1, sign: "+"}, {cv: y2, dv: d1, relation: no
 
 BAD = ["unti: x", "sample_time: 0", "sample_time: fast", "signals: {mv: [u1]}",
        "monitor: {memroy: 3}", "monitor: {false_alarm_rate: 1.5}", "monitor: {first_lag: 0.5}",
-       "alarms: {controller: {class: alarm}}", "dds: {domain: 101}",
+       "alarms: {controller: {class: alarm}}", "dds: {domain: 231}",
        "model: {channels: [{cv: y1, gain: 1}]}", "model: {channels: [{cv: y1, mv: u1}]}",
        "model: {output: {y1: {scale: 0}}}"]
 
