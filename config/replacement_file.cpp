@@ -87,4 +87,12 @@ void refuse_to_replace(const std::vector<std::string>& inputs, const std::string
       throw InputError({output, 0, 0, Severity::kError, "", "is the file that is read"});
 }
 
+void refuse_one_place(const std::string& output, const std::string& other) {
+  std::error_code ignored;
+  if (output.empty() || other.empty() || fs::is_other(output, ignored)) return;
+  if (same_file(output, other) ||
+      fs::weakly_canonical(output, ignored) == fs::weakly_canonical(other, ignored))
+    throw InputError({other, 0, 0, Severity::kError, "", "is given for two outputs"});
+}
+
 }  // namespace mpm::config

@@ -52,4 +52,8 @@ class ReplacementFile {
 /// `inputs`, which are read.
 void refuse_to_replace(const std::vector<std::string>& inputs, const std::string& output);
 
+/// Throws config::InputError where both outputs would be one file, in which the second one written
+/// takes the first one's place. Devices, pipes and empty names are none.
+void refuse_one_place(const std::string& output, const std::string& other);
+
 }  // namespace mpm::config

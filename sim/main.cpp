@@ -156,6 +156,7 @@ int run_limits(const LoopSetup& setup, double percent) {
 int run(const Options& options) {
   for (const std::string& output : {options.csv, options.truth})
     config::refuse_to_replace({options.config, options.controller_model, options.scenario}, output);
+  config::refuse_one_place(options.csv, options.truth);
   const LoopSetup setup = prepare(options);
   if (options.limits_percent) return run_limits(setup, *options.limits_percent);
   BadDataFilter filter(setup);

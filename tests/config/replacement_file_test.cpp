@@ -90,6 +90,20 @@ TEST_CASE("what is read is not replaced, by whatever name") {
   CHECK_NOTHROW(refuse_to_replace(inputs, ""));
 }
 
+TEST_CASE("two outputs that would be one file are refused, by whatever names") {
+  using mpm::config::refuse_one_place;
+  TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  CHECK_THROWS_WITH(refuse_one_place(out, out), out + ": error: is given for two outputs");
+  CHECK_THROWS(refuse_one_place(out, folder.file(".") + "/out"));
+  write_file(out, "");
+  std::filesystem::create_symlink(out, folder.file("link"));
+  CHECK_THROWS(refuse_one_place(out, folder.file("link")));
+  CHECK_NOTHROW(refuse_one_place(out, folder.file("other")));
+  CHECK_NOTHROW(refuse_one_place("", ""));
+  CHECK_NOTHROW(refuse_one_place("/dev/null", "/dev/null"));
+}
+
 TEST_CASE("a pipe, a device or a link is not replaced by a file") {
   namespace fs = std::filesystem;
   TemporaryFolder folder;

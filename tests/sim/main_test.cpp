@@ -127,6 +127,10 @@ TEST_CASE("mpmsim tells bad input from a failed run") {
   CHECK(folder.run("--config " + kShell + " --speed -1") == 3);
   CHECK(folder.run("--config " + kShell + " --start-time soon --csv x") == 3);
   CHECK(folder.run("--config " + kShell + " --csv /nowhere/x.csv") == 3);
+  const std::string both = folder.file("both");
+  CHECK(folder.run("--config " + kShell + " --samples 9 --csv " + both + " --truth " + both) == 3);
+  CHECK(folder.read("err") == both + ": error: is given for two outputs\n");
+  CHECK_FALSE(fs::exists(both));
   CHECK(folder.run("--config " + kShell + " --scenario nonsense --csv x") == 3);
   CHECK(folder.read("err").find("s3_delay") != std::string::npos);  // lists what there is
   folder.write("s2.yaml", "scenario: s2\nchanges:\n  - {mv: u1, cv: [y1, y2], gain_ratio: 0.75}\n");

@@ -96,6 +96,7 @@ int trend(const TrendOptions& options) {
     inputs.push_back(options.config);
     config::refuse_to_replace(inputs, options.csv);
     config::refuse_to_replace(inputs, options.svg);
+    config::refuse_one_place(options.csv, options.svg);
     const files::TimeStyle times = times_of(options.times);
     const files::TimeChoice choice(options.time, times);
     history::TrendMaker maker(from_string<history::Step>(options.by), times.zone.get());

@@ -39,6 +39,11 @@ TEST_CASE("no command writes over what it reads") {
   refused({"mpm", "convert", data, unit, "--config", unit}, unit);
   refused({"mpmsim", "--config", unit, "--csv", unit}, unit);
   refused({"mpmsim", "--config", unit, "--csv", folder.file("run.csv"), "--truth", unit}, unit);
+
+  const std::string both = folder.file("both");
+  CHECK(run({"mpm", "trend", "--config", unit, "--data", data, "--csv", both, "--svg", both},
+            folder.file("out"), folder.file("err")) == 3);
+  CHECK(read_file(folder.file("err")) == both + ": error: is given for two outputs\n");
 }
 
 }  // namespace mpm::test
