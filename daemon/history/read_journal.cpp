@@ -53,7 +53,7 @@ UnitHead head_at(const std::string& path, int line, const Json& json) {
 
 /// Nothing where the file is empty, or was cut before its first line ended.
 std::optional<UnitHead> first_head(const std::string& path) {
-  files::LineReader lines(files::open_file(path), path);
+  files::LineReader lines(files::open_regular_file(path), path);
   if (!lines.next() || !lines.complete()) return std::nullopt;
   const Json json = parse(path, lines.number(), lines.text());
   if (json["record"] != "journal")
@@ -113,7 +113,7 @@ std::vector<std::string> journal_of(const std::vector<std::string>& paths,
 }
 
 void read_journal(const std::string& path, const JournalReader& reader) {
-  files::LineReader lines(files::open_file(path), path);
+  files::LineReader lines(files::open_regular_file(path), path);
   while (lines.next() && lines.complete()) {
     const std::string& text = lines.text();
     const int line = lines.number();

@@ -1,10 +1,14 @@
 #include "daemon/files/csv/csv_line.hpp"
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <system_error>
 #include <utility>
 
+#include "config/failure_text.hpp"
+#include "config/finding.hpp"
 #include "core/text/utf8.hpp"
 
 namespace mpm::files {
@@ -38,19 +42,26 @@ std::size_t open_quote(std::string_view line) {
   return std::string_view::npos;
 }
 
+[[noreturn]] void fail(const std::string& path, const std::string& message) {
+  throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
+}
+
 }  // namespace
 
 std::unique_ptr<std::istream> open_file(const std::string& path) {
-  const auto fail = [&path](const char* message) {
-    throw config::InputError({path, 0, 0, config::Severity::kError, "", message});
-  };
   std::error_code failure;
   const auto status = std::filesystem::status(path, failure);
-  if (!std::filesystem::exists(status)) fail("no such file");
-  if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
+  if (!std::filesystem::exists(status)) fail(path, "no such file");
+  if (std::filesystem::is_directory(status)) fail(path, "is a folder, not a file");
   auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
-  if (!*file) fail("cannot be read");
+  if (!*file) fail(path, "cannot be read: " + config::failure_text(errno));
   return file;
+}
+
+std::unique_ptr<std::istream> open_regular_file(const std::string& path) {
+  std::error_code failure;
+  if (std::filesystem::is_other(path, failure)) fail(path, "is no regular file");
+  return open_file(path);
 }
 
 LineReader::LineReader(std::unique_ptr<std::istream> input, std::string name)

@@ -71,6 +71,9 @@ class LineReader {
 
 /// A file to read lines from. Throws config::InputError where it cannot be read.
 [[nodiscard]] std::unique_ptr<std::istream> open_file(const std::string& path);
+/// Likewise, of what is read from its beginning more than once, as data files are: a pipe or a
+/// device is refused.
+[[nodiscard]] std::unique_ptr<std::istream> open_regular_file(const std::string& path);
 
 /// Of `;`, tab and comma the one that the header uses most; where there is none `|`, else comma.
 [[nodiscard]] char find_delimiter(std::string_view header);

@@ -42,7 +42,7 @@ std::string seconds(double value) {
 
 CsvReader::CsvReader(const std::string& path, const config::UnitConfig& unit,
                      const TimeStyle& times, Purpose purpose)
-    : CsvReader(open_file(path), path, unit, times, purpose) {
+    : CsvReader(open_regular_file(path), path, unit, times, purpose) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
   if (!unknown) file_bytes_ = size;

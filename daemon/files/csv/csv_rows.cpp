@@ -34,7 +34,7 @@ std::vector<std::string> long_tags(LineReader& lines, const CsvFormat& format) {
 }  // namespace
 
 CsvRows::CsvRows(const std::string& path, const TimeStyle& times, const config::UnitConfig* known)
-    : lines_(open_file(path), path) {
+    : lines_(open_regular_file(path), path) {
   lines_.join_quoted();
   std::vector<Cell> header;
   format_ = find_format(lines_, times, 0.0, nullptr, header, notices_);

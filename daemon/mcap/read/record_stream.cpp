@@ -1,7 +1,9 @@
 #include "daemon/mcap/read/record_stream.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "daemon/mcap/format/decode.hpp"
@@ -67,6 +69,9 @@ ByteView RecordStream::content(const RecordHead& head) {
 }
 
 bool is_mcap(const std::string& path) {
+  // What is in a pipe would be gone from it, or would be waited for.
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(path, failure)) return false;
   std::array<char, kVersionByte> begin{};
   std::ifstream file(path, std::ios::binary);
   return file.read(begin.data(), begin.size()) &&

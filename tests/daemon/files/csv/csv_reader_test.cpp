@@ -1,11 +1,16 @@
 #include "daemon/files/csv/csv_reader.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
+#include "daemon/files/csv/csv_rows.hpp"
+#include "daemon/mcap/read/file_sequence.hpp"
 #include "tests/daemon/files/csv/reading.hpp"
+#include "tests/system/process.hpp"
 
 using namespace mpm;
 using namespace mpm::files;
@@ -301,6 +306,15 @@ TEST_CASE("Rows may be a tenth off the sample time") {
 TEST_CASE("A file that is not there is an error") {
   CHECK_THROWS_WITH(CsvReader("/nowhere/d.csv", unit()), "/nowhere/d.csv: error: no such file");
   CHECK_THROWS_WITH(CsvReader("/tmp", unit()), "/tmp: error: is a folder, not a file");
+}
+
+TEST_CASE("A pipe is no data file, and is not waited for") {
+  const mpm::test::TemporaryFolder folder;
+  const std::string pipe = folder.file("pipe.csv");
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(CsvReader(pipe, unit()), pipe + ": error: is no regular file");
+  CHECK_THROWS_WITH(CsvRows(pipe, {}), pipe + ": error: is no regular file");
+  CHECK_FALSE(mcap::is_recording(pipe));
 }
 
 TEST_CASE("A file in ISO 8859-1 is read, and told") {
