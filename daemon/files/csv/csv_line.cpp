@@ -74,6 +74,8 @@ bool LineReader::read_line() {
   line_.clear();
   while (true) {
     input_->getline(piece_.data(), piece_.size());
+    // Else the rest of the file would be missing without a word.
+    if (input_->bad()) fail(lines_read_, 1, "cannot be read: " + config::failure_text(errno));
     const auto count = static_cast<std::size_t>(input_->gcount());
     complete_ = !input_->eof();
     bytes_read_ += count;

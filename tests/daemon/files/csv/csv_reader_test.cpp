@@ -308,6 +308,12 @@ TEST_CASE("A file that is not there is an error") {
   CHECK_THROWS_WITH(CsvReader("/tmp", unit()), "/tmp: error: is a folder, not a file");
 }
 
+TEST_CASE("A file that cannot be read on is an error, not the end of it") {
+  // A regular file whose first byte is no memory of this process.
+  CHECK_THROWS_WITH(CsvReader("/proc/self/mem", unit()),
+                    "/proc/self/mem:1:1: error: cannot be read: Input/output error");
+}
+
 TEST_CASE("A pipe is no data file, and is not waited for") {
   const mpm::test::TemporaryFolder folder;
   const std::string pipe = folder.file("pipe.csv");
