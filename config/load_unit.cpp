@@ -46,6 +46,15 @@ std::string faster_test(const UnitConfig& config) {
          "` asks what is recorded";
 }
 
+/// Whether the usual memory would be room enough: a unit whose size is in its signals is not made
+/// smaller by a shorter one.
+bool has_long_memory(const UnitConfig& config) {
+  MonitorSettings usual = config.monitor;
+  usual.memory_s = MonitorSettings{}.memory_s;
+  usual.fast_memory_s = MonitorSettings{}.fast_memory_s;
+  return monitor_cost(config.model, usual).bytes <= kMostBytes;
+}
+
 /// A unit that no machine has room for is refused where its size comes from; one that is too slow
 /// to keep up is told.
 void check_cost(const Map& root, const UnitConfig& config) {
@@ -58,7 +67,8 @@ void check_cost(const Map& root, const UnitConfig& config) {
                            " samples remembered";
   if (cost.bytes > kMostBytes)
     cause->error("the monitor of this unit would need " + number_text(1e-9 * cost.bytes) +
-                 " GB of memory (" + size + "); split the unit, or shorten its memory");
+                 " GB of memory (" + size + "); " +
+                 (has_long_memory(config) ? "shorten its memory" : "split the unit"));
   else if (cost.seconds > config.sample_time_s)
     cause->warning("the monitor of this unit would take about " + number_text(cost.seconds) +
                    " s of every " + number_text(config.sample_time_s) + " s sample (" + size + ")" +

@@ -35,10 +35,12 @@ TEST_CASE("a unit that no machine has room for is refused at its place") {
   REQUIRE(large.size() == 1);
   CHECK(large[0].severity == Severity::kError);
   CHECK(large[0].line == 7);
+  CHECK_THAT(large[0].message, Catch::EndsWith("; split the unit"));
   const std::vector<Finding> endless =
       of_cost(unit(1, 1, "time_constants: [10]", "monitor: {memory: 1e9}\n"));
   REQUIRE(endless.size() == 1);
   CHECK(endless[0].line == 9);
+  CHECK_THAT(endless[0].message, Catch::EndsWith("; shorten its memory"));
   CHECK(endless[0].severity == Severity::kError);
 }
 
