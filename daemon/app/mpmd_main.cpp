@@ -25,7 +25,6 @@
 #include "core/monitor/cost.hpp"
 #include "core/text/number_text.hpp"
 #include "daemon/app/commands/quantity.hpp"
-#include "daemon/history/alarm_store.hpp"
 #include "daemon/host/locked_places.hpp"
 #include "daemon/host/logging.hpp"
 #include "daemon/host/signals.hpp"
@@ -33,6 +32,7 @@
 #include "daemon/http/server.hpp"
 #include "daemon/http/stored_events.hpp"
 #include "daemon/keys/check_keys.hpp"
+#include "daemon/live/alarm_journal.hpp"
 #include "daemon/live/command_queue.hpp"
 #include "daemon/live/diagnosis_worker.hpp"
 #include "daemon/live/make_diagnosis.hpp"
@@ -349,7 +349,8 @@ int run(Options& options) {
       loaded.findings.push_back({"--token-file", 0, 0, config::Severity::kError, "", error.what()});
     }
   // Its own, in the state folder, it puts aside; what somebody names may be named by mistake.
-  if (const std::string& journal = options.service.alarm_journal; history::is_foreign(journal))
+  if (const std::string& journal = options.service.alarm_journal;
+      live::AlarmJournal::is_foreign(journal))
     loaded.findings.push_back({"--alarm-journal", 0, 0, config::Severity::kError, "",
                                journal + ": holds something else than a journal of alarms"});
   for (const config::Finding& finding : loaded.findings)

@@ -18,6 +18,11 @@ namespace mpm::live {
 /// is put aside under another name, and a new one begun, as where somebody has removed it.
 class AlarmJournal {
  public:
+  /// Whether the file was never a journal: somebody has named it by mistake, and it is none to be
+  /// put aside.
+  [[nodiscard]] static bool is_foreign(const std::string& path) {
+    return history::is_foreign(path);
+  }
   /// Makes or opens the file; where that cannot be done now it is tried again and again.
   explicit AlarmJournal(const std::string& path);
   /// Writes what waits.
