@@ -2,7 +2,7 @@
 import { get, part, unitPath, type Correlation, type Correlations, type Limits, type Series, type Unit, type Values } from './api';
 import { h } from './dom';
 import { figure, type Figure, type Line, type Plot } from './draw.js';
-import { stateChip, time, unitLink } from './parts';
+import { outdated, outdatedClass, stateChip, time, unitLink } from './parts';
 import { number, withUnit, zone, zoneText } from './text';
 
 const SPANS: [string, number][] = [['10 min', 600], ['1 h', 3600], ['8 h', 28800], ['1 d', 86400], ['7 d', 604800], ['30 d', 2592000], ['90 d', 7776000]];
@@ -112,9 +112,10 @@ export class CvPage {
     const engineering = cv?.unit ?? '';
     const last = (this.chosen ? series.until : series.last ?? 0) * 1e9;
     const shown = this.chosen ? [time(series.from * 1e9), ' to ', time(last)] : last ? ['up to ', time(last)] : [];
-    return h('div', {},
+    return h('div', { class: outdatedClass(unit) },
       h('div', { class: 'head' }, h('h1', { tabindex: -1 }, h('a', { href: unitLink(this.unit) }, this.unit), ' / ', this.cv),
         h('p', { class: 'note' }, cv?.description ?? '')),
+      outdated(unit),
       h('dl', { class: 'kpis' }, value('Measured', withUnit(cv?.measured ?? null, engineering)), value('Predicted', withUnit(cv?.prediction ?? null, engineering)),
         value('Residual', withUnit(off, engineering)), value('Set-point', withUnit(cv?.setpoint ?? null, engineering)),
         value('Limits', `${number(cv?.limits.low)} to ${number(cv?.limits.high)}`)),

@@ -1,7 +1,7 @@
 // All units, worst first.
 import { get, type Alarm, type Card } from './api';
 import { h } from './dom';
-import { healthChip, kpiStrip, lastSample, smallMatrix, standby, unitLink } from './parts';
+import { healthChip, kpiStrip, lastSample, outdated, outdatedClass, smallMatrix, standby, unitLink } from './parts';
 import { needsAck, title } from './alarm';
 
 const kAttention = ['well', 'unsettled', 'doubtful', 'blind', 'alarmed'];
@@ -16,7 +16,8 @@ function card(unit: Card): HTMLElement {
       unit.alarms ? h('span', { class: 'chip alarmed' }, h('span', { 'aria-hidden': 'true' }, '▲ '), `${unit.alarms} alarm${unit.alarms > 1 ? 's' : ''}`) : null,
       unit.silenced_alarms ? h('span', { class: 'chip' }, `${unit.silenced_alarms} silenced`) : null),
     standby(unit),
-    h('div', { class: 'card-body' }, smallMatrix(unit), kpiStrip(unit.kpi)),
+    outdated(unit),
+    h('div', { class: `card-body ${outdatedClass(unit)}` }, smallMatrix(unit), kpiStrip(unit.kpi)),
     unit.first_alarms.length ? h('ul', { class: 'plain' }, ...unit.first_alarms.map(alarmLine), more > 0 ? h('li', {}, `and ${more} more`) : null) : null,
     unit.speaks && unit.health.detail && !/^\d+ alarms?$/.test(unit.health.detail) ? h('p', { class: 'note' }, unit.health.detail) : null,
     lastSample(unit));

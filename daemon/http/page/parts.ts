@@ -33,6 +33,15 @@ export function standby(unit: { speaks: boolean; health: { detail: string } }): 
     speaker.length ? `; ${speaker.join('; ')}.` : '.', ' It takes no commands.');
 }
 
+/// While its health is a failure no verdicts come: what is shown of it is as old as its last sample.
+export const isOutdated = (unit: { health: { state: string } }) => unit.health.state === 'failure';
+export const outdatedClass = (unit: { health: { state: string } }) => (isOutdated(unit) ? 'outdated' : '');
+
+export function outdated(unit: { time_ns: number; health: { state: string } }): HTMLElement | null {
+  return isOutdated(unit) ? h('p', { class: 'no-verdicts', role: 'note' }, h('strong', {}, 'No verdicts come now'),
+    ...unit.time_ns ? ['; those shown are of ', time(unit.time_ns), '.'] : ['.']) : null;
+}
+
 /// No colour where all is well.
 export function healthChip(state: string): HTMLElement {
   const { word, sign, name } = healthOf(state);
@@ -85,7 +94,7 @@ export function kpiStrip(kpis: Kpi): HTMLElement {
 
 /// The matrix of a card: shapes alone, told in words to who cannot see them.
 export function smallMatrix(card: Card): HTMLElement {
-  const text = `${card.mismatch} mismatch, ${card.match} match, ${card.undetermined} undetermined`;
+  const text = `${isOutdated(card) ? 'as it was: ' : ''}${card.mismatch} mismatch, ${card.match} match, ${card.undetermined} undetermined`;
   return h('div', { class: 'small-matrix', role: 'img', 'aria-label': `${card.inputs.length} inputs by ${card.cvs.length} CVs: ${text}` },
     ...card.matrix.map(row => h('div', { class: 'row' },
       ...row.map(state => h('span', { class: `cell ${state}` }, STATES[state].sign)))));

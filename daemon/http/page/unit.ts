@@ -2,7 +2,7 @@
 import { get, unitPath, type Channel, type Unit } from './api';
 import { alarmRow, PRIORITIES, tabOf, TABS, type Tab } from './alarm';
 import { h } from './dom';
-import { cvLink, healthChip, kpiStrip, lastSample, legend, shortText, standby, stateChip, unitLink } from './parts';
+import { cvLink, healthChip, kpiStrip, lastSample, legend, outdated, outdatedClass, shortText, standby, stateChip, unitLink } from './parts';
 import { healthOf, STATES, withUnit } from './text';
 
 let tab: Tab = 'active';
@@ -40,7 +40,7 @@ function told(unit: Unit): HTMLElement | null {
   if (!open.length) return null;
   const rank = { mismatch: 0, watch: 1, undetermined: 2, match: 3 };
   open.sort((a, b) => rank[a.state] - rank[b.state]);
-  return h('section', { 'aria-labelledby': 'told' }, h('h2', { id: 'told' }, 'Channels in words'),
+  return h('section', { class: outdatedClass(unit), 'aria-labelledby': 'told' }, h('h2', { id: 'told' }, 'Channels in words'),
     h('ul', { class: 'told' }, ...open.map(each => h('li', { 'data-key': `${each.mv} ${each.cv}` }, stateChip(each.state),
       h('a', { href: cvLink(unit.unit, each.cv) }, `${each.mv}\u00a0→\u00a0${each.cv}`),
       h('span', {}, [each.text, each.nonlinear_text].filter(Boolean).join('; '))))));
@@ -72,9 +72,10 @@ export async function unitPage(name: string): Promise<HTMLElement> {
       h('span', { 'aria-hidden': 'true' }, `${healthOf(each.severity).sign} `), h('strong', {}, `${healthOf(each.severity).word}: `), each.text)))
       : null,
     unit.speaks && !troubles.length && unit.health.state === 'function_check' ? h('p', { class: 'note' }, unit.health.detail) : null,
-    kpiStrip(unit.kpi),
+    outdated(unit),
+    h('div', { class: outdatedClass(unit) }, kpiStrip(unit.kpi)),
     h('div', { class: 'columns' },
-      h('section', { 'aria-labelledby': 'matrix' }, h('h2', { id: 'matrix' }, 'Model against plant'), matrix(unit), legend(unit.channels.map(each => each.state))),
+      h('section', { class: outdatedClass(unit), 'aria-labelledby': 'matrix' }, h('h2', { id: 'matrix' }, 'Model against plant'), matrix(unit), legend(unit.channels.map(each => each.state))),
       alarms(unit)),
     told(unit));
 }

@@ -50,6 +50,19 @@ async function accessible(page, what) {
   await session.detach();
 }
 
+// Neither text nor ground of any of these has a colour that somebody could take for a state.
+async function greyed(page, selector) {
+  const coloured = await page.locator(selector).evaluateAll((nodes) => nodes.flatMap((node) => {
+    const { color, backgroundColor } = getComputedStyle(node);
+    const vivid = (text) => {
+      const [red, green, blue, alpha = 1] = text.match(/[\d.]+/g).map(Number);
+      return alpha > 0 && Math.max(red, green, blue) - Math.min(red, green, blue) > 16;
+    };
+    return vivid(color) || vivid(backgroundColor) || color === "rgb(27, 32, 36)" ? [`${node.className}: ${color} on ${backgroundColor}`] : [];
+  }));
+  assert.deepEqual(coloured, [], "greyed");
+}
+
 // As wide as the window, accessible, and a picture of it.
 async function check(page, name, { full = false } = {}) {
   for (const [size, viewport] of [["wide", wide], ["narrow", narrow]]) {
@@ -170,6 +183,14 @@ try {
   assert.equal(await page.locator("[data-command]").count(), 0, "it would refuse them all");
   assert.match(await page.locator(".old").textContent(), /25 h ago/);
   await check(page, "standby");
+  // One whose data have stopped: nothing of the unit looks as if it were of now.
+  played = (unit) => ({ health: { ...unit.health, state: "failure", detail: "no data for 14 s" } });
+  await page.reload();
+  await page.waitForSelector(".no-verdicts");
+  assert.match(await page.locator(".no-verdicts").textContent(), /^No verdicts come now; those shown are of .*UTC/);
+  await greyed(page, ".matrix td[class], .legend .state, .told .state, .columns .value, .kpi .value");
+  assert.match(await page.locator(".matrix td.mismatch").textContent(), /Mismatch.*gain \+\d+ %/, "as it was");
+  await check(page, "outdated", { full: true });
   played = null;
   await page.reload();
   await page.waitForSelector("[data-command]");
@@ -241,8 +262,13 @@ try {
   await page.screenshot({ path: path.join(pictures, "system_print.png") });
   await page.emulateMedia({ media: "screen" });
 
+  await end(simulated);
   await page.goto(`${running.url}#/`);
-  await page.waitForSelector(".card.alarmed");
+  await page.waitForSelector(".card.alarmed .no-verdicts");
+  await greyed(page, ".card.alarmed .small-matrix .cell, .card.alarmed .value");
+  assert.equal(await page.locator(".card:not(.alarmed) .no-verdicts").count(), 0, "of the other unit nothing has come");
+  await check(page, "overview_outdated");
+  say("no verdicts come, and nothing shown looks as if they did");
   assert.deepEqual(troubles, [], "the console is quiet");
   expectLoss = true;
   await end(running.child, "SIGKILL");
@@ -258,7 +284,6 @@ try {
   await page.waitForSelector(".card:not(.alarmed)");
   say("the monitor is back, and so is the page");
   expectLoss = false;
-  await end(simulated);
   await end(running.child);
 
   // Fifty units.
