@@ -26,6 +26,8 @@ struct Trouble {
   std::int64_t until_ns = 0;
 };
 
+/// Key of the trouble that nothing at all comes of a unit.
+inline constexpr const char* kNoData = "no data";
 /// What `mpm/health` says of a unit that has only begun.
 inline constexpr const char* kNoCompleteData = "no complete data yet";
 inline constexpr const char* kNothingDetermined = "nothing determined yet";

@@ -249,7 +249,7 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
         text += (i == 0 ? " (" : "; ") + topic_of(quiet[i]) + ": " + reasons[i] +
                 (i + 1 == quiet.size() ? ")" : "");
     troubles.push_back(
-        {"no data", any_started ? Severity::kFailure : Severity::kFunctionCheck, std::move(text)});
+        {kNoData, any_started ? Severity::kFailure : Severity::kFunctionCheck, std::move(text)});
     troubles.back().since = last;
     return;
   }

@@ -45,7 +45,7 @@ std::string tag_of(const config::UnitConfig& unit, const LostSignal& signal) {
 bool said_already(const LostSignal& signal, const std::vector<bus::Trouble>& others) {
   const std::string topic = idl::sample_topic(signal.kind);
   return std::any_of(others.begin(), others.end(), [&](const bus::Trouble& other) {
-    return other.severity == bus::Severity::kFailure || other.key == "no data" ||
+    return other.severity == bus::Severity::kFailure || other.key == bus::kNoData ||
            other.key.ends_with(" " + topic) ||
            (signal.cause == LossCause::kNoValue &&
             (other.key == "gaps" || (other.key == "jump" && signal.last_ns < other.until_ns)) &&

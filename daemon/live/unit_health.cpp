@@ -66,6 +66,7 @@ void UnitHealth::push(const idl::SampleView& sample, std::int64_t wall_ns) {
 }
 
 void UnitHealth::recall(const AlignerCounters& aligner) {
+  record_.frames = aligner.frames;
   record_.incomplete = aligner.incomplete;
   without_ = aligner.without;
   if (aligner.frames > 0) inputs_.recall();
@@ -100,6 +101,7 @@ void UnitHealth::count(const std::vector<ChannelRecord>& channels) {
 
 const HealthRecord& UnitHealth::judge(const Found& found, std::int64_t wall_s) {
   const AlignerCounters& aligner = found.aligner;
+  if (record_.frames != aligner.frames) framed_at_ = now_;
   record_.frames = aligner.frames;
   record_.used = found.monitor.counters().used;
   record_.missing = aligner.missing;
@@ -137,9 +139,20 @@ void UnitHealth::note_incomplete(const AlignerCounters& aligner) {
   without_ = aligner.without;
 }
 
+// A failure is what leaves the unit without verdicts. Whatever is wrong with some of the samples,
+// while frames are made of the others verdicts come, and are in doubt.
+std::vector<bus::Trouble> UnitHealth::input_troubles(const bus::Surroundings& around) const {
+  std::vector<bus::Trouble> all = inputs_.troubles(around, now_);
+  if (!framed_at_ || now_ - *framed_at_ >= inputs_.expected().silence) return all;
+  for (bus::Trouble& trouble : all)
+    if (trouble.key != bus::kNoData)
+      trouble.severity = std::min(trouble.severity, bus::Severity::kOutOfSpecification);
+  return all;
+}
+
 std::vector<bus::Trouble> UnitHealth::find_troubles(const Found& found) const {
   using bus::Severity;
-  std::vector<bus::Trouble> all = inputs_.troubles(found.around, now_);
+  std::vector<bus::Trouble> all = input_troubles(found.around);
   // Where a topic is missing or has gaps or a counter jumped, that is why.
   if (incomplete_at_ &&
       now_ - *incomplete_at_ < samples_or(unit_.sample_time_s, kIncompleteShows, kLeastPause) &&

@@ -69,6 +69,7 @@ class UnitHealth {
 
  private:
   [[nodiscard]] std::vector<bus::Trouble> find_troubles(const Found& found) const;
+  [[nodiscard]] std::vector<bus::Trouble> input_troubles(const bus::Surroundings& around) const;
   void add_simulated(report::UnitMonitor& monitor, std::vector<bus::Trouble>& troubles) const;
   [[nodiscard]] bool pauses(SignalKind kind) const;
   void note_incomplete(const AlignerCounters& aligner);
@@ -83,6 +84,7 @@ class UnitHealth {
   std::string trouble_text_;
   HealthRecord record_;
   Clock::time_point now_;
+  std::optional<Clock::time_point> framed_at_;  // when the last frame was seen
   bool goes_on_ = false;
   std::optional<Clock::time_point> stood_still_;  // when this process went on
   Clock::duration stood_still_for_{};

@@ -72,7 +72,7 @@ void add_unwritten(const std::vector<Trouble>& told, UnitFindings& findings) {
     return std::any_of(told.begin(), told.end(),
                        [&key](const Trouble& trouble) { return trouble.key == key; });
   };
-  if (has("no data")) return;
+  if (has(kNoData)) return;
   for (const TopicFindings& topic : findings.topics)
     if (topic.needed && topic.writers.empty() && !has("silent " + topic.topic))
       findings.troubles.push_back(

@@ -203,6 +203,77 @@ TEST_CASE("a signal that is bad stays so while nothing comes, until that is told
   CHECK(toy.judge(109).detail.find("no data for 10 s") == 0);
 }
 
+TEST_CASE("samples of which no frame is made are a failure only while no frame is made of others") {
+  Toy toy(1.0, "{tag: y, prediction: yp}");
+  const std::vector<double> too_many = {1.0, 2.0};
+  const auto predictions = [&](int s) {  // of another length
+    idl::SampleView sample;
+    sample.kind = SignalKind::kPrediction;
+    sample.interval = s;
+    sample.source_time_ns = s * std::int64_t{1'000'000'000};
+    sample.values = too_many;
+    toy.health.push(sample, 0);
+  };
+  int s = 1;
+  for (; s < 30; ++s) {
+    have_come(toy, s);
+    predictions(s);
+    CHECK(toy.judge(s).state == "out_of_specification");
+  }
+  CHECK(toy.judge(s).detail ==
+        "mpm/prediction has 2 values and 0 qualities where the unit file has 1 signal");
+
+  // Two counters: one goes on, or nobody can tell which.
+  const auto second_gateway = [&](int at) {
+    const std::vector<double> value = {1.0};
+    idl::SampleView sample;
+    sample.kind = SignalKind::kMv;
+    sample.interval = 5000 + at;
+    sample.source_time_ns = at * std::int64_t{1'000'000'000};
+    sample.values = value;
+    sample.writer = 7;
+    toy.health.push(sample, 0);
+  };
+  for (; s < 60; ++s) {
+    second_gateway(s);
+    have_come(toy, s);
+    predictions(s);
+    (void)toy.judge(s);
+  }
+  CHECK(toy.judge(s).detail.find("two gateways write mpm/mv") == 0);
+  CHECK(toy.judge(s).state == "out_of_specification");
+  for (; s < 75; ++s) {
+    second_gateway(s);
+    have_come(toy, s);
+    predictions(s);
+    --toy.aligner.frames;
+    (void)toy.judge(s);
+  }
+  CHECK(toy.judge(s).detail.find("two gateways write mpm/mv") == 0);
+  CHECK(toy.judge(s).state == "failure");
+}
+
+TEST_CASE("set-points of another length are told though nobody waits for them") {
+  for (const bool used : {true, false}) {
+    CAPTURE(used);
+    Toy toy(1.0, used ? "{tag: y, setpoint: ysp}" : "y");
+    const std::vector<double> too_many = {1.0, 2.0};
+    for (int s = 1; s < 10; ++s) {
+      have_come(toy, s);
+      idl::SampleView sample;
+      sample.kind = SignalKind::kSetpoint;
+      sample.interval = s;
+      sample.source_time_ns = s * std::int64_t{1'000'000'000};
+      sample.values = too_many;
+      toy.health.push(sample, 0);
+    }
+    const HealthRecord record = toy.judge(10);
+    CHECK(record.state == (used ? "out_of_specification" : "function_check"));
+    CHECK((record.detail ==
+           "mpm/setpoint has 2 values and 0 qualities where the unit file has 1 signal") == used);
+  }
+}
+
 TEST_CASE("a start that took long is no standstill") {
   Toy toy(1.0);
   CHECK(toy.judge(9).detail == bus::kNoCompleteData);  // nor is anything silent yet
