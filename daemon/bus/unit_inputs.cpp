@@ -61,12 +61,14 @@ double apart(std::int64_t a, std::int64_t b) {
 }  // namespace
 
 ExpectedInputs expected_inputs(const config::UnitConfig& unit,
-                               const std::array<bool, kSignalKindCount>& needed) {
+                               const std::array<bool, kSignalKindCount>& needed,
+                               const std::array<bool, kSignalKindCount>& welcome) {
   ExpectedInputs expected;
   expected.unit = unit.unit;
   expected.sample_time_s = unit.sample_time_s;
   expected.counts = unit.counts();
   expected.needed = needed;
+  expected.welcome = welcome;
   expected.file = unit;
   return expected;
 }
@@ -151,6 +153,18 @@ bool UnitInputs::needed(SignalKind kind) const {
   return expected_.needed[static_cast<std::size_t>(kind)];
 }
 
+bool UnitInputs::welcome(SignalKind kind) const {
+  return !needed(kind) && expected_.welcome[static_cast<std::size_t>(kind)];
+}
+
+// Came in each interval, which nobody has to, and does no longer. What is sent now and then is
+// never silent.
+bool UnitInputs::has_stopped(SignalKind kind, Clock::time_point now) const {
+  const InputStream::Recent& recent = stream(kind).recent();
+  return welcome(kind) && silent(kind, now) && recent.intervals == InputStream::Recent::kMost &&
+         !recent.with_gaps();
+}
+
 bool UnitInputs::silent(SignalKind kind, Clock::time_point now) const {
   return now - std::max(stream(kind).last().value_or(start_), resumed_.value_or(start_)) >=
          expected_.silence;
@@ -159,7 +173,7 @@ bool UnitInputs::silent(SignalKind kind, Clock::time_point now) const {
 bool UnitInputs::wants_endpoints(Clock::time_point now) const {
   if (!wrong_layouts_.empty()) return true;
   return std::any_of(idl::kTopicKinds.begin(), idl::kTopicKinds.end(), [&](SignalKind kind) {
-    return (needed(kind) && silent(kind, now)) || clock_off(kind, now) ||
+    return (needed(kind) && silent(kind, now)) || has_stopped(kind, now) || clock_off(kind, now) ||
            stream(kind).rivals(now, expected_.silence, [](std::uint64_t) { return true; }).first !=
                nullptr;
   });
@@ -230,8 +244,7 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
     last = std::max(last, stream(kind).last().value_or(start_));
     if (silent(kind, now)) quiet.push_back(kind);
   }
-  if (quiet.empty()) return;
-  if (quiet.size() == wanted) {
+  if (!quiet.empty() && quiet.size() == wanted) {
     // One sentence where all have the same reason.
     std::vector<std::string> reasons;
     reasons.reserve(quiet.size());
@@ -253,6 +266,8 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
     troubles.back().since = last;
     return;
   }
+  for (const SignalKind kind : idl::kTopicKinds)
+    if (has_stopped(kind, now)) quiet.push_back(kind);
   for (const SignalKind kind : quiet) {
     const std::string since =
         stream(kind).started()
@@ -313,19 +328,23 @@ void UnitInputs::add_contents(Clock::time_point now, std::vector<Trouble>& troub
   std::int64_t beyond_at = 0;
   for (const SignalKind kind : idl::kTopicKinds) {
     const InputStream& input = stream(kind);
-    if (!needed(kind) || !input.started() || silent(kind, now)) continue;
-    if (input.beyond()) {
+    if (!(needed(kind) || welcome(kind)) || !input.started() || silent(kind, now)) continue;
+    if (needed(kind) && input.beyond()) {
       beyond.push_back(topic_of(kind));
       beyond_at = input.newest().interval;
       continue;
     }
     const auto count = static_cast<std::size_t>(expected_.counts.of(kind));
     const Arrival& newest = input.newest();
+    // The model predicts, and set-points are awaited by nobody.
+    const bool without_it = kind == SignalKind::kPrediction || welcome(kind);
     if (newest.values != count || (newest.qualities != 0 && newest.qualities != count))
-      troubles.push_back({"length " + topic_of(kind), Severity::kFailure,
+      troubles.push_back({"length " + topic_of(kind),
+                          without_it ? Severity::kOutOfSpecification : Severity::kFailure,
                           topic_of(kind) + " has " + counted(newest.values, "value") + " and " +
                               std::to_string(newest.qualities) +
                               " qualities where the unit file has " + counted(count, "signal")});
+    if (welcome(kind)) continue;
     for (const InputStream::Writer& writer : input.writers())
       if (writer.standing >= kStanding && now - writer.last < expected_.silence)
         troubles.push_back({"standing " + topic_of(kind), Severity::kFailure,
@@ -394,6 +413,7 @@ void UnitInputs::add_events(Clock::time_point now, std::vector<Trouble>& trouble
   std::vector<Jumped> jumps;
   std::vector<Stepped> steps;
   for (const SignalKind kind : idl::kTopicKinds) {
+    if (!needed(kind)) continue;  // what may come now and then leaps all the time
     const InputStream& input = stream(kind);
     const std::optional<InputStream::Jump> jump = input.jump();
     const bool missed =

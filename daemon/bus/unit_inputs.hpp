@@ -23,15 +23,17 @@ struct ExpectedInputs {
   double sample_time_s = 1.0;
   SignalCounts counts;
   std::array<bool, kSignalKindCount> needed{};
+  std::array<bool, kSignalKindCount> welcome{};  ///< besides, taken where they come
   /// So long may a topic say nothing.
   std::chrono::steady_clock::duration silence = std::chrono::seconds(5);
   /// What layouts are compared with; nothing: with nothing.
   std::optional<config::UnitConfig> file;
 };
 
-/// By a unit file; `needed`: files::needed_kinds of it.
+/// By a unit file; `needed`: files::needed_kinds of it, `welcome`: files::aligner_settings'.
 [[nodiscard]] ExpectedInputs expected_inputs(const config::UnitConfig& unit,
-                                             const std::array<bool, kSignalKindCount>& needed);
+                                             const std::array<bool, kSignalKindCount>& needed,
+                                             const std::array<bool, kSignalKindCount>& welcome);
 
 /// What else is known of the domain that a unit is on.
 struct Surroundings {
@@ -81,7 +83,9 @@ class UnitInputs {
 
  private:
   [[nodiscard]] bool needed(SignalKind kind) const;
+  [[nodiscard]] bool welcome(SignalKind kind) const;
   [[nodiscard]] bool silent(SignalKind kind, Clock::time_point now) const;
+  [[nodiscard]] bool has_stopped(SignalKind kind, Clock::time_point now) const;
   [[nodiscard]] std::string why_silent(SignalKind kind, const Surroundings& around,
                                        Clock::time_point now) const;
   void add_silence(const Surroundings& around, Clock::time_point now,

@@ -35,7 +35,8 @@ Clock::duration samples_or(double sample_time_s, int samples, std::chrono::secon
 }
 
 bus::ExpectedInputs expected_of(const config::UnitConfig& unit) {
-  bus::ExpectedInputs expected = bus::expected_inputs(unit, files::needed_kinds(unit));
+  bus::ExpectedInputs expected =
+      bus::expected_inputs(unit, files::needed_kinds(unit), files::aligner_settings(unit).welcome);
   expected.silence = samples_or(unit.sample_time_s, kSilentSamples, kLeastSilence);
   return expected;
 }

@@ -100,7 +100,8 @@ int doctor(const DoctorOptions& options) {
           *options.command, bus::domain_options(unit.dds, options.domain.role), options.domain);
       const auto [place, is_new] = known.try_emplace(idl::domain_xml(domain), places.size());
       if (is_new) places.push_back({domain, {}});
-      places[place->second].units.push_back(bus::expected_inputs(unit, files::needed_kinds(unit)));
+      places[place->second].units.push_back(bus::expected_inputs(
+          unit, files::needed_kinds(unit), files::aligner_settings(unit).welcome));
     }
   }
   return examine(options, places, stop);

@@ -169,7 +169,8 @@ void Examination::hear(const mpm_Layout& layout, std::uint64_t writer) {
     expected.counts.raw = count;
   else
     expected.counts.cv = count;
-  expected.needed[static_cast<std::size_t>(*kind)] = count > 0 && *kind != SignalKind::kSetpoint;
+  auto& taken = *kind == SignalKind::kSetpoint ? expected.welcome : expected.needed;
+  taken[static_cast<std::size_t>(*kind)] = count > 0;
   unit->inputs.expect(std::move(expected));
   unit->described = true;
 }

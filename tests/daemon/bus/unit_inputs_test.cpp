@@ -470,6 +470,53 @@ TEST_CASE("samples that cannot become frames say why") {
   }
 }
 
+TEST_CASE("samples of another length that nobody waits for leave verdicts, in doubt") {
+  Scene scene;
+  ExpectedInputs expected = scene.inputs->expected();
+  expected.needed[static_cast<std::size_t>(SignalKind::kPrediction)] = true;
+  expected.welcome[static_cast<std::size_t>(SignalKind::kSetpoint)] = true;
+  scene.inputs->expect(expected);
+  const SignalKind kind = GENERATE(SignalKind::kPrediction, SignalKind::kSetpoint);
+  for (int k = 0; k < 10; ++k) {
+    scene.inputs->push(kind, {kGateway, k, k * kSecond, 3, 0}, scene.now);
+    if (kind == SignalKind::kSetpoint) scene.send(SignalKind::kPrediction, k);
+    scene.second({kMv, kDv, kCv}, k);
+  }
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+  CHECK(scene.text().find(" has 3 values and 0 qualities where the unit file has 2 signals") !=
+        std::string::npos);
+}
+
+TEST_CASE("set-points that came in each interval and have stopped are told, others are not") {
+  constexpr auto kSetpoint = SignalKind::kSetpoint;
+  Scene scene;
+  ExpectedInputs expected = scene.inputs->expected();
+  const bool welcome = GENERATE(true, false);
+  expected.welcome[static_cast<std::size_t>(kSetpoint)] = welcome;
+  scene.inputs->expect(expected);
+  const int each = GENERATE(1, 2, 20);
+  for (int k = 0; k < 200; ++k) {
+    if (k % each == 0) scene.send(kSetpoint, k);
+    scene.second({kMv, kDv, kCv}, k);
+  }
+  CHECK(scene.text().empty());
+  for (int k = 200; k < 230; ++k) scene.second({kMv, kDv, kCv}, k);
+  if (!welcome || each > 1) {
+    CHECK(scene.text().empty());
+    return;
+  }
+  REQUIRE(scene.troubles().size() == 1);
+  CHECK(scene.troubles()[0].severity == Severity::kOutOfSpecification);
+  CHECK(scene.text().find("nothing on mpm/setpoint for 31 s (") == 0);
+  CHECK(scene.inputs->wants_endpoints(scene.now));
+  scene.send(kSetpoint, 230);
+  CHECK(scene.text().find("nothing on mpm/setpoint") == std::string::npos);
+  scene.now += seconds(60);  // with all the others
+  CHECK(scene.text().find("no data for 61 s") == 0);
+  CHECK(scene.troubles().size() == 1);
+}
+
 TEST_CASE("any numbers from any number of writers are borne") {
   Scene scene;
   for (std::uint64_t writer = 0; writer < 1000; ++writer) {
