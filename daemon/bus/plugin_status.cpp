@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "core/text/number_text.hpp"
+#include "core/text/printable.hpp"
+#include "daemon/bus/trouble.hpp"
 
 namespace mpm::bus {
 namespace {
@@ -31,15 +33,15 @@ std::string text_of(const MonitorWord& unit) {
   return text + fmt::format(", {:.1f} s ago", unit.age_s);
 }
 
-// '|' begins the performance data, and a label ends at its quote.
-std::string plain(std::string text, bool label) {
+constexpr std::size_t kLongestStatus = 10'000;  // of many units
+
+// Nothing of the bus gets to a terminal as it is; '|' begins the performance data, and a label ends
+// at its quote.
+std::string plain(const std::string& raw, bool label) {
+  std::string text = label ? printable(raw) : printable(raw, kLongestStatus);
   std::replace_if(
       text.begin(), text.end(),
-      [label](char c) {
-        return c == '|' || static_cast<unsigned char>(c) < ' ' ||
-               (label && (c == '\'' || c == '='));
-      },
-      '_');
+      [label](char c) { return c == '|' || (label && (c == '\'' || c == '=')); }, '_');
   return text;
 }
 

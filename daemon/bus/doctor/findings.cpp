@@ -39,6 +39,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 19> kAdvice 
      "Its log says since when: journalctl --unit mpmd, or the terminal where mpmd was started."},
 }};
 
+// Of a line that the bus has its say in: many times what an honest one takes.
+constexpr std::size_t kLongestLine = 4000;
+
 struct Line {
   std::string unit;
   const Trouble* trouble;
@@ -63,7 +66,7 @@ std::string listed(const std::vector<std::string>& words) {
 }
 
 std::string row(const std::string& topic, const std::string& text) {
-  return fmt::format("  {:<15}{}\n", topic, text);
+  return fmt::format("  {:<15}{}\n", topic, printable(text, kLongestLine));
 }
 
 std::string writer_text(const WriterFindings& writer) {
@@ -106,7 +109,7 @@ std::string summary(const Findings& findings) {
     for (const MonitorFindings& monitor : unit.monitors) {
       alarms += monitor.active_alarms;
       if (monitor.state == to_string(Severity::kFunctionCheck) && waiting.empty())
-        waiting = "; " + printable(unit.unit) + ": " + monitor.detail;
+        waiting = "; " + printable(unit.unit) + ": " + printable(monitor.detail, kLongestLine);
     }
   if (alarms == 0 && waiting.empty()) return "all is well on " + findings.place;
   return "the data path is well on " + findings.place + waiting +
@@ -208,11 +211,13 @@ std::string to_text(const Findings& findings) {
   int number = 0;
   for (const Line& line : lines_of(findings)) {
     const std::string sentence = advice(*line.trouble);
-    text += fmt::format("{}. {}{}.{}\n", ++number, line.unit.empty() ? "" : line.unit + ": ",
-                        line.trouble->text, sentence.empty() ? "" : " " + sentence);
+    text += fmt::format(
+        "{}. {}{}.{}\n", ++number, line.unit.empty() ? "" : printable(line.unit) + ": ",
+        printable(line.trouble->text, kLongestLine), sentence.empty() ? "" : " " + sentence);
   }
   if (number == 0) text += summary(findings) + "\n";
-  for (const std::string& note : findings.notes) text += "note: " + note + "\n";
+  for (const std::string& note : findings.notes)
+    text += "note: " + printable(note, kLongestLine) + "\n";
   return text;
 }
 

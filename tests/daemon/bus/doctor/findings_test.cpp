@@ -66,6 +66,28 @@ TEST_CASE("findings of several places are told as one, each with its place") {
   CHECK(to_json(both)["units"][1]["place"] == "domain 4");
 }
 
+TEST_CASE("nothing that somebody on the bus made up gets to the terminal as it is") {
+  const std::string evil = "\x1b[31mX\n\xff\xc2\x9b";
+  Findings findings = sick();
+  UnitFindings& unit = findings.units[0];
+  unit.unit = unit.monitors[0].state = unit.monitors[0].detail = evil;
+  unit.troubles[0].text = evil;
+  findings.notes = {evil};
+  for (const bool well : {false, true}) {
+    if (well) {
+      unit.troubles.clear();
+      findings.troubles.clear();
+      unit.monitors[0].state = "function_check";
+    }
+    const std::string text = to_text(findings);
+    CAPTURE(text);
+    CHECK(text.find(well ? ": \\x1b[31mX\\n\\xff\\u{9b}" : "1. \\x1b[31mX\\n\\xff\\u{9b}: ") !=
+          std::string::npos);
+    for (const char* raw : {"\x1b", "\xff", "\x9b", "X\n"})
+      CHECK(text.find(raw) == std::string::npos);
+  }
+}
+
 TEST_CASE("where nothing is wrong the doctor says so") {
   Findings findings = sick();
   findings.troubles.clear();
