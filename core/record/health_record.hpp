@@ -12,7 +12,7 @@ namespace mpm {
 struct HealthRecord {
   std::string unit;
   std::string state;   ///< NE 107 word
-  std::string detail;  ///< why; empty if normal
+  std::string detail;  ///< why; if normal empty, or what is silenced
   std::int64_t interval = 0;
   std::int64_t source_time_ns = 0;
   std::uint64_t frames = 0;
@@ -31,6 +31,7 @@ struct HealthRecord {
   std::uint32_t mismatching = 0;
   std::uint32_t active_alarms = 0;
   std::uint64_t beyond = 0;
+  std::uint32_t silenced_alarms = 0;  ///< of the active ones
 
   /// See FieldKey.
   template <class Visit, class Record, class... Sample>
@@ -57,6 +58,7 @@ struct HealthRecord {
     visit("mismatching", record.mismatching, sample.mismatching...);
     visit("active_alarms", record.active_alarms, sample.active_alarms...);
     visit("beyond", record.beyond, sample.beyond...);
+    visit("silenced_alarms", record.silenced_alarms, sample.silenced_alarms...);
   }
 };
 

@@ -11,9 +11,10 @@ struct MonitorWord {
   std::string unit;
   std::string state, detail;  ///< of mpm/health; empty: nothing came
   std::uint32_t active_alarms = 0;
-  double age_s = 0.0;      ///< since it was written
-  bool gone = false;       ///< the monitor has left since
-  std::string place = {};  ///< where it was looked for; may be empty
+  double age_s = 0.0;                 ///< since it was written
+  bool gone = false;                  ///< the monitor has left since
+  std::string place = {};             ///< where it was looked for; may be empty
+  std::uint32_t silenced_alarms = 0;  ///< of the active ones
 };
 
 /// Ages of a unit's last health from which on it is a warning, or critical.

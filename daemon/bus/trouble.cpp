@@ -19,8 +19,15 @@ const char* to_string(Severity severity) {
   }
 }
 
-std::string troubles_in(const std::string& detail, std::uint32_t active_alarms) {
-  const std::string alarms = counted(active_alarms, "alarm");
+std::string alarms_text(std::uint64_t active, std::uint64_t silenced) {
+  if (silenced == 0) return counted(active, "alarm");
+  if (silenced >= active) return counted(silenced, "silenced alarm");
+  return counted(active - silenced, "alarm") + ", " + std::to_string(silenced) + " silenced";
+}
+
+std::string troubles_in(const std::string& detail, std::uint32_t active_alarms,
+                        std::uint32_t silenced_alarms) {
+  const std::string alarms = alarms_text(active_alarms, silenced_alarms);
   if (detail.ends_with("; " + alarms)) return detail.substr(0, detail.size() - alarms.size() - 2);
   for (const std::string& first :
        {alarms, std::string(kNoCompleteData), std::string(kNothingDetermined)}) {

@@ -31,9 +31,13 @@ inline constexpr const char* kNoData = "no data";
 /// What `mpm/health` says of a unit that has only begun.
 inline constexpr const char* kNoCompleteData = "no complete data yet";
 inline constexpr const char* kNothingDetermined = "nothing determined yet";
+/// "2 alarms", "2 alarms, 1 silenced", "1 silenced alarm": of those that stand (`active`) so many
+/// are `silenced`, and not to be annunciated by another name.
+[[nodiscard]] std::string alarms_text(std::uint64_t active, std::uint64_t silenced);
 /// The troubles in the detail of a health, without these and how many alarms there are, which are
 /// none; empty if there are none.
-[[nodiscard]] std::string troubles_in(const std::string& detail, std::uint32_t active_alarms);
+[[nodiscard]] std::string troubles_in(const std::string& detail, std::uint32_t active_alarms,
+                                      std::uint32_t silenced_alarms = 0);
 
 /// Puts the worst first; those of one severity stay in their order.
 void sort_by_severity(std::vector<Trouble>& troubles);

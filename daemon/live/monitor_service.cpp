@@ -144,7 +144,7 @@ CommandReply MonitorService::carry_out(const AlarmCommand& command) {
 
 std::string MonitorService::status() const {
   std::uint64_t units = 0, standing_by = 0, matching = 0, mismatching = 0, undetermined = 0,
-                alarms = 0;
+                alarms = 0, silenced = 0;
   for (const auto& domain : domains_) {
     for (const auto& [name, unit] : domain->units()) {
       const HealthRecord& health = unit->health();
@@ -154,12 +154,13 @@ std::string MonitorService::status() const {
       mismatching += health.mismatching;
       undetermined += health.undetermined;
       alarms += health.active_alarms;
+      silenced += health.silenced_alarms;
     }
   }
   std::string text = counted(units, "unit") +
                      fmt::format("; channels: {} match, {} mismatch, {} undetermined; ", matching,
                                  mismatching, undetermined) +
-                     counted(alarms, "alarm");
+                     bus::alarms_text(alarms, silenced);
   if (standing_by > 0) text += fmt::format("; stands by for {} of them", standing_by);
   std::size_t troubled = 0;
   for (const auto& domain : domains_)

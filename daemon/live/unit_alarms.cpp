@@ -416,6 +416,13 @@ history::AlarmEntry UnitAlarms::entry(int alarm, std::string what, std::int64_t 
   return entry;
 }
 
+std::uint32_t UnitAlarms::silenced_channels() const {
+  std::uint32_t count = 0;
+  for (int i = 0; i < desk_.channels(); ++i)
+    if (desk_.active(i) && desk_.standing(i).silenced()) ++count;
+  return count;
+}
+
 bool UnitAlarms::write(int alarm) {
   return alarm == AlarmDesk::kController ? outputs_.write(controller_)
                                          : outputs_.write(alarms_[static_cast<std::size_t>(alarm)]);

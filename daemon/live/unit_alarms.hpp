@@ -75,6 +75,8 @@ class UnitAlarms {
   }
   [[nodiscard]] const std::vector<AlarmStateRecord>& channels() const { return alarms_; }
   [[nodiscard]] const ControllerAlarmRecord& controller() const { return controller_; }
+  /// Channels whose alarm stands, and which somebody or the plant has silenced.
+  [[nodiscard]] std::uint32_t silenced_channels() const;
   /// As AlarmJournal::put_aside.
   [[nodiscard]] std::string journal_put_aside() const {
     return journal_ == nullptr ? "" : journal_->put_aside();

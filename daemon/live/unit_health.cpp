@@ -116,6 +116,7 @@ const HealthRecord& UnitHealth::judge(const Found& found, std::int64_t wall_s) {
   record_.unknown_unit = found.unknown_unit;
   record_.restarts = aligner.restarts;
   count(found.monitor.channels());
+  record_.silenced_alarms = std::min(found.silenced_alarms, record_.active_alarms);
   troubles_ = find_troubles(found);
   keep_while_paused();
   trouble_text_ = bus::joined_text(troubles_, kMostInDetail);
@@ -237,14 +238,15 @@ void UnitHealth::decide() {
     record_.state = state;
     record_.detail = std::move(detail);
   };
-  const std::string alarms = counted(record_.active_alarms, "alarm");
+  const std::string alarms = bus::alarms_text(record_.active_alarms, record_.silenced_alarms);
   const std::string besides = trouble_text_.empty() ? "" : "; " + trouble_text_;
   const bool in_trouble = !troubles_.empty();
   const bool serious =
       in_trouble && troubles_.front().severity > bus::Severity::kMaintenanceRequired;
-  const bool waiting = record_.frames == 0, alarmed = record_.active_alarms > 0;
+  const bool waiting = record_.frames == 0, any_alarm = record_.active_alarms > 0;
+  const bool alarmed = record_.active_alarms > record_.silenced_alarms;
   if (serious || (in_trouble && !waiting && !alarmed))
-    set(to_string(troubles_.front().severity), trouble_text_ + (alarmed ? "; " + alarms : ""));
+    set(to_string(troubles_.front().severity), trouble_text_ + (any_alarm ? "; " + alarms : ""));
   else if (waiting)
     set("function_check", bus::kNoCompleteData + besides);
   else if (alarmed)
@@ -252,7 +254,7 @@ void UnitHealth::decide() {
   else if (record_.matching + record_.mismatching == 0)
     set("function_check", bus::kNothingDetermined);
   else
-    set("normal", "");
+    set("normal", any_alarm ? alarms : "");
 }
 
 }  // namespace mpm::live

@@ -54,6 +54,7 @@ class UnitHealth {
     const bus::Surroundings& around;
     std::vector<bus::Trouble> others = {};  ///< what is seen elsewhere
     std::string in_front = {};              ///< of the detail
+    std::uint32_t silenced_alarms = 0;      ///< of the active ones
   };
   /// Logs what begins and what is over.
   const HealthRecord& judge(const Found& found, std::int64_t wall_s);

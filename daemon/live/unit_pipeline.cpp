@@ -432,9 +432,10 @@ void UnitPipeline::show() {
 void UnitPipeline::publish_health(std::uint64_t unknown_unit, const bus::Surroundings& around) {
   std::vector<bus::Trouble> others = neighbours_.troubles(around, now_);
   for (bus::Trouble& trouble : keeping_troubles()) others.push_back(std::move(trouble));
-  const HealthRecord& health = health_.judge(
-      {aligner_.counters(), monitor_, unknown_unit, around, std::move(others), stands_by_text()},
-      wall_ns() / kSecondNs);
+  const HealthRecord& health =
+      health_.judge({aligner_.counters(), monitor_, unknown_unit, around, std::move(others),
+                     stands_by_text(), alarms_.silenced_channels()},
+                    wall_ns() / kSecondNs);
   if (journal_) journal_->push(health);
   if (!outputs_.write(health) && output_limit_.admit(now_))
     spdlog::warn("{}: the health could not be published", config_.unit);

@@ -174,6 +174,7 @@ namespace mpm::test {
   record.matching = 113;
   record.mismatching = 114;
   record.active_alarms = 115;
+  record.silenced_alarms = 117;
   record.beyond = 116;
   return record;
 }

@@ -289,6 +289,7 @@ TEST_CASE("the health goes to its sample and back") {
   sample.matching = 113;
   sample.mismatching = 114;
   sample.active_alarms = 115;
+  sample.silenced_alarms = 117;
   sample.beyond = 116;
   check_both_ways(test::health(), sample);
 }

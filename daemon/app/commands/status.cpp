@@ -47,8 +47,11 @@ class LastWords {
       return;
     }
     word = {health.state == nullptr ? "" : health.state,
-            health.detail == nullptr ? "" : health.detail, health.active_alarms,
-            info.source_time_ns, false};
+            health.detail == nullptr ? "" : health.detail,
+            health.active_alarms,
+            health.silenced_alarms,
+            info.source_time_ns,
+            false};
   }
   /// How many of `units` have spoken lately.
   [[nodiscard]] bool all_here(const std::vector<std::string>& units) const {
@@ -70,6 +73,7 @@ class LastWords {
       entry.state = word.state;
       entry.detail = word.detail;
       entry.active_alarms = word.active_alarms;
+      entry.silenced_alarms = word.silenced_alarms;
       entry.gone = word.gone;
       const auto age_ns = static_cast<double>(host::ArrivalClock().now_ns() - word.written_ns);
       entry.age_s = std::max(0.0, 1e-9 * age_ns);
@@ -80,7 +84,7 @@ class LastWords {
  private:
   struct Word {
     std::string state, detail;
-    std::uint32_t active_alarms = 0;
+    std::uint32_t active_alarms = 0, silenced_alarms = 0;
     std::int64_t written_ns = 0;
     bool gone = false;
   };
@@ -191,7 +195,8 @@ void add_status(CLI::App& app, int& exit_code) {
       "Per unit after '|': alarms, age of the last health, state (0 OK, 1 WARNING, 2 CRITICAL).\n"
       "Ages compare this machine's clock with that of the monitor's.\n"
       "Example:\n  mpm status --config /etc/mpm/units\n"
-      "Exit codes, those of monitoring plug-ins: 0 OK, 1 WARNING: alarms, or not normal,\n"
+      "Exit codes, those of monitoring plug-ins: 0 OK, 1 WARNING: alarms that nobody has\n"
+      "silenced, or not normal,\n"
       "2 CRITICAL: failure, or no monitor, 3 UNKNOWN: it could not be found out, or bad usage");
   command->callback([options, &exit_code] { exit_code = status(*options); });
 }

@@ -129,7 +129,8 @@ void Examination::hear(const std::string& topic, const idl::RawSample& sample) {
     if (Unit* unit = unit_of(health->unit, sample.writer))
       unit->monitors[sample.writer] = {health->state == nullptr ? "" : health->state,
                                        health->detail == nullptr ? "" : health->detail,
-                                       health->active_alarms, Clock::now()};
+                                       health->active_alarms, health->silenced_alarms,
+                                       Clock::now()};
   }
 }
 
@@ -291,8 +292,8 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
     const auto shares = sharers.find(idl::name_of(endpoint->process));
     if (shares != sharers.end() && age_s > kSpeaksEachS) continue;  // it spoke before another one
     if (shares != sharers.end()) sharers.erase(shares);
-    findings.monitors.push_back(
-        {endpoint->process, word.state, word.detail, word.active_alarms, age_s});
+    findings.monitors.push_back({endpoint->process, word.state, word.detail, word.active_alarms,
+                                 age_s, word.silenced_alarms});
   }
   for (const auto& [name, process] : sharers) findings.standbys.push_back(process);
   if (findings.monitors.empty())
@@ -306,7 +307,8 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
   // It knows more than the bus shows, of its disk for example. Alarms are what it is there for.
   for (const MonitorFindings& monitor : findings.monitors) {
     const std::string said =
-        not_told(troubles_in(monitor.detail, monitor.active_alarms), findings.troubles);
+        not_told(troubles_in(monitor.detail, monitor.active_alarms, monitor.silenced_alarms),
+                 findings.troubles);
     if (!said.empty())
       findings.troubles.push_back(
           {"monitor says", Severity::kMaintenanceRequired,

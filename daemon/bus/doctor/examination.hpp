@@ -34,7 +34,7 @@ class Examination {
   };
   struct Word {  // a monitor's last one
     std::string state, detail;
-    std::uint32_t active_alarms = 0;
+    std::uint32_t active_alarms = 0, silenced_alarms = 0;
     Clock::time_point when;
   };
   struct Unit {

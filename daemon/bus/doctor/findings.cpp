@@ -107,7 +107,7 @@ std::string summary(const Findings& findings) {
   std::string waiting;
   for (const UnitFindings& unit : findings.units)
     for (const MonitorFindings& monitor : unit.monitors) {
-      alarms += monitor.active_alarms;
+      alarms += monitor.active_alarms - std::min(monitor.active_alarms, monitor.silenced_alarms);
       if (monitor.state == to_string(Severity::kFunctionCheck) && waiting.empty())
         waiting = "; " + printable(unit.unit) + ": " + printable(monitor.detail, kLongestLine);
     }
@@ -134,6 +134,7 @@ Json json_of(const UnitFindings& unit) {
     entry.update({{"state", monitor.state},
                   {"detail", monitor.detail},
                   {"active_alarms", monitor.active_alarms},
+                  {"silenced_alarms", monitor.silenced_alarms},
                   {"age_s", monitor.age_s}});
     monitors.push_back(std::move(entry));
   }

@@ -33,7 +33,8 @@ struct MonitorFindings {
   idl::Process process;
   std::string state, detail;  ///< of mpm/health
   std::uint32_t active_alarms = 0;
-  double age_s = 0.0;  ///< since the last word
+  double age_s = 0.0;                 ///< since the last word
+  std::uint32_t silenced_alarms = 0;  ///< of the active ones
 };
 
 struct UnitFindings {

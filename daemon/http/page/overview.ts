@@ -4,6 +4,7 @@ import { h } from './dom';
 import { healthChip, kpiStrip, lastSample, outdated, outdatedClass, smallMatrix, standby, unitLink } from './parts';
 import { needsAck, title } from './alarm';
 
+const kAlarmsAlone = /^\d+ (silenced )?alarms?(, \d+ silenced)?$/; // which chips say already
 const kAttention = ['well', 'unsettled', 'doubtful', 'blind', 'alarmed'];
 
 const alarmLine = (alarm: Alarm) => h('li', { class: needsAck(alarm) ? 'alarm-line unacknowledged' : 'alarm-line' },
@@ -19,7 +20,7 @@ function card(unit: Card): HTMLElement {
     outdated(unit),
     h('div', { class: `card-body ${outdatedClass(unit)}` }, smallMatrix(unit), kpiStrip(unit.kpi)),
     unit.first_alarms.length ? h('ul', { class: 'plain' }, ...unit.first_alarms.map(alarmLine), more > 0 ? h('li', {}, `and ${more} more`) : null) : null,
-    unit.speaks && unit.health.detail && !/^\d+ alarms?$/.test(unit.health.detail) ? h('p', { class: 'note' }, unit.health.detail) : null,
+    unit.speaks && unit.health.detail && !kAlarmsAlone.test(unit.health.detail) ? h('p', { class: 'note' }, unit.health.detail) : null,
     lastSample(unit));
 }
 

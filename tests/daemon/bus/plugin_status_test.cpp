@@ -64,4 +64,29 @@ TEST_CASE("no name breaks the line") {
   CHECK(line.find("'a_b__") != std::string::npos);
 }
 
+TEST_CASE("no unit or detail of the bus gets to the terminal as it is") {
+  MonitorWord odd = word("a\xff", "failure");
+  odd.detail = "\x1b[31m\xc2\x9b\x7f";
+  const std::string line = plugin_status({odd}, AgeLimits(), "").line;
+  CHECK(line.find(
+            "MPM CRITICAL: a\\xff: failure (\\x1b[31m\\u{9b}\\x7f), 0.5 s ago | 'a\\xff alarms'") ==
+        0);
+}
+
+TEST_CASE("alarms that are silenced are told apart, and warn nobody") {
+  MonitorWord one = word("a", "normal", 2);
+  one.silenced_alarms = 2;
+  one.detail = "2 silenced alarms";
+  const PluginStatus silent = plugin_status({one, word("b", "normal")}, AgeLimits(), "");
+  CHECK(silent.code == 0);
+  CHECK(silent.line.find("MPM OK: 2 units, 2 silenced alarms | 'a alarms'=0;0 ") == 0);
+  one.silenced_alarms = 1;
+  one.state = "maintenance_required";
+  one.detail = "1 alarm, 1 silenced";
+  const PluginStatus calling = plugin_status({one}, AgeLimits(), "");
+  CHECK(calling.code == 1);
+  CHECK(calling.line.find("MPM WARNING: a: maintenance_required (1 alarm, 1 silenced), 0.5 s ago | "
+                          "'a alarms'=1;0") == 0);
+}
+
 }  // namespace mpm::bus

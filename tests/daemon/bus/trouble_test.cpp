@@ -23,6 +23,16 @@ TEST_CASE("severities have the words of NAMUR NE 107") {
   CHECK(std::string(to_string(Severity::kMaintenanceRequired)) == "maintenance_required");
 }
 
+TEST_CASE("of the alarms that stand those that are silenced are told apart") {
+  CHECK(alarms_text(0, 0) == "0 alarms");
+  CHECK(alarms_text(2, 0) == "2 alarms");
+  CHECK(alarms_text(2, 1) == "1 alarm, 1 silenced");
+  CHECK(alarms_text(2, 2) == "2 silenced alarms");
+  CHECK(troubles_in("a; 1 alarm, 1 silenced", 2, 1) == "a");
+  CHECK(troubles_in("1 silenced alarm; a", 1, 1) == "a");
+  CHECK(troubles_in("1 silenced alarm", 1, 1).empty());
+}
+
 TEST_CASE("alarms and missing data are no troubles of a monitor, what follows them is") {
   CHECK(troubles_in("1 alarm", 1).empty());
   CHECK(troubles_in("no complete data yet", 0).empty());

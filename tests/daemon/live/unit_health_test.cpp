@@ -31,13 +31,15 @@ struct Toy {
 
   HealthRecord judge(int s, std::vector<bus::Trouble> others = {}, const std::string& front = "") {
     health.go_on(kStart + seconds(s));
-    return health.judge({aligner, monitor, 3, around, std::move(others), front}, 1'700'000'000 + s);
+    return health.judge({aligner, monitor, 3, around, std::move(others), front, silenced_alarms},
+                        1'700'000'000 + s);
   }
 
   config::LoadResult loaded;
   report::UnitMonitor monitor;
   AlignerCounters aligner;
   bus::Surroundings around;
+  std::uint32_t silenced_alarms = 0;
   UnitHealth health;
 };
 
@@ -84,6 +86,23 @@ TEST_CASE("the worst trouble gives the state, and what is told elsewhere is one 
   CHECK(toy.health.troubles().size() == 2);
   CHECK(toy.judge(5, {}, "stands by").detail ==
         "stands by; " + std::string(bus::kNothingDetermined));
+}
+
+TEST_CASE("an alarm that is silenced is none to health, which says that there is one") {
+  Toy toy(1.0);
+  const bus::Trouble disk{"journal", Severity::kMaintenanceRequired, "the disk is full"};
+  for (int s = 1; s < 5; ++s) have_come(toy, s);
+  toy.monitor.stand(0);
+  CHECK(toy.judge(5).state == "maintenance_required");
+  CHECK(toy.judge(5).detail == "1 alarm");
+  CHECK(toy.judge(5, {disk}).detail == "1 alarm; the disk is full");
+  toy.silenced_alarms = 1;
+  const HealthRecord silenced = toy.judge(5);
+  CHECK(silenced.active_alarms == 1);
+  CHECK(silenced.silenced_alarms == 1);
+  CHECK(silenced.state == "function_check");
+  CHECK(silenced.detail == bus::kNothingDetermined);
+  CHECK(toy.judge(5, {disk}).detail == "the disk is full; 1 silenced alarm");
 }
 
 TEST_CASE("health says of predictions that are corrected by the measurement who predicts instead") {

@@ -76,7 +76,7 @@ TEST_CASE("records are the JSON lines that readers know, byte for byte") {
         R"("missing":103,"incomplete":104,"late":105,"repeated":106,"out_of_order":107,)"
         R"("bad_values":108,"wrong_length":109,"unknown_unit":110,"restarts":111,)"
         R"("undetermined":112,"matching":113,"mismatching":114,"active_alarms":115,)"
-        R"("beyond":116})");
+        R"("beyond":116,"silenced_alarms":117})");
   CHECK(json_of(performance()).dump() ==
         R"({"record":"performance","unit":"shell","interval":600,"time_ns":601000000000,)"
         R"("window_samples":28800,"samples":599,"service_factor":0.9375,"cvs":[{"cv":"y1",)"

@@ -98,6 +98,10 @@ TEST_CASE("where nothing is wrong the doctor says so") {
   findings.units[0].monitors[0].active_alarms = 2;
   CHECK(to_text(findings).find("the data path is well on domain 3; 2 alarms: see mpm watch\n") !=
         std::string::npos);
+  findings.units[0].monitors[0].silenced_alarms = 1;
+  CHECK(to_text(findings).find("on domain 3; 1 alarm: see mpm watch\n") != std::string::npos);
+  findings.units[0].monitors[0].silenced_alarms = 2;
+  CHECK(to_text(findings).find("all is well on domain 3\n") != std::string::npos);
   findings.units[0].monitors[0] = {{}, "function_check", "nothing determined yet", 0, 0.5};
   CHECK(
       to_text(findings).find("the data path is well on domain 3; toy: nothing determined yet\n") !=
