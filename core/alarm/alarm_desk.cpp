@@ -20,6 +20,7 @@ AlarmDesk::AlarmDesk(const AlarmHandling& handling, double sample_time_s,
     : handling_(handling),
       names_(std::move(channels)),
       alarms_(names_.size()),
+      seen_(names_.size(), false),
       senseless_(names_.size(), 0) {
   // There is trouble or there is none: 0 or 1 stands for a p-value.
   delays_.raise_below = 0.5;
@@ -92,22 +93,38 @@ int AlarmDesk::standing_channels() const {
   }));
 }
 
+bool AlarmDesk::all_seen() const {
+  for (std::size_t i = 0; i < alarms_.size(); ++i)
+    if (alarms_[i].active() && !alarms_[i].standing().silenced() && !seen_[i]) return false;
+  return true;
+}
+
 // Where people have silenced all there is, the controller's alarm goes at once; what the plant
-// silences for a while leaves it as it is.
+// silences for a while leaves it as it is. What it was acknowledged for calls nobody anew when the
+// silence ends.
 void AlarmDesk::settle(const AlarmMoment& now, bool new_sample) {
   bool any = false, waits = false, meaningful = alarms_.empty();
-  for (const ManagedAlarm& alarm : alarms_) {
+  for (std::size_t i = 0; i < alarms_.size(); ++i) {
+    const ManagedAlarm& alarm = alarms_[i];
+    seen_[i] = seen_[i] && alarm.active();
     any = any || alarm.active();
     waits = waits || (alarm.active() && alarm.standing().silenced_by_design_alone());
     meaningful = meaningful || !alarm.standing().suppressed_by_design;
   }
   const bool trouble = standing_channels() > 0;
-  if (!meaningful || (waits && !trouble))
+  if (!meaningful || (waits && !trouble)) {
     trouble_.hold();
-  else if (any && !trouble)
+  } else if (any && !trouble) {
+    if (controller_.standing().annunciation == Annunciation::kAcknowledged)
+      for (std::size_t i = 0; i < alarms_.size(); ++i) seen_[i] = alarms_[i].active();
     trouble_.set(AlarmState::kCleared);
-  else if (new_sample)
+  } else if (new_sample) {
     trouble_.update(trouble ? 0.0 : 1.0, delays_);
+  }
+  if (trouble_.state() == AlarmState::kActive && !controller_.active()) {
+    if (trouble && all_seen()) controller_.know();
+    seen_.assign(seen_.size(), false);
+  }
   controller_.observe(trouble_.state() == AlarmState::kActive, meaningful, now, handling_.managed,
                       fresh_);
   note(kController, false);

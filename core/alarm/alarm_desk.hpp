@@ -67,11 +67,13 @@ class AlarmDesk {
   }
   void note(int alarm, bool by_command);
   void settle(const AlarmMoment& now, bool new_sample);
+  [[nodiscard]] bool all_seen() const;
 
   AlarmHandling handling_;
   Condition::Limits delays_;
   std::vector<Channel> names_;
   std::vector<ManagedAlarm> alarms_;
+  std::vector<bool> seen_;      // acknowledged with the controller's, which silence has ended
   std::vector<int> senseless_;  // samples in a row, or back from them, as a count to a limit
   ManagedAlarm controller_;
   Condition trouble_;  // of the controller

@@ -109,6 +109,8 @@ class ManagedAlarm {
 
   [[nodiscard]] const AlarmStanding& standing() const { return standing_; }
   [[nodiscard]] bool active() const { return active_; }
+  /// What rises with the next `observe` is what somebody has acknowledged before.
+  void know() { seen_before_ = true; }
   /// What held before a restart: what people did holds still. Whether its cause is there is to be
   /// found anew; one that nobody had seen waits as if it had returned.
   void restore(const AlarmStanding& before, const Settings& settings);
@@ -122,7 +124,7 @@ class ManagedAlarm {
 
   AlarmStanding standing_;
   bool active_ = false;
-  bool seen_before_ = false;  // what stands now, by somebody before a restart
+  bool seen_before_ = false;  // what stands now or rises next, by somebody
 };
 
 }  // namespace mpm

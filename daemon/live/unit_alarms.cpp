@@ -23,12 +23,13 @@ bool meaningful(Reason reason) {
   return reason != Reason::kControllerOff && reason != Reason::kBadData;
 }
 
-// Of what has cleared the text has to say so.
-std::string told_text(std::string text, bool active) {
-  constexpr std::string_view kOver = "over: ";
-  const bool says_over = text.starts_with(kOver);
-  if (active && says_over) text.erase(0, kOver.size());
-  if (!active && !says_over && !text.empty()) text.insert(0, kOver);
+constexpr std::string_view kOver = "over: ", kSilenced = "silenced: ";
+
+// Of what has cleared the text has to say so, `how`; empty: it stands.
+std::string told_text(std::string text, std::string_view how) {
+  for (const std::string_view before : {kOver, kSilenced})
+    if (text.starts_with(before)) text.erase(0, before.size());
+  if (!text.empty()) text.insert(0, how);
   return text;
 }
 
@@ -366,8 +367,13 @@ void UnitAlarms::refresh(int alarm) {
       controller_.interval = interval_;
       controller_.source_time_ns = source_time_ns_;
     }
+    // What is silenced is not over.
+    const std::string_view how = active ? ""
+                                 : silenced_channels() > 0 && desk_.standing_channels() == 0
+                                     ? kSilenced
+                                     : kOver;
     std::string message =
-        told_text(active ? controller_text() : std::move(controller_.view.message), active);
+        told_text(active ? controller_text() : std::move(controller_.view.message), how);
     controller_.view = ControlRoomView(standing, settings_.notification_class, settings_.priority);
     controller_.view.message = std::move(message);
     controller_.channels = desk_.standing_channels();
@@ -375,7 +381,7 @@ void UnitAlarms::refresh(int alarm) {
   }
   AlarmStateRecord& record = alarms_[static_cast<std::size_t>(alarm)];
   std::string message =
-      told_text(std::move(record.view.message), record.to == AlarmChange::kActive);
+      told_text(std::move(record.view.message), record.to == AlarmChange::kActive ? "" : kOver);
   record.view = ControlRoomView(standing, NotificationClass::kAlert, AlarmPriority::kLow);
   record.view.message = std::move(message);
 }

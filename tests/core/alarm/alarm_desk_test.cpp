@@ -87,6 +87,34 @@ TEST_CASE("silencing the last standing channel ends the controller's alarm at on
   CHECK(unit.controller());
 }
 
+TEST_CASE(
+    "what the controller's alarm was acknowledged for calls nobody anew when a silence ends") {
+  const bool acknowledged = GENERATE(true, false);
+  const bool another = GENERATE(false, true);  // channel rises behind the shelf
+  const bool gone = GENERATE(false, true);     // and back, meanwhile
+  Unit unit;
+  unit.channels[0].active = true;
+  unit.run(1);
+  if (acknowledged) CHECK(unit.apply(AlarmAction::kAcknowledge).accepted);
+  CHECK(unit.apply(AlarmAction::kShelve, "u1", "y1", 100.0).accepted);
+  CHECK_FALSE(unit.controller());
+  if (gone) {
+    unit.channels[0].active = false;
+    unit.run(2);
+    unit.channels[0].active = true;
+    unit.run(2);
+  }
+  unit.run(100);
+  if (another) {
+    unit.channels[2].active = true;
+    CHECK(unit.apply(AlarmAction::kShelve, "u1", "y1", 100.0).accepted);
+  }
+  unit.run(2);
+  CHECK(unit.controller());
+  CHECK(unit.word(AlarmDesk::kController) ==
+        (acknowledged && !another && !gone ? "acknowledged" : "unacknowledged"));
+}
+
 TEST_CASE("a gap in the data is no event, a controller that is off suppresses by design") {
   Unit unit;
   unit.channels[0].active = true;

@@ -158,6 +158,47 @@ TEST_CASE("after a restart the controller's alarm counts the channels that stand
   CHECK(desk.alarms.controller().view.message == message);
 }
 
+TEST_CASE("the controller's alarm is not over while all that stands is silenced") {
+  Desk desk("alarms-silenced");
+  desk.sample(true, true);
+  const std::string message = desk.alarms.controller().view.message;
+  AlarmCommand shelve;
+  shelve.unit = desk.unit.unit;
+  shelve.mv = kMv;
+  shelve.cv = kCv;
+  shelve.user = "operator";
+  shelve.action = AlarmAction::kShelve;
+  shelve.duration_s = 60.0;
+  CHECK(desk.alarms.silenced_channels() == 0);
+  REQUIRE(desk.alarms.apply(shelve, 0).accepted);
+  CHECK(desk.alarms.silenced_channels() == 1);
+  CHECK(desk.alarms.controller().state == AlarmState::kCleared);
+  CHECK(desk.alarms.controller().view.message == "silenced: " + message);
+  SECTION("it comes back when the silence ends") {
+    shelve.action = AlarmAction::kUnshelve;
+    REQUIRE(desk.alarms.apply(shelve, 0).accepted);
+    desk.sample(true, false);
+    CHECK(desk.alarms.controller().view.message == message);
+  }
+  SECTION("it is over once what was silenced has cleared") {
+    desk.sample(false, true);
+    CHECK(desk.alarms.silenced_channels() == 0);
+    CHECK(desk.alarms.controller().view.message == "over: " + message);
+  }
+}
+
+TEST_CASE("an alarm that was raised before its size was known says it once it is") {
+  Desk desk("alarms-size");
+  desk.sample(true, true);
+  CHECK(desk.state().view.message == "gain not known");
+  REQUIRE(desk.alarms.size_known(0, "gain +53 %"));
+  CHECK(desk.state().view.message == "gain +53 %");
+  desk.sample(true, false);
+  CHECK(desk.state().view.message == "gain +53 %");
+  desk.sample(false, true);
+  CHECK(desk.state().view.message == "over: gain +53 %");
+}
+
 TEST_CASE("the text of an alarm that has cleared says so") {
   Desk desk("alarms-over");
   desk.sample(true, true);
