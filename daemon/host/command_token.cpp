@@ -74,7 +74,10 @@ std::string CommandToken::proof(std::string_view message) const {
 }
 
 bool CommandToken::proves(std::string_view message, std::string_view proof) const {
-  return equal(this->proof(message), proof);
+  std::string digits(proof);  // others write them large
+  std::transform(digits.begin(), digits.end(), digits.begin(),
+                 [](unsigned char digit) { return static_cast<char>(std::tolower(digit)); });
+  return equal(this->proof(message), digits);
 }
 
 bool CommandToken::is(std::string_view secret) const {

@@ -31,6 +31,11 @@ TEST_CASE("a proof fits its message and its token alone") {
   const std::string proof = token.proof("acknowledge");
   CHECK(token.proves("acknowledge", proof));
   CHECK_FALSE(token.proves("acknowledge!", proof));
+  std::string large = proof;
+  for (char& digit : large)
+    digit = static_cast<char>(std::toupper(static_cast<unsigned char>(digit)));
+  CHECK(large != proof);
+  CHECK(token.proves("acknowledge", large));
   CHECK_FALSE(token.proves("acknowledge", proof.substr(1)));
   CHECK_FALSE(token.proves("acknowledge", ""));
   CHECK_FALSE(CommandToken("0123456789abcdeF").proves("acknowledge", proof));
