@@ -252,7 +252,7 @@ void UnitInputs::add_silence(const Surroundings& around, Clock::time_point now,
     any_started = any_started || recalled_;
     std::string text = any_started
                            ? "no data for " + std::to_string(whole_seconds(now - last)) + " s"
-                           : "no data has come";
+                           : kNothingCame;
     if (std::all_of(reasons.begin(), reasons.end(),
                     [&](const std::string& reason) { return reason == reasons.front(); }))
       text += " (" + topic_of(quiet.front()) + (quiet.size() > 1 ? " ..." : "") + ": " +

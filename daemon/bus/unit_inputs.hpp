@@ -50,6 +50,9 @@ struct Surroundings {
 /// "domain 3", "domain 3, partition 'a'"; and that CYCLONEDDS_URI is set in vain.
 [[nodiscard]] std::string place_text(const idl::DomainOptions& domain);
 
+/// How the trouble begins that nothing has come of a unit since who looks began to.
+inline constexpr const char* kNothingCame = "no data has come";
+
 /// How the samples of one unit come, and everything that is wrong with that. The same judgement
 /// for the daemon, which says it on mpm/health, and for `mpm doctor`.
 class UnitInputs {

@@ -109,6 +109,27 @@ TEST_CASE(
   CHECK(count_of(read_file(folder.file("mpmd.err")), "nothing on mpm/dv") == 1);
 }
 
+TEST_CASE("of a unit whose data have stopped the doctor says for how long, as its monitor does") {
+  Bench bench("doctor-stopped");
+  Plant plant(2.0);
+  {
+    const idl::UnitPublisher gateway = bench.publisher(idl::WriterPace::kLossless);
+    REQUIRE(gateway.wait_for_readers(std::chrono::seconds(20)));
+    for (int i = 0; i < 50; ++i) REQUIRE(gateway.publish(plant.next()));
+    REQUIRE(bench.observe([&] { return bench.health().frames >= 40; }));
+  }
+  REQUIRE(bench.observe([&] { return bench.health().detail.find("no data for ") == 0; }));
+  TemporaryFolder folder;
+  Process doctor(mpm("doctor", bench.options,
+                     {"--config", bench.folder.file("toy.yaml"), "--seconds", "2", "--json"}),
+                 folder.file("out"), folder.file("err"));
+  CHECK(doctor.wait(std::chrono::seconds(20)) == 1);
+  const Json said = Json::parse(read_file(folder.file("out")));
+  CHECK(any_text(said["troubles"], "no data for "));
+  CHECK_FALSE(any_text(said["troubles"], "no data has come"));
+  CHECK(said["troubles"][0]["severity"] == "failure");
+}
+
 TEST_CASE("two gateways with counters of their own are named, and do not flood the log") {
   Bench bench("doctor-gateways");
   const idl::UnitPublisher one = bench.publisher(idl::WriterPace::kLossless);

@@ -225,6 +225,16 @@ void add_clock_offsets(UnitFindings& findings) {
                        std::abs(off_s), off_s > 0.0 ? "behind" : "ahead of")});
 }
 
+/// "no data for 33 s" of what a monitor says, which has listened for longer; empty where it does
+/// not.
+std::string silence_in(const std::string& said) {
+  constexpr std::string_view kFor = "no data for ";
+  const std::size_t from = said.find(kFor);
+  if (from == std::string::npos) return "";
+  const std::size_t end = said.find(" s", from + kFor.size());
+  return end == std::string::npos ? "" : said.substr(from, end + 2 - from);
+}
+
 // The same trouble with other numbers is no other one: the doctor looks a moment later.
 std::string without_numbers(std::string text) {
   std::erase_if(text, [](unsigned char c) { return std::isdigit(c) != 0; });
@@ -296,6 +306,15 @@ UnitFindings Examination::findings_of(const Unit& unit, const Surroundings& arou
                                  age_s, word.silenced_alarms});
   }
   for (const auto& [name, process] : sharers) findings.standbys.push_back(process);
+  for (Trouble& trouble : findings.troubles) {
+    if (!trouble.text.starts_with(kNothingCame)) continue;
+    for (const MonitorFindings& monitor : findings.monitors)
+      if (const std::string silence = silence_in(monitor.detail); !silence.empty()) {
+        trouble.text.replace(0, std::string_view(kNothingCame).size(), printable(silence));
+        trouble.severity = Severity::kFailure;
+        break;
+      }
+  }
   if (findings.monitors.empty())
     findings.troubles.push_back(
         {"no monitor", Severity::kMaintenanceRequired, "no monitor watches it"});
