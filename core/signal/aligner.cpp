@@ -118,7 +118,7 @@ void Aligner::archive(Archive& a) {
   // not archived: counts_, settings_, sink_, needed_, welcome_ (construction)
   // not archived: restart_ (told at once)
   a(silent_, current_, candidate_, back_, candidate_frames_, elsewhere_, offset_, last_emitted_,
-    counters_);
+    restarted_, counters_);
   a.time(last_time_ns_);
 }
 
@@ -254,6 +254,7 @@ void Aligner::emit(Slot& slot) {
   if (absent != 0) ++counters_.incomplete;
   for (std::size_t kind = 0; kind < kSignalKindCount; ++kind)
     if ((absent & 1u << kind) != 0) ++counters_.without[kind];
+  restarted_ = false;
   last_emitted_ = interval;
   last_time_ns_ = slot.frame.source_time_ns;
   slot.frame.interval = interval;
@@ -265,11 +266,11 @@ std::uint64_t Aligner::missing_before(std::int64_t interval, const Frame& frame)
   // Times may be anything: no difference of extremes.
   const double elapsed_ns =
       static_cast<double>(frame.source_time_ns) - static_cast<double>(last_time_ns_);
-  if (settings_.sample_time_ns <= 0.0 || elapsed_ns == 0.0)  // it has no clock
+  if (settings_.sample_time_ns <= 0.0 || (elapsed_ns == 0.0 && !restarted_))  // it has no clock
     return static_cast<std::uint64_t>(left_out);
-  const double room = std::floor(std::max(0.0, elapsed_ns / settings_.sample_time_ns));
+  const double room = std::max(0.0, std::round(elapsed_ns / settings_.sample_time_ns) - 1.0);
   const bool leapt = left_out > room + calibration::alignment::kMaxLateness;  // times jitter
-  return static_cast<std::uint64_t>(leapt ? room : left_out);
+  return static_cast<std::uint64_t>(leapt || restarted_ ? std::min(room, left_out) : left_out);
 }
 
 bool Aligner::complete(std::int64_t interval) const {
@@ -306,6 +307,7 @@ void Aligner::take_over() {
   if (counters_.frames > 0 &&
       (next <= last_emitted_ || next - last_emitted_ > kLongestGap || next > kLargestInterval)) {
     ++counters_.restarts;
+    restarted_ = true;
     restart_ = {current_.newest, first_of(candidate_)};
     offset_ = last_emitted_ + 2 - candidate_.next;  // 2: never adjacent, so that windows close
   }

@@ -173,6 +173,7 @@ class Aligner {
   std::int64_t offset_ = 0;        // emitted minus received interval number
   std::int64_t last_emitted_ = 0;  // valid if counters_.frames > 0
   std::int64_t last_time_ns_ = 0;  // likewise, source time
+  bool restarted_ = false;         // since that one: the gap in the numbers is this class's own
   AlignerCounters counters_;
   Restart restart_;
 };

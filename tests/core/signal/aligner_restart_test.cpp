@@ -166,8 +166,27 @@ TEST_CASE("aligner: no more is missing than the source times had room for") {
   bench.clock_ns = -999'000 * 1000;  // numbers leapt, time did not
   bench.push_all(1'000'000, 1'000'020);
   CHECK(bench.intervals().back() == 1'000'020);
-  CHECK(bench.aligner.counters().missing == 499 + 300);
+  CHECK(bench.aligner.counters().missing == 499 + 299);  // from 700 s to 1000 s
   CHECK(bench.aligner.counters().restarts == 0);
+}
+
+TEST_CASE(
+    "aligner: where numbers begin anew and times go on nothing is missing but what they leave "
+    "out") {
+  const std::int64_t away = GENERATE(0, 3, 50);  // intervals
+  const bool forward = GENERATE(false, true);
+  AlignerSettings settings;
+  settings.sample_time_ns = 1000.0;  // as `push` has it
+  Bench bench(settings);
+  bench.push_all(0, 1000);
+  const std::int64_t first = forward ? 500'000 : 200;
+  bench.clock_ns = (1001 + away - first) * 1000;
+  bench.push_all(first, first + 100);
+  CHECK(bench.aligner.counters().restarts == (forward ? 0 : 1));
+  // After a restart the numbers leave room for a few.
+  CHECK(bench.aligner.counters().missing <= static_cast<std::uint64_t>(away));
+  if (away == 0 || forward)
+    CHECK(bench.aligner.counters().missing == static_cast<std::uint64_t>(away));
 }
 
 TEST_CASE(
