@@ -121,9 +121,12 @@ std::vector<Endpoint> Discovery::endpoints() const {
     EndpointLoan(reader.get())
         .for_each([&](const dds_builtintopic_endpoint_t& endpoint, std::uint64_t handle) {
           if (std::memcmp(&endpoint.participant_key, &own, sizeof own) == 0) return;
+          // Of a process that leaves, its topics go one after the other.
+          const auto process = processes.find(bytes_of(endpoint.participant_key));
+          if (process == processes.end()) return;
           endpoints.push_back({endpoint.topic_name, endpoint.type_name, writers, handle,
-                               processes[bytes_of(endpoint.participant_key)],
-                               mismatch_of(endpoint, writers), user_data_of(endpoint.qos)});
+                               process->second, mismatch_of(endpoint, writers),
+                               user_data_of(endpoint.qos)});
         });
   };
   add(publications_, true);

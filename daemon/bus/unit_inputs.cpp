@@ -472,7 +472,7 @@ void UnitInputs::add_clock_offset(const Surroundings& around, Clock::time_point 
                                   std::vector<Trouble>& troubles) const {
   std::map<std::string, double> offsets_s;  // by process, of its topics the one that is off most
   for (const SignalKind kind : idl::kTopicKinds) {
-    if (!clock_off(kind, now)) continue;
+    if (!clock_off(kind, now) || !is_there(around, stream(kind).newest().writer)) continue;
     double& off_s = offsets_s[writer_name(around, stream(kind).newest().writer)];
     const double offset_s = *stream(kind).clock_offset_s(expected_.sample_time_s);
     if (std::abs(offset_s) > std::abs(off_s)) off_s = offset_s;

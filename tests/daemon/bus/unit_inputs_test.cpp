@@ -398,6 +398,28 @@ TEST_CASE("a clock that runs as this machine's and shows another time is told fo
   CHECK(scene.inputs->wants_endpoints(scene.now));
 }
 
+TEST_CASE("of a clock that is off nothing is told of a writer that has left") {
+  Scene scene;
+  scene.add_writer("mpm/dv", kOtherGateway, "gateway");
+  for (int k = 0; k < 30; ++k) {
+    for (const SignalKind kind : {kMv, kDv, kCv}) {
+      const auto count = static_cast<std::size_t>(scene.inputs->expected().counts.of(kind));
+      const std::int64_t wall_ns = (1'700'000'000 + k) * kSecond;
+      scene.inputs->push(
+          kind,
+          {kind == kDv ? kOtherGateway : kGateway, k, wall_ns + 3600 * kSecond, count, 0, wall_ns},
+          scene.now);
+    }
+    scene.now += seconds(1);
+  }
+  const std::string told =
+      "the source times of gateway (process 12 on host plant1) are 3600 s ahead of this machine's "
+      "clock";
+  CHECK(scene.text() == told);
+  scene.around.endpoints.pop_back();  // it goes, one topic after the other
+  CHECK(scene.text() == told);
+}
+
 TEST_CASE("a gateway that writes on under another name is told from one that stopped") {
   Scene scene;
   scene.add_writer("mpm/dv", kGateway, "gateway");
