@@ -292,6 +292,11 @@ bool UnitAlarms::diagnosed(const AlarmRecord& diagnosis, std::int64_t interval,
   return outputs_.write(event) && written;
 }
 
+bool UnitAlarms::size_known(std::size_t channel, std::string text) {
+  alarms_[channel].view.message = std::move(text);
+  return write(static_cast<int>(channel));
+}
+
 bool UnitAlarms::tick(std::int64_t wall_ns) {
   desk_.tick({source_time_ns_, wall_ns});
   return settle(wall_ns, nullptr);

@@ -59,6 +59,8 @@ class UnitAlarms {
   /// A cause was named, at that interval; the alarm is as old as it was.
   bool diagnosed(const AlarmRecord& diagnosis, std::int64_t interval, std::int64_t source_time_ns,
                  std::int64_t wall_ns);
+  /// How much is wrong with a channel whose alarm was raised before that was known.
+  bool size_known(std::size_t channel, std::string text);
   /// What time alone brings. `wall_ns`: UTC.
   bool tick(std::int64_t wall_ns);
   CommandReply apply(const AlarmCommand& command, std::int64_t wall_ns);

@@ -175,6 +175,7 @@ void UnitPipeline::on_frame(const Frame& frame) {
                 alarm.cv, to_string(alarm.to), alarm.interval, texts[i], alarm.p_value);
   }
   written = alarms_.push(monitor_.channels(), monitor_.alarms(), texts, wall_ns()) && written;
+  written = tell_sizes() && written;
   if (!written && output_limit_.admit(now_))
     spdlog::warn("{}: interval {} could not be published completely", config_.unit, frame.interval);
   if (performance_.push(frame, monitor_.monitor().judged())) publish_performance();
@@ -197,6 +198,23 @@ std::vector<std::string> UnitPipeline::alarm_texts() {
     texts.push_back(
         report::error_text(alarm, modelled_channel(config_, monitor_.channels(), alarm)));
   return texts;
+}
+
+// An alarm is raised when it is sure that something is wrong, which may be before it is known how
+// much.
+bool UnitPipeline::tell_sizes() {
+  bool written = true;
+  const std::vector<ChannelRecord>& channels = monitor_.channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const AlarmStateRecord& alarm = alarms_.channels()[i];
+    if (alarm.to != AlarmChange::kActive || !report::leaves_size_open(alarm.view.message)) continue;
+    AlarmRecord now = alarm;
+    static_cast<AlarmEvidence&>(now) = channels[i];
+    std::string text = report::error_text(now, modelled_channel(config_, channels, now));
+    if (!report::leaves_size_open(text))
+      written = alarms_.size_known(i, std::move(text)) && written;
+  }
+  return written;
 }
 
 // A diagnosis that was due then is made again, for the causes that alarms were given are nowhere

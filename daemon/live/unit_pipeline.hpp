@@ -131,6 +131,7 @@ class UnitPipeline {
   void recall_frame(const Frame& frame);
   void archive(Archive& a);
   [[nodiscard]] std::vector<std::string> alarm_texts();
+  [[nodiscard]] bool tell_sizes();
   void go_on(Clock::time_point now);
   void note_absence(const Frame& frame);
   void report(const idl::SampleView& sample, const AlignerCounters& before);

@@ -9,6 +9,9 @@
 namespace mpm::report {
 namespace {
 
+constexpr const char* kSizeOpen = "size not known yet";
+constexpr const char* kGainOpen = "gain not known";
+
 // What an interval that is said to be `ok` may reach: of the gain, of the time constants either
 // way, samples of dead time.
 constexpr double kOkPercent = 25.0, kOkTimeRatio = 1.5, kOkDeadTimeSamples = 2.0;
@@ -74,7 +77,7 @@ Part gain_part(const ChannelRecord& channel, const ChannelFile& file) {
                         interval_text(channel.effect_low, channel.effect_high) +
                         (for_a_while ? ", perhaps none)" : ")")};
   }
-  if (!channel.gain_resolved()) return {"gain", "gain not known"};
+  if (!channel.gain_resolved()) return {"gain", kGainOpen};
   const Interval percent = gain_percent(channel);
   const std::string in_units = with_units(signed_text(effect_of(channel, file), 3), file);
   return {"gain",
@@ -281,10 +284,11 @@ std::string undetermined_text(const ChannelRecord& channel, const ChannelFile& f
   return "not known";
 }
 
+bool leaves_size_open(const std::string& text) { return text == kSizeOpen || text == kGainOpen; }
+
 std::string error_text(const AlarmRecord& alarm, const ChannelRecord* channel) {
   if (channel == nullptr || channel->model_gain == 0.0)
-    return alarm.effect_size == 0.0 ? "size not known yet"
-                                    : "gain off by " + number_text(alarm.effect_size);
+    return alarm.effect_size == 0.0 ? kSizeOpen : "gain off by " + number_text(alarm.effect_size);
   if (!channel->gain_resolved() || gain_percent(*channel).holds(0.0)) {
     if (channel->time_constant_resolved() &&
         !Interval{channel->time_constant_low, channel->time_constant_high}.holds(1.0))
@@ -293,7 +297,7 @@ std::string error_text(const AlarmRecord& alarm, const ChannelRecord* channel) {
         !Interval{channel->dead_time_low_s, channel->dead_time_high_s}.holds(0.0))
       return "dead time " + signed_text(channel->dead_time_error_s) + " s";
   }
-  if (!channel->gain_resolved()) return "gain not known";
+  if (!channel->gain_resolved()) return kGainOpen;
   return "gain " + signed_text(channel->percent_of_gain(alarm.effect_size)) + " %";
 }
 

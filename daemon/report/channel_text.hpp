@@ -38,5 +38,7 @@ struct ChannelFile {
 /// be wrong "time constant +50 %" or "dead time +12 s", whichever is. `channel`: null where it is
 /// not known, or the model lacks it.
 [[nodiscard]] std::string error_text(const AlarmRecord& alarm, const ChannelRecord* channel);
+/// Whether a text of `error_text` leaves open how much that is.
+[[nodiscard]] bool leaves_size_open(const std::string& text);
 
 }  // namespace mpm::report
