@@ -100,22 +100,25 @@ void UnitHealth::count(const std::vector<ChannelRecord>& channels) {
   }
 }
 
-const HealthRecord& UnitHealth::judge(const Found& found, std::int64_t wall_s) {
-  const AlignerCounters& aligner = found.aligner;
+void UnitHealth::count(const AlignerCounters& aligner, report::UnitMonitor& monitor) {
   if (record_.frames != aligner.frames) framed_at_ = now_;
   record_.frames = aligner.frames;
-  record_.used = found.monitor.counters().used;
+  record_.used = monitor.counters().used;
   record_.missing = aligner.missing;
   if (record_.incomplete != aligner.incomplete) note_incomplete(aligner);
   record_.late = aligner.late;
   record_.repeated = aligner.repeated;
   record_.out_of_order = aligner.out_of_order;
-  record_.bad_values = found.monitor.counters().bad_values;
+  record_.bad_values = monitor.counters().bad_values;
   record_.wrong_length = aligner.wrong_length;
   record_.beyond = aligner.beyond;
-  record_.unknown_unit = found.unknown_unit;
   record_.restarts = aligner.restarts;
-  count(found.monitor.channels());
+  count(monitor.channels());
+}
+
+const HealthRecord& UnitHealth::judge(const Found& found, std::int64_t wall_s) {
+  count(found.aligner, found.monitor);
+  record_.unknown_unit = found.unknown_unit;
   record_.silenced_alarms = std::min(found.silenced_alarms, record_.active_alarms);
   troubles_ = find_troubles(found);
   keep_while_paused();

@@ -38,7 +38,8 @@ class UnitHealth {
   }
   /// The record is of that sample from now on.
   void move_to(std::int64_t interval, std::int64_t source_time_ns);
-  /// How things stand without a look at what is wrong.
+  /// What has come by now, and how the channels stand, without a look at what is wrong.
+  void count(const AlignerCounters& aligner, report::UnitMonitor& monitor);
   void count(const std::vector<ChannelRecord>& channels);
   /// What a process before this one took, and what it missed is no news.
   void recall(const AlignerCounters& aligner);

@@ -442,7 +442,9 @@ void UnitPipeline::publish_alarms_again() {
     spdlog::warn("{}: the alarms could not be published anew", config_.unit);
 }
 
+// All of one moment: what is wrong is looked for once a second.
 void UnitPipeline::show() {
+  health_.count(aligner_.counters(), monitor_);
   observer_->on_view({monitor_.channels(), alarms_.channels(), alarms_.controller(),
                       health_.record(), health_.troubles(), performance(), !stands_by()});
 }

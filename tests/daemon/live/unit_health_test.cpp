@@ -73,6 +73,20 @@ TEST_CASE("health says first that nothing has come, then that nothing is determi
   CHECK(toy.health.trouble_text().empty());
 }
 
+TEST_CASE(
+    "what has come is counted between two judgements too, and nothing is lost to them by that") {
+  Toy toy(1.0);
+  for (int s = 1; s < 5; ++s) have_come(toy, s);
+  (void)toy.judge(5);
+  have_come(toy, 6);
+  toy.aligner.incomplete = 1;
+  toy.aligner.without[static_cast<std::size_t>(SignalKind::kCv)] = 1;
+  toy.health.count(toy.aligner, toy.monitor);
+  CHECK(toy.health.record().frames == 5);
+  CHECK(toy.health.record().incomplete == 1);
+  CHECK(toy.judge(7).detail == "data incomplete: a control interval came without mpm/cv");
+}
+
 TEST_CASE("the worst trouble gives the state, and what is told elsewhere is one of them") {
   Toy toy(1.0);
   for (int s = 1; s < 5; ++s) have_come(toy, s);
