@@ -77,7 +77,7 @@ mismatch archive text signal regression statistics model
 nonlinear archive text regression statistics model signal mismatch
 record text alarm mismatch nonlinear
 monitor archive text signal statistics model alarm regression mismatch nonlinear
-identify/fit parallel statistics model
+identify/fit parallel statistics regression model
 identify/evidence model signal mismatch nonlinear monitor identify/fit
 performance archive signal model monitor identify/fit
 identification parallel statistics model identify/fit identify/evidence
