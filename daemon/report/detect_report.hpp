@@ -16,7 +16,7 @@
 
 namespace mpm::report {
 
-/// Where every channel would match: with the CVs a row earlier, or later.
+/// Where no channel would be a mismatch: with the CVs a row earlier, or later.
 enum class OtherRow { kNone, kEarlier, kLater };
 
 /// Whether no channel is a mismatch, and some match.

@@ -88,7 +88,7 @@ std::string other_row_text(const DetectReport& report, std::size_t width) {
   if (report.other_row == OtherRow::kNone) return "";
   const bool earlier = report.other_row == OtherRow::kEarlier;
   return wrapped(std::string("Time stamps: with the CVs a row ") + (earlier ? "earlier" : "later") +
-                     " all channels match. They are probably logged a row too " +
+                     " no channel mismatches. They are probably logged a row too " +
                      (earlier ? "late" : "early") +
                      " beside the MVs: see when the historian reads them, rather than repair the "
                      "model",

@@ -115,7 +115,7 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
 
 using Way = files::ShiftedCvs::Way;
 
-/// Whether every channel matches with CVs a row earlier or later: asked where channels of several
+/// Whether no channel mismatches with CVs a row earlier or later: asked where channels of several
 /// CVs look wrong, for nothing that happens to one channel looks so.
 report::OtherRow other_row(const config::UnitConfig& unit, const DetectOptions& options,
                            const files::TimeStyle& times, const files::TimeChoice& choice,

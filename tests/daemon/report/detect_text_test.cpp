@@ -184,8 +184,8 @@ TEST_CASE("CVs that are a row off are told as such") {
   CHECK_FALSE(to_json(report).contains("matches_with_cvs"));
   report.other_row = OtherRow::kEarlier;
   CHECK(to_text(report, column(), {200, false})
-            .find("Time stamps: with the CVs a row earlier all channels match. They are probably "
-                  "logged a row too late beside the MVs") != std::string::npos);
+            .find("Time stamps: with the CVs a row earlier no channel mismatches. They are "
+                  "probably logged a row too late beside the MVs") != std::string::npos);
   CHECK(to_json(report)["matches_with_cvs"] == "a row earlier");
   report.channels = {match("FIC-101", "AI-201"),
                      undetermined("FIC-101", "AI-202", Reason::kNotExcited, 0.28)};
