@@ -61,7 +61,7 @@ std::unique_ptr<FeatureMap> product(NonlinearTest test) {
   return kernel_map(test, 2);
 }
 
-struct Moments {
+struct TermMoments {
   double sum = 0.0, square = 0.0;
   int count = 0;
 
@@ -242,7 +242,7 @@ void NonlinearTerms::begin(const RegressionHistory& history, int span) {
 
 void NonlinearTerms::measure_inputs(const RegressionHistory& history, int span) {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    Moments moments;
+    TermMoments moments;
     for (int age = 0; age < span; ++age) moments.take(history.input(static_cast<int>(i), age));
     channels_[i].centre = moments.mean();
     channels_[i].scale = moments.deviation();
@@ -251,8 +251,8 @@ void NonlinearTerms::measure_inputs(const RegressionHistory& history, int span) 
 
 // What the channels give over the span, and points of it, evenly in time.
 void NonlinearTerms::measure_outputs(const RegressionHistory& history, int span) {
-  std::vector<Moments> moments(channels_.size()), states(channels_.size());
-  Moments sums;
+  std::vector<TermMoments> moments(channels_.size()), states(channels_.size());
+  TermMoments sums;
   input_points_.clear();
   output_points_.clear();
   sum_points_.clear();

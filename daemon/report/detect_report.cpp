@@ -22,7 +22,7 @@ bool all_match(const std::vector<ChannelRecord>& channels) {
   return are(Verdict::kMatch) && !are(Verdict::kMismatch);
 }
 
-int DetectReport::mismatching_cvs() const {
+int mismatching_cvs(const std::vector<ChannelRecord>& channels) {
   std::set<std::string> cvs;
   for (const ChannelRecord& channel : channels)
     if (channel.verdict == Verdict::kMismatch || channel.alarm == AlarmState::kActive)
@@ -75,8 +75,7 @@ nlohmann::ordered_json to_json(const DetectReport& report) {
   if (!report.other_predictions.empty()) json["other_predictions"] = report.other_predictions;
   for (const auto& [tag, samples] : report.read_every) json["read_every"][tag] = samples;
   if (report.other_row != OtherRow::kNone)
-    json["matches_with_cvs"] =
-        report.other_row == OtherRow::kEarlier ? "a row earlier" : "a row later";
+    json["matches_with_cvs"] = other_row_name(report.other_row);
   for (const files::Stretch& stretch : report.used)
     json["used"].push_back(
         {{"from", seconds(stretch.from_ns)}, {"until", seconds(stretch.until_ns)}});

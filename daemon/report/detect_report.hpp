@@ -13,14 +13,14 @@
 #include "core/record/channel_record.hpp"
 #include "core/record/performance_record.hpp"
 #include "daemon/files/times/time_choice.hpp"
+#include "daemon/report/diagnosis/other_row.hpp"
 
 namespace mpm::report {
 
-/// Where no channel would be a mismatch: with the CVs a row earlier, or later.
-enum class OtherRow { kNone, kEarlier, kLater };
-
 /// Whether no channel is a mismatch, and some match.
 [[nodiscard]] bool all_match(const std::vector<ChannelRecord>& channels);
+/// CVs of which some channel mismatches or is in alarm.
+[[nodiscard]] int mismatching_cvs(const std::vector<ChannelRecord>& channels);
 
 /// What `mpm detect` found in a file: the verdicts after its last row and every alarm on the way.
 struct DetectReport {
@@ -47,8 +47,6 @@ struct DetectReport {
   OtherRow other_row = OtherRow::kNone;
 
   [[nodiscard]] bool mismatch() const;
-  /// CVs of which some channel mismatches or is in alarm.
-  [[nodiscard]] int mismatching_cvs() const;
   /// What the monitor says of the unit's tags, beside its records.
   void take_counters(const Monitor& monitor, const config::UnitConfig& config);
 };

@@ -84,16 +84,9 @@ std::string seldom_text(const DetectReport& report, std::size_t width) {
   return wrapped("Read seldom: " + config::join(cvs) + "; judged at the readings", 0, width) + '\n';
 }
 
-std::string other_row_text(const DetectReport& report, std::size_t width) {
-  if (report.other_row == OtherRow::kNone) return "";
-  const bool earlier = report.other_row == OtherRow::kEarlier;
-  return wrapped(std::string("Time stamps: with the CVs a row ") + (earlier ? "earlier" : "later") +
-                     " no channel mismatches. They are probably logged a row too " +
-                     (earlier ? "late" : "early") +
-                     " beside the MVs: see when the historian reads them, rather than repair the "
-                     "model",
-                 0, width) +
-         '\n';
+std::string other_row_line(const DetectReport& report, std::size_t width) {
+  const std::string text = other_row_text(report.other_row);
+  return text.empty() ? text : wrapped(text, 0, width) + '\n';
 }
 
 /// A few rows are told by their number alone.
@@ -248,7 +241,7 @@ std::string to_text(const DetectReport& report, const config::UnitConfig& unit,
   teller.section("Alarms that are over", [&](const auto& channel) { return teller.past(channel); });
   return wrapped(head(report, moment), 0, layout.width) + '\n' + seldom_text(report, layout.width) +
          corrected_text(report, layout.width) + other_text(report, layout.width) +
-         order_text(report, layout.width) + other_row_text(report, layout.width) +
+         order_text(report, layout.width) + other_row_line(report, layout.width) +
          matrix(report.channels, layout) + teller.text();
 }
 

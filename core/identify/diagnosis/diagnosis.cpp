@@ -13,6 +13,7 @@
 #include "core/identify/diagnosis/extension.hpp"
 #include "core/identify/diagnosis/late.hpp"
 #include "core/identify/diagnosis/nameable.hpp"
+#include "core/identify/diagnosis/passed.hpp"
 #include "core/identify/diagnosis/rejected.hpp"
 #include "core/identify/diagnosis/seldom_read.hpp"
 #include "core/identify/diagnosis/selection.hpp"
@@ -215,6 +216,20 @@ bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
   return tried;
 }
 
+/// CVs of which something was refused and nothing is named.
+std::vector<int> without_a_name(const Account& kept, const ModelSpec& model) {
+  const auto touched_by = [&](const auto& effects, int cv, const auto& effect_of) {
+    return std::any_of(effects.begin(), effects.end(),
+                       [&](const auto& one) { return touches(effect_of(one), model, cv); });
+  };
+  std::vector<int> cvs;
+  for (int cv = 0; cv < model.cv_count; ++cv)
+    if (touched_by(kept.refused_effects, cv, [](const Effect& effect) { return effect; }) &&
+        !touched_by(kept.found.named, cv, [](const Named& named) { return named.effect; }))
+      cvs.push_back(cv);
+  return cvs;
+}
+
 /// How the inputs moved, and whether the channels of each are known.
 std::vector<InputMovement> movements(const std::vector<std::optional<double>>& outside,
                                      const std::vector<ChannelEstimate>& channels) {
@@ -374,6 +389,9 @@ Diagnosis judge(const ModelSpec& given, const AtReadings& at_readings,
         .may_matter(channels);
   };
   state(kept, fitted, judges, tests, may_matter, diagnosis);
+  for (Finding& finding : find_passed(extended, base.input_count, fitted,
+                                      without_a_name(kept, model), unseen, search_settings))
+    diagnosis.findings.push_back(std::move(finding));
   if (!validation) {
     Late late = begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
                            {settings.mv_count, base.input_count, aux}, outside, search_settings);

@@ -157,19 +157,6 @@ Fate judged(const Effect& effect, const ModelSpec& model, const Errors& errors,
   return in_doubt && !(errors.innovations(seed).gain_low > 0.0) ? Fate::kNoBetter : fate;
 }
 
-/// Whether a disturbance that comes back is all but over in the rows that judge it.
-bool has_passed(const Effect& effect, const Problem& problem, Unseen& unseen) {
-  ModelSpec disturbed = problem.model();
-  apply(effect, problem.surroundings(), disturbed);
-  const int cv = effect.place.cv;
-  const VectorXd added =
-      unseen.residual_throughout(problem.model(), cv) - unseen.residual_throughout(disturbed, cv);
-  const auto energy = [](const auto& rows) {
-    return rows.unaryExpr([](double x) { return std::isfinite(x) ? x * x : 0.0; }).sum();
-  };
-  return energy(added.tail(unseen.rows())) <= kPassed * energy(added);
-}
-
 /// Each may be better beside the others, some of which have gone since, and what is left of them
 /// worse than none: in every CV those of one kind are judged once more together, and the weakest
 /// that does not carry over in all CVs that it acts on gets `fate(errors)` until they are better
@@ -338,6 +325,18 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
       selection.with[i] = needed_by(i, problem, found, judges, selection);
   }
   return selection;
+}
+
+bool has_passed(const Effect& effect, const Problem& problem, Unseen& unseen) {
+  ModelSpec disturbed = problem.model();
+  apply(effect, problem.surroundings(), disturbed);
+  const int cv = effect.place.cv;
+  const VectorXd added =
+      unseen.residual_throughout(problem.model(), cv) - unseen.residual_throughout(disturbed, cv);
+  const auto energy = [](const auto& rows) {
+    return rows.unaryExpr([](double x) { return std::isfinite(x) ? x * x : 0.0; }).sum();
+  };
+  return energy(added.tail(unseen.rows())) <= kPassed * energy(added);
 }
 
 std::vector<bool> repaired(const Selection& selection) {

@@ -59,6 +59,9 @@ struct Judges {
 [[nodiscard]] bool moved_from_outside(const Effect& effect, const ModelSpec& model,
                                       const std::vector<std::optional<double>>& shares);
 
+/// Whether a disturbance that comes back is all but over in the rows that judge it.
+[[nodiscard]] bool has_passed(const Effect& effect, const Problem& problem, Unseen& unseen);
+
 /// Those with the fate kRepaired.
 [[nodiscard]] std::vector<bool> repaired(const Selection& selection);
 

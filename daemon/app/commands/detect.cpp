@@ -14,13 +14,13 @@
 #include "config/load_unit.hpp"
 #include "config/replacement_file.hpp"
 #include "config/scenario_config.hpp"
+#include "daemon/app/commands/find_other_row.hpp"
 #include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
 #include "daemon/app/commands/time_choice_options.hpp"
 #include "daemon/app/commands/time_zone.hpp"
 #include "daemon/bag/open_recording.hpp"
 #include "daemon/files/folder_name.hpp"
-#include "daemon/files/shifted_cvs.hpp"
 #include "daemon/history/journal.hpp"
 #include "daemon/host/terminal.hpp"
 #include "daemon/live/sample_journal.hpp"
@@ -113,32 +113,6 @@ report::DetectReport run(const config::UnitConfig& unit, files::FrameSource& sou
   return report;
 }
 
-using Way = files::ShiftedCvs::Way;
-
-/// Whether no channel mismatches with CVs a row earlier or later: asked where channels of several
-/// CVs look wrong, for nothing that happens to one channel looks so.
-report::OtherRow other_row(const config::UnitConfig& unit, const DetectOptions& options,
-                           const files::TimeStyle& times, const files::TimeChoice& choice,
-                           const report::DetectReport& report) {
-  if (report.mismatching_cvs() < 2) return report::OtherRow::kNone;
-  for (const Way way : {Way::kEarlier, Way::kLater}) {
-    const std::unique_ptr<files::FrameSource> frames =
-        bag::open_recording(options.data, unit, times);
-    files::ShiftedCvs shifted(*frames, unit.counts(), way);
-    report::UnitMonitor monitor(unit);
-    Frame frame(unit.counts());
-    bool alarms = false;
-    while (!alarms && shifted.next(frame)) {
-      if (!choice.takes(frame.source_time_ns)) continue;
-      monitor.push(frame);
-      alarms = !monitor.alarms().empty();
-    }
-    if (!alarms && report::all_match(monitor.channels()))
-      return way == Way::kEarlier ? report::OtherRow::kEarlier : report::OtherRow::kLater;
-  }
-  return report::OtherRow::kNone;
-}
-
 /// Tells every finding; false if one is an error.
 bool report(const std::vector<config::Finding>& findings) {
   for (const config::Finding& finding : findings) std::cerr << config::format(finding) << '\n';
@@ -177,7 +151,8 @@ int detect(const DetectOptions& options) {
     const files::TimeChoice choice(options.time, times);
     Journals journals(options, loaded.config);
     report::DetectReport report = run(loaded.config, *frames, choice, journals);
-    report.other_row = other_row(loaded.config, options, times, choice, report);
+    if (report::mismatching_cvs(report.channels) > 1)
+      report.other_row = find_other_row(loaded.config, options.data, times, choice);
     tell_notices(frames->notices(), options.data.size() == 1 ? options.data.front() : "");
     if (report.samples == 0)
       throw config::InputError({mcap::name_of(options.data), 0, 0, config::Severity::kError, "",

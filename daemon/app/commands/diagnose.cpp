@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "core/identify/diagnosis/diagnosis.hpp"
 #include "core/parallel/parallel.hpp"
 #include "core/text/number_text.hpp"
+#include "daemon/app/commands/find_other_row.hpp"
 #include "daemon/app/commands/given_data.hpp"
 #include "daemon/app/commands/notices.hpp"
 #include "daemon/app/commands/progress_bar.hpp"
@@ -146,6 +148,21 @@ bool diagnose_run(const DiagnoseOptions& options, host::StopSignal& stop,
   return !stopped;
 }
 
+/// Whether the CVs of every data file are a row off, where something is wrong.
+void look_at_other_rows(const DiagnoseOptions& options, const config::UnitConfig& given,
+                        report::DiagnosisRun& run) {
+  if (run.diagnosis.verdict == DiagnosisVerdict::kMatch) return;
+  const files::TimeStyle times = times_of(options.times);
+  const files::TimeChoice choice(options.time, times);
+  std::set<report::OtherRow> rows;
+  for (const std::string& file : options.data)
+    rows.insert(find_other_row_if_wrong(given, {file}, times, choice));
+  if (rows.size() == 1) run.other_row = *rows.begin();
+  if (run.other_row == report::OtherRow::kNone) return;
+  run.notices.push_back(report::other_row_text(run.other_row));
+  if (!options.quiet) tell_notices({run.notices.back()}, run.data_file);
+}
+
 /// Nothing where none is wanted; the flag says whether the scenario is fit to be run.
 std::optional<report::LoopPlan> plan(const DiagnoseOptions& options, const config::UnitConfig& unit,
                                      bool& fit) {
@@ -201,6 +218,7 @@ int diagnose_unit(const DiagnoseOptions& options, const config::UnitConfig& unit
     std::cerr << "mpm: stopped; nothing was written\n";
     return 2;
   }
+  look_at_other_rows(options, unit, run);
   const bool repaired = !run.diagnosis.findings.empty();
   const std::string failure =
       loops && repaired ? add_closed_loop(*loops, unit, stop, run) : std::string();

@@ -301,6 +301,7 @@ nlohmann::ordered_json to_json(const DiagnosisRun& run) {
             {"inputs", inputs_json(run)},
             {"channels", channels_json(run)},
             {"closed_loop", closed_loop_json(run)}};
+  if (run.other_row != OtherRow::kNone) json["matches_with_cvs"] = other_row_name(run.other_row);
   if (run.condensing.any()) json["condensed"] = condensing_json(run.condensing);
   if (run.time_chosen || !run.recording.borders.empty()) json["used"] = used_json(run.recording);
   if (const Json notes = data_notes(run); !notes.empty()) json["data"] = notes;

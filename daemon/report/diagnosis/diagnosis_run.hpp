@@ -12,6 +12,7 @@
 #include "core/identify/fit/recording.hpp"
 #include "core/record/performance_record.hpp"
 #include "daemon/files/times/time_zone.hpp"
+#include "daemon/report/diagnosis/other_row.hpp"
 
 /// All that the reports of `mpm diagnose` are made from.
 namespace mpm::report {
@@ -56,6 +57,7 @@ struct DiagnosisRun {
   std::uint64_t seed = 0;
   std::vector<std::string> notices;                  ///< on the data
   std::shared_ptr<const files::TimeZone> zone = {};  ///< of the data's times; null = UTC
+  OtherRow other_row = OtherRow::kNone;              ///< of each data file
   Condensing condensing = {};                        ///< of the data files' recording
 };
 

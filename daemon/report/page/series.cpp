@@ -6,7 +6,7 @@
 
 namespace mpm::report {
 namespace {
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 }
 
 Simulated fitted(const DiagnosisRun& run) {
@@ -19,7 +19,7 @@ Simulated unseen(const DiagnosisRun& run) {
 
 Series rows_of(const Eigen::MatrixXd& block, Eigen::Index column, const Run& rows) {
   if (column >= block.cols() || rows.first + rows.count > block.rows())
-    return Series(static_cast<std::size_t>(rows.count), kNone);
+    return Series(static_cast<std::size_t>(rows.count), kNoValue);
   const double* first = block.col(column).data() + rows.first;
   return {first, first + rows.count};
 }
@@ -32,7 +32,7 @@ Series input_rows(const DiagnosisRun& run, const Recording& recording, int input
 }
 
 Series difference(const Series& a, const Series& b) {
-  Series result(a.size(), kNone);
+  Series result(a.size(), kNoValue);
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) result[i] = a[i] - b[i];
   return result;
 }
@@ -76,7 +76,7 @@ double Track::at(Eigen::Index row) const {
   for (std::size_t r = 0; r < runs_.size(); ++r)
     if (row >= runs_[r].first && row < runs_[r].first + runs_[r].count)
       return starts_[r] + static_cast<double>(row - runs_[r].first) * step_s_;
-  return kNone;
+  return kNoValue;
 }
 
 void Track::under(Plot& plot) const {

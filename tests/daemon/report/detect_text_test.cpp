@@ -178,7 +178,7 @@ TEST_CASE("predictions of another model than the unit file's are named") {
 
 TEST_CASE("CVs that are a row off are told as such") {
   DetectReport report = march();
-  CHECK(report.mismatching_cvs() == 1);
+  CHECK(mismatching_cvs(report.channels) == 1);
   CHECK_FALSE(all_match(report.channels));
   CHECK(to_text(report, column(), {200, false}).find("Time stamps") == std::string::npos);
   CHECK_FALSE(to_json(report).contains("matches_with_cvs"));

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -187,55 +186,6 @@ TEST_CASE("data faster than the sample time are averaged, and no dead time comes
   CHECK(verdict("15", "2") == "match");
   CHECK(verdict("45", "2") == "mismatch");
   CHECK(verdict("15", "3") == "mismatch");
-}
-
-// Two loops under PI control, y(k + 1) = a y(k) + (1 - a) 2 u(k - 2) and noise on top, a = exp(-1 /
-// 5). What is logged a row late comes before its own cause: the controller has seen it already.
-TEST_CASE("that the CVs are a row off is told, and a wrong gain is not") {
-  Bench bench;
-  write_file(
-      bench.folder.file("small.yaml"),
-      "unit: small\nsample_time: 1\nsignals: {mv: [u, v], cv: [y, z]}\nmodel: {channels: [{cv: "
-      "y, mv: u, gain: 2, time_constants: [5], dead_time: 2}, {cv: z, mv: v, gain: 2, "
-      "time_constants: [5], dead_time: 2}]}\n");
-  const auto told = [&](int rows_late, double gain) {
-    constexpr int kRows = 4000;
-    const double factor = std::exp(-1.0 / 5.0);
-    std::mt19937 random(11);
-    std::normal_distribution<double> normal;
-    std::vector<std::array<double, 2>> inputs, outputs;
-    std::array<double, 2> state{}, noise{}, setpoint{}, integral{};
-    for (int k = 0; k < kRows; ++k) {
-      std::array<double, 2> u{}, y{};
-      for (std::size_t i = 0; i < 2; ++i) {
-        if (random() % 40 == 0) setpoint[i] = normal(random);
-        noise[i] = 0.9 * noise[i] + 0.1 * normal(random);
-        y[i] = state[i] + noise[i];
-        const double error = setpoint[i] - y[i];
-        u[i] = 0.2 * error + 0.04 * (integral[i] += error);
-        const double delayed = k < 2 ? 0.0 : inputs[inputs.size() - 2][i];
-        state[i] = factor * state[i] + (1.0 - factor) * (i == 0 ? gain : 2.0) * delayed;
-      }
-      inputs.push_back(u);
-      outputs.push_back(y);
-    }
-    std::string text = "time,u,v,y,z\n";
-    for (int k = 1; k + 1 < kRows; ++k) {
-      const auto& u = inputs[static_cast<std::size_t>(k)];
-      const auto& y = outputs[static_cast<std::size_t>(k - rows_late)];
-      text += std::to_string(k) + ',' + std::to_string(u[0]) + ',' + std::to_string(u[1]) + ',' +
-              std::to_string(y[0]) + ',' + std::to_string(y[1]) + '\n';
-    }
-    write_file(bench.folder.file("a.csv"), text);
-    REQUIRE(detect(bench, "a.csv", {"--json"}) == 0);
-    const auto json = nlohmann::json::parse(bench.text("out"));
-    return json.value("matches_with_cvs", "");
-  };
-  CHECK(told(0, 2.0).empty());
-  CHECK(told(1, 2.0) == "a row earlier");
-  CHECK(told(-1, 2.0) == "a row later");
-  CHECK(told(0, 3.0).empty());
-  CHECK(told(1, 3.0).empty());
 }
 
 /// Every index of one signal series, as its definition says it and in no other way.
