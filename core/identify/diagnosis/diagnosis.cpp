@@ -19,6 +19,7 @@
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/state_space_form.hpp"
+#include "core/identify/diagnosis/undecided.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/diagnosis/verdict.hpp"
 #include "core/identify/evidence/change_row.hpp"
@@ -41,6 +42,9 @@ using Eigen::VectorXd;
 
 constexpr const char* kCompressed =
     "a historian has compressed a CV, and what it took away can look like errors of the model";
+
+constexpr const char* kNotSettled =
+    "something of this CV's channels was refused before: what begins late may be that";
 
 /// Thrown where the caller's `progress` says so; ends all loops at once.
 struct GivenUp {};
@@ -214,6 +218,22 @@ bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
     tried = true;
   }
   return tried;
+}
+
+/// Whether a channel, an actuator or a sensor is accused late, and what was refused acts through
+/// channels of the same CV: that something is wrong there is no news, and nobody knows what.
+bool may_be_refused(const Finding& late, const Account& kept, const ModelSpec& model) {
+  if (!accuses(late.subject) || !late.subject.cause->acts_through_channels()) return false;
+  Effect accused;
+  accused.edit = late.subject.cause;
+  accused.place = late.subject.place;
+  return std::any_of(kept.refused_effects.begin(), kept.refused_effects.end(),
+                     [&](const Effect& effect) {
+                       for (int cv = 0; cv < model.cv_count; ++cv)
+                         if (touches(effect, model, cv) && touches(accused, model, cv))
+                           return cause_of(effect).acts_through_channels();
+                       return false;
+                     });
 }
 
 /// CVs of which something was refused and nothing is named.
@@ -396,9 +416,11 @@ Diagnosis judge(const ModelSpec& given, const AtReadings& at_readings,
     Late late = begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
                            {settings.mv_count, base.input_count, aux}, outside, search_settings);
     for (Finding& finding : late.findings) {
-      const bool made = compressed.may_have_made(finding);
-      if (made) finding.refused = kMadeByCompression;
-      (made ? diagnosis.refused : diagnosis.findings).push_back(std::move(finding));
+      const char* why = compressed.may_have_made(finding)      ? kMadeByCompression
+                        : may_be_refused(finding, kept, model) ? kNotSettled
+                                                               : nullptr;
+      if (why != nullptr) finding.refused = why;
+      (why != nullptr ? diagnosis.refused : diagnosis.findings).push_back(std::move(finding));
     }
     diagnosis.refused.insert(diagnosis.refused.end(), late.doubted.begin(), late.doubted.end());
   }

@@ -11,6 +11,7 @@
 #include "core/identify/fit/calibration.hpp"
 #include "core/identify/search/calibration.hpp"
 #include "core/identify/search/conclude.hpp"
+#include "core/identify/search/jumps_together.hpp"
 #include "core/identify/search/odds.hpp"
 #include "core/identify/search/refine.hpp"
 #include "core/identify/search/screening.hpp"
@@ -56,7 +57,7 @@ class Search {
       for (; rounds > 0; --rounds) {
         share_ = std::max(share_, 0.9 - 0.8 * rounds / settings_.max_findings);
         report();
-        if (!find_one()) break;
+        if (!find_one() && !find_jumps()) break;
       }
       const int dropped = drop_superfluous();
       if (dropped == 0) break;
@@ -117,6 +118,16 @@ class Search {
     return std::find(settled_.begin(), settled_.end(), effect.place.cv) != settled_.end();
   }
 
+  /// Odds that an effect must have to be accepted.
+  [[nodiscard]] double needed(const Effect& effect) const {
+    const bool another =
+        effect.edit->jumps() &&
+        std::any_of(accepted_.begin(), accepted_.end(), [&](const Effect& other) {
+          return other.edit->jumps() && other.onset > 0 && other.place == effect.place;
+        });
+    return another ? std::max(settings_.decisive, kAnotherJump) : settings_.decisive;
+  }
+
   [[nodiscard]] bool may_name(const Effect& effect) const {
     return !settings_.may_name || settings_.may_name(effect);
   }
@@ -155,7 +166,7 @@ class Search {
     trials_.parallel().for_each(nulls_.size(), [&](std::size_t cv) {
       nulls_[cv] = trials_.without({static_cast<int>(cv)}).cvs.front();
     });
-    const std::vector<Effect> all = proposals(nameable);
+    const std::vector<Effect>& all = proposed_ = proposals(nameable);
     const Screening& screening = screening_.emplace(problem_, accepted_, nulls_);
     std::vector<double> scores(all.size());
     trials_.parallel().for_each(all.size(), [&](std::size_t i) {
@@ -211,7 +222,7 @@ class Search {
     std::sort(trials.begin(), trials.end(), more_probable);
     while (!trials.empty() && trials[0].odds >= settings_.decisive) {
       std::vector<Trial> again = once_more(trials);
-      if (again[0].odds >= settings_.decisive) {
+      if (again[0].odds >= needed(again[0].candidate)) {
         accept(again);
         return true;
       }
@@ -225,6 +236,23 @@ class Search {
         return causes::is_break(trial.candidate) && trial.candidate.place.cv == cv;
       });
     }
+    return false;
+  }
+
+  /// Jumps of one CV of which none is decisive beside the others.
+  bool find_jumps() {
+    std::vector<CvData> settled = problem_.settled();
+    for (const int cv : all_cvs()) {
+      const auto jump =
+          std::find_if(proposed_.begin(), proposed_.end(), [cv](const Effect& effect) {
+            return effect.edit->jumps() && effect.place.cv == cv && effect.coordinates.size() == 1;
+          });
+      if (jump == proposed_.end()) continue;
+      const std::vector<Trial> found = jumps_together(trials_, *jump, settings_.decisive);
+      for (const Trial& trial : found) accept({trial});
+      if (!found.empty()) return true;
+    }
+    problem_.settle(std::move(settled));
     return false;
   }
 
@@ -329,7 +357,7 @@ class Search {
     std::vector<Effect> moved = best.fit.effects;
     for (Effect& effect : accepted_)
       for (const Effect& other : moved)
-        if (same_form(effect, other)) effect = other;
+        if (same_form(effect, other) && effect.onset == other.onset) effect = other;
     accepted_.push_back(best.candidate);
     last_ = best.fit;
     merge();
@@ -462,7 +490,8 @@ class Search {
   std::vector<int> no_level_;  // CVs of which no constant offset is to be named
   Trials trials_;
   std::optional<Named> doubted_;
-  std::vector<CvFit> nulls_;  // of this round, one per CV; what the screening looks at
+  std::vector<Effect> proposed_;  // of this round
+  std::vector<CvFit> nulls_;      // of this round, one per CV; what the screening looks at
   std::optional<Screening> screening_;
   Fit last_;
 };

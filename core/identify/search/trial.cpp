@@ -44,6 +44,15 @@ const Fit& Trials::without(const std::vector<int>& cvs) {
   return without_.emplace(cvs, std::move(fit)).first->second;
 }
 
+Fit Trials::fit_beside(const std::vector<Effect>& candidates, int iterations) {
+  tell();
+  const std::vector<int> cvs = touched(candidates.front(), problem_);
+  std::vector<Effect> effects;
+  const std::size_t first_free = arrange(cvs, effects);
+  effects.insert(effects.end(), candidates.begin(), candidates.end());
+  return problem_.fit(std::move(effects), first_free, cvs, iterations);
+}
+
 Trial Trials::attempt(const Effect& candidate, int iterations) {
   tell();  // a round takes seconds
   Trial trial;

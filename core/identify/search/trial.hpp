@@ -57,6 +57,9 @@ class Trials {
   [[nodiscard]] std::vector<Trial> attempt_all(const std::vector<Effect>& candidates,
                                                int iterations);
 
+  /// Fits several candidates of one CV together, in at most so many steps; they are its last
+  /// effects.
+  [[nodiscard]] Fit fit_beside(const std::vector<Effect>& candidates, int iterations);
   /// The accepted effects alone.
   [[nodiscard]] const Fit& without(const std::vector<int>& cvs);
 
