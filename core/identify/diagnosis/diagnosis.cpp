@@ -19,7 +19,6 @@
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/state_space_form.hpp"
-#include "core/identify/diagnosis/undecided.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/diagnosis/verdict.hpp"
 #include "core/identify/evidence/change_row.hpp"
@@ -42,9 +41,6 @@ using Eigen::VectorXd;
 
 constexpr const char* kCompressed =
     "a historian has compressed a CV, and what it took away can look like errors of the model";
-
-constexpr const char* kNotSettled =
-    "something of this CV's channels was refused before: what begins late may be that";
 
 /// Thrown where the caller's `progress` says so; ends all loops at once.
 struct GivenUp {};
@@ -220,33 +216,16 @@ bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
   return tried;
 }
 
-/// Whether a channel, an actuator or a sensor is accused late, and what was refused acts through
-/// channels of the same CV: that something is wrong there is no news, and nobody knows what.
-bool may_be_refused(const Finding& late, const Account& kept, const ModelSpec& model) {
-  if (!accuses(late.subject) || !late.subject.cause->acts_through_channels()) return false;
-  Effect accused;
-  accused.edit = late.subject.cause;
-  accused.place = late.subject.place;
-  return std::any_of(kept.refused_effects.begin(), kept.refused_effects.end(),
-                     [&](const Effect& effect) {
-                       for (int cv = 0; cv < model.cv_count; ++cv)
-                         if (touches(effect, model, cv) && touches(accused, model, cv))
-                           return cause_of(effect).acts_through_channels();
-                       return false;
-                     });
-}
-
 /// CVs of which something was refused and nothing is named.
 std::vector<int> without_a_name(const Account& kept, const ModelSpec& model) {
-  const auto touched_by = [&](const auto& effects, int cv, const auto& effect_of) {
-    return std::any_of(effects.begin(), effects.end(),
-                       [&](const auto& one) { return touches(effect_of(one), model, cv); });
-  };
   std::vector<int> cvs;
-  for (int cv = 0; cv < model.cv_count; ++cv)
-    if (touched_by(kept.refused_effects, cv, [](const Effect& effect) { return effect; }) &&
-        !touched_by(kept.found.named, cv, [](const Named& named) { return named.effect; }))
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const auto acts = [&](const Effect& effect) { return touches(effect, model, cv); };
+    const auto is_named = [&](const Named& named) { return acts(named.effect); };
+    if (std::any_of(kept.refused_effects.begin(), kept.refused_effects.end(), acts) &&
+        std::none_of(kept.found.named.begin(), kept.found.named.end(), is_named))
       cvs.push_back(cv);
+  }
   return cvs;
 }
 
@@ -416,9 +395,9 @@ Diagnosis judge(const ModelSpec& given, const AtReadings& at_readings,
     Late late = begun_late(extended, tested, recording, measured, diagnosis.fit_samples,
                            {settings.mv_count, base.input_count, aux}, outside, search_settings);
     for (Finding& finding : late.findings) {
-      const char* why = compressed.may_have_made(finding)      ? kMadeByCompression
-                        : may_be_refused(finding, kept, model) ? kNotSettled
-                                                               : nullptr;
+      const char* why = compressed.may_have_made(finding)                      ? kMadeByCompression
+                        : may_be_refused(finding, kept.refused_effects, model) ? kMayBeRefused
+                                                                               : nullptr;
       if (why != nullptr) finding.refused = why;
       (why != nullptr ? diagnosis.refused : diagnosis.findings).push_back(std::move(finding));
     }

@@ -11,6 +11,7 @@
 #include "core/identify/diagnosis/selection.hpp"
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/statement.hpp"
+#include "core/identify/diagnosis/undecided.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/evidence/free_run_residuals.hpp"
 
@@ -114,6 +115,21 @@ Late begun_late(const ModelSpec& model, const ModelSpec& tested, const Recording
            !since.may_matter({{place.cv, place.input}});
   });
   return late;
+}
+
+bool may_be_refused(const Finding& late, const std::vector<Effect>& refused,
+                    const ModelSpec& model) {
+  if (!accuses(late.subject) || !late.subject.cause->acts_through_channels()) return false;
+  Effect accused;
+  accused.edit = late.subject.cause;
+  accused.place = late.subject.place;
+  for (int cv = 0; cv < model.cv_count; ++cv)
+    if (touches(accused, model, cv) &&
+        std::any_of(refused.begin(), refused.end(), [&](const Effect& effect) {
+          return cause_of(effect).acts_through_channels() && touches(effect, model, cv);
+        }))
+      return true;
+  return false;
 }
 
 }  // namespace mpm

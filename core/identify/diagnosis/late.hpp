@@ -31,4 +31,14 @@ struct Late {
                               const std::vector<std::optional<double>>& outside_shares,
                               SearchSettings settings);
 
+/// Why what is accused late is not named, for a person.
+inline constexpr const char* kMayBeRefused =
+    "something of this CV's channels was refused before: what begins late may be that";
+
+/// Whether a late finding accuses a channel, an actuator or a sensor of a CV of which something
+/// that acts through channels was `refused`: that something is wrong there is no news, and nobody
+/// knows what.
+[[nodiscard]] bool may_be_refused(const Finding& late, const std::vector<Effect>& refused,
+                                  const ModelSpec& model);
+
 }  // namespace mpm

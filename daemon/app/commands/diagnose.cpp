@@ -283,7 +283,9 @@ void add_diagnose(CLI::App& app, int& exit_code) {
                    "as much); the gain is measured on the rest")
       ->capture_default_str()
       ->check(cli::number_value(0.2, 0.9));
-  command->add_option("--max-findings", options->max_findings, "causes named at most")
+  command
+      ->add_option("--max-findings", options->max_findings,
+                   "causes looked for at most; jumps of one CV found together count as one")
       ->capture_default_str()
       ->check(CLI::Range(1, 20));
   CLI::Option* seed =

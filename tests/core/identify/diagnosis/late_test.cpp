@@ -136,5 +136,29 @@ TEST_CASE("a channel that was wrong before has nothing late of its own") {
   for (const Finding& finding : diagnosed(1.6, 1.6).findings) CHECK_FALSE(finding.onset_s);
 }
 
+// Two CVs with an input each; a gain of the first was refused, and a step of the other.
+TEST_CASE("what is accused late may be what was refused of the same CV's channels") {
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0), lag(1, 1, 2.0, 10.0)}, 2, 2);
+  const auto effect = [](const Cause& cause, Place place) {
+    Effect of;
+    of.edit = &cause;
+    of.place = place;
+    return of;
+  };
+  const std::vector<Effect> refused = {effect(causes::gain(), {0, 0}),
+                                       effect(causes::step_disturbance(), {1})};
+  const auto asked = [&](const Cause& cause, Place place) {
+    Finding late;
+    late.subject = {&cause, place};
+    return may_be_refused(late, refused, model);
+  };
+  CHECK(asked(causes::gain(), {0, 0}));
+  CHECK(asked(causes::output_scale(), {0}));
+  CHECK(asked(causes::input_scale(), {-1, 0}));
+  CHECK_FALSE(asked(causes::gain(), {1, 1}));
+  CHECK_FALSE(asked(causes::input_scale(), {-1, 1}));
+  CHECK_FALSE(asked(causes::step_disturbance(), {0}));
+}
+
 }  // namespace
 }  // namespace mpm::late_test
