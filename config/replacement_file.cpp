@@ -19,6 +19,18 @@ namespace {
 
 constexpr int kUsualMode = 0666;  // less what the process masks
 
+/// The way to the name of a file that has none.
+std::string by_descriptor(int file) { return "/proc/self/fd/" + std::to_string(file); }
+
+/// A file in `folder` without a name, which is gone with the process that holds it, however it
+/// ends; below 0 where the file system has none, or where nobody could name it later.
+int open_without_name(const fs::path& folder) {
+  const int made = open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, kUsualMode);
+  if (made < 0 || access(by_descriptor(made).c_str(), F_OK) == 0) return made;
+  close(made);
+  return -1;
+}
+
 std::string unforeseen_ending() {
   std::random_device device;
   std::array<char, 20> text{};
@@ -41,14 +53,16 @@ ReplacementFile::ReplacementFile(const std::string& path)
     refuse("is a link, a device or a pipe, which a file would replace; give the name of a file");
   if (!fs::is_directory(folder, ignored)) refuse("there is no folder " + folder.string());
   temporary_ = folder / ("." + path_.filename().string() + unforeseen_ending());
-  const int made = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUsualMode);
+  int made = open_without_name(folder);
+  named_ = made < 0;
+  if (named_) made = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kUsualMode);
   if (made < 0) refuse(std::string("cannot be written to: ") + std::strerror(errno));
   buffer_ = __gnu_cxx::stdio_filebuf<char>(made, std::ios::out | std::ios::binary);
 }
 
 ReplacementFile::~ReplacementFile() {
   std::error_code ignored;
-  fs::remove(temporary_, ignored);
+  if (named_) fs::remove(temporary_, ignored);
 }
 
 void ReplacementFile::write(const std::string& text) {
@@ -63,9 +77,13 @@ std::uint64_t ReplacementFile::bytes() {
 }
 
 void ReplacementFile::commit() {
-  if (!stream_.flush() || fsync(descriptor()) != 0 ||
-      std::rename(temporary_.c_str(), path_.c_str()) != 0)
+  if (!stream_.flush() || fsync(descriptor()) != 0) fail();
+  if (!named_ && linkat(AT_FDCWD, by_descriptor(descriptor()).c_str(), AT_FDCWD, temporary_.c_str(),
+                        AT_SYMLINK_FOLLOW) != 0)
     fail();
+  named_ = true;
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail();
+  named_ = false;
   const int folder = open(path_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder < 0) return;  // one that may be written to and not read: the name comes in its time
   static_cast<void>(fsync(folder));

@@ -10,12 +10,13 @@
 
 namespace mpm::config {
 
-/// A file that appears when it is whole, or not at all: written under a temporary name beside its
-/// place and renamed by commit(). An older file of that name stays until then. What is there and
-/// is no regular file (a device, a pipe, a link to either) is never replaced.
+/// A file that appears when it is whole, or not at all: written without a name, or where the file
+/// system cannot under a temporary one beside its place, and given its name by commit(). An older
+/// file of that name stays until then. What is there and is no regular file (a device, a pipe, a
+/// link to either) is never replaced.
 class ReplacementFile {
  public:
-  /// Makes the temporary file, under a name that nobody can foresee and that was not there: what
+  /// Makes the file; a temporary name is one that nobody can foresee and that was not there: what
   /// others put in its folder is never written to. Throws config::InputError where it cannot.
   explicit ReplacementFile(const std::string& path);
   ReplacementFile(const ReplacementFile&) = delete;
@@ -27,7 +28,7 @@ class ReplacementFile {
   [[nodiscard]] std::ostream& stream() { return stream_; }
   /// The same, for what writes by itself. Stays this object's.
   [[nodiscard]] int descriptor() { return buffer_.fd(); }
-  /// The temporary name, to be told or to put something beside.
+  /// The temporary name, which it may have, to be told.
   [[nodiscard]] const std::string& temporary() const { return temporary_; }
   /// Throws std::runtime_error where it cannot.
   void write(const std::string& text);
@@ -42,6 +43,7 @@ class ReplacementFile {
 
   std::filesystem::path path_;
   std::string temporary_;
+  bool named_ = false;  ///< there is a file of the temporary name
   __gnu_cxx::stdio_filebuf<char> buffer_;
   std::ostream stream_;
 };

@@ -308,6 +308,16 @@ Map Value::map(const std::vector<std::string>& known, std::string_view noun) con
 
 Map Value::map_of_any() const { return read_map(nullptr, "key"); }
 
+namespace {
+
+/// What is left of a number with a decimal comma, which parts two keys: `{gain: 4,05}`.
+bool is_behind_comma(const YAML::detail::iterator_value& pair) {
+  const std::string& key = pair.first.Scalar();
+  return pair.second.IsNull() && key.find_first_not_of("0123456789") == std::string::npos;
+}
+
+}  // namespace
+
 Map Value::read_map(const std::vector<std::string>* known, std::string_view noun) const {
   std::vector<Map::Entry> entries;
   if (node_.IsNull()) return {*this, {}};  // `monitor:` with nothing below
@@ -325,7 +335,9 @@ Map Value::read_map(const std::vector<std::string>* known, std::string_view noun
     const std::string path = path_.empty() ? key : path_ + '.' + key;
     const Value key_at(pair.first, at, path, *report_);
     if (known != nullptr && std::find(known->begin(), known->end(), key) == known->end()) {
-      key_at.error("unknown " + std::string(noun) + suggestion(key, *known));
+      key_at.error("unknown " + std::string(noun) +
+                   (is_behind_comma(pair) ? "; a number has a decimal point, not a comma"
+                                          : suggestion(key, *known)));
       continue;
     }
     const auto same = [&key](const Map::Entry& entry) { return entry.key == key; };

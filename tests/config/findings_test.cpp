@@ -64,6 +64,9 @@ TEST_CASE("Every mistake in a section is told at its place") {
        "line 7"},
       {"model:\n  channels: [{cv: y1, mv: u1, dv: u2, gain: 2}]\n",
        "u.yaml:7:35: error: model.channels[0].dv: give either `mv` or `dv`, not both"},
+      {"model:\n  channels: [{cv: y1, mv: u1, gain: 4,05}]\n",
+       "u.yaml:7:39: error: model.channels[0].05: unknown key; a number has a decimal point, not a "
+       "comma"},
       {"model:\n  channels: [{cv: y1, mv: u1, gain: .nan}]\n",
        "u.yaml:7:37: error: model.channels[0].gain: must be a finite number, not '.nan'"},
       {"model:\n  channels: [{cv: y1, mv: u1, gain: inf}]\n",

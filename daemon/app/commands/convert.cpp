@@ -82,7 +82,7 @@ void add_convert(CLI::App& app, int& exit_code) {
       ->add_option("output", options->output,
                    "what to write: MCAP if it ends in .mcap, else CSV; - is CSV on standard output")
       ->required();
-  command->add_option("--config", options->config,
+  command->add_option("-c,--config", options->config,
                       "unit file: which signals, and for MCAP on which topic each goes");
   command->add_option("--unit", options->unit, "unit to take from an MCAP file that holds several");
   command->add_option("--layout", options->layout, "of a CSV output")

@@ -267,7 +267,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "diagnose",
       "Show what the simulation gets wrong, name the cause, extend the model, measure the gain");
-  command->add_option("--config", options->config, "unit file (required)");
+  command->add_option("-c,--config", options->config, "unit file (required)");
   command->add_option("--data", options->data,
                       "data file (required): CSV in any historian layout, MCAP recording, or a "
                       "folder of one that was split; of several each is a run of its own, at its "

@@ -155,7 +155,7 @@ void add_identify(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("identify",
                                          "A model of a unit from tags and history, with what it is "
                                          "sure of and what it left out");
-  command->add_option("--config", options->config, "unit file; needs no model")->required();
+  command->add_option("-c,--config", options->config, "unit file; needs no model")->required();
   command
       ->add_option(
           "--data", options->data,

@@ -85,8 +85,15 @@ void TrendMaker::Sums::add(const Sums& other) {
   for (const auto& [tags, sums] : other.channels) channels[tags].add(sums);
 }
 
+bool TrendMaker::is_new(const Digest& digest) {
+  std::vector<double> key{static_cast<double>(digest.from_ns)};
+  for (const CvDigest& cv : digest.cvs)
+    key.push_back(known(cv.residual_rms) ? cv.residual_rms : -1.0);
+  return seen_.insert(std::move(key)).second;
+}
+
 void TrendMaker::add(const Digest& digest) {
-  if (!begun_.insert(digest.from_ns).second) return;
+  if (!is_new(digest)) return;
   Sums sums;
   sums.from_ns = digest.from_ns;
   sums.until_ns = digest.until_ns;

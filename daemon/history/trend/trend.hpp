@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -72,7 +72,8 @@ class TrendMaker {
 
   /// Channels and CVs are those of the last head.
   void add(UnitHead head) { head_ = std::move(head); }
-  /// One that begins as another did is the same again (two runs over one file), and is left out.
+  /// One that begins as another did, with the same residuals, is the same again (two runs over one
+  /// file), and is left out; with others the clock was set back, and both count.
   void add(const Digest& digest);
   void add(AlarmChangeNote alarm) { alarms_.push_back(std::move(alarm)); }
 
@@ -99,13 +100,14 @@ class TrendMaker {
     void add(const Sums& other);
   };
 
+  [[nodiscard]] bool is_new(const Digest& digest);
   [[nodiscard]] Period period_of(std::int64_t index, const Sums& sums, Step step) const;
 
   std::optional<Step> step_;
   const files::TimeZone* zone_;
   UnitHead head_;
-  std::unordered_set<std::int64_t> begun_;  // at these times
-  std::map<std::int64_t, Sums> hours_;      // by hour of the clock
+  std::set<std::vector<double>> seen_;  // when they began, and their residuals
+  std::map<std::int64_t, Sums> hours_;  // by hour of the clock
   std::int64_t last_ns_ = 0;
   std::vector<ChannelDigest> last_;
   std::vector<AlarmChangeNote> alarms_;

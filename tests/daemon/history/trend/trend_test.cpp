@@ -129,6 +129,17 @@ TEST_CASE("what is told twice counts once") {
   CHECK(trend.samples() == 1440);
 }
 
+TEST_CASE("an hour that comes twice, for the clock was set back, counts twice") {
+  const Trend trend = sample_trend(
+      8,
+      [](int q, std::int64_t) {
+        return sample_digest(test::kMonday + (q % 4) * 900 * test::kSecond, 1.0, q < 4 ? 0.3 : 0.4);
+      },
+      Step::kHour);
+  REQUIRE(trend.periods.size() == 1);
+  CHECK(trend.samples() == 120);
+}
+
 TEST_CASE("of nothing there is no trend") {
   TrendMaker maker(std::nullopt, nullptr);
   maker.add(test::sample_head());
