@@ -49,6 +49,21 @@ double range_of_new_inputs(Problem& problem, const std::vector<Effect>& effects,
   return moved.maxCoeff() - moved.minCoeff();
 }
 
+/// How far at most the inputs that keep to one side of their operating points take a CV, CV units:
+/// a level that a wrong gain of theirs could make as well.
+double level_of_inputs(Problem& problem, int cv) {
+  const Eigen::VectorXd simulated = problem.simulate({}, cv);
+  double level = 0.0;
+  for (const ChannelSpec& channel : problem.model().channels) {
+    if (channel.cv != cv) continue;
+    const Effect twice{&causes::gain(), {cv, channel.input}, {{&kGainRatio, 2.0}}};
+    const Eigen::ArrayXd does = problem.simulate({twice}, cv) - simulated;
+    const double mean = does.mean();
+    if (mean * mean > (does - mean).square().mean()) level += does.abs().maxCoeff();
+  }
+  return level;
+}
+
 }  // namespace
 
 void widen_kinked(Problem& problem, SearchResult& result, const std::function<void()>& tell) {
@@ -112,9 +127,13 @@ void spread_onsets(Problem& problem, SearchResult& result, const std::function<v
   }
 }
 
-void name_levels(Problem& problem, const std::vector<int>& except, SearchResult& result) {
+void name_levels(Problem& problem, const std::vector<int>& except, const std::vector<int>& doubted,
+                 SearchResult& result) {
+  const auto is_one_of = [](const std::vector<int>& cvs, int cv) {
+    return std::find(cvs.begin(), cvs.end(), cv) != cvs.end();
+  };
   for (CvFit& fit : result.fit.cvs) {
-    if (std::find(except.begin(), except.end(), fit.cv) != except.end()) continue;
+    if (is_one_of(except, fit.cv)) continue;
     const CvData& data = problem.data(fit.cv);
     // Runs have levels of their own, which are nobody's fault.
     if (data.runs.size() > 1) continue;
@@ -128,6 +147,7 @@ void name_levels(Problem& problem, const std::vector<int>& except, SearchResult&
     if (!comes_back_beside_breaks(left_of(data, fit),
                                   causes::breaks_of(result.fit.effects, fit.cv)))
       continue;
+    if (is_one_of(doubted, fit.cv) && std::abs(level) <= level_of_inputs(problem, fit.cv)) continue;
     if (std::abs(level) <= range_of_new_inputs(problem, result.fit.effects, fit.cv)) continue;
     Named named;
     named.effect = causes::constant_offset(fit.cv, level, noise);

@@ -19,7 +19,10 @@ void spread_onsets(Problem& problem, SearchResult& result, const std::function<v
 
 /// A level that is off from the first row on by far more than the noise moves it is no small error
 /// any more, but a sensor's offset or a disturbance as old as the data: adds those to `result`, but
-/// for the CVs in `except` and those that wander, of which no level can be told.
-void name_levels(Problem& problem, const std::vector<int>& except, SearchResult& result);
+/// for the CVs in `except` and those that wander, of which no level can be told. In the CVs that
+/// are `doubted` something of their channels may be wrong that nobody named: there only what is
+/// more than their inputs do that keep to one side of their operating points.
+void name_levels(Problem& problem, const std::vector<int>& except, const std::vector<int>& doubted,
+                 SearchResult& result);
 
 }  // namespace mpm

@@ -99,11 +99,10 @@ class Search {
     }
     widen_kinked(problem_, result, [this] { report(); });
     spread_onsets(problem_, result, [this] { report(); });
-    std::vector<int> no_level = no_level_;
+    std::vector<int> doubted;
     for (const int cv : all_cvs())
-      if (!may_name(causes::constant_offset(cv, 0.0, 1.0)) && !has_error(cv))
-        no_level.push_back(cv);
-    name_levels(problem_, no_level, result);
+      if (!may_name(causes::constant_offset(cv, 0.0, 1.0)) && !has_error(cv)) doubted.push_back(cv);
+    name_levels(problem_, no_level_, doubted, result);
     return result;
   }
 

@@ -45,7 +45,7 @@ TEST_CASE("a level that is far off is a disturbance as old as the data") {
   const VectorXd u = test::telegraph(1, kRows, 12);
   Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.5);
   REQUIRE(bench.result.named.empty());
-  name_levels(bench.problem, {}, bench.result);
+  name_levels(bench.problem, {}, {}, bench.result);
   REQUIRE(bench.result.named.size() == 1);
   const Effect& level = bench.result.named[0].effect;
   CHECK(subject_of(level) == Subject{&causes::step_disturbance(), {0}});
@@ -65,7 +65,7 @@ TEST_CASE("a level within the noise is a small error") {
   const VectorXd u = test::telegraph(1, kRows, 12);
   Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + 0.13);
   const VectorXd beta = bench.result.fit.cvs[0].beta;
-  name_levels(bench.problem, {}, bench.result);
+  name_levels(bench.problem, {}, {}, bench.result);
   CHECK(bench.result.named.empty());
   CHECK(bench.result.fit.cvs[0].beta == beta);
 }
@@ -76,8 +76,23 @@ TEST_CASE("what a new input moves its CV by may be a level that its operating po
   Bench bench(u, (plant(u) + 0.1 * test::white(2, kRows)).array() + level);
   const Quantity& gain = test::quantity_of(causes::unmodelled_input(), "gain");
   bench.result.fit.effects.push_back({&causes::unmodelled_input(), {0, 0}, {{&gain, 1.0}}});
-  name_levels(bench.problem, {}, bench.result);
+  name_levels(bench.problem, {}, {}, bench.result);
   CHECK(bench.result.named.size() == (level > 2.0 ? 1 : 0));
+}
+
+// The plant's gain is half as large again as the model's 2. With its input 5 from its operating
+// point that alone takes the CV 5 up; about it a level of 5 is one that no gain makes.
+TEST_CASE("a level that a wrong gain makes is none of its own, and one beside a wrong gain is") {
+  const bool far = GENERATE(true, false);
+  const VectorXd u = test::telegraph(1, kRows, 4).array() + (far ? 5.0 : 0.0);
+  Bench bench(u, (1.5 * plant(u) + test::white(2, kRows)).array() + (far ? 0.0 : 5.0));
+  name_levels(bench.problem, {}, {0}, bench.result);
+  CHECK(bench.result.named.size() == (far ? 0 : 1));
+  name_levels(bench.problem, {0}, {0}, bench.result);
+  CHECK(bench.result.named.size() == (far ? 0 : 1));
+  if (!far) return;
+  name_levels(bench.problem, {}, {}, bench.result);  // nobody doubts the gain
+  CHECK(bench.result.named.size() == 1);
 }
 
 VectorXd play(const VectorXd& u, double width) {
@@ -183,7 +198,7 @@ TEST_CASE("where a random walk happens to be is no shift of its level") {
   for (std::uint64_t seed = 100; seed < 160; ++seed) {
     const VectorXd walk = 0.1 * test::autoregressive(test::normal(seed, kRows), 1.0);
     Bench bench(u, plant(u) + walk + 0.3 * test::normal(seed + 100, kRows));
-    name_levels(bench.problem, {}, bench.result);
+    name_levels(bench.problem, {}, {}, bench.result);
     shifts += static_cast<int>(bench.result.named.size());
   }
   CHECK(shifts == 0);
@@ -199,7 +214,7 @@ TEST_CASE("a walk that has gone on for long tells no level however far it is off
     const VectorXd walk =
         0.1 * test::autoregressive(test::normal(seed, kBefore + kRows), 1.0).tail(kRows);
     Bench bench(u, plant(u) + walk + 0.3 * test::normal(seed + 100, kRows));
-    name_levels(bench.problem, {}, bench.result);
+    name_levels(bench.problem, {}, {}, bench.result);
     shifts += static_cast<int>(bench.result.named.size());
     far += std::abs(walk.mean()) > 4.0 * std::sqrt((walk.array() - walk.mean()).square().mean());
   }
@@ -217,7 +232,7 @@ TEST_CASE("a level that is far off is told of slow noise too") {
   for (std::uint64_t seed = 100; seed < 110; ++seed) {
     const VectorXd slow = test::autoregressive(0.1 * test::normal(seed, kLong), 0.95);  // s.d. 0.32
     Bench bench(u, (plant(u) + slow).array() + 2.56);
-    name_levels(bench.problem, {}, bench.result);
+    name_levels(bench.problem, {}, {}, bench.result);
     shifts += static_cast<int>(bench.result.named.size());
   }
   CHECK(shifts >= 9);
