@@ -218,6 +218,9 @@ inline constexpr double kMostLogTime = 2.5;
 namespace confounding {
 inline constexpr double kMargin = 10.0;
 inline constexpr double kShare = 0.5;
+/// A signal that explains something beside usual errors of the channels, by a test of this p-value,
+/// is no other word for them.
+inline constexpr double kBesidePValue = 0.001;
 /// What goes with the inputs of a CV, so many s.d. beyond chance, is like no errors of its channels
 /// where these explain less than this share of it. Chosen on the same loops: of what an operator's
 /// answer to a hidden disturbance makes of six MVs they explain 0.14 at most once that is 70 noise

@@ -71,6 +71,8 @@ class ChannelEvaluator {
   };
   /// Of the last `evaluate`.
   [[nodiscard]] const Explained& explained() const { return explained_; }
+  /// Likewise: `JointErrors::errors` of all channels of the CV.
+  [[nodiscard]] const Eigen::MatrixXd& usual_errors() const { return joint_.errors(); }
 
   void archive(Archive& a);
 

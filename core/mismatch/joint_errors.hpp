@@ -36,6 +36,10 @@ class JointErrors {
   /// What they leave of all that the inputs explain, in squares.
   [[nodiscard]] double left_square() const { return all_.residual_square(0); }
 
+  /// As coefficients, block x kUsualErrors of each input: what the rows of its block give with them
+  /// is what such errors make of the residual beyond its own past.
+  [[nodiscard]] const Eigen::MatrixXd& errors() const { return errors_; }
+
   using Channel = InputErrors::Channel;
   /// Valid until the next call.
   [[nodiscard]] const Channel& channel(int input) {

@@ -8,6 +8,7 @@
 
 #include "core/archive/archive.hpp"
 #include "core/mismatch/calibration.hpp"
+#include "core/statistics/f_distribution.hpp"
 
 namespace mpm {
 
@@ -25,6 +26,7 @@ MismatchDetector::MismatchDetector(const RegressionShape& shape,
       work_(shape.columns() + VolterraTerms::most_columns(), patience),
       evaluator_(shape, model, std::move(limits)),
       evidence_(static_cast<std::size_t>(shape.inputs * shape.cvs) * memories.size()),
+      again_(static_cast<std::size_t>(shape.inputs)),
       explained_(static_cast<std::size_t>(shape.cvs)),
       doubted_(static_cast<std::size_t>(shape.cvs) * memories.size()),
       beside_(static_cast<std::size_t>(shape.cvs)) {
@@ -88,6 +90,11 @@ void MismatchDetector::evaluate(int cv, int memory) {
   evaluator_.evaluate_coupled(cv, beside_, doubted, evidence.data());
 }
 
+const Eigen::MatrixXd& MismatchDetector::usual_errors(int cv) {
+  evaluator_.evaluate(cv, regression(cv).memory(0), again_.data());
+  return evaluator_.usual_errors();
+}
+
 RivalSignal MismatchDetector::rival(int cv, const FollowedSignal& followed) const {
   if (followed.signal < 0) return {};
   const ChannelEvaluator::Explained& by = explained_[static_cast<std::size_t>(cv)];
@@ -95,8 +102,12 @@ RivalSignal MismatchDetector::rival(int cv, const FollowedSignal& followed) cons
   // Without what so many coefficients explain by chance.
   const double inputs = by.inputs - by.variance * shape_.inputs * shape_.block();
   const bool much = followed.explained > calibration::confounding::kShare * inputs;
+  const bool beside =
+      by.variance > 0.0 &&
+      f_upper_tail(followed.beside / (followed.numbers * by.variance), followed.numbers,
+                   regression(cv).memory(0).freedom()) < calibration::confounding::kBesidePValue;
   return {followed.signal, much && followed.explained > by.usual_errors + margin,
-          !much || followed.explained < by.usual_errors - margin};
+          !much || (!beside && followed.explained < by.usual_errors - margin)};
 }
 
 bool MismatchDetector::unlike_errors(int cv) const {
@@ -134,6 +145,7 @@ void MismatchDetector::archive(Archive& a) {
   // not archived: shape_, memory_count_, model_ (construction)
   // not archived: work_, beside_ (empty between calls)
   a.within(forgetful_, 0, shape_.cvs);
+  // not archived: again_ (read into at once)
   a(history_, older_, curvatures_, evaluator_, evidence_, explained_, doubted_);
   for (ResidualRegression& regression : regressions_)
     regression.archive(a, model_, history_, work_);

@@ -73,6 +73,9 @@ class MismatchDetector {
   [[nodiscard]] const ChannelEvidence& evidence(int cv, int input, int memory = 0) const {
     return evidence_[first_evidence(cv, memory) + static_cast<std::size_t>(input)];
   }
+  /// The usual errors of the CV's channels, for `OutsideSignals`: `JointErrors::errors`, of the
+  /// first memory, which is ready. Valid until the next evaluation.
+  [[nodiscard]] const Eigen::MatrixXd& usual_errors(int cv);
   /// What a signal that is no input says of a CV beside errors of its channels. After
   /// `evaluate(cv, 0)`.
   [[nodiscard]] RivalSignal rival(int cv, const FollowedSignal& followed) const;
@@ -121,7 +124,7 @@ class MismatchDetector {
   std::vector<std::optional<Curvature>> curvatures_;  // per CV
   RowWorkspace work_;
   ChannelEvaluator evaluator_;
-  std::vector<ChannelEvidence> evidence_;
+  std::vector<ChannelEvidence> evidence_, again_;
   std::vector<ChannelEvaluator::Explained> explained_;  // per CV, of the first memory
   std::vector<int> doubted_;  // per memory and CV: by itself it has a channel that may be wrong
   std::vector<const RegressionMemory*> beside_;  // per CV, those that are ready

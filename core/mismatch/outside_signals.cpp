@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/archive/archive.hpp"
+#include "core/mismatch/signature.hpp"
 #include "core/statistics/calibration.hpp"
 #include "core/statistics/readback.hpp"
 
@@ -13,7 +14,7 @@ namespace mpm {
 
 OutsideSignals::OutsideSignals(const RegressionShape& shape, int signals, std::vector<double> poles,
                                int depth)
-    : lead_in_(shape.lead_in()),
+    : shape_(shape),
       signals_(signals),
       depth_(depth),
       poles_(std::move(poles)),
@@ -21,8 +22,11 @@ OutsideSignals::OutsideSignals(const RegressionShape& shape, int signals, std::v
       last_(static_cast<std::size_t>(signals), 0.0),
       readbacks_(static_cast<std::size_t>(signals)),
       unknown_(Eigen::VectorXd::Constant(signals, std::numeric_limits<double>::quiet_NaN())),
-      feed_(shape.lead_in() + VolterraTerms::most_columns() + block() + 1),
-      factor_(shape.lead_in() + block(), 1) {
+      inputs_(static_cast<std::size_t>(shape.inputs * shape.block())),
+      feed_(shape.lead_in() + VolterraTerms::most_columns() + shape.inputs * kUsualErrors +
+            block() + 1),
+      alone_(shape.lead_in() + block(), 1),
+      beside_(shape.lead_in() + shape.inputs * kUsualErrors + block(), 1) {
   for (int w = 0; w < signals * block(); ++w) windows_.emplace_back(depth);
 }
 
@@ -48,21 +52,25 @@ void OutsideSignals::skip(std::int64_t missing) {
 
 void OutsideSignals::archive(Archive& a) {
   // not archived: signals_, depth_, poles_, unknown_ (construction)
-  // not archived: lead_in_, factor_, feed_ (made anew where a CV is followed)
+  // not archived: shape_, inputs_, feed_, alone_, beside_ (made anew where a CV is followed)
   a(origin_, last_, readbacks_, windows_);
 }
 
 FollowedSignal OutsideSignals::followed(int cv, const RegressionHistory& history,
-                                        const ResidualRegression& regression) {
+                                        const ResidualRegression& regression,
+                                        const Eigen::MatrixXd& usual) {
   FollowedSignal best;
   const int span = std::min(regression.span(), depth_);
   for (int i = 0; i < signals_; ++i) {
     if (reads_an_input_back(i, history, span)) continue;
-    const double explained = explained_by(i, cv, history, regression);
+    const double explained = explained_by(i, cv, history, regression, nullptr);
     if (explained <= best.explained) continue;
     best.explained = explained;
     best.signal = i;
   }
+  if (best.signal < 0) return best;
+  best.beside = explained_by(best.signal, cv, history, regression, &usual);
+  best.numbers = block();
   return best;
 }
 
@@ -81,27 +89,41 @@ bool OutsideSignals::reads_an_input_back(int signal, const RegressionHistory& hi
   return known.is;
 }
 
-double OutsideSignals::explained_by(int signal, int cv, const RegressionHistory& history,
-                                    const ResidualRegression& regression) {
-  if (lead_in_ != regression.lead_in()) {
-    lead_in_ = regression.lead_in();
-    factor_ = GivensQr(lead_in_ + block(), 1);
+// What such errors make of the row whose response is `age` samples old.
+void OutsideSignals::fill_errors(const Eigen::MatrixXd& usual, const RegressionHistory& history,
+                                 int age, double* row) {
+  history.fill_inputs(age, inputs_.data());
+  for (int i = 0; i < shape_.inputs; ++i) {
+    const auto block = Eigen::VectorXd::Map(inputs_.data() + i * shape_.block(), shape_.block());
+    for (int e = i * kUsualErrors; e < (i + 1) * kUsualErrors; ++e)
+      row[e] = usual.col(e).dot(block);
   }
-  factor_.clear();
+}
+
+// What is left to the signal beside the CV's own past, and beside such errors of its channels.
+double OutsideSignals::explained_by(int signal, int cv, const RegressionHistory& history,
+                                    const ResidualRegression& regression,
+                                    const Eigen::MatrixXd* beside) {
+  const int lead_in = regression.lead_in();
+  const int first = lead_in + (beside != nullptr ? shape_.inputs * kUsualErrors : 0);
+  GivensQr& factor = beside != nullptr ? beside_ : alone_;
+  if (factor.columns() != first + block()) factor = GivensQr(first + block(), 1);
+  factor.clear();
   const double lambda = regression.memory(0).length.lambda;
   for (int age = std::min(regression.span(), depth_) - 1; age >= 0; --age) {
     const double weight = regression.row_weight(age);
     if (!(weight > 0.0)) continue;
-    double* row = feed_.next_row(factor_, lambda);
+    double* row = feed_.next_row(factor, lambda);
     regression.fill_lead_in(history, age, row);
+    if (beside != nullptr) fill_errors(*beside, history, age, row + lead_in);
     for (int w = 0; w < block(); ++w)
-      row[lead_in_ + w] = windows_[static_cast<std::size_t>(signal * block() + w)].window()[age];
-    row[factor_.columns()] = history.residual(cv, age);
-    for (int c = 0; c <= factor_.columns(); ++c) row[c] *= weight;
+      row[first + w] = windows_[static_cast<std::size_t>(signal * block() + w)].window()[age];
+    row[factor.columns()] = history.residual(cv, age);
+    for (int c = 0; c <= factor.columns(); ++c) row[c] *= weight;
   }
-  feed_.flush(factor_, lambda);
+  feed_.flush(factor, lambda);
   double explained = 0.0;
-  for (int c = lead_in_; c < factor_.columns(); ++c) explained += std::pow(factor_.z(c, 0), 2);
+  for (int c = first; c < factor.columns(); ++c) explained += std::pow(factor.z(c, 0), 2);
   return explained;
 }
 

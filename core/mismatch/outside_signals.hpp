@@ -16,6 +16,8 @@ class Archive;
 struct FollowedSignal {
   int signal = -1;         ///< -1: none
   double explained = 0.0;  ///< of the weighted residual square, beyond its own past
+  double beside = 0.0;     ///< likewise, beyond usual errors of the CV's channels as well
+  int numbers = 0;         ///< that say so
 };
 
 /// Signals that are measured but no inputs of the model (set-points, auxiliary ones), and how well
@@ -34,18 +36,23 @@ class OutsideSignals {
   void skip(std::int64_t missing);
 
   /// The signal that explains most of the CV's residual over the rows of its first memory.
+  /// `usual`: the usual errors of its channels (`JointErrors::errors`).
   [[nodiscard]] FollowedSignal followed(int cv, const RegressionHistory& history,
-                                        const ResidualRegression& regression);
+                                        const ResidualRegression& regression,
+                                        const Eigen::MatrixXd& usual);
 
   void archive(Archive& a);
 
  private:
   [[nodiscard]] int block() const { return static_cast<int>(poles_.size()) + 1; }
   [[nodiscard]] bool reads_an_input_back(int signal, const RegressionHistory& history, int span);
+  void fill_errors(const Eigen::MatrixXd& usual, const RegressionHistory& history, int age,
+                   double* row);
   [[nodiscard]] double explained_by(int signal, int cv, const RegressionHistory& history,
-                                    const ResidualRegression& regression);
+                                    const ResidualRegression& regression,
+                                    const Eigen::MatrixXd* beside);
 
-  int lead_in_;
+  RegressionShape shape_;
   int signals_;
   int depth_;
   std::vector<double> poles_;
@@ -62,8 +69,9 @@ class OutsideSignals {
   std::vector<Readback> readbacks_;
   std::vector<LagWindow> windows_;  // signal-major: value, means
   Eigen::VectorXd unknown_;         // all NaN
+  std::vector<double> inputs_;      // of one row
   RowFeed feed_;
-  GivensQr factor_;  // [lead-in | signal]
+  GivensQr alone_, beside_;  // [lead-in | signal], [lead-in | usual errors | signal]
 };
 
 }  // namespace mpm

@@ -354,9 +354,10 @@ void Monitor::State::follow(int j) {
     for (int i = 0; i < counts.inputs() && detector.memory(j, m).ready(); ++i)
       off = off || judge.unlikely(detector.evidence(j, i, m));
   if (!off) cv.rival = {};
-  if (!off || reader.samples() < cv.followed_next) return;
+  if (!off || !detector.memory(j).ready() || reader.samples() < cv.followed_next) return;
   cv.followed_next = reader.samples() + calibration::confounding::kBetween;
-  cv.rival = detector.rival(j, outside.followed(j, detector.history(), detector.regression(j)));
+  cv.rival = detector.rival(
+      j, outside.followed(j, detector.history(), detector.regression(j), detector.usual_errors(j)));
   if (cv.rival.loses && is_unlike_errors(j)) cv.rival = {-1, true, false};
 }
 

@@ -98,7 +98,8 @@ ChannelTests::ChannelTests(const ModelSpec& model, const Recording& recording,
     }
     if (to_follow > 0 && reject(channels_to(cv)))
       setpoints_[static_cast<std::size_t>(cv)] = detector.rival(
-          cv, regressed.setpoints->followed(cv, detector.history(), detector.regression(cv)));
+          cv, regressed.setpoints->followed(cv, detector.history(), detector.regression(cv),
+                                            detector.usual_errors(cv)));
   }
 }
 

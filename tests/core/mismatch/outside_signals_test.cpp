@@ -46,9 +46,13 @@ struct Loop {
     }
     detector.evaluate(0);
     // The first time it is asked what only reads an input back.
-    static_cast<void>(outside.followed(0, detector.history(), detector.regression(0)));
+    const auto ask = [this] {
+      return outside.followed(0, detector.history(), detector.regression(0),
+                              detector.usual_errors(0));
+    };
+    static_cast<void>(ask());
     const std::uint64_t before = test::allocation_count();
-    const FollowedSignal followed = outside.followed(0, detector.history(), detector.regression(0));
+    const FollowedSignal followed = ask();
     CHECK(test::allocation_count() == before);
     return detector.rival(0, followed);
   }
@@ -64,6 +68,15 @@ TEST_CASE("what a signal adds to a CV is told from an error of the input that mo
   CHECK(input.loses);
 }
 
+// The input's error explains more of the residual than the signal does, but not what the signal
+// adds, by a test of 0.1 %.
+TEST_CASE("a signal that adds something beside an error of the input that moves with it is told") {
+  const RivalSignal both = Loop().run(0.3, 0.3);
+  CHECK(both.signal == 1);
+  CHECK_FALSE(both.wins);
+  CHECK_FALSE(both.loses);
+}
+
 TEST_CASE("a signal that never moves explains nothing") {
   Loop loop;
   Eigen::VectorXd u(1), e(1);
@@ -74,8 +87,8 @@ TEST_CASE("a signal that never moves explains nothing") {
     loop.outside.push(Eigen::Vector2d(5.0, kNan));
   }
   loop.detector.evaluate(0);
-  const FollowedSignal followed =
-      loop.outside.followed(0, loop.detector.history(), loop.detector.regression(0));
+  const FollowedSignal followed = loop.outside.followed(
+      0, loop.detector.history(), loop.detector.regression(0), loop.detector.usual_errors(0));
   CHECK(followed.signal == -1);
   CHECK(followed.explained == 0.0);
 }
