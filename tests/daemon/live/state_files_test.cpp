@@ -94,8 +94,8 @@ TEST_CASE("what a killed process was writing does not stay for ever") {
   const test::TemporaryFolder folder;
   const std::string place = folder.file("");
   keep(place, "a", 8, some_bytes(8));
-  config::ReplacementFile unfinished(path(folder, 9));
-  unfinished.write("half of it");
+  // As it is left where the file system has no files without a name.
+  test::write_file(config::ReplacementFile(path(folder, 9)).temporary(), "half of it");
   CHECK(names_in(place).size() == 2);
   CHECK(StateFiles(place, "a").find({8, 9}) == std::vector<std::uint64_t>{8});
   CHECK(names_in(place) == std::set<std::string>{"state-000000000008"});
