@@ -313,7 +313,8 @@ namespace {
 /// What is left of a number with a decimal comma, which parts two keys: `{gain: 4,05}`.
 bool is_behind_comma(const YAML::detail::iterator_value& pair) {
   const std::string& key = pair.first.Scalar();
-  return pair.second.IsNull() && key.find_first_not_of("0123456789") == std::string::npos;
+  return pair.second.IsNull() && !key.empty() &&
+         key.find_first_not_of("0123456789") == std::string::npos;
 }
 
 }  // namespace
