@@ -115,6 +115,13 @@ YAML::Mark mark_of(const std::string& text, std::size_t at) {
   return mark;
 }
 
+/// What is left of a number with a decimal comma, which parts two keys: `{gain: 4,05}`.
+bool is_behind_comma(const YAML::detail::iterator_value& pair) {
+  const std::string& key = pair.first.Scalar();
+  return pair.second.IsNull() && !key.empty() &&
+         key.find_first_not_of("0123456789") == std::string::npos;
+}
+
 }  // namespace
 
 YAML::Mark Report::mark_in(const YAML::Mark& start, std::string_view scalar,
@@ -307,17 +314,6 @@ Map Value::map(const std::vector<std::string>& known, std::string_view noun) con
 }
 
 Map Value::map_of_any() const { return read_map(nullptr, "key"); }
-
-namespace {
-
-/// What is left of a number with a decimal comma, which parts two keys: `{gain: 4,05}`.
-bool is_behind_comma(const YAML::detail::iterator_value& pair) {
-  const std::string& key = pair.first.Scalar();
-  return pair.second.IsNull() && !key.empty() &&
-         key.find_first_not_of("0123456789") == std::string::npos;
-}
-
-}  // namespace
 
 Map Value::read_map(const std::vector<std::string>* known, std::string_view noun) const {
   std::vector<Map::Entry> entries;

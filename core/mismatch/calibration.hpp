@@ -219,7 +219,7 @@ namespace confounding {
 inline constexpr double kMargin = 10.0;
 inline constexpr double kShare = 0.5;
 /// A signal that explains something beside usual errors of the channels, by a test of this p-value,
-/// is no other word for them.
+/// is no other word for them. Chosen (docs/validation.md).
 inline constexpr double kBesidePValue = 0.001;
 /// What goes with the inputs of a CV, so many s.d. beyond chance, is like no errors of its channels
 /// where these explain less than this share of it. Chosen on the same loops: of what an operator's

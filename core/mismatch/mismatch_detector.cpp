@@ -90,6 +90,7 @@ void MismatchDetector::evaluate(int cv, int memory) {
   evaluator_.evaluate_coupled(cv, beside_, doubted, evidence.data());
 }
 
+// Seldom asked: kept for each CV they would be larger than the rest of the evidence.
 const Eigen::MatrixXd& MismatchDetector::usual_errors(int cv) {
   evaluator_.evaluate(cv, regression(cv).memory(0), again_.data());
   return evaluator_.usual_errors();
@@ -143,9 +144,8 @@ bool MismatchDetector::take_in_curvature(int cv, double least) {
 
 void MismatchDetector::archive(Archive& a) {
   // not archived: shape_, memory_count_, model_ (construction)
-  // not archived: work_, beside_ (empty between calls)
+  // not archived: work_, beside_, again_ (empty between calls)
   a.within(forgetful_, 0, shape_.cvs);
-  // not archived: again_ (read into at once)
   a(history_, older_, curvatures_, evaluator_, evidence_, explained_, doubted_);
   for (ResidualRegression& regression : regressions_)
     regression.archive(a, model_, history_, work_);

@@ -17,7 +17,7 @@ struct FollowedSignal {
   int signal = -1;         ///< -1: none
   double explained = 0.0;  ///< of the weighted residual square, beyond its own past
   double beside = 0.0;     ///< likewise, beyond usual errors of the CV's channels as well
-  int numbers = 0;         ///< that say so
+  int numbers = 0;         ///< that the signal does it with
 };
 
 /// Signals that are measured but no inputs of the model (set-points, auxiliary ones), and how well

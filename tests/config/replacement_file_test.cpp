@@ -72,6 +72,7 @@ TEST_CASE("what is not committed leaves nothing behind") {
     ReplacementFile other(folder.file("out.csv"));
     CHECK(file.temporary() != other.temporary());
     file.write("half");
+    CHECK(entries_of(folder.file(".")) == 0);  // neither has a name
   }
   CHECK(entries_of(folder.file(".")) == 0);
   CHECK_THROWS_AS(ReplacementFile(folder.file("nowhere/out.csv")), mpm::config::InputError);
