@@ -2,36 +2,62 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/channel_error.hpp"
 #include "core/identify/causes/priors.hpp"
 
 namespace mpm {
+namespace {
+
+bool is_offset(const InputBlock& block) { return std::holds_alternative<InputOffset>(block); }
+
+}  // namespace
 
 void InputBlockCause::apply(const Effect& effect, const Surroundings& surroundings,
                             ModelSpec& model) const {
   const InputBlock block = this->block(effect, surroundings);
-  if (effect.place.cv < 0) {
-    model.input_blocks[static_cast<std::size_t>(effect.place.input)] = block;
-    return;
+  std::optional<InputBlock>& whole =
+      model.input_blocks[static_cast<std::size_t>(effect.place.input)];
+  // Of two before the whole input the actuator's offset stays there, and the curve goes before each
+  // channel instead, which is the same.
+  std::optional<InputBlock> before_each;
+  if (effect.place.cv >= 0) {
+    before_each = block;
+  } else if (!whole || is_offset(block) == is_offset(*whole)) {
+    whole = block;
+  } else {
+    before_each = is_offset(block) ? std::exchange(whole, block) : block;
   }
+  if (!before_each) return;
   for (ChannelSpec& channel : model.channels)
-    if (place_of(channel) == Place{effect.place.cv, effect.place.input})
-      channel.input_block = block;
+    if (channel.input == effect.place.input &&
+        (effect.place.cv < 0 || channel.cv == effect.place.cv))
+      channel.input_block = before_each;
 }
 
 bool InputBlockCause::goes_with(const Effect& accepted, const Effect& mine) const {
-  if (cause_of(accepted).is_input_block() && accepted.place.input == mine.place.input) return false;
+  const auto goes_before = [](const Effect& first, const Effect& then) {
+    return first.edit == &causes::input_offset() && cause_of(then).is_curve();
+  };
+  if (cause_of(accepted).is_input_block() && accepted.place.input == mine.place.input &&
+      !goes_before(accepted, mine) && !goes_before(mine, accepted))
+    return false;
   return Cause::goes_with(accepted, mine);
 }
 
-std::vector<BlockPlace> InputBlockCause::block_places(const Outlook& outlook) {
+bool InputBlockCause::may_stand_beside(const InputBlock& there) const {
+  return is_curve() && is_offset(there);
+}
+
+std::vector<BlockPlace> InputBlockCause::block_places(const Outlook& outlook) const {
   const ModelSpec& model = outlook.model();
   const std::size_t members = static_cast<std::size_t>(outlook.inputs()) + model.channels.size();
   std::vector<BlockPlace> places;
   for (int input = 0; input < outlook.inputs(); ++input) {
-    if (model.input_blocks[static_cast<std::size_t>(input)]) continue;
+    const std::optional<InputBlock>& whole = model.input_blocks[static_cast<std::size_t>(input)];
+    if (whole && !may_stand_beside(*whole)) continue;
     const std::optional<Spread> spread = spread_of(outlook.recording().inputs.col(input));
     const std::vector<int> cvs = outlook.cvs_of(input);
     if (!spread || cvs.empty()) continue;
@@ -39,7 +65,8 @@ std::vector<BlockPlace> InputBlockCause::block_places(const Outlook& outlook) {
       const bool taken = std::any_of(
           model.channels.begin(), model.channels.end(), [&](const ChannelSpec& channel) {
             return channel.input == input && (cv < 0 || channel.cv == cv) &&
-                   (channel.input_block || !has_own_gain(channel));
+                   (!has_own_gain(channel) ||
+                    (channel.input_block && (whole || !may_stand_beside(*channel.input_block))));
           });
       if (!taken) places.push_back({{cv, input}, *spread, whole_input, members});
     };
@@ -50,7 +77,7 @@ std::vector<BlockPlace> InputBlockCause::block_places(const Outlook& outlook) {
   return places;
 }
 
-std::vector<BlockPlace> InputBlockCause::curve_places(const Outlook& outlook, int levels) {
+std::vector<BlockPlace> InputBlockCause::curve_places(const Outlook& outlook, int levels) const {
   std::vector<BlockPlace> places = block_places(outlook);
   std::erase_if(places, [levels](const BlockPlace& at) { return at.input.levels() < levels; });
   return places;

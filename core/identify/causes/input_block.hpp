@@ -23,7 +23,9 @@ struct BlockPlace {
   std::size_t members;  ///< places there are in the model
 };
 
-/// A cause that puts a static block before an input's channels; one block per place.
+/// A cause that puts a static block before an input's channels. An input has one, but for an
+/// actuator's offset, which may stand before a curve: what a valve lets through too much bends as
+/// the rest does.
 class InputBlockCause : public Cause {
  public:
   using Cause::Cause;
@@ -37,11 +39,13 @@ class InputBlockCause : public Cause {
                                          const Surroundings& surroundings) const = 0;
   /// Clock of the data at the effect's onset, s; minus infinity where it is in force throughout.
   [[nodiscard]] static double since_s(const Effect& effect, const Surroundings& surroundings);
+  /// Whether it may be looked for where the model has this block.
+  [[nodiscard]] virtual bool may_stand_beside(const InputBlock& there) const;
   /// Where nothing is in the way of a block.
-  [[nodiscard]] static std::vector<BlockPlace> block_places(const Outlook& outlook);
+  [[nodiscard]] std::vector<BlockPlace> block_places(const Outlook& outlook) const;
   /// Of these, where the input has been at so many levels: on fewer a curve through them is a
   /// straight line with an offset, and nothing tells them apart.
-  [[nodiscard]] static std::vector<BlockPlace> curve_places(const Outlook& outlook, int levels = 3);
+  [[nodiscard]] std::vector<BlockPlace> curve_places(const Outlook& outlook, int levels = 3) const;
   /// From the start, and from where the calibrated test sees a change, if it does: elsewhere a
   /// valve's many starts would take too long.
   [[nodiscard]] static std::vector<ErrorOnset> block_onsets(const Outlook& outlook);

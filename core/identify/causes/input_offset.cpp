@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include "core/identify/causes/actuator_moments.hpp"
 #include "core/identify/causes/catalog.hpp"
@@ -145,6 +146,11 @@ class InputOffsetCause : public InputBlockCause {
   }
 
  protected:
+  [[nodiscard]] bool may_stand_beside(const InputBlock& there) const override {
+    return std::holds_alternative<Polynomial>(there) || std::holds_alternative<TwoSided>(there) ||
+           std::holds_alternative<Product>(there) || std::holds_alternative<Saturation>(there);
+  }
+
   [[nodiscard]] InputBlock block(const Effect& effect,
                                  const Surroundings& surroundings) const override {
     return InputOffset{effect.value(kSize, 0.0), since_s(effect, surroundings)};

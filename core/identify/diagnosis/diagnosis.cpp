@@ -216,19 +216,6 @@ bool all_refused(const Account& kept, const ModelSpec& model, int cv) {
   return tried;
 }
 
-/// CVs of which something was refused and nothing is named.
-std::vector<int> without_a_name(const Account& kept, const ModelSpec& model) {
-  std::vector<int> cvs;
-  for (int cv = 0; cv < model.cv_count; ++cv) {
-    const auto acts = [&](const Effect& effect) { return touches(effect, model, cv); };
-    const auto is_named = [&](const Named& named) { return acts(named.effect); };
-    if (std::any_of(kept.refused_effects.begin(), kept.refused_effects.end(), acts) &&
-        std::none_of(kept.found.named.begin(), kept.found.named.end(), is_named))
-      cvs.push_back(cv);
-  }
-  return cvs;
-}
-
 /// How the inputs moved, and whether the channels of each are known.
 std::vector<InputMovement> movements(const std::vector<std::optional<double>>& outside,
                                      const std::vector<ChannelEstimate>& channels) {

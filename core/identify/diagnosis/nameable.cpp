@@ -78,8 +78,10 @@ std::function<bool(const Effect&)> nameable(const ModelSpec& model, const Signal
     if (causes::is_constant_offset(effect))
       return !tests.reject(tests.channels_to(effect.place.cv));
     if (!cause_of(effect).acts_through_channels()) return true;
-    const std::vector<std::pair<int, int>> channels = channels_of(effect, model, ranges.inputs);
     if (bends) return true;
+    Effect asked = effect;
+    if (cause_of(effect).is_curve() && effect.place.input >= 0) asked.place.cv = -1;
+    const std::vector<std::pair<int, int>> channels = channels_of(asked, model, ranges.inputs);
     // What began later is less in the mean of all rows than since then.
     const bool has_to_matter =
         cause_of(effect).is_curve() || (is_scale(effect) && effect.onset == 0);

@@ -35,7 +35,8 @@ struct SignalRanges {
 /// against one another seems to have another scale. An error of one channel may be too small to
 /// matter: not taken in, another cause would explain what it does. A disturbance may be named
 /// always, but for a level where channels of its CV are rejected: a gain that is off shifts it,
-/// too, named or not. What a set-point does as `may_name_setpoint` says; a curve only where its
+/// too, named or not. What a set-point does as `may_name_setpoint` says; a curve of one channel
+/// where one of the whole input may be, of which it is a part, and a curve only where its
 /// input moves from outside the loop too (shares per input): feedback bends what is straight. It
 /// may be named, too, wherever `nonlinear`, which asks the monitor's nonlinear test, says that no
 /// linear error explains its channel: that holds under feedback. Where an input moves hardly at all

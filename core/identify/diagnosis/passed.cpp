@@ -4,7 +4,6 @@
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
-#include "core/identify/diagnosis/account.hpp"
 #include "core/identify/diagnosis/calibration.hpp"
 #include "core/identify/diagnosis/noise_choice.hpp"
 #include "core/identify/diagnosis/selection.hpp"
@@ -12,6 +11,18 @@
 #include "core/identify/diagnosis/statement.hpp"
 
 namespace mpm {
+
+std::vector<int> without_a_name(const Account& kept, const ModelSpec& model) {
+  std::vector<int> cvs;
+  for (int cv = 0; cv < model.cv_count; ++cv) {
+    const auto acts = [&](const Effect& effect) { return touches(effect, model, cv); };
+    const auto is_named = [cv](const Named& named) { return named.effect.place.cv == cv; };
+    if (std::any_of(kept.refused_effects.begin(), kept.refused_effects.end(), acts) &&
+        std::none_of(kept.found.named.begin(), kept.found.named.end(), is_named))
+      cvs.push_back(cv);
+  }
+  return cvs;
+}
 
 std::vector<Finding> find_passed(const ModelSpec& model, int model_inputs, const Recording& fitted,
                                  const std::vector<int>& cvs, Unseen& unseen,

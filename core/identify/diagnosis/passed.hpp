@@ -3,10 +3,15 @@
 #include <vector>
 
 #include "core/identify/causes/finding.hpp"
+#include "core/identify/diagnosis/account.hpp"
 #include "core/identify/diagnosis/unseen.hpp"
 #include "core/identify/search/search.hpp"
 
 namespace mpm {
+
+/// CVs of which something was refused and of which alone nothing is named: what is named of all CVs
+/// of an input may have left anything of theirs.
+[[nodiscard]] std::vector<int> without_a_name(const Account& kept, const ModelSpec& model);
 
 /// Disturbances of some CVs that had passed before the unseen samples, found beside the extended
 /// model, on the rows that were fitted. Where something was refused, what had been named beside it

@@ -26,6 +26,32 @@ TEST_CASE("an actuator that begins to leak is named, with how much and since whe
   }
 }
 
+// The valve lets through too much of what the plant answers in a curve, whichever is found first.
+TEST_CASE("a leak is named beside a curve of the same input") {
+  for (std::uint64_t seed = 71; seed <= 73; ++seed) {
+    CAPTURE(seed);
+    MatrixXd inputs = commands(seed);
+    inputs.col(0) += 0.6 * telegraph(seed + 100, kActuatorRows, 40);
+    const VectorXd acts = offset(inputs.col(0), kActuatorOnset);
+    const VectorXd bent = acts.array() + 0.3 * acts.array().square();
+    const Diagnosis diagnosis = diagnosed(inputs, bent, 200 + seed);
+    const auto found = [&](const Cause& cause) {
+      return std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                          [&](const Finding& finding) {
+                            return finding.subject == Subject{&cause, {-1, 0}};
+                          });
+    };
+    const auto leak = found(causes::input_offset());
+    REQUIRE(leak != diagnosis.findings.end());
+    CHECK(leak->parameters.front().value == Approx(0.5).margin(0.06));
+    CHECK(leak->repaired);
+    const auto curve = found(causes::input_polynomial());
+    REQUIRE(curve != diagnosis.findings.end());
+    CHECK(curve->repaired);
+    CHECK(diagnosis.findings.size() == 2);
+  }
+}
+
 TEST_CASE("a leak that was always there is no more than a level") {
   const MatrixXd inputs = commands(41);
   for (const Finding& finding : diagnosed(inputs, offset(inputs.col(0), 0), 141).findings)

@@ -17,10 +17,11 @@ using test::lag;
 
 constexpr Index kRows = 1500;
 
-/// An MV and a DV act on one CV, the MV with a gain that is `off`, of 2; the second CV is as the
-/// model says.
+/// An MV and a DV act on one CV, one of them with a gain that is `off`; the second CV, which the DV
+/// moves too, is as the model says.
 struct Bench {
   double off = 1.0, noise = 0.1;
+  Index wrong = 0;  ///< the input: the MV, with a gain of 2, or the DV, with 1
   ModelSpec model =
       test::model_of({lag(0, 0, 2.0, 10.0), lag(0, 1, 1.0, 5.0), lag(1, 1, 1.0, 8.0)}, 2, 2);
   ChannelTests tests = make();
@@ -30,7 +31,7 @@ struct Bench {
   ChannelTests make() const {
     MatrixXd u(kRows, 2), residuals(kRows, 2);
     u << test::telegraph(1, kRows, 12), test::telegraph(2, kRows, 9);
-    residuals << test::first_order(u.col(0), off, 10.0) + noise * test::white(3, kRows),
+    residuals << test::first_order(u.col(wrong), off, 10.0) + noise * test::white(3, kRows),
         noise * test::white(4, kRows);
     Recording recording = test::recording_of(u, residuals);
     recording.setpoints.resize(kRows, 2);
@@ -124,6 +125,16 @@ TEST_CASE("a curve may be named where the test rejects and not all movement is f
   CHECK(bench(causes::stiction(), {-1, 0}));
   bench.shares[0] = std::nullopt;  // nobody knows
   CHECK(bench(causes::input_polynomial(), {0, 0}));
+}
+
+// Named for all CVs of the input it would bend what is straight, and hide what else is wrong there.
+TEST_CASE("where a curve of an input may be named, one of any of its channels may") {
+  const Bench bench{.wrong = 1};
+  CHECK(bench(causes::input_polynomial(), {-1, 1}));
+  CHECK(bench(causes::input_polynomial(), {0, 1}));
+  CHECK(bench(causes::input_polynomial(), {1, 1}));
+  CHECK_FALSE(bench(causes::gain(), {1, 1}));
+  CHECK_FALSE(bench(causes::input_polynomial(), {0, 0}));
 }
 
 // Of a CV that a controller holds a model without the channel explains all that the loop shows.

@@ -68,5 +68,28 @@ TEST_CASE("what stays, what is not over and what hardly shows is none that has p
   }
 }
 
+// Two inputs act on both CVs. A curve of a whole input says nothing of a CV alone.
+TEST_CASE("what is asked for are CVs of which something was refused and nothing of their own named") {
+  const ModelSpec model = test::model_of(
+      {lag(0, 0, 2.0, 10.0), lag(1, 0, 2.0, 10.0), lag(0, 1, 1.0, 5.0), lag(1, 1, 1.0, 5.0)}, 2, 2);
+  const auto asked = [&](const std::vector<Effect>& refused, const std::vector<Effect>& named) {
+    Account kept;
+    kept.refused_effects = refused;
+    for (const Effect& effect : named) kept.found.named.emplace_back().effect = effect;
+    return without_a_name(kept, model);
+  };
+  using CVs = std::vector<int>;
+  const Effect leak{&causes::input_offset(), {-1, 0}, {}};
+  const Effect step{&causes::step_disturbance(), {0}, {}};
+  const Effect curve{&causes::input_polynomial(), {-1, 1}, {}};
+  const Effect of_one{&causes::input_polynomial(), {1, 1}, {}};
+  CHECK(asked({}, {}).empty());
+  CHECK(asked({leak}, {}) == CVs{0, 1});
+  CHECK(asked({step}, {}) == CVs{0});
+  CHECK(asked({leak}, {curve}) == CVs{0, 1});
+  CHECK(asked({leak}, {of_one}) == CVs{0});
+  CHECK(asked({leak}, {of_one, step}).empty());
+}
+
 }  // namespace
 }  // namespace mpm::passed_test
