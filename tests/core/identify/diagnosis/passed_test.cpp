@@ -69,7 +69,8 @@ TEST_CASE("what stays, what is not over and what hardly shows is none that has p
 }
 
 // Two inputs act on both CVs. A curve of a whole input says nothing of a CV alone.
-TEST_CASE("what is asked for are CVs of which something was refused and nothing of their own named") {
+TEST_CASE(
+    "what is asked for are CVs of which something was refused and nothing of their own named") {
   const ModelSpec model = test::model_of(
       {lag(0, 0, 2.0, 10.0), lag(1, 0, 2.0, 10.0), lag(0, 1, 1.0, 5.0), lag(1, 1, 1.0, 5.0)}, 2, 2);
   const auto asked = [&](const std::vector<Effect>& refused, const std::vector<Effect>& named) {
