@@ -35,13 +35,14 @@ struct SignalRanges {
 /// against one another seems to have another scale. An error of one channel may be too small to
 /// matter: not taken in, another cause would explain what it does. A disturbance may be named
 /// always, but for a level where channels of its CV are rejected: a gain that is off shifts it,
-/// too, named or not. What a set-point does as `may_name_setpoint` says; a curve of one channel
-/// where one of the whole input may be, of which it is a part, and a curve only where its
-/// input moves from outside the loop too (shares per input): feedback bends what is straight. It
-/// may be named, too, wherever `nonlinear`, which asks the monitor's nonlinear test, says that no
-/// linear error explains its channel: that holds under feedback. Where an input moves hardly at all
-/// from there, no channel's gain or lags: to leave the channel out then explains everything, for
-/// the controller holds the CV where it is. All must outlive what is returned.
+/// too, named or not. What a set-point does as `may_name_setpoint` says. A curve of one channel may
+/// be named where one of its whole input may: only of all CVs it would bend those that are
+/// straight. Any curve only where its input moves from outside the loop too (shares per input):
+/// feedback bends what is straight; or wherever `nonlinear`, which asks the monitor's nonlinear
+/// test, says that no linear error explains its channel: that holds under feedback. Where an input
+/// moves hardly at all from there, no channel's gain or lags: to leave the channel out then
+/// explains everything, for the controller holds the CV where it is. All must outlive what is
+/// returned.
 [[nodiscard]] std::function<bool(const Effect&)> nameable(
     const ModelSpec& model, const SignalRanges& ranges, const ChannelTests& tests,
     const ChannelTests& nonlinear, const std::vector<std::optional<double>>& outside_shares);
