@@ -43,9 +43,11 @@ TEST_CASE("raw samples keep bytes and time stamps on their way through a recordi
   REQUIRE(eventually([&] { return writer.matched_readers() > 0 && raw.matched_writers() > 0; }));
   std::array<double, 2> values{1.5, -2.5};
   for (int k = 0; k < 5; ++k) REQUIRE(writer.write(sample_of_unit("reactor", k, values)));
+  std::vector<RawSample> recorded = take_all(raw, 5);
+  // Only now: an end that comes while data waits has the data's time, as Cyclone does not tell its.
   mpm_Sample key = sample_of_unit("reactor", 0, values);
   REQUIRE(dds_dispose(writer.get(), &key) == DDS_RETCODE_OK);
-  const std::vector<RawSample> recorded = take_all(raw, 6);
+  recorded.push_back(take_all(raw, 1).front());
   REQUIRE(recorded.size() == 6);
   CHECK(recorded[4].valid);
   CHECK(unit_of(recorded[4].cdr) == "reactor");
@@ -62,11 +64,12 @@ TEST_CASE("raw samples keep bytes and time stamps on their way through a recordi
   REQUIRE(again.greet(std::chrono::seconds(10)));
   for (std::size_t i = 0; i < 5; ++i)
     REQUIRE(again.write(recorded[i].cdr, recorded[i].source_time_ns) == WriteResult::kWritten);
+  std::vector<RawSample> replayed;
+  for (RawSample& sample : take_all(second, 6))  // the greeting is of no unit
+    if (!unit_of(sample.cdr).empty()) replayed.push_back(std::move(sample));
   REQUIRE(again.end_instance(recorded[5].cdr, recorded[5].state, recorded[5].source_time_ns) ==
           WriteResult::kWritten);
-  std::vector<RawSample> replayed;
-  for (RawSample& sample : take_all(second, 7))  // the greeting is of no unit
-    if (!unit_of(sample.cdr).empty()) replayed.push_back(std::move(sample));
+  replayed.push_back(take_all(second, 1).front());
   REQUIRE(replayed.size() == 6);
   for (std::size_t i = 0; i < 6; ++i) {
     CHECK(replayed[i].cdr == recorded[i].cdr);
