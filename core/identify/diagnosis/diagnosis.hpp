@@ -20,7 +20,7 @@ namespace mpm {
 struct DiagnosisSettings {
   int mv_count = 0;            ///< of the model's inputs; the rest are DVs
   double fit_share = 2.0 / 3;  ///< first part of the recording that is fitted
-  int max_findings = 6;
+  int max_findings = 9;
   std::uint64_t seed = 1;  ///< of the block bootstrap
   int threads = 1;         ///< >= 1; nothing of the diagnosis depends on it
   /// Called about once per fit, with the share done, 0..1, by the thread that called diagnose();

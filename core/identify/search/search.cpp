@@ -34,6 +34,11 @@ bool same_form(const Effect& a, const Effect& b) {
                     b.coordinates.end(), same_number);
 }
 
+/// At once, and to stay.
+bool is_plain_jump(const Effect& effect) {
+  return effect.edit->jumps() && effect.coordinates.size() == 1;
+}
+
 void erase_at(std::vector<Effect>& effects, std::size_t index) {
   effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(index));
 }
@@ -114,7 +119,17 @@ class Search {
   /// Where something was found and then was not needed beside the rest, nothing is looked for
   /// again: the rounds that it took are given back to the other CVs.
   [[nodiscard]] bool is_settled(const Effect& effect) const {
-    return std::find(settled_.begin(), settled_.end(), effect.place.cv) != settled_.end();
+    return std::any_of(superfluous_.begin(), superfluous_.end(), [&](const Effect& dropped) {
+      return dropped.place.cv == effect.place.cv;
+    });
+  }
+
+  /// A jump that was not needed beside the rest may be so beside others of its CV.
+  [[nodiscard]] bool may_jump_with_others(int cv) const {
+    if (std::find(jumped_.begin(), jumped_.end(), cv) != jumped_.end()) return false;
+    return std::all_of(superfluous_.begin(), superfluous_.end(), [&](const Effect& dropped) {
+      return dropped.place.cv != cv || dropped.edit->jumps();
+    });
   }
 
   /// Odds that an effect must have to be accepted.
@@ -143,6 +158,7 @@ class Search {
     std::vector<Effect> all;
     const auto& causes = causes::all();
     std::vector<std::vector<Effect>> of_each(causes.size());
+    if (nameable) jumps_.clear();
     trials_.parallel().for_each(causes.size(), [&](std::size_t i) {
       causes[i]->propose({problem_, accepted_, nulls_, trials_.parallel()}, of_each[i]);
     });
@@ -150,11 +166,13 @@ class Search {
       const Cause* cause = causes[i];
       if (cause->is_curve() && !settings_.curves) continue;
       for (Effect& effect : of_each[i]) {
-        if (may_name(effect) != nameable || (nameable && is_settled(effect))) continue;
+        if (may_name(effect) != nameable) continue;
         const bool open =
             std::all_of(accepted_.begin(), accepted_.end(),
                         [&](const Effect& accepted) { return cause->goes_with(accepted, effect); });
-        if (open) all.push_back(std::move(effect));
+        if (!open) continue;
+        if (nameable && is_plain_jump(effect)) jumps_.try_emplace(effect.place.cv, effect);
+        if (!nameable || !is_settled(effect)) all.push_back(std::move(effect));
       }
     }
     return all;
@@ -165,7 +183,7 @@ class Search {
     trials_.parallel().for_each(nulls_.size(), [&](std::size_t cv) {
       nulls_[cv] = trials_.without({static_cast<int>(cv)}).cvs.front();
     });
-    const std::vector<Effect>& all = proposed_ = proposals(nameable);
+    const std::vector<Effect> all = proposals(nameable);
     const Screening& screening = screening_.emplace(problem_, accepted_, nulls_);
     std::vector<double> scores(all.size());
     trials_.parallel().for_each(all.size(), [&](std::size_t i) {
@@ -241,15 +259,13 @@ class Search {
   /// Jumps of one CV of which none is decisive beside the others.
   bool find_jumps() {
     std::vector<CvData> settled = problem_.settled();
-    for (const int cv : all_cvs()) {
-      const auto jump =
-          std::find_if(proposed_.begin(), proposed_.end(), [cv](const Effect& effect) {
-            return effect.edit->jumps() && effect.place.cv == cv && effect.coordinates.size() == 1;
-          });
-      if (jump == proposed_.end()) continue;
-      const std::vector<Trial> found = jumps_together(trials_, *jump, settings_.decisive);
+    for (const auto& [cv, jump] : jumps_) {
+      if (!may_jump_with_others(cv)) continue;
+      const std::vector<Trial> found = jumps_together(trials_, jump, settings_.decisive);
       for (const Trial& trial : found) accept({trial});
-      if (!found.empty()) return true;
+      if (found.empty()) continue;
+      jumped_.push_back(cv);
+      return true;
     }
     problem_.settle(std::move(settled));
     return false;
@@ -282,8 +298,7 @@ class Search {
   /// Whether a step stands where the CV has by far its largest shock, which then tells the moment
   /// whatever comes after it: among all moments nobody had to search.
   [[nodiscard]] static bool told_by_shock(const Effect& effect, const Fit& without) {
-    const bool at_once = effect.edit->jumps() && effect.coordinates.size() == 1;
-    return at_once && effect.onset > 0 &&
+    return is_plain_jump(effect) && effect.onset > 0 &&
            std::any_of(without.cvs.begin(), without.cvs.end(), [&](const CvFit& state) {
              if (state.cv != effect.place.cv) return false;
              const Eigen::Index behind =
@@ -470,7 +485,7 @@ class Search {
         const bool slow = same == 1 && cause_of(all.effects[i]).may_pass_for_noise() &&
                           !cuts_a_walk(problem_, all, i);
         if (odds >= (slow ? kWanderingNoise : settings_.decisive)) continue;
-        settled_.push_back(all.effects[i].place.cv);
+        superfluous_.push_back(all.effects[i]);
         accepted_ = std::move(fewer);
         named_.erase(named_.begin() + static_cast<std::ptrdiff_t>(i));
         dropped = true;
@@ -485,11 +500,12 @@ class Search {
   double share_ = 0.0;  // of the work done, as last told
   std::vector<Effect> accepted_;
   std::vector<Named> named_;
-  std::vector<int> settled_;   // CVs; -1: of effects on several
+  std::vector<Effect> superfluous_;  // found, and then not needed beside the rest
   std::vector<int> no_level_;  // CVs of which no constant offset is to be named
   Trials trials_;
   std::optional<Named> doubted_;
-  std::vector<Effect> proposed_;  // of this round
+  std::map<int, Effect> jumps_;   // of this round, by CV: where it may jump, whatever is settled
+  std::vector<int> jumped_;       // CVs whose jumps were found together
   std::vector<CvFit> nulls_;      // of this round, one per CV; what the screening looks at
   std::optional<Screening> screening_;
   Fit last_;

@@ -13,7 +13,7 @@ namespace mpm {
 constexpr double kSearched = 0.9;
 
 struct SearchSettings {
-  int max_findings = 6;  ///< jumps of one CV that are found together count as one
+  int max_findings = 9;  ///< jumps of one CV that are found together count as one
   /// 2 ln odds that a cause must have against the model without it, and against being one of many.
   double decisive = 3.0;
   /// Channel errors below these are no findings.
