@@ -13,6 +13,7 @@
 #include "core/identify/diagnosis/setpoint_rival.hpp"
 #include "core/identify/diagnosis/statement.hpp"
 #include "core/identify/diagnosis/undecided.hpp"
+#include "core/identify/search/conclude.hpp"
 #include "core/identify/search/walk_odds.hpp"
 
 namespace mpm {
@@ -254,6 +255,27 @@ bool overwhelms(const Account& account, const SearchSettings& tested) {
   return any;
 }
 
+/// Names the levels that only the other account can tell, where unseen samples bear them out here.
+void take_levels(const Account& other, const Judges& judges, const SearchSettings& settings,
+                 Account& account) {
+  std::vector<Effect> known;
+  for (std::size_t i = 0; i < other.found.named.size(); ++i)
+    if (causes::is_constant_offset(other.found.named[i].effect) &&
+        other.selection.fates[i] == Fate::kRepaired)
+      known.push_back(other.found.named[i].effect);
+  SearchResult found = account.found;
+  name_known_levels(*account.problem, known, found);
+  const std::size_t before = account.found.named.size();
+  if (found.named.size() == before) return;
+  Selection selection =
+      select(*account.problem, found, judges, [&] { settings.progress(kSearched); });
+  const auto first = selection.fates.begin() + static_cast<std::ptrdiff_t>(before);
+  if (std::any_of(first, selection.fates.end(), [](Fate fate) { return fate != Fate::kRepaired; }))
+    return;
+  account.found = std::move(found);
+  account.selection = std::move(selection);
+}
+
 }  // namespace
 
 const char* why_not_in_model(Fate fate) {
@@ -289,7 +311,9 @@ Account account_for(const ModelSpec& model, int model_inputs, const Recording& f
            (cause_of(effect).acts_through_channels() && shown_by_free_run(effect));
   };
   Account other = take(open);
-  return overwhelms(other, settings) ? std::move(other) : std::move(account);
+  if (overwhelms(other, settings)) return other;
+  take_levels(other, judges, settings, account);
+  return account;
 }
 
 }  // namespace mpm

@@ -27,7 +27,8 @@ struct Account {
 /// Searches `fitted` for what `settings` let be named; what the witness does not bear out goes too.
 /// Where what they do not is suspected and the inputs move mostly from outside the loop, everything
 /// is looked for, and believed if all of it takes much off the errors of predictions on unseen
-/// samples: no feedback can make that up. `fitted` must outlive the result.
+/// samples: no feedback can make that up. Of what is not believed the levels are taken that the
+/// rest could not tell from a walk. `fitted` must outlive the result.
 [[nodiscard]] Account account_for(const ModelSpec& model, int model_inputs, const Recording& fitted,
                                   const Judges& judges, const Witness& witness,
                                   const SearchSettings& settings);

@@ -90,6 +90,8 @@ inline constexpr int kStepsOfAnOnset = 3;
 inline constexpr double kOffsetInNoise = 1.5;
 inline constexpr double kOffsetInSd = 6.0;
 inline constexpr double kOffsetConfidence = 0.99;  ///< 0..1
+/// Two accounts tell the same level of a CV within so many s.d. of the one that tells it less well.
+inline constexpr double kSameLevelSd = 3.0;
 /// A noise that returns to its mean by less than this share a row tells no level.
 inline constexpr double kLeastReturn = 0.02;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -62,6 +64,45 @@ double level_of_inputs(Problem& problem, int cv) {
     if (mean * mean > (does - mean).square().mean()) level += does.abs().maxCoeff();
   }
   return level;
+}
+
+/// By how much a CV is off from the first row on, beyond small errors.
+struct Level {
+  double value = 0.0, sd = 0.0;  ///< CV units
+  double noise = 0.0;            ///< s.d.
+};
+
+/// Nothing where it is no more than the noise, its own estimate or a new input's operating point
+/// may make.
+std::optional<Level> level_of(Problem& problem, const CvFit& fit, const SearchResult& result) {
+  const CvData& data = problem.data(fit.cv);
+  // Runs have levels of their own, which are nobody's fault.
+  if (data.runs.size() > 1) return std::nullopt;
+  Level level;
+  level.value = data.nuisances(0, 0) * fit.beta(0);
+  level.noise = std::sqrt(fit.residual.squaredNorm() / std::max(1.0, data.known.sum()));
+  const double memory = std::max(kLeastReturn, 1.0 - fit.noise.coefficients.sum());
+  const double rows = std::max(1.0, independence({fit}) * data.rows);
+  level.sd = std::sqrt(fit.variance / rows) / memory;
+  const double size = std::abs(level.value);
+  if (!(size > kOffsetInNoise * level.noise && size > kOffsetInSd * level.sd)) return std::nullopt;
+  if (size <= range_of_new_inputs(problem, result.fit.effects, fit.cv)) return std::nullopt;
+  return level;
+}
+
+void name(const Level& level, CvFit& fit, SearchResult& result) {
+  Named named;
+  named.effect = causes::constant_offset(fit.cv, level.value, level.noise);
+  named.evidence = level.value * level.value / (level.sd * level.sd);
+  named.confidence = kOffsetConfidence;
+  const Index old = result.fit.covariance.rows();
+  result.fit.covariance.conservativeResize(old + 1, old + 1);
+  result.fit.covariance.col(old).setZero();
+  result.fit.covariance.row(old).setZero();
+  result.fit.covariance(old, old) = level.sd * level.sd;
+  result.fit.effects.push_back(named.effect);
+  result.named.push_back(std::move(named));
+  fit.beta(0) = 0.0;
 }
 
 }  // namespace
@@ -134,33 +175,29 @@ void name_levels(Problem& problem, const std::vector<int>& except, const std::ve
   };
   for (CvFit& fit : result.fit.cvs) {
     if (is_one_of(except, fit.cv)) continue;
-    const CvData& data = problem.data(fit.cv);
-    // Runs have levels of their own, which are nobody's fault.
-    if (data.runs.size() > 1) continue;
-    const double level = data.nuisances(0, 0) * fit.beta(0);
-    const double noise = std::sqrt(fit.residual.squaredNorm() / std::max(1.0, data.known.sum()));
-    const double memory = std::max(kLeastReturn, 1.0 - fit.noise.coefficients.sum());
-    const double rows = std::max(1.0, independence({fit}) * data.rows);
-    const double sd = std::sqrt(fit.variance / rows) / memory;
-    if (!(std::abs(level) > kOffsetInNoise * noise && std::abs(level) > kOffsetInSd * sd)) continue;
+    const std::optional<Level> level = level_of(problem, fit, result);
     // A walk is anywhere, for nobody knows how long it has gone on.
-    if (!comes_back_beside_breaks(left_of(data, fit),
-                                  causes::breaks_of(result.fit.effects, fit.cv)))
+    if (!level || !comes_back_beside_breaks(left_of(problem.data(fit.cv), fit),
+                                            causes::breaks_of(result.fit.effects, fit.cv)))
       continue;
-    if (is_one_of(doubted, fit.cv) && std::abs(level) <= level_of_inputs(problem, fit.cv)) continue;
-    if (std::abs(level) <= range_of_new_inputs(problem, result.fit.effects, fit.cv)) continue;
-    Named named;
-    named.effect = causes::constant_offset(fit.cv, level, noise);
-    named.evidence = level * level / (sd * sd);
-    named.confidence = kOffsetConfidence;
-    const Index old = result.fit.covariance.rows();
-    result.fit.covariance.conservativeResize(old + 1, old + 1);
-    result.fit.covariance.col(old).setZero();
-    result.fit.covariance.row(old).setZero();
-    result.fit.covariance(old, old) = sd * sd;
-    result.fit.effects.push_back(named.effect);
-    result.named.push_back(std::move(named));
-    fit.beta(0) = 0.0;
+    if (is_one_of(doubted, fit.cv) && std::abs(level->value) <= level_of_inputs(problem, fit.cv))
+      continue;
+    name(*level, fit, result);
+  }
+}
+
+void name_known_levels(Problem& problem, const std::vector<Effect>& known, SearchResult& result) {
+  for (CvFit& fit : result.fit.cvs) {
+    const auto is_own = [&fit](const Effect& effect) {
+      return causes::is_constant_offset(effect) && effect.place.cv == fit.cv;
+    };
+    const auto same = std::find_if(known.begin(), known.end(), is_own);
+    const std::vector<Effect>& effects = result.fit.effects;
+    if (same == known.end() || std::any_of(effects.begin(), effects.end(), is_own)) continue;
+    const std::optional<Level> level = level_of(problem, fit, result);
+    if (level && std::abs(level->value - same->value(kSize, 0.0)) < kSameLevelSd * level->sd &&
+        std::abs(level->value) > level_of_inputs(problem, fit.cv))
+      name(*level, fit, result);
   }
 }
 

@@ -25,4 +25,10 @@ void spread_onsets(Problem& problem, SearchResult& result, const std::function<v
 void name_levels(Problem& problem, const std::vector<int>& except, const std::vector<int>& doubted,
                  SearchResult& result);
 
+/// Where structure is missing a CV wanders, and its level cannot be told from a walk's. Names the
+/// level of each CV whose constant offset is `known` from another account, in which it comes back,
+/// if here it is the same as far as it can be told, and more than its inputs do that keep to one
+/// side.
+void name_known_levels(Problem& problem, const std::vector<Effect>& known, SearchResult& result);
+
 }  // namespace mpm

@@ -119,9 +119,8 @@ class Search {
   /// Where something was found and then was not needed beside the rest, nothing is looked for
   /// again: the rounds that it took are given back to the other CVs.
   [[nodiscard]] bool is_settled(const Effect& effect) const {
-    return std::any_of(superfluous_.begin(), superfluous_.end(), [&](const Effect& dropped) {
-      return dropped.place.cv == effect.place.cv;
-    });
+    return std::any_of(superfluous_.begin(), superfluous_.end(),
+                       [&](const Effect& dropped) { return dropped.place.cv == effect.place.cv; });
   }
 
   /// A jump that was not needed beside the rest may be so beside others of its CV.
@@ -501,12 +500,12 @@ class Search {
   std::vector<Effect> accepted_;
   std::vector<Named> named_;
   std::vector<Effect> superfluous_;  // found, and then not needed beside the rest
-  std::vector<int> no_level_;  // CVs of which no constant offset is to be named
+  std::vector<int> no_level_;        // CVs of which no constant offset is to be named
   Trials trials_;
   std::optional<Named> doubted_;
-  std::map<int, Effect> jumps_;   // of this round, by CV: where it may jump, whatever is settled
-  std::vector<int> jumped_;       // CVs whose jumps were found together
-  std::vector<CvFit> nulls_;      // of this round, one per CV; what the screening looks at
+  std::map<int, Effect> jumps_;  // of this round, by CV: where it may jump, whatever is settled
+  std::vector<int> jumped_;      // CVs whose jumps were found together
+  std::vector<CvFit> nulls_;     // of this round, one per CV; what the screening looks at
   std::optional<Screening> screening_;
   Fit last_;
 };

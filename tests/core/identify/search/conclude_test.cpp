@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/identify/causes/catalog.hpp"
 #include "core/identify/causes/output_disturbance.hpp"
@@ -93,6 +94,33 @@ TEST_CASE("a level that a wrong gain makes is none of its own, and one beside a 
   if (!far) return;
   name_levels(bench.problem, {}, {}, bench.result);  // nobody doubts the gain
   CHECK(bench.result.named.size() == 1);
+}
+
+// What moves the CV slowly, s.d. 0.7 and a memory of 100 rows, makes it look as if it walked; one
+// who knows that signal sees the CV come back to 5. Its level is known to about 0.1 x 100 /
+// sqrt(600).
+TEST_CASE("a level that wanders here is told where another account knows it, and is the same") {
+  const VectorXd slow = 0.1 * test::autoregressive(test::white(3, kRows), 0.99);
+  const bool far =
+      GENERATE(false, true);  // from the input's operating point: it takes the CV 20 up
+  const VectorXd u = test::telegraph(1, kRows, 12).array() + (far ? 10.0 : 0.0);
+  Bench bench(u, (plant(u) + slow + 0.01 * test::white(2, kRows)).array() + 5.0);
+  name_levels(bench.problem, {}, {}, bench.result);
+  REQUIRE(bench.result.named.empty());
+  name_known_levels(bench.problem, {}, bench.result);
+  CHECK(bench.result.named.empty());
+  name_known_levels(bench.problem, {causes::constant_offset(0, 15.0, 0.1)}, bench.result);
+  CHECK(bench.result.named.empty());
+  const std::vector<Effect> known = {causes::constant_offset(0, 5.2, 0.1)};
+  name_known_levels(bench.problem, known, bench.result);
+  REQUIRE(bench.result.named.size() == (far ? 0 : 1));
+  if (far) return;
+  const Effect& level = bench.result.named[0].effect;
+  CHECK(subject_of(level) == Subject{&causes::step_disturbance(), {0}});
+  CHECK(level.value(kSize, 0.0) == Approx(5.0).margin(2.0));
+  CHECK(level.value(kSize, 0.0) != 5.2);  // its own, not the other's
+  name_known_levels(bench.problem, known, bench.result);
+  CHECK(bench.result.named.size() == 1);  // told once
 }
 
 VectorXd play(const VectorXd& u, double width) {

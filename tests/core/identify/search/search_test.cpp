@@ -1,5 +1,6 @@
 #include "core/identify/search/search.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -44,6 +45,32 @@ TEST_CASE("a search names one cause after the other and then ends") {
   SearchSettings one;
   one.max_findings = 1;
   CHECK(search(problem, one).named.size() == 1);
+}
+
+// Each of seven loops has a gain of its own that is wrong: a plant of several CVs may have more
+// that its model leaves out than a hand has fingers.
+TEST_CASE("as many causes are named as a plant of seven CVs has") {
+  constexpr Index kCvs = 7, kFewRows = 400;
+  Eigen::MatrixXd u(kFewRows, kCvs), y(kFewRows, kCvs);
+  std::vector<ChannelSpec> channels;
+  for (Index i = 0; i < kCvs; ++i) {
+    const auto stream = static_cast<std::uint64_t>(i);
+    u.col(i) = test::telegraph(11 + stream, kFewRows, 12);
+    y.col(i) =
+        1.4 * test::first_order(u.col(i), 2.0, 5.0) + 0.1 * test::white(31 + stream, kFewRows);
+    channels.push_back(lag(static_cast<int>(i), static_cast<int>(i), 2.0, 5.0));
+  }
+  const Recording recording = test::recording_of(u, y);
+  Problem problem(test::model_of(channels, kCvs, kCvs), kCvs, recording, Tolerances{},
+                  NoiseModel{});
+  const SearchResult found = search(problem, SearchSettings{});
+  for (int cv = 0; cv < kCvs; ++cv) {
+    CAPTURE(cv);
+    CHECK(std::any_of(found.named.begin(), found.named.end(), [cv](const Named& named) {
+      return named.effect.place.cv == cv &&
+             named.effect.value(kGainRatio, 1.0) == Approx(1.4).margin(0.05);
+    }));
+  }
 }
 
 // The same gain error in each of two CVs that share nothing: neither is what the other might be.
