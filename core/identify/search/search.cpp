@@ -123,7 +123,8 @@ class Search {
                        [&](const Effect& dropped) { return dropped.place.cv == effect.place.cv; });
   }
 
-  /// A jump that was not needed beside the rest may be so beside others of its CV.
+  /// A jump that was not needed beside the rest may be needed beside others of its CV; those that
+  /// were found so are not looked for a second time.
   [[nodiscard]] bool may_jump_with_others(int cv) const {
     if (std::find(jumped_.begin(), jumped_.end(), cv) != jumped_.end()) return false;
     return std::all_of(superfluous_.begin(), superfluous_.end(), [&](const Effect& dropped) {
