@@ -255,7 +255,8 @@ bool overwhelms(const Account& account, const SearchSettings& tested) {
   return any;
 }
 
-/// Names the levels that only the other account can tell, where unseen samples bear them out here.
+/// Names the levels that only the other account can tell, where unseen samples bear them out here
+/// and what is said of the rest stays as it is.
 void take_levels(const Account& other, const Judges& judges, const SearchSettings& settings,
                  Account& account) {
   std::vector<Effect> known;
@@ -265,13 +266,12 @@ void take_levels(const Account& other, const Judges& judges, const SearchSetting
       known.push_back(other.found.named[i].effect);
   SearchResult found = account.found;
   name_known_levels(*account.problem, known, found);
-  const std::size_t before = account.found.named.size();
-  if (found.named.size() == before) return;
+  if (found.named.size() == account.found.named.size()) return;
   Selection selection =
       select(*account.problem, found, judges, [&] { settings.progress(kSearched); });
-  const auto first = selection.fates.begin() + static_cast<std::ptrdiff_t>(before);
-  if (std::any_of(first, selection.fates.end(), [](Fate fate) { return fate != Fate::kRepaired; }))
-    return;
+  std::vector<Fate> wanted = account.selection.fates;
+  wanted.resize(found.named.size(), Fate::kRepaired);
+  if (selection.fates != wanted) return;
   account.found = std::move(found);
   account.selection = std::move(selection);
 }

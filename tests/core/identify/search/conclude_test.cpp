@@ -101,8 +101,8 @@ TEST_CASE("a level that a wrong gain makes is none of its own, and one beside a 
 // sqrt(600).
 TEST_CASE("a level that wanders here is told where another account knows it, and is the same") {
   const VectorXd slow = 0.1 * test::autoregressive(test::white(3, kRows), 0.99);
-  const bool far =
-      GENERATE(false, true);  // from the input's operating point: it takes the CV 20 up
+  // From the input's operating point: it takes the CV 20 up.
+  const bool far = GENERATE(false, true);
   const VectorXd u = test::telegraph(1, kRows, 12).array() + (far ? 10.0 : 0.0);
   Bench bench(u, (plant(u) + slow + 0.01 * test::white(2, kRows)).array() + 5.0);
   name_levels(bench.problem, {}, {}, bench.result);
