@@ -23,15 +23,17 @@ double left_of(const Eigen::Ref<const MatrixXd>& columns, const VectorXd& respon
   return (response - columns * columns.colPivHouseholderQr().solve(response)).squaredNorm();
 }
 
-bool reads_one_back(const Eigen::Ref<const VectorXd>& input,
-                    const Eigen::Ref<const VectorXd>& signal) {
+}  // namespace
+
+std::optional<double> share_left(const Eigen::Ref<const VectorXd>& input,
+                                 const Eigen::Ref<const VectorXd>& signal) {
   std::vector<Index> rows;
   for (Index k = kLags; k < signal.size(); ++k)
     if (signal.segment(k - kLags, kLags + 1).allFinite() &&
         input.segment(k - kLags, kLags).allFinite())
       rows.push_back(k);
   const auto count = static_cast<Index>(rows.size());
-  if (count + kLags < rows_to_read_back()) return false;
+  if (count + kLags < rows_to_read_back()) return std::nullopt;
   MatrixXd columns(count, kColumns);
   VectorXd response(count);
   columns.col(0).setOnes();
@@ -44,17 +46,16 @@ bool reads_one_back(const Eigen::Ref<const VectorXd>& input,
     response(r) = signal(k);
   }
   const double alone = left_of(columns.leftCols(kOwn), response);
-  return alone > 0.0 && left_of(columns, response) < (1.0 - kMostOf) * alone;
+  if (!(alone > 0.0)) return std::nullopt;
+  return left_of(columns, response) / alone;
 }
-
-}  // namespace
 
 int rows_to_read_back() { return kLags + kRowsPerColumn * static_cast<int>(kColumns); }
 
 bool reads_back(const Eigen::Ref<const MatrixXd>& inputs,
                 const Eigen::Ref<const VectorXd>& signal) {
   for (Index i = 0; i < inputs.cols(); ++i)
-    if (reads_one_back(inputs.col(i), signal)) return true;
+    if (share_left(inputs.col(i), signal).value_or(1.0) < 1.0 - kMostOf) return true;
   return false;
 }
 

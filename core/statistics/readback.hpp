@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace mpm {
 
@@ -12,6 +13,12 @@ namespace mpm {
 /// where the rows are too few to tell.
 [[nodiscard]] bool reads_back(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                               const Eigen::Ref<const Eigen::VectorXd>& signal);
+
+/// What of a signal its own past does not explain, and one input's last values neither: a share of
+/// the sum of squares, 0 to 1. Nothing where the rows are too few to tell, or the signal's past
+/// explains all of it. As above.
+[[nodiscard]] std::optional<double> share_left(const Eigen::Ref<const Eigen::VectorXd>& input,
+                                               const Eigen::Ref<const Eigen::VectorXd>& signal);
 
 /// Rows that it takes to tell.
 [[nodiscard]] int rows_to_read_back();

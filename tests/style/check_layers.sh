@@ -78,7 +78,7 @@ nonlinear archive text regression statistics model signal mismatch
 record text alarm mismatch nonlinear
 monitor archive text signal statistics model alarm regression mismatch nonlinear
 identify/fit parallel statistics regression model
-identify/evidence model signal mismatch nonlinear monitor identify/fit
+identify/evidence statistics model signal mismatch nonlinear monitor identify/fit
 performance archive signal model monitor identify/fit
 identification parallel statistics model identify/fit identify/evidence
 identify/causes parallel text model identify/fit

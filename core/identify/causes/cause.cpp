@@ -29,6 +29,7 @@ bool Cause::settles_channel(const Effect&) const { return false; }
 
 double Cause::rarity() const { return kUsualRarity; }
 
+bool Cause::borne_out(const Effect&, const Problem&) const { return false; }
 bool Cause::contradicted(const Effect&, const Problem&) const { return false; }
 
 std::optional<bool> Cause::matters(const Effect&, const Tolerances&) const { return std::nullopt; }

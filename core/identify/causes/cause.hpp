@@ -91,6 +91,8 @@ class Cause : public Edit {
 
   /// Whether the measurements speak against it, however well it fits.
   [[nodiscard]] virtual bool contradicted(const Effect& mine, const Problem& problem) const;
+  /// Whether they show it, so that no more is asked of it than to make nothing worse.
+  [[nodiscard]] virtual bool borne_out(const Effect& mine, const Problem& problem) const;
 
   // Refining what a Gauss-Newton step cannot, since the misfit has kinks there.
 

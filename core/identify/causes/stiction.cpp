@@ -52,6 +52,15 @@ class StickingValve : public InputBlockCause {
       if (!at.whole_input) continue;
       const double range = at.input.range();
       const double cost = cost_of(2 * at.members);
+      for (const MeasuredSticking& measured : outlook.recording().sticking)
+        if (measured.input == at.place.input) {
+          const Stiction& shown = measured.valve;
+          Effect valve =
+              effect(at.place,
+                     widths(shown.band, shown.jump / shown.band, kStictionUsualWidth, range), cost);
+          valve.variant = shown.slips_once ? kSlipsOnce : 0;
+          found.push_back(std::move(valve));
+        }
       for (const ErrorOnset& begins : block_onsets(outlook))
         for (const double share : kBands)
           for (const double jump : kJumps)
@@ -73,6 +82,13 @@ class StickingValve : public InputBlockCause {
     return mine.find(kGainRatio) != nullptr;
   }
 
+  /// The valve's own measured position.
+  [[nodiscard]] bool borne_out(const Effect& mine, const Problem& problem) const override {
+    const auto& sticking = problem.recording().sticking;
+    return std::any_of(sticking.begin(), sticking.end(), [&](const MeasuredSticking& measured) {
+      return measured.input == mine.place.input;
+    });
+  }
   [[nodiscard]] std::vector<Effect> closer_look(const Effect& mine,
                                                 const std::vector<Effect>& tried) const override {
     return sticking_near(mine, mine.value(kBand, 0.0), tried);

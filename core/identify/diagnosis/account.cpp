@@ -136,7 +136,8 @@ std::vector<const char*> unconfirmed(const Problem& problem, const SearchResult&
   }
   const auto concerned = [&](std::size_t i) {
     const Effect& effect = found.named[i].effect;
-    return tested[i] && !effect.certain && cause_of(effect).acts_through_channels();
+    return tested[i] && !effect.certain && cause_of(effect).acts_through_channels() &&
+           !cause_of(effect).borne_out(effect, problem);
   };
   bool any = false;
   for (std::size_t i = 0; i < tested.size(); ++i) any = any || concerned(i);

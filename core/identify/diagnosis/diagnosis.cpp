@@ -24,6 +24,7 @@
 #include "core/identify/evidence/change_row.hpp"
 #include "core/identify/evidence/channel_tests.hpp"
 #include "core/identify/evidence/free_run_residuals.hpp"
+#include "core/identify/evidence/measured_sticking.hpp"
 #include "core/identify/evidence/outside_movement.hpp"
 #include "core/identify/evidence/unanswered_pulses.hpp"
 #include "core/identify/fit/channel_edit.hpp"
@@ -239,9 +240,12 @@ void add_horizons(const Unseen& unseen, const VectorXd& before, const VectorXd& 
                               rms_of_squares(unseen.prediction_errors(after, horizon))});
 }
 
-/// With aux signals that read an input back as if they stood still: beside it they are no causes,
-/// and hide what its channels do.
+/// With aux signals that read an input back, or the valve behind it, as if they stood still: beside
+/// it they are no causes, and hide what its channels do.
 Recording without_readbacks(Recording recording) {
+  recording.sticking = measured_sticking(recording);
+  for (const MeasuredSticking& position : recording.sticking)
+    recording.aux.col(position.aux).setZero();
   for (Index a = 0; a < recording.aux.cols(); ++a)
     if (reads_back(recording.inputs, recording.aux.col(a))) recording.aux.col(a).setZero();
   return recording;

@@ -295,6 +295,10 @@ Selection select(const Problem& problem, const SearchResult& found, const Judges
     }
     selection.fates[i] = judged(effect, problem.model(), errors, judges, judges.unseen.seed() + i,
                                 selection.wanders[i], selection.sure_gains[i]);
+    if (selection.fates[i] == Fate::kNoBetter && cause_of(effect).borne_out(effect, problem)) {
+      const CvScore score = errors.free_run(judges.unseen.seed() + i);
+      if (score.rmse_after < score.rmse_before) selection.fates[i] = Fate::kRepaired;
+    }
     // A slow disturbance was fitted together with small errors of the channels, which the extended
     // model does without: it may be true and still be no repair by itself.
     if (selection.fates[i] != Fate::kRefused || cause_of(effect).acts_through_channels()) continue;

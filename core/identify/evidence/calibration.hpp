@@ -33,6 +33,24 @@ inline constexpr Eigen::Index kMostRemembered = 100'000;
 inline constexpr int kMovementOrder = 6;
 inline constexpr double kMovementRowsPerColumn = 4.0;
 
+/// Of a measured position, what is left beside where a valve that sticks would go to what is left
+/// beside its command. Chosen: of the recovery boiler's valve that sticks, in three runs, it is a
+/// twentieth to a seventh, of valves and loops that do as told more than nine tenths.
+inline constexpr double kMostOfPosition = 0.5;
+/// A position of which the command explains less than the rest of this is another's. Chosen.
+inline constexpr double kHardlyTold = 0.95;
+/// Rows that are looked at, from the first on. Chosen: a valve and its position take a tenth of a
+/// second.
+inline constexpr Eigen::Index kMostRowsOfValve = 10'000;
+/// How far a command may go while the valve rests, as shares of what it covers but for its tails:
+/// the least that is tried, and each next one wider by this; how far the valve stays behind it when
+/// it slips, as shares of that; then so many steps of both to either side of the best, each this
+/// share of it. Chosen.
+inline constexpr double kTailOfCommands = 0.025, kLeastRest = 0.01, kWider = 1.15;
+inline constexpr double kSlips[] = {0.0, 0.2, 0.4, 0.6, 0.8};
+inline constexpr double kReaches[] = {0.03, 0.01, 0.003, 0.001};
+inline constexpr int kSteps = 4;
+
 /// Rows of a run that are mirrored at either end where its first and last values are judged: enough
 /// for the screen to know a signal. What an instrument makes up lasts no longer; a test's pulse
 /// does. Chosen.

@@ -52,6 +52,7 @@ Recording part(const Recording& recording, Index first, Index count) {
   if (recording.changed && *recording.changed > first && *recording.changed < first + count)
     result.changed = *recording.changed - first;
   result.noise_before = recording.noise_before;
+  result.sticking = recording.sticking;
   return result;
 }
 

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/model/model_spec.hpp"
+
 namespace mpm {
 
 /// Where a recording's next run begins.
@@ -14,6 +16,13 @@ struct Border {
   double ahead_s = 0.0;
 
   [[nodiscard]] bool operator==(const Border&) const = default;
+};
+
+/// A valve whose position is measured, and sticks.
+struct MeasuredSticking {
+  int input = -1;  ///< whose command it follows
+  int aux = -1;    ///< its position
+  Stiction valve;
 };
 
 /// Measurements on the model's sample grid, one row per sample, NaN where a value is not known.
@@ -34,6 +43,8 @@ struct Recording {
   std::optional<Eigen::Index> changed = std::nullopt;
   /// Per CV those whose noise goes before its own (`ChannelTests`); nothing where nobody has asked.
   std::vector<std::vector<int>> noise_before = {};
+  /// What the measured positions of valves show (`measured_sticking`).
+  std::vector<MeasuredSticking> sticking = {};
 
   [[nodiscard]] Eigen::Index samples() const { return cvs.rows(); }
 };

@@ -172,6 +172,36 @@ TEST_CASE("without the test it is believed where no feedback moves the input, an
   CHECK(account.found.suspect->evidence > 30.0);
 }
 
+/// Whether sticking is named that explains little, of a test of the channels to which the repaired
+/// model looks as wrong as the model before.
+bool names_sticking(bool measured) {
+  constexpr double kRests = 0.3;  // and slips up to its command
+  VectorXd u = 0.1 * test::autoregressive(test::normal(31, kRows), 0.98), valve = u;
+  for (Index k = 1; k < kRows; ++k)
+    if (std::abs(u(k) - valve(k - 1)) < kRests) valve(k) = valve(k - 1);
+  const ModelSpec model = test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1);
+  const Recording all =
+      test::recording_of(u, test::first_order(valve, 2.0, 10.0) +
+                                0.07 * test::autoregressive(test::normal(3, kRows), 0.5));
+  Recording first = part(all, 0, kFitted);
+  if (measured) first.sticking = {{0, 0, Stiction{kRests, kRests, true}}};
+  Unseen unseen(all, kRows - kFitted, model, 1);
+  const std::vector<std::optional<double>> shares = {0.5};
+  const ChannelTests given(model, all, free_run_residuals(model, all));
+  SearchSettings settings;
+  settings.progress = [](double) { return true; };
+  const Account account = account_for(
+      model, 1, first, {unseen, 0, {}, shares},
+      {given, given, [&](const std::vector<Stage>&, OwnPast) { return given; }}, settings);
+  return std::any_of(account.found.named.begin(), account.found.named.end(),
+                     [](const Named& named) { return named.effect.edit == &causes::stiction(); });
+}
+
+TEST_CASE("a valve whose measured position shows it sticking needs no test of its channels") {
+  CHECK(names_sticking(true));
+  CHECK_FALSE(names_sticking(false));
+}
+
 /// Of a CV that wanders under noise, and a signal that wanders too: whether the signal is said to
 /// act on the CV, and whether it was refused for the walk.
 struct Told {

@@ -176,6 +176,34 @@ TEST_CASE("a valve that begins to stick half-way is named, with its moment") {
   CHECK(*finding.onset_s == Approx(static_cast<double>(kChanged)).margin(60.0));
 }
 
+// The position of a valve is no signal from outside, though it explains what the command does not:
+// it is told how the valve sticks. One that does as told is recorded by exception: in the record it
+// stands still and jumps, as if it stuck.
+TEST_CASE("a valve that sticks is named beside its measured position, and only where CVs feel it") {
+  constexpr double kBand = 0.6, kJump = 0.25;
+  VectorXd u = 0.1 * test::autoregressive(test::normal(31, kLonger), 0.98);
+  u.array() -= u(0);  // the valve begins where the model has it
+  const VectorXd stuck = stuck_from(1, kBand, kJump, u);
+  for (const bool sticks : {true, false}) {
+    CAPTURE(sticks);
+    const VectorXd y =
+        test::first_order(sticks ? stuck : u, 2.0, 10.0) + 0.05 * test::normal(41, kLonger);
+    Recording recording = test::recording_of(u, y);
+    recording.aux = VectorXd::Zero(kLonger);
+    recording.aux.bottomRows(kLonger - 1) =
+        (sticks ? stuck : stuck_from(1, kBand, kBand, u)).head(kLonger - 1);
+    const Diagnosis diagnosis =
+        diagnose(test::model_of({lag(0, 0, 2.0, 10.0)}, 1, 1), recording, nullptr, {.mv_count = 1});
+    REQUIRE(diagnosis.findings.size() == (sticks ? 1 : 0));
+    if (!sticks) continue;
+    const Finding& finding = diagnosis.findings.front();
+    CHECK(finding.subject == Subject{&causes::stiction(), {0, 0}});
+    CHECK(finding.repaired);
+    CHECK(finding.parameters[0].value == Approx(kBand).margin(0.05));
+    CHECK(finding.parameters[1].value == Approx(kJump).margin(0.08));
+  }
+}
+
 // What a stranger tries first: +-1 on the input, and a plant that answers twice as strongly. Two
 // levels and an offset hold any curve, and a valve that sticks for less than a move is none.
 TEST_CASE("a gain is no curve, no offset and no sticking valve to a binary test signal") {
